@@ -1,0 +1,11 @@
+# Warnings and sanitizers of every target of the project.
+add_library(quincunx_options INTERFACE)
+target_compile_options(quincunx_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                       -Wno-sign-conversion -Wnon-virtual-dtor)
+if(QUINCUNX_WERROR)
+  target_compile_options(quincunx_options INTERFACE -Werror)
+endif()
+if(QUINCUNX_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()

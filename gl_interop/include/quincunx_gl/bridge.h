@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// Bridge: how a frame that GL drew reaches OpenCL, and how the picture that OpenCL made returns to GL.
+//
+// Two backends behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing), after
+// a probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads the viewport's
+// rectangle, and nothing else, into persistently mapped pixel buffers that OpenCL uses as host memory. A ring
+// of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
+//
+// A frame's life:   targets(s) -> draw -> submit(s, render)          GL thread
+//                   acquire(s) -> service.dispatch(...)              s is held, with s - 1, until the next
+//                   dispatch present() -> presented_pixels() / presented_texture()
+// All calls come from the thread where the GL context is current.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "quincunx/device.h"
+#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/render_targets.h"
+
+namespace quincunx::gl {
+
+enum class Interop { kAuto, kGl, kCopy };
+
+const char* name_of(Interop interop);  // "gl", "copy", "auto"
+
+struct BridgeSettings {
+  Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
+  Extent target;                     // of the inputs
+  Extent output;                     // of the presented picture
+  bool depth = false;                // hand depth over
+  bool velocity = false;             // draw and hand over velocity
+  bool reactive = false;             // draw and hand over reactive values
+  int slots = 3;                     // >= 3 where the previous frame is read
+};
+
+// The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed. Empty where
+// not handed over. All have the target extent and, where they are buffers, its pitch.
+struct SharedFrame {
+  ImageView colour;
+  ImageView depth;
+  ImageView velocity;
+  ImageView reactive;
+};
+
+// Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and there is
+// one, else the one `selector` names (see Device::open).
+Result<Device> open_device(const EglContext& context, const std::string& selector, Interop interop);
+
+class Bridge {
+ public:
+  static Result<std::unique_ptr<Bridge>> create(const EglContext& context, const Device& device,
+                                                const BridgeSettings& settings);
+  virtual ~Bridge() = default;
+  Bridge(const Bridge&) = delete;
+  Bridge& operator=(const Bridge&) = delete;
+
+  virtual Interop kind() const = 0;                      // kGl or kCopy
+  const std::string& reason() const { return reason_; }  // one sentence: why this backend
+  Storage storage() const { return kind() == Interop::kGl ? Storage::kImage : Storage::kBuffer; }
+  int slots() const { return settings_.slots; }
+
+  // The framebuffer of a slot. Takes the slot back from OpenCL: waits until the work that reads it is done.
+  virtual Result<const RenderTargets*> begin_draw(int slot) = 0;
+
+  // After drawing: starts handing the top left `render` of the slot over. Does not wait.
+  virtual Status submit(int slot, Extent render) = 0;
+
+  // Makes the slot readable by OpenCL: waits for GL where it must. Commands enqueued on the device's queue
+  // after this see the frame.
+  virtual Result<SharedFrame> acquire(int slot) = 0;
+
+  // RGBA8, output extent: the target of FrameOutputs::presented. The same view until the bridge is destroyed.
+  virtual Result<ImageView> begin_present() = 0;
+
+  // After the dispatch that writes it was enqueued: waits for that work and brings the picture to GL and the
+  // caller.
+  virtual Status present() = 0;
+  virtual GLuint presented_texture() const = 0;        // RGBA8, row 0 on top
+  virtual const std::uint8_t* presented_pixels() = 0;  // RGBA8, tightly packed; valid until begin_present()
+
+  // Bytes moved between GL and OpenCL by the last submit() + acquire(), and by the last present(); and the
+  // time in ms that acquire() waited and present() took on the host.
+  struct Traffic {
+    std::uint64_t bytes_in = 0;
+    std::uint64_t bytes_out = 0;
+    double acquire_ms = 0;
+    double present_ms = 0;
+  };
+  const Traffic& traffic() const { return traffic_; }
+
+ protected:
+  Bridge(const BridgeSettings& settings, std::string reason)
+      : settings_(settings), reason_(std::move(reason)) {}
+
+  BridgeSettings settings_;
+  std::string reason_;
+  Traffic traffic_;
+};
+
+}  // namespace quincunx::gl

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// EglContext: an OpenGL 4.5 core context without a window.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "quincunx/status.h"
+
+namespace quincunx::gl {
+
+enum class Platform { kAuto, kSurfaceless, kDevice };  // kAuto: device where it is a GPU, else surfaceless
+
+struct EglInfo {
+  Platform platform = Platform::kAuto;  // the one in use
+  std::string vendor;                   // GL_VENDOR
+  std::string renderer;                 // GL_RENDERER
+  std::string version;                  // GL_VERSION
+  bool software = false;                // llvmpipe, softpipe, swrast
+};
+
+// Owns display connection and context. Move-only; the context is current on the thread that made it, and
+// every GL call of this library happens on the thread where it is current. Destroying it after all GL objects
+// is the caller's duty. Debug output of the driver (errors, not chatter) goes to the log.
+class EglContext {
+ public:
+  // Errors: kUnsupported with what was tried and what each said.
+  static Result<EglContext> create(Platform platform = Platform::kAuto);
+
+  ~EglContext();
+  EglContext(EglContext&&) noexcept;
+  EglContext& operator=(EglContext&&) noexcept;
+
+  const EglInfo& info() const;
+  void* display() const;  // EGLDisplay
+  void* context() const;  // EGLContext
+  Status make_current();
+
+ private:
+  struct Impl;
+  explicit EglContext(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quincunx::gl

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// RenderTargets: what a renderer draws into.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include "quincunx/image.h"
+#include "quincunx_gl/handle.h"
+
+namespace quincunx::gl {
+
+struct TargetNeeds {
+  Extent target;         // allocated size, at least the largest viewport
+  bool velocity = true;  // RG16F, uv per frame
+  bool reactive = true;  // R8
+};
+
+// One framebuffer with its textures, all of the target extent. The viewport is its part from (0, 0), which
+// with glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE) is the top left; texture row 0 is the top row. Move-only.
+// Fragment outputs: location 0 colour (RGBA16F, premultiplied), 1 velocity, 2 reactive; the draw buffers of
+// what was not asked for are GL_NONE.
+class RenderTargets {
+ public:
+  explicit RenderTargets(
+      const TargetNeeds& needs);  // throws std::runtime_error when the framebuffer is incomplete
+
+  Extent extent() const { return extent_; }
+  GLuint framebuffer() const { return framebuffer_.get(); }
+  GLuint colour() const { return colour_.get(); }
+  GLuint depth() const { return depth_.get(); }        // DEPTH_COMPONENT32F
+  GLuint velocity() const { return velocity_.get(); }  // 0: not planned
+  GLuint reactive() const { return reactive_.get(); }  // 0: not planned
+
+  // Clears the viewport's part of colour, velocity and reactive (scissored), and depth whole (to 0:
+  // infinity).
+  void clear(Extent render) const;
+
+ private:
+  Extent extent_;
+  Framebuffer framebuffer_;
+  Texture colour_;
+  Texture depth_;
+  Texture velocity_;
+  Texture reactive_;
+};
+
+}  // namespace quincunx::gl

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Device: one OpenCL device with its context and an in-order, profiling queue.
+//
+// A Device is a shared handle: copies refer to the same context and queue, which live until the last copy,
+// image and service is gone. Opening and querying are thread-safe; the queue is used by one thread at a time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+enum class DeviceKind { kCpu, kGpu, kAccelerator, kOther };
+
+struct DeviceInfo {
+  int index = 0;  // position in Device::list()
+  DeviceKind kind = DeviceKind::kOther;
+  std::string platform;  // "Portable Computing Language"
+  std::string name;
+  std::string vendor;
+  std::string driver;
+  std::string version;  // "OpenCL 3.0 ..."
+  int compute_units = 0;
+  std::uint64_t global_memory_bytes = 0;
+  bool images = false;               // image2d_t at all
+  bool two_channel_images = false;   // RG half images, readable and writable
+  bool host_unified_memory = false;  // buffers over host memory cost no copy
+  bool gl_sharing = false;           // cl_khr_gl_sharing is advertised (the bridge still probes it)
+};
+
+class Device {
+ public:
+  // All devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Empty when there are
+  // none.
+  static std::vector<DeviceInfo> list();
+
+  // Opens a device. `selector`: "" for the first of list(); "cpu" or "gpu"; a number for an index of list();
+  // else a part of "platform name", case-insensitive. `properties`: further context properties for GL
+  // sharing, ended by zero, or null. Errors: kInvalidArgument when nothing matches (the message lists what
+  // there is), kDeviceFailure when the context cannot be made.
+  static Result<Device> open(const std::string& selector = {},
+                             const cl_context_properties* properties = nullptr);
+
+  // Uses the caller's context and queue; both are retained. The queue must be in-order. Pass times are
+  // reported only where it was made with CL_QUEUE_PROFILING_ENABLE.
+  static Result<Device> borrow(cl_context context, cl_device_id device, cl_command_queue queue);
+
+  const DeviceInfo& info() const;
+  cl_context context() const;
+  cl_device_id id() const;
+  cl_command_queue queue() const;
+
+  // Allocates an uninitialised image. Buffer rows are tightly packed when `pitch` is 0. Errors:
+  // kInvalidArgument for an empty extent or a bad pitch, kUnsupported for a format this device has no image
+  // of, kDeviceFailure.
+  Result<Image> allocate(Extent extent, PixelFormat format, Storage storage = Storage::kBuffer,
+                         std::size_t pitch = 0) const;
+
+  // Blocking copies between host memory (rows of `row_bytes`, 0: tightly packed) and the top left `extent` of
+  // an image, for tools and tests; never used inside a frame. Host texels have the view's format.
+  Status upload(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes = 0) const;
+  Status download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes = 0) const;
+
+  Status finish() const;  // waits for all queued work
+
+  struct Impl;
+  const std::shared_ptr<Impl>& impl() const { return impl_; }
+
+ private:
+  explicit Device(std::shared_ptr<Impl> impl) : impl_(std::move(impl)) {}
+  std::shared_ptr<Impl> impl_;
+};
+
+}  // namespace quincunx

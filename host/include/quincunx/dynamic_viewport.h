@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// DynamicViewport: from a wanted scale to the integer viewport that is drawn, and back to the true ratio.
+//
+// Pure arithmetic: no device, no clock. A value; any thread may use its own copy. After Binks, "Dynamic
+// Resolution Rendering", 2012: the ratio that shaders and kernels use is recomputed from the integer
+// viewport, never the one asked for.
+#pragma once
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+class DynamicViewport {
+ public:
+  // Target extent = ceil(output * max_scale). Viewports of set_scale() are the output extent plus a multiple
+  // of `step` pixels on each axis, so that scale 1 is exactly the output, whatever its parity; no side falls
+  // below `floor` (or the output where that is smaller) nor exceeds the target. Errors: kInvalidArgument for
+  // an empty output, a max_scale outside [1, 2] or not finite, a step below 1, a floor below 1.
+  static Result<DynamicViewport> create(Extent output, float max_scale = 1.0f, int step = 2,
+                                        Extent floor = {8, 8});
+
+  // The viewport nearest to output * scale on each axis. Errors: kInvalidArgument for a scale that is not a
+  // positive finite number; the viewport then stays as it was. Values beyond the range are clamped.
+  Status set_scale(float scale_x, float scale_y);
+
+  // Any integer viewport from 1x1 to the target extent, off the ladder if wanted. Errors: kInvalidArgument.
+  Status set_render(Extent render);
+
+  Extent render() const { return render_; }
+  Extent output() const { return output_; }
+  Extent target() const { return target_; }
+  Vec2 ratio() const;         // render / output per axis: the true scale
+  Vec2 target_ratio() const;  // render / target per axis: the part of the target in use
+
+ private:
+  DynamicViewport(Extent output, Extent target, int step, Extent floor);
+
+  Extent output_;
+  Extent target_;
+  Extent floor_;
+  Extent render_;
+  int step_;
+};
+
+}  // namespace quincunx

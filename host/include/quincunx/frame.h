@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// FrameInputs, FrameOutputs, FrameReport: what goes into one dispatch of the service and what comes out.
+//
+// Plain structs; a zero means the sensible default written beside the field. docs/inputs.md states the
+// conventions at length.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+// Where the camera was, for velocity that is derived from depth. Column-major: takes (ndc.x, ndc.y, depth, 1)
+// of this frame, jitter excluded, to homogeneous clip coordinates of the previous frame, jitter excluded;
+// ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
+// target holds: reversed, infinite, 1 at the near plane and 0 at infinity.
+struct CameraMotion {
+  std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+};
+
+// One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
+// done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done:
+// the service reads the previous frame where the caller left it and copies nothing. So give frames n and n -
+// 1 different memory; a ring of three lets the renderer run ahead.
+struct FrameInputs {
+  ImageView colour;    // RGBA16F or RGBA32F, linear, premultiplied
+  ImageView depth;     // R32F, reversed infinite depth; only read where the plan says so
+  ImageView velocity;  // RG16F or RG32F, this position - previous position; only read where the plan says so
+  ImageView reactive;  // R8, 0: trust history, 1: ignore it; only read where the plan says so
+  Extent render;       // the viewport, within the images' extents; any size from 1x1
+  Vec2 jitter;  // render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1]
+  Vec2 velocity_scale;  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
+  CameraMotion camera;
+  float exposure = 0;             // multiplies linear colour in the present pass; 0: 1
+  bool reset = false;             // a cut: nothing of the previous frame may be used
+  std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
+};
+
+// Where the results go. At least one is needed; each has the plan's output extent.
+struct FrameOutputs {
+  ImageView resolved;   // RGBA32F or RGBA16F as planned: linear, output extent
+  ImageView presented;  // RGBA8: exposed, tone mapped, sRGB encoded
+};
+
+struct PassReport {
+  const char* kernel = "";  // static string: "resolve_quincunx"
+  double ms = -1;           // device time; -1: not known (yet)
+  std::uint64_t bytes = 0;  // read and written in this frame, each texel counted once
+};
+
+struct FrameReport {
+  static constexpr int kMaxPasses = 8;
+
+  Status status;  // not ok: nothing was enqueued and no output was touched
+  std::uint64_t frame_index = 0;
+  Extent render;
+  Vec2 ratio;                  // render / output, recomputed from the integer viewport
+  bool used_previous = false;  // history contributed (false on the first frame and after reset)
+  int pass_count = 0;
+  std::array<PassReport, kMaxPasses> passes;
+  std::int64_t non_finite_pixels =
+      -1;  // output pixels that met NaN or Inf in their footprint; -1: not known yet
+
+  bool ok() const { return status.ok(); }
+};
+
+}  // namespace quincunx

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Images: what a pass reads and writes.
+//
+// A view names a rectangle of texels inside an OpenCL allocation: (allocation, byte offset, pitch, extent,
+// format). The same kernels serve a viewport inside a larger target and a tightly packed image; only the
+// numbers differ. Rows run top-down, x to the right; texel (x, y) has its centre at (x + .5, y + .5).
+#pragma once
+
+#include <CL/cl.h>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace quincunx {
+
+// Width and height in pixels.
+struct Extent {
+  int width = 0;
+  int height = 0;
+
+  friend bool operator==(const Extent&, const Extent&) = default;
+  std::int64_t area() const { return static_cast<std::int64_t>(width) * height; }
+};
+
+struct Vec2 {
+  float x = 0;
+  float y = 0;
+
+  friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+// Colour formats are linear light with premultiplied alpha. kRGBA8 of the present pass is sRGB encoded.
+enum class PixelFormat : std::uint8_t {
+  kNone = 0,
+  kR8,       // unsigned normalised: reactive values
+  kR32F,     // depth
+  kRG16F,    // velocity
+  kRG32F,    // velocity
+  kRGBA8,    // presented picture
+  kRGBA16F,  // colour
+  kRGBA32F,  // colour
+};
+
+std::size_t bytes_per_pixel(PixelFormat format);  // 0 for kNone
+const char* name_of(PixelFormat format);          // "RGBA16F"
+
+enum class Storage : std::uint8_t {
+  kBuffer,  // cl_mem is a buffer; rows are `pitch` bytes apart
+  kImage,   // cl_mem is an image2d_t; offset and pitch are zero
+};
+
+// Does not own `memory`. `extent` is what is allocated (the *target* extent), of which a frame uses the top
+// left part (the *render* extent, in FrameInputs). A device without two-channel images holds RG formats of
+// image storage in four channels; the format still says RG.
+struct ImageView {
+  cl_mem memory = nullptr;
+  Storage storage = Storage::kBuffer;
+  PixelFormat format = PixelFormat::kNone;
+  Extent extent;
+  std::size_t offset = 0;  // bytes from the start of the buffer to texel (0, 0); a multiple of 16
+  std::size_t pitch = 0;   // bytes from one row to the next; a multiple of the texel size; 0: tightly packed
+
+  explicit operator bool() const { return memory != nullptr; }
+  std::size_t row_pitch() const { return pitch != 0 ? pitch : extent.width * bytes_per_pixel(format); }
+};
+
+// Owns one OpenCL memory object and the view of the whole of it. Move-only. Releasing it while a kernel that
+// uses it is queued is safe: OpenCL keeps the memory until the kernel has run. Not safe to share between
+// threads without a lock.
+class Image {
+ public:
+  Image() = default;
+  ~Image();
+  Image(Image&& other) noexcept;
+  Image& operator=(Image&& other) noexcept;
+  Image(const Image&) = delete;
+  Image& operator=(const Image&) = delete;
+
+  static Image adopt(const ImageView& view);   // takes over the caller's reference; we release
+  static Image borrow(const ImageView& view);  // retains; the caller keeps its own reference
+
+  const ImageView& view() const { return view_; }
+  explicit operator bool() const { return view_.memory != nullptr; }
+
+ private:
+  ImageView view_;
+};
+
+}  // namespace quincunx

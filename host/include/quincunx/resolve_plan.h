@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// ResolvePlan: the passes, buffers and bytes that follow from what a scene needs.
+//
+// Planning is pure: no device, no allocation on one. What a plan leaves out is neither allocated nor
+// dispatched nor compiled, and explain() says why. A value; any thread may use its own copy.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+enum class Method {
+  kPoint,     // nearest sample
+  kBilinear,  // four samples, jitter-aware
+  kQuincunx,  // this frame and the previous one on the five-of-a-die pattern
+};
+
+enum class ToneMap { kClamp, kReinhard, kAces };
+
+const char* name_of(Method method);     // "quincunx"
+const char* name_of(ToneMap tone_map);  // "aces"
+
+// What the scene will ever do while this plan is used.
+struct SceneNeeds {
+  bool moving_objects = true;  // anything but the camera moves
+  bool camera_motion = true;
+  bool transparents = true;  // drawn without velocity, with reactive values
+  bool background = true;    // something (a sky, a room) covers every pixel: colour needs no clear
+};
+
+struct ResolveSettings {
+  Method method = Method::kQuincunx;
+  Extent output;                                 // the picture's size
+  Extent target;                                 // the inputs' allocated size: at least the largest viewport
+  PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA16F or RGBA32F
+  PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
+  PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
+  Storage storage = Storage::kBuffer;            // of the inputs and the presented picture
+  bool present = true;                           // run the present pass
+  ToneMap tone_map = ToneMap::kAces;
+  bool dither = true;         // of the present pass: +- half a code value, fixed pattern
+  float velocity_weight = 1;  // K of f = 1/(1 + K(|v0|^2 + |v1|^2)), v in output pixels a frame; >= 0
+};
+
+// Where the resolve finds velocity.
+enum class VelocitySource {
+  kNone,    // nothing moves, or the method does not ask
+  kTarget,  // a velocity target
+  kCamera,  // depth and the camera's motion: only the camera moves
+};
+
+struct PlannedPass {
+  std::string kernel;       // "resolve_quincunx"
+  std::string options;      // the -D options of the variant
+  std::string reason;       // why it is here
+  std::uint64_t bytes = 0;  // read and written at the largest viewport, each texel once
+};
+
+struct PlannedBuffer {
+  std::string name;
+  Extent extent;
+  PixelFormat format = PixelFormat::kNone;
+  std::uint64_t bytes = 0;
+  bool owned = false;  // by the service; else the caller brings it
+};
+
+struct LeftOut {
+  std::string what;
+  std::string why;
+};
+
+struct ResolvePlan {
+  SceneNeeds needs;
+  ResolveSettings settings;
+  VelocitySource velocity = VelocitySource::kNone;
+  bool reads_depth = false;
+  bool reads_reactive = false;
+  std::vector<PlannedPass> passes;
+  std::vector<PlannedBuffer> buffers;
+  std::vector<LeftOut> left_out;
+
+  bool keeps_previous_frame() const { return settings.method == Method::kQuincunx; }
+  std::string explain() const;  // a page of plain text
+};
+
+// Errors: kInvalidArgument; the message names every bad field.
+Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings);
+
+}  // namespace quincunx

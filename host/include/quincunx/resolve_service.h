@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// ResolveService: one object, one call a frame.
+//
+//   auto device = quincunx::Device::open();
+//   auto plan = quincunx::plan_for(needs, settings);
+//   auto service = quincunx::ResolveService::create(device.value(), plan.value());
+//   FrameReport report = service.value().dispatch({.colour = ..., .render = ...}, {.presented = ...});
+//
+// create() compiles (or loads from the program cache), allocates and warms up; after it a frame allocates
+// nothing, compiles nothing and never waits for the device. Calls on one service come from one thread at a
+// time; several services may share a device only from one thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "quincunx/device.h"
+#include "quincunx/frame.h"
+#include "quincunx/resolve_plan.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+// Checks every field of a frame against a plan without a device. The message names every bad field, what it
+// holds and what would be right. Pure; thread-safe.
+Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs);
+
+class ResolveService {
+ public:
+  // Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with the build's options
+  // and log when a kernel does not compile.
+  static Result<ResolveService> create(const Device& device, const ResolvePlan& plan);
+
+  ~ResolveService();
+  ResolveService(ResolveService&&) noexcept;
+  ResolveService& operator=(ResolveService&&) noexcept;
+
+  // Enqueues the frame's passes on the device's queue and flushes it. A bad frame is refused whole: the
+  // report's status says why, nothing is enqueued, and the history is as it was. The report's times are not
+  // known yet.
+  FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs);
+
+  // The oldest finished frame whose report was not yet taken, with its times and counts; nothing when none
+  // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.
+  std::optional<FrameReport> next_completed();
+
+  // Fills the top left `render` of an image with one value (unused channels ignored): the partial clear.
+  // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
+  Status clear(const ImageView& image, Extent render, const float value[4]);
+
+  Status finish();  // waits until every dispatched frame is done
+
+  const ResolvePlan& plan() const;
+
+ private:
+  struct Impl;
+  explicit ResolveService(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quincunx

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx/dynamic_viewport.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx {
+namespace {
+
+// The rung of the ladder output + k * step nearest to output * scale, within [low, high].
+int nearest_rung(int output, double scale, int step, int low, int high) {
+  const double rungs_down = std::ceil((low - output) / static_cast<double>(step));
+  const double rungs_up = std::floor((high - output) / static_cast<double>(step));
+  const double wanted = std::round(output * (scale - 1) / step);
+  return output + static_cast<int>(std::clamp(wanted, rungs_down, rungs_up)) * step;
+}
+
+}  // namespace
+
+DynamicViewport::DynamicViewport(Extent output, Extent target, int step, Extent floor)
+    : output_(output), target_(target), floor_(floor), render_(output), step_(step) {}
+
+Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, int step, Extent floor) {
+  constexpr int kLargestSide = 32768;
+  if (output.width < 1 || output.height < 1 || output.width > kLargestSide || output.height > kLargestSide) {
+    return Status::invalid(fmt::format("output is {}x{}; both sides must lie in [1, {}]", output.width,
+                                       output.height, kLargestSide));
+  }
+  if (!(max_scale >= 1 && max_scale <= 2)) {
+    return Status::invalid(fmt::format("max_scale is {}; it must lie in [1, 2]", max_scale));
+  }
+  if (step < 1) return Status::invalid(fmt::format("step is {}; it must be at least 1 pixel", step));
+  if (floor.width < 1 || floor.height < 1) {
+    return Status::invalid(
+        fmt::format("floor is {}x{}; both sides must be at least 1", floor.width, floor.height));
+  }
+  const double scale = max_scale;
+  const Extent target = {static_cast<int>(std::ceil(output.width * scale)),
+                         static_cast<int>(std::ceil(output.height * scale))};
+  const Extent reachable_floor = {std::min(floor.width, output.width), std::min(floor.height, output.height)};
+  return DynamicViewport(output, target, step, reachable_floor);
+}
+
+Status DynamicViewport::set_scale(float scale_x, float scale_y) {
+  const auto usable = [](float scale) { return std::isfinite(scale) && scale > 0; };
+  if (!usable(scale_x) || !usable(scale_y)) {
+    return Status::invalid(
+        fmt::format("scale is {} x {}; both must be positive finite numbers", scale_x, scale_y));
+  }
+  // Beyond the ends only the direction matters; clamping first keeps the arithmetic in range.
+  const double x = std::min(static_cast<double>(scale_x), 4.0);
+  const double y = std::min(static_cast<double>(scale_y), 4.0);
+  render_ = {nearest_rung(output_.width, x, step_, floor_.width, target_.width),
+             nearest_rung(output_.height, y, step_, floor_.height, target_.height)};
+  return {};
+}
+
+Status DynamicViewport::set_render(Extent render) {
+  if (render.width < 1 || render.height < 1 || render.width > target_.width ||
+      render.height > target_.height) {
+    return Status::invalid(fmt::format("render is {}x{}; it must lie within 1x1 and the target's {}x{}",
+                                       render.width, render.height, target_.width, target_.height));
+  }
+  render_ = render;
+  return {};
+}
+
+Vec2 DynamicViewport::ratio() const {
+  return {static_cast<float>(render_.width) / static_cast<float>(output_.width),
+          static_cast<float>(render_.height) / static_cast<float>(output_.height)};
+}
+
+Vec2 DynamicViewport::target_ratio() const {
+  return {static_cast<float>(render_.width) / static_cast<float>(target_.width),
+          static_cast<float>(render_.height) / static_cast<float>(target_.height)};
+}
+
+}  // namespace quincunx

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Renderer: draws a Scene with OpenGL 4.5 into the viewport of render targets.
+//
+// One geometry pass writes colour, depth and velocity; then sky, then transparents (colour and reactive
+// only). Reversed infinite depth, rows top-down, jitter through the projection. Uses the current GL context;
+// one thread.
+#pragma once
+
+#include <memory>
+
+#include "quincunx/frame.h"
+#include "quincunx/status.h"
+#include "quincunx_gl/render_targets.h"
+#include "scene.h"
+
+namespace quincunx::scenes {
+
+struct FrameView {
+  Extent render;                // viewport
+  Vec2 jitter;                  // render pixels: samples lie at pixel centre + jitter
+  double seconds = 0;           // scene time of this frame
+  double previous_seconds = 0;  // scene time of the previous frame: velocity = this position - that one
+  float lod_bias = 0;           // of every texture
+};
+
+class Renderer {
+ public:
+  // Uploads the scene. Errors: kInvalidArgument for a scene that does not hold together (indices, sizes),
+  // kDeviceFailure with the shader log.
+  static Result<Renderer> create(const Scene& scene);
+
+  ~Renderer();
+  Renderer(Renderer&&) noexcept;
+  Renderer& operator=(Renderer&&) noexcept;
+
+  // Draws one frame; clears what it must first. Velocity and reactive values are written where the targets
+  // have them.
+  Status draw(const gl::RenderTargets& targets, const FrameView& view);
+
+  // For velocity from depth: from this frame's clip space to the previous frame's, jitter excluded.
+  CameraMotion camera_motion(const FrameView& view) const;
+
+ private:
+  struct Impl;
+  explicit Renderer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quincunx::scenes

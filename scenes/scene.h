@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: MIT
+// Scene: everything a renderer needs to know, as data. No GL here.
+//
+// World space is right-handed, y up, metres; colours are linear, light in arbitrary radiometric units. All
+// motion is a pure function of time in seconds, so any frame can be drawn in any order, twice, and come out
+// the same.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx::scenes {
+
+struct Vertex {
+  glm::vec3 position{0};
+  glm::vec3 normal{0, 1, 0};
+  glm::vec2 uv{0};
+  glm::vec4 colour{1};  // multiplies the base colour
+};
+
+enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
+
+struct Texture {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> rgba;  // width * height * 4, row 0 at v = 0
+  bool srgb = true;                // RGB is sRGB encoded
+  Wrap wrap_u = Wrap::kRepeat;
+  Wrap wrap_v = Wrap::kRepeat;
+  bool nearest = false;  // no filtering; else trilinear with mipmaps and anisotropy
+};
+
+struct TextureSlot {
+  int texture = -1;        // index into Scene::textures; -1: none
+  glm::mat3 transform{1};  // of uv (KHR_texture_transform)
+};
+
+enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
+
+// Metallic-roughness as in glTF 2.0.
+struct Material {
+  std::string name;
+  glm::vec4 base_colour{1};
+  float metallic = 0;
+  float roughness = 1;
+  glm::vec3 emissive{0};  // may exceed 1: lamps
+  AlphaMode alpha_mode = AlphaMode::kOpaque;
+  float alpha_cutoff = 0.5f;
+  bool double_sided = false;
+  bool unlit = false;
+  float reactive = 1;  // kBlend only: reactive value written where alpha is 1
+  TextureSlot base_colour_texture;
+  TextureSlot metallic_roughness_texture;  // G roughness, B metallic
+  TextureSlot emissive_texture;
+  TextureSlot normal_texture;  // tangent space from screen-space derivatives
+  float normal_scale = 1;
+};
+
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<std::uint32_t> indices;  // triangles, counter-clockwise seen from the front
+  int material = 0;
+};
+
+using Motion = std::function<glm::mat4(double seconds)>;
+
+struct Instance {
+  int mesh = 0;
+  glm::mat4 transform{1};  // world from mesh, when there is no motion
+  Motion motion;           // world from mesh at a time; empty: it stands still
+};
+
+// A camera-facing, additively or alpha blended quad; no velocity, reactive.
+struct Particle {
+  glm::vec3 position{0};
+  float radius = 0.1f;
+  glm::vec4 colour{1};  // premultiplied linear; alpha 0: purely additive
+};
+using ParticleSystem = std::function<void(double seconds, std::vector<Particle>& particles)>;
+
+struct Camera {
+  glm::mat4 world_from_camera{1};  // looks along -z
+  float vertical_fov = 1.0f;       // radians
+  float near_plane = 0.1f;         // metres; the far plane is at infinity
+};
+using CameraPath = std::function<Camera(double seconds)>;
+
+struct SunLight {
+  glm::vec3 direction{0, -1, 0};  // the way light travels; normalised by the renderer
+  glm::vec3 irradiance{0};
+  bool casts_shadows = true;
+};
+
+struct PointLight {
+  glm::vec3 position{0};
+  glm::vec3 intensity{0};  // radiant intensity: irradiance = intensity / distance^2
+  float range = 10;        // metres: falls smoothly to zero
+};
+
+struct Sky {
+  bool visible = true;  // else the background is `zenith`, a plain colour
+  glm::vec3 zenith{0.2f, 0.4f, 0.8f};
+  glm::vec3 horizon{0.6f, 0.7f, 0.8f};
+  glm::vec3 ground{0.2f, 0.18f, 0.15f};
+  glm::vec3 sun_radiance{0};  // of a disc along -sun.direction; 0: none
+  float sun_radius = 0.02f;   // radians
+};
+
+struct Bounds {
+  glm::vec3 low{0};
+  glm::vec3 high{0};
+};
+
+struct Scene {
+  std::string name;
+  std::string summary;  // one line: what is seen
+  std::string reason;   // one line: what it tests
+  std::vector<Texture> textures;
+  std::vector<Material> materials;
+  std::vector<Mesh> meshes;
+  std::vector<Instance> instances;
+  ParticleSystem particles;  // empty: none
+  SunLight sun;
+  std::vector<PointLight> lights;  // at most kMaxPointLights
+  Sky sky;
+  CameraPath camera;
+  bool camera_moves = false;
+  double duration = 4;  // seconds after which it is meant to repeat or end
+  float exposure = 1;
+
+  static constexpr int kMaxPointLights = 16;
+};
+
+// What the resolve plan may leave out follows from this.
+SceneNeeds needs_of(const Scene& scene);
+
+// World bounds of all instances at time 0.
+Bounds bounds_of(const Scene& scene);
+
+}  // namespace quincunx::scenes
