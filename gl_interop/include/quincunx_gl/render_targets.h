@@ -31,8 +31,8 @@ class RenderTargets {
   GLuint velocity() const { return velocity_.get(); }  // 0: not planned
   GLuint reactive() const { return reactive_.get(); }  // 0: not planned
 
-  // Clears the viewport's part of colour, velocity and reactive (scissored), and depth whole (to 0:
-  // infinity).
+  // Clears the viewport's part of colour, velocity and reactive (scissored, to 0), and depth whole (to 0:
+  // infinity). Leaves the scissor as it was and the colour and depth write masks on.
   void clear(Extent render) const;
 
  private:

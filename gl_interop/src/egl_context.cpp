@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx_gl/egl_context.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <mutex>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace quincunx::gl {
+namespace {
+
+constexpr int kMajorVersion = 4;
+constexpr int kMinorVersion = 5;
+
+bool lists(const char* extensions, std::string_view wanted) {
+  std::string_view rest = extensions != nullptr ? extensions : "";
+  while (!rest.empty()) {
+    const std::size_t end = std::min(rest.find(' '), rest.size());
+    if (rest.substr(0, end) == wanted) return true;
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  return false;
+}
+
+std::string egl_error(const char* call) {
+  return fmt::format("{} failed with EGL error 0x{:04x}", call, static_cast<unsigned>(eglGetError()));
+}
+
+// eglGetPlatformDisplay returns one display for every call with the same arguments, and eglTerminate ends it
+// for all of them, so contexts of this process share a count for each display.
+class DisplayUse {
+ public:
+  DisplayUse() = default;
+  ~DisplayUse() { release(); }
+  DisplayUse(DisplayUse&& other) noexcept : display_(std::exchange(other.display_, EGL_NO_DISPLAY)) {}
+  DisplayUse& operator=(DisplayUse&& other) noexcept {
+    std::swap(display_, other.display_);
+    return *this;
+  }
+  DisplayUse(const DisplayUse&) = delete;
+  DisplayUse& operator=(const DisplayUse&) = delete;
+
+  static DisplayUse initialise(EGLDisplay display) {
+    const std::lock_guard lock(mutex());
+    DisplayUse use;
+    if (eglInitialize(display, nullptr, nullptr) != EGL_TRUE) return use;
+    ++counts()[display];
+    use.display_ = display;
+    return use;
+  }
+
+  EGLDisplay get() const { return display_; }
+  explicit operator bool() const { return display_ != EGL_NO_DISPLAY; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex instance;
+    return instance;
+  }
+  static std::map<EGLDisplay, int>& counts() {
+    static std::map<EGLDisplay, int> instance;
+    return instance;
+  }
+  void release() {
+    const EGLDisplay display = std::exchange(display_, EGL_NO_DISPLAY);
+    if (display == EGL_NO_DISPLAY) return;
+    const std::lock_guard lock(mutex());
+    if (--counts()[display] > 0) return;
+    counts().erase(display);
+    if (eglTerminate(display) != EGL_TRUE) spdlog::warn("{}", egl_error("eglTerminate"));
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+};
+
+void APIENTRY log_gl_error(GLenum, GLenum type, GLuint id, GLenum, GLsizei, const GLchar* message,
+                           const void*) {
+  if (type == GL_DEBUG_TYPE_ERROR) spdlog::error("OpenGL error {}: {}", id, message);
+}
+
+std::string gl_string(GLenum name) {
+  const auto* text = reinterpret_cast<const char*>(glGetString(name));
+  return text != nullptr ? text : "";
+}
+
+bool is_software(const std::string& renderer) {
+  constexpr std::array kNames = {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader"};
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [&](const char* name) { return renderer.find(name) != std::string::npos; });
+}
+
+}  // namespace
+
+struct EglContext::Impl {
+  DisplayUse display;
+  EGLContext context = EGL_NO_CONTEXT;
+  EglInfo info;
+
+  Impl() = default;
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    if (context == EGL_NO_CONTEXT) return;
+    eglBindAPI(EGL_OPENGL_API);
+    if (eglGetCurrentContext() == context &&
+        eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) != EGL_TRUE) {
+      spdlog::warn("{}", egl_error("eglMakeCurrent"));
+    }
+    if (eglDestroyContext(display.get(), context) != EGL_TRUE) {
+      spdlog::warn("{}", egl_error("eglDestroyContext"));
+    }
+  }
+
+  Status make_current() const {
+    if (eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
+      return Status::device(egl_error("eglMakeCurrent without a surface"));
+    }
+    return {};
+  }
+
+  // Opens `native` of `platform_enum`; "" when that worked, else what went wrong.
+  std::string open(EGLenum platform_enum, void* native, Platform platform);
+
+ private:
+  std::string make_context();
+  std::string describe_context();
+};
+
+std::string EglContext::Impl::make_context() {
+  const char* extensions = eglQueryString(display.get(), EGL_EXTENSIONS);
+  if (!lists(extensions, "EGL_KHR_surfaceless_context")) return "it lacks EGL_KHR_surfaceless_context";
+
+  EGLConfig config = nullptr;  // EGL_NO_CONFIG_KHR
+  if (!lists(extensions, "EGL_KHR_no_config_context")) {
+    constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
+                                               EGL_NONE};
+    EGLint count = 0;
+    if (eglChooseConfig(display.get(), kWanted.data(), &config, 1, &count) != EGL_TRUE || count < 1) {
+      return "it has no EGL config for desktop OpenGL";
+    }
+  }
+#ifdef NDEBUG
+  constexpr EGLint kDebug = EGL_FALSE;
+#else
+  constexpr EGLint kDebug = EGL_TRUE;
+#endif
+  constexpr std::array<EGLint, 9> kAttributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                                 kMajorVersion,
+                                                 EGL_CONTEXT_MINOR_VERSION,
+                                                 kMinorVersion,
+                                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                 EGL_CONTEXT_OPENGL_DEBUG,
+                                                 kDebug,
+                                                 EGL_NONE};
+  context = eglCreateContext(display.get(), config, EGL_NO_CONTEXT, kAttributes.data());
+  if (context == EGL_NO_CONTEXT) return egl_error("eglCreateContext for OpenGL 4.5 core");
+  return {};
+}
+
+std::string EglContext::Impl::describe_context() {
+  if (Status status = make_current(); !status.ok()) return status.message();
+  GLint major = 0;
+  GLint minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  info.vendor = gl_string(GL_VENDOR);
+  info.renderer = gl_string(GL_RENDERER);
+  info.version = gl_string(GL_VERSION);
+  info.software = is_software(info.renderer);
+  if (std::pair(major, minor) < std::pair(kMajorVersion, kMinorVersion)) {
+    return fmt::format("'{}' offers OpenGL {}.{} where 4.5 is needed", info.renderer, major, minor);
+  }
+  glEnable(GL_DEBUG_OUTPUT);
+  glDebugMessageCallback(log_gl_error, nullptr);
+  return {};
+}
+
+std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform platform) {
+  info.platform = platform;
+  const auto get_display =
+      reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
+  if (get_display == nullptr) return "EGL lacks eglGetPlatformDisplayEXT";
+  const EGLDisplay handle = get_display(platform_enum, native, nullptr);
+  if (handle == EGL_NO_DISPLAY) return egl_error("eglGetPlatformDisplayEXT");
+  display = DisplayUse::initialise(handle);
+  if (!display) return egl_error("eglInitialize");
+  if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return egl_error("eglBindAPI for desktop OpenGL");
+  if (std::string error = make_context(); !error.empty()) return error;
+  return describe_context();
+}
+
+namespace {
+
+std::vector<EGLDeviceEXT> egl_devices(std::string* error) {
+  const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  if (!lists(extensions, "EGL_EXT_platform_device") ||
+      !(lists(extensions, "EGL_EXT_device_enumeration") || lists(extensions, "EGL_EXT_device_base"))) {
+    *error = "EGL lacks EGL_EXT_platform_device or EGL_EXT_device_enumeration";
+    return {};
+  }
+  const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
+  EGLint count = 0;
+  if (query == nullptr || query(0, nullptr, &count) != EGL_TRUE) {
+    *error = egl_error("eglQueryDevicesEXT");
+    return {};
+  }
+  std::vector<EGLDeviceEXT> devices(static_cast<std::size_t>(count));
+  if (count > 0 && query(count, devices.data(), &count) != EGL_TRUE) count = 0;
+  devices.resize(static_cast<std::size_t>(count));
+  if (devices.empty()) *error = "EGL lists no device";
+  return devices;
+}
+
+void note(std::string* tried, const std::string& what, const std::string& error) {
+  *tried += fmt::format("{}{}: {}", tried->empty() ? "" : "; ", what, error);
+}
+
+}  // namespace
+
+Result<EglContext> EglContext::create(Platform platform) {
+  std::string tried;
+  std::unique_ptr<Impl> software;  // the first software device, kept in case nothing better comes
+
+  if (platform != Platform::kSurfaceless) {
+    std::string error;
+    const std::vector<EGLDeviceEXT> devices = egl_devices(&error);
+    if (!error.empty()) note(&tried, "device platform", error);
+    for (std::size_t i = 0; i < devices.size(); ++i) {
+      auto impl = std::make_unique<Impl>();
+      error = impl->open(EGL_PLATFORM_DEVICE_EXT, devices[i], Platform::kDevice);
+      if (!error.empty()) {
+        note(&tried, fmt::format("device platform, device {}", i), error);
+      } else if (!impl->info.software) {
+        return EglContext(std::move(impl));
+      } else if (!software) {
+        software = std::move(impl);
+      }
+    }
+  }
+  if (platform != Platform::kDevice) {
+    auto impl = std::make_unique<Impl>();
+    std::string error = "EGL lacks EGL_MESA_platform_surfaceless";
+    if (lists(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless")) {
+      error = impl->open(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, Platform::kSurfaceless);
+    }
+    if (error.empty()) return EglContext(std::move(impl));
+    note(&tried, "surfaceless platform", error);
+  }
+  if (software) {
+    if (Status status = software->make_current(); !status.ok()) return status;
+    return EglContext(std::move(software));
+  }
+  return Status::unsupported(
+      fmt::format("no OpenGL 4.5 core context could be made without a window ({}); a GPU driver with EGL or, "
+                  "for the CPU, "
+                  "the Debian packages libegl1 and libgl1-mesa-dri provide one",
+                  tried));
+}
+
+EglContext::EglContext(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+EglContext::~EglContext() = default;
+EglContext::EglContext(EglContext&&) noexcept = default;
+EglContext& EglContext::operator=(EglContext&&) noexcept = default;
+
+const EglInfo& EglContext::info() const {
+  return impl_->info;
+}
+void* EglContext::display() const {
+  return impl_->display.get();
+}
+void* EglContext::context() const {
+  return impl_->context;
+}
+Status EglContext::make_current() {
+  return impl_->make_current();
+}
+
+}  // namespace quincunx::gl

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx_gl/render_targets.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <stdexcept>
+
+namespace quincunx::gl {
+namespace {
+
+Texture make_texture(GLenum format, Extent extent) {
+  Texture texture = Texture::create();
+  glTextureStorage2D(texture.get(), 1, format, extent.width, extent.height);
+  // Read texel by texel: a filter would mix in what lies outside the viewport.
+  glTextureParameteri(texture.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  return texture;
+}
+
+void check_extent(Extent extent) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
+  if (extent.width < 1 || extent.height < 1 || extent.width > limit || extent.height > limit) {
+    throw std::runtime_error(fmt::format("the target extent is {}x{}; it must lie within 1x1 and {}x{}",
+                                         extent.width, extent.height, limit, limit));
+  }
+}
+
+// Restores the scissor of the caller: clear() is called in the middle of someone's frame.
+class ScissorScope {
+ public:
+  ScissorScope() : enabled_(glIsEnabled(GL_SCISSOR_TEST)) { glGetIntegerv(GL_SCISSOR_BOX, box_.data()); }
+  ~ScissorScope() {
+    glScissor(box_[0], box_[1], box_[2], box_[3]);
+    if (enabled_ == GL_TRUE) {
+      glEnable(GL_SCISSOR_TEST);
+    } else {
+      glDisable(GL_SCISSOR_TEST);
+    }
+  }
+  ScissorScope(const ScissorScope&) = delete;
+  ScissorScope& operator=(const ScissorScope&) = delete;
+
+ private:
+  GLboolean enabled_;
+  std::array<GLint, 4> box_ = {};
+};
+
+}  // namespace
+
+RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target) {
+  check_extent(extent_);
+  framebuffer_ = Framebuffer::create();
+  colour_ = make_texture(GL_RGBA16F, extent_);
+  depth_ = make_texture(GL_DEPTH_COMPONENT32F, extent_);
+  if (needs.velocity) velocity_ = make_texture(GL_RG16F, extent_);
+  if (needs.reactive) reactive_ = make_texture(GL_R8, extent_);
+
+  const GLuint name = framebuffer_.get();
+  glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, colour_.get(), 0);
+  glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth_.get(), 0);
+  if (velocity_) glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT1, velocity_.get(), 0);
+  if (reactive_) glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT2, reactive_.get(), 0);
+  const std::array<GLenum, 3> outputs = {
+      GL_COLOR_ATTACHMENT0,
+      static_cast<GLenum>(velocity_ ? GL_COLOR_ATTACHMENT1 : GL_NONE),
+      static_cast<GLenum>(reactive_ ? GL_COLOR_ATTACHMENT2 : GL_NONE),
+  };
+  glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(outputs.size()), outputs.data());
+  const GLenum complete = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
+  if (complete != GL_FRAMEBUFFER_COMPLETE) {
+    throw std::runtime_error(
+        fmt::format("a {}x{} framebuffer of RGBA16F, depth 32F{}{} is not complete (0x{:04x})", extent_.width,
+                    extent_.height, velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
+  }
+}
+
+void RenderTargets::clear(Extent render) const {
+  constexpr std::array<GLfloat, 4> kZero = {0, 0, 0, 0};
+  const ScissorScope restore;
+  glDepthMask(GL_TRUE);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+
+  glDisable(GL_SCISSOR_TEST);
+  glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
+
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, render.width, render.height);
+  glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 0, kZero.data());
+  if (velocity_) glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 1, kZero.data());
+  if (reactive_) glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 2, kZero.data());
+}
+
+}  // namespace quincunx::gl
