@@ -1,0 +1,24 @@
+# Compiles each row of variants.txt with clang's OpenCL C front end; stops at the end if any row failed.
+# Run as: cmake -D CLANG=clang -D ROOT=kernels -D STAMP=file -P check_kernels.cmake
+file(STRINGS "${ROOT}/variants.txt" rows REGEX "^[a-z]")
+list(LENGTH rows count)
+if(count EQUAL 0)
+  message(FATAL_ERROR "${ROOT}/variants.txt lists no variant")
+endif()
+set(failed 0)
+foreach(row IN LISTS rows)
+  separate_arguments(options UNIX_COMMAND "${row}")
+  list(POP_FRONT options kernel)
+  execute_process(
+    COMMAND "${CLANG}" -x cl -cl-std=CL1.2 -target spir64-unknown-unknown -Xclang -finclude-default-header
+            -fsyntax-only -Wall -Wextra -Wshadow -Werror -Wno-unused-function -Wno-unused-parameter
+            -I "${ROOT}/include" ${options} "${ROOT}/${kernel}.cl"
+    RESULT_VARIABLE result ERROR_VARIABLE log)
+  if(NOT result EQUAL 0)
+    message(SEND_ERROR "variant '${row}' does not compile:\n${log}")
+    set(failed 1)
+  endif()
+endforeach()
+if(NOT failed)
+  file(WRITE "${STAMP}" "${count} variants\n")
+endif()

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// Structs that host and kernels share. 4-byte scalars only, so that both sides lay them out alike on every device.
+#pragma once
+
+#ifdef __cplusplus
+namespace quincunx {
+#define QUINCUNX_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
+#else
+#define QUINCUNX_CHECK_SIZE(type, bytes)
+#endif
+
+// Where the texels of a buffer lie: texel (x, y) has the index offset + y * pitch + x. Both in texels; both zero for
+// an image.
+typedef struct TexelLayout {
+  int offset;
+  int pitch;
+} TexelLayout;
+QUINCUNX_CHECK_SIZE(TexelLayout, 8);
+
+// What one output column (or row) reads of its axis. The two taps base and base + 1 lie inside the viewport: what a
+// clamp at the edge would do is folded into the weights. A viewport of one texel has base 0 and weights 1, 0, and its
+// second tap must not be read.
+typedef struct AxisTap {
+  int base;
+  int nearest;    // the texel whose sample lies nearest to the pixel centre; of two equally near the upper/left one
+  float weight0;  // of base; weight0 + weight1 == 1 exactly
+  float weight1;  // of base + 1
+} AxisTap;
+QUINCUNX_CHECK_SIZE(AxisTap, 16);
+
+// A colour, depth, velocity or reactive source of one frame: the viewport and its layouts.
+typedef struct SourceFrame {
+  int width;  // the viewport, in texels
+  int height;
+  TexelLayout colour;
+  TexelLayout velocity;  // of the velocity target, or of depth where velocity is derived from it
+  TexelLayout reactive;
+} SourceFrame;
+QUINCUNX_CHECK_SIZE(SourceFrame, 32);
+
+typedef struct ScaleParams {
+  int output_width;
+  int output_height;
+  int source_width;  // the viewport, in texels
+  int source_height;
+  TexelLayout source;
+  TexelLayout output;
+  int counter;  // index into non_finite
+} ScaleParams;
+QUINCUNX_CHECK_SIZE(ScaleParams, 36);
+
+// Velocity derived from depth at texel (i, j): the sample lies at ndc (i * step_x + start_x, j * step_y + start_y).
+typedef struct CameraVelocity {
+  float step_x, step_y, start_x, start_y;
+  float to_previous[16];  // column-major, ndc of this frame to homogeneous clip of the previous one
+} CameraVelocity;
+QUINCUNX_CHECK_SIZE(CameraVelocity, 80);
+
+typedef struct ResolveParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;  // this frame
+  SourceFrame frame1;  // the previous one
+  TexelLayout output;
+  int counter;  // index into non_finite
+  // From the units of the velocity source to sqrt(K) * pixels, per frame.
+  float velocity0_scale_x, velocity0_scale_y;
+  float velocity1_scale_x, velocity1_scale_y;
+  CameraVelocity camera0;
+  CameraVelocity camera1;
+} ResolveParams;
+QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 4 + 16 + 2 * 80);
+
+typedef struct PresentParams {
+  int width;
+  int height;
+  TexelLayout source;
+  TexelLayout output;
+  int counter;  // index into non_finite
+  float exposure;
+} PresentParams;
+QUINCUNX_CHECK_SIZE(PresentParams, 32);
+
+typedef struct ClearParams {
+  int width;
+  int height;
+  TexelLayout output;
+  unsigned bits[4];  // one texel as a buffer holds it, in the lowest bytes
+  float value[4];    // the same for an image
+} ClearParams;
+QUINCUNX_CHECK_SIZE(ClearParams, 48);
+
+#undef QUINCUNX_CHECK_SIZE
+#ifdef __cplusplus
+}  // namespace quincunx
+#endif
