@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#include "kernel_options.h"
+
+#include <fmt/format.h>
+
+namespace quincunx {
+namespace {
+
+// An image carries its format with it, so the options name it for buffers only.
+std::string source(const ResolveSettings& settings) {
+  if (settings.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
+  return fmt::format("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={}",
+                     settings.colour == PixelFormat::kRGBA16F ? "HALF" : "FLOAT");
+}
+
+const char* resolved(const ResolveSettings& settings) {
+  return settings.resolved == PixelFormat::kRGBA16F ? "HALF" : "FLOAT";
+}
+
+const char* storage_name(Storage storage) {
+  return storage == Storage::kImage ? "IMAGE" : "BUFFER";
+}
+
+int weight(VelocitySource velocity) {
+  switch (velocity) {
+    case VelocitySource::kNone:
+      return 0;
+    case VelocitySource::kTarget:
+      return 1;
+    case VelocitySource::kCamera:
+      return 2;
+  }
+  return 0;
+}
+
+const char* curve(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return "TONE_CLAMP";
+    case ToneMap::kReinhard:
+      return "TONE_REINHARD";
+    case ToneMap::kAces:
+      return "TONE_ACES";
+  }
+  return "TONE_CLAMP";
+}
+
+}  // namespace
+
+std::string scale_options(const ResolveSettings& settings) {
+  return fmt::format("{} -D OUTPUT_FORMAT={}", source(settings), resolved(settings));
+}
+
+std::string quincunx_options(const ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  std::string velocity;
+  if (plan.velocity == VelocitySource::kTarget && settings.storage == Storage::kBuffer) {
+    velocity =
+        fmt::format(" -D VELOCITY_FORMAT={}", settings.velocity == PixelFormat::kRG16F ? "HALF" : "FLOAT");
+  }
+  return fmt::format("-D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}", weight(plan.velocity),
+                     plan.reads_reactive ? 1 : 0, source(settings), velocity, resolved(settings));
+}
+
+std::string present_options(const ResolveSettings& settings) {
+  return fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
+                     curve(settings.tone_map), settings.dither ? 1 : 0, resolved(settings),
+                     storage_name(settings.storage));
+}
+
+std::string clear_options(Storage storage, PixelFormat format) {
+  if (storage == Storage::kImage) return "-D OUTPUT_STORAGE=IMAGE";
+  return fmt::format("-D OUTPUT_STORAGE=BUFFER -D TEXEL_BYTES={}", bytes_per_pixel(format));
+}
+
+}  // namespace quincunx

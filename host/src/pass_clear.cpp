@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#include "pass_clear.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "kernel_options.h"
+#include "program_cache.h"
+
+namespace quincunx {
+namespace {
+
+// To nearest even; subnormals, infinities and NaN included.
+unsigned half_bits(float value) {
+  const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
+  const unsigned sign = (bits >> 16) & 0x8000u;
+  const std::uint32_t magnitude = bits & 0x7fffffffu;
+  if (magnitude > 0x7f800000u) return sign | 0x7e00u;
+  if (magnitude >= 0x477ff000u) return sign | 0x7c00u;  // 65520 and above round to infinity
+  if (magnitude < 0x38800000u) {                        // below 2^-14: steps of 2^-24
+    const float steps = std::bit_cast<float>(magnitude) * 0x1p24f;
+    return sign | static_cast<unsigned>(std::nearbyintf(steps));
+  }
+  const std::uint32_t rounded = magnitude + 0xfffu + ((magnitude >> 13) & 1u);
+  return sign | ((rounded - 0x38000000u) >> 13);
+}
+
+unsigned unorm8(float value) {
+  if (!(value > 0)) return 0;
+  return static_cast<unsigned>(std::min(value, 1.0f) * 255.0f + 0.5f);
+}
+
+}  // namespace
+
+void encode_texel(PixelFormat format, const float value[4], unsigned bits[4]) {
+  std::fill_n(bits, 4, 0u);
+  switch (format) {
+    case PixelFormat::kNone:
+      break;
+    case PixelFormat::kR8:
+      bits[0] = unorm8(value[0]);
+      break;
+    case PixelFormat::kRGBA8:
+      bits[0] = unorm8(value[0]) | unorm8(value[1]) << 8 | unorm8(value[2]) << 16 | unorm8(value[3]) << 24;
+      break;
+    case PixelFormat::kRGBA16F:
+      bits[1] = half_bits(value[2]) | half_bits(value[3]) << 16;
+      [[fallthrough]];
+    case PixelFormat::kRG16F:
+      bits[0] = half_bits(value[0]) | half_bits(value[1]) << 16;
+      break;
+    case PixelFormat::kRGBA32F:
+      bits[3] = std::bit_cast<unsigned>(value[3]);
+      bits[2] = std::bit_cast<unsigned>(value[2]);
+      [[fallthrough]];
+    case PixelFormat::kRG32F:
+      bits[1] = std::bit_cast<unsigned>(value[1]);
+      [[fallthrough]];
+    case PixelFormat::kR32F:
+      bits[0] = std::bit_cast<unsigned>(value[0]);
+      break;
+  }
+}
+
+ClearPass::ClearPass(const Device::Impl& device, Storage storage, PixelFormat format)
+    : device_(device),
+      storage_(storage),
+      format_(format),
+      kernel_(build_kernel(device, kernel_name(), clear_options(storage, format))) {}
+
+void ClearPass::warm_up(const cl::CommandQueue& queue) {
+  Scratch scratch(device_);
+  const float zero[4] = {};
+  enqueue(queue, scratch.view(storage_, format_), {1, 1}, zero, nullptr);
+  queue.finish();
+}
+
+void ClearPass::enqueue(const cl::CommandQueue& queue, const ImageView& image, Extent render,
+                        const float value[4], cl::Event* event) {
+  ClearParams params{};
+  params.width = render.width;
+  params.height = render.height;
+  params.output = layout_of(image);
+  encode_texel(image.format, value, params.bits);
+  std::copy_n(value, 4, params.value);
+  kernel_.setArg(0, params);
+  kernel_.setArg(1, image.memory);
+  enqueue_grid(device_, queue, kernel_, render.width, render.height, event);
+}
+
+}  // namespace quincunx

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "pass_common.h"
+
+#include <vector>
+
+namespace quincunx {
+namespace {
+
+constexpr int kScratchSide = 2;
+
+int round_up(int value, int step) {
+  return (value + step - 1) / step * step;
+}
+
+}  // namespace
+
+TexelLayout layout_of(const ImageView& view) {
+  if (view.storage == Storage::kImage) return {0, 0};
+  const std::size_t texel = bytes_per_pixel(view.format);
+  return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
+}
+
+void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  int items_x, int items_y, cl::Event* event) {
+  // A CPU runs a group as one loop along a row; a GPU wants a compact tile.
+  const bool cpu = device.info.kind == DeviceKind::kCpu;
+  const int group_x = cpu ? 64 : 16;
+  const int group_y = cpu ? 1 : 8;
+  queue.enqueueNDRangeKernel(
+      kernel, cl::NullRange,
+      cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
+                  static_cast<std::size_t>(round_up(items_y, group_y))),
+      cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
+}
+
+ImageView Scratch::view(Storage storage, PixelFormat format) {
+  ImageView view{.storage = storage, .format = format, .extent = {kScratchSide, kScratchSide}};
+  if (storage == Storage::kImage) {
+    // Kernels take images of any format; these two exist everywhere.
+    const cl::ImageFormat channels(CL_RGBA, format == PixelFormat::kRGBA8 ? CL_UNORM_INT8 : CL_FLOAT);
+    memory_.push_back(cl::Image2D(device_.context, CL_MEM_READ_WRITE, channels, kScratchSide, kScratchSide));
+  } else {
+    memory_.push_back(cl::Buffer(device_.context, CL_MEM_READ_WRITE,
+                                 kScratchSide * kScratchSide * bytes_per_pixel(format)));
+  }
+  view.memory = memory_.back()();
+  return view;
+}
+
+Counter Scratch::counter() {
+  memory_.push_back(cl::Buffer(device_.context, CL_MEM_READ_WRITE, sizeof(cl_uint)));
+  return {memory_.back()(), 0};
+}
+
+}  // namespace quincunx

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What the passes share: layouts, launch sizes, the counter of non-finite pixels, scratch memory for warm-up.
+//
+// A pass binds one kernel variant: it compiles at construction, warm_up() makes the device finish compiling
+// it, and enqueue() allocates nothing of its own. Each may throw cl::Error, construction also BuildError. Not
+// thread-safe.
+#pragma once
+
+#include <vector>
+
+#include "device_impl.h"
+#include "params.h"
+#include "quincunx/image.h"
+
+namespace quincunx {
+
+// Where a pass adds the number of its output pixels that met NaN or Inf: uint `index` of the buffer `memory`.
+struct Counter {
+  cl_mem memory = nullptr;
+  int index = 0;
+};
+
+// In texels; zeros for an image.
+TexelLayout layout_of(const ImageView& view);
+
+// At least items_x x items_y work-items, in groups of one fixed size: a device compiles a kernel anew for
+// each size.
+void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  int items_x, int items_y, cl::Event* event);
+
+// Small valid arguments for warm-up, 2x2 texels of any format up to 16 bytes.
+class Scratch {
+ public:
+  explicit Scratch(const Device::Impl& device) : device_(device) {}
+
+  // Released with the Scratch, after the caller has finished the queue.
+  ImageView view(Storage storage, PixelFormat format);
+  Counter counter();
+
+ private:
+  const Device::Impl& device_;
+  std::vector<cl::Memory> memory_;
+};
+
+}  // namespace quincunx

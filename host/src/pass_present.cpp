@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "pass_present.h"
+
+#include "kernel_options.h"
+#include "program_cache.h"
+
+namespace quincunx {
+namespace {
+
+constexpr int kPixelsPerItem = 4;  // PIXELS of present.cl
+
+}  // namespace
+
+PresentPass::PresentPass(const Device::Impl& device, const ResolveSettings& settings)
+    : device_(device),
+      settings_(settings),
+      kernel_(build_kernel(device, kernel_name(), present_options(settings))) {}
+
+void PresentPass::warm_up(const cl::CommandQueue& queue) {
+  Scratch scratch(device_);
+  launch(queue, scratch.view(Storage::kBuffer, settings_.resolved), {1, 1}, 1,
+         scratch.view(settings_.storage, PixelFormat::kRGBA8), scratch.counter(), nullptr);
+  queue.finish();
+}
+
+void PresentPass::enqueue(const cl::CommandQueue& queue, const ImageView& resolved, float exposure,
+                          const ImageView& presented, Counter counter, cl::Event* event) {
+  launch(queue, resolved, settings_.output, exposure, presented, counter, event);
+}
+
+void PresentPass::launch(const cl::CommandQueue& queue, const ImageView& resolved, Extent extent,
+                         float exposure, const ImageView& presented, Counter counter, cl::Event* event) {
+  const PresentParams params{.width = extent.width,
+                             .height = extent.height,
+                             .source = layout_of(resolved),
+                             .output = layout_of(presented),
+                             .counter = counter.index,
+                             .exposure = exposure == 0 ? 1 : exposure};
+  kernel_.setArg(0, params);
+  kernel_.setArg(1, resolved.memory);
+  kernel_.setArg(2, presented.memory);
+  kernel_.setArg(3, counter.memory);
+  enqueue_grid(device_, queue, kernel_, (extent.width + kPixelsPerItem - 1) / kPixelsPerItem, extent.height,
+               event);
+}
+
+}  // namespace quincunx

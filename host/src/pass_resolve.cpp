@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "pass_resolve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernel_options.h"
+#include "program_cache.h"
+
+namespace quincunx {
+namespace {
+
+// The image that the weight is made from; empty where nothing moves.
+const ImageView& motion_of(const FrameInputs& frame, VelocitySource velocity) {
+  return velocity == VelocitySource::kCamera ? frame.depth : frame.velocity;
+}
+
+SourceFrame source_of(const FrameInputs& frame, VelocitySource velocity) {
+  SourceFrame source{};
+  source.width = frame.render.width;
+  source.height = frame.render.height;
+  source.colour = layout_of(frame.colour);
+  if (velocity != VelocitySource::kNone) source.velocity = layout_of(motion_of(frame, velocity));
+  return source;
+}
+
+// From the velocity of one frame to sqrt(K) output pixels.
+Vec2 speed_scale(const FrameInputs& frame, VelocitySource velocity, Extent output, float weight) {
+  Vec2 to_uv = {1, 1};
+  if (velocity == VelocitySource::kTarget && frame.velocity_scale != Vec2{}) to_uv = frame.velocity_scale;
+  const double root = std::sqrt(static_cast<double>(weight));
+  return {static_cast<float>(root * output.width * to_uv.x),
+          static_cast<float>(root * output.height * to_uv.y)};
+}
+
+CameraVelocity camera_of(const FrameInputs& frame) {
+  const double width = frame.render.width;
+  const double height = frame.render.height;
+  CameraVelocity camera{};
+  camera.step_x = static_cast<float>(2 / width);
+  camera.step_y = static_cast<float>(-2 / height);
+  camera.start_x = static_cast<float>((1 + 2.0 * frame.jitter.x) / width - 1);
+  camera.start_y = static_cast<float>(1 - (1 + 2.0 * frame.jitter.y) / height);
+  std::copy(frame.camera.clip_to_previous_clip.begin(), frame.camera.clip_to_previous_clip.end(),
+            camera.to_previous);
+  return camera;
+}
+
+}  // namespace
+
+ResolvePass::ResolvePass(const Device::Impl& device, const ResolvePlan& plan)
+    : device_(device),
+      settings_(plan.settings),
+      velocity_(plan.velocity),
+      reads_reactive_(plan.reads_reactive),
+      kernel_(build_kernel(device, kernel_name(), quincunx_options(plan))) {}
+
+void ResolvePass::warm_up(const cl::CommandQueue& queue) {
+  Scratch scratch(device_);
+  AxisTables tables(device_, {1, 1});
+  FrameInputs frame;
+  frame.colour = scratch.view(settings_.storage, settings_.colour);
+  frame.velocity = scratch.view(settings_.storage, settings_.velocity);
+  frame.depth = scratch.view(settings_.storage, PixelFormat::kR32F);
+  frame.reactive = scratch.view(settings_.storage, PixelFormat::kR8);
+  frame.render = frame.colour.extent;
+  enqueue(queue, tables, frame, frame, scratch.view(Storage::kBuffer, settings_.resolved), scratch.counter(),
+          nullptr);
+  queue.finish();
+}
+
+ResolveParams ResolvePass::params_for(Extent output, const FrameInputs& current,
+                                      const FrameInputs& previous) const {
+  const Vec2 scale0 = speed_scale(current, velocity_, output, settings_.velocity_weight);
+  const Vec2 scale1 = speed_scale(previous, velocity_, output, settings_.velocity_weight);
+  ResolveParams params{};
+  params.output_width = output.width;
+  params.output_height = output.height;
+  params.frame0 = source_of(current, velocity_);
+  params.frame1 = source_of(previous, velocity_);
+  if (reads_reactive_) params.frame0.reactive = layout_of(current.reactive);
+  params.velocity0_scale_x = scale0.x;
+  params.velocity0_scale_y = scale0.y;
+  params.velocity1_scale_x = scale1.x;
+  params.velocity1_scale_y = scale1.y;
+  if (velocity_ == VelocitySource::kCamera) {
+    params.camera0 = camera_of(current);
+    params.camera1 = camera_of(previous);
+  }
+  return params;
+}
+
+void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, const FrameInputs& current,
+                          const FrameInputs& previous, const ImageView& output, Counter counter,
+                          cl::Event* event) {
+  const Extent extent = tables.output();
+  ResolveParams params = params_for(extent, current, previous);
+  params.output = layout_of(output);
+  params.counter = counter.index;
+  cl_uint index = 0;
+  kernel_.setArg(index++, params);
+  kernel_.setArg(index++, tables.get(queue, current.render, current.jitter));
+  kernel_.setArg(index++, tables.get(queue, previous.render, previous.jitter));
+  kernel_.setArg(index++, current.colour.memory);
+  kernel_.setArg(index++, previous.colour.memory);
+  if (velocity_ != VelocitySource::kNone) {
+    kernel_.setArg(index++, motion_of(current, velocity_).memory);
+    kernel_.setArg(index++, motion_of(previous, velocity_).memory);
+  }
+  if (reads_reactive_) kernel_.setArg(index++, current.reactive.memory);
+  kernel_.setArg(index++, output.memory);
+  kernel_.setArg(index++, counter.memory);
+  enqueue_grid(device_, queue, kernel_, extent.width, extent.height, event);
+}
+
+}  // namespace quincunx
