@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// AtomicFile: a file that appears under its name only when it is whole.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "quincunx/status.h"
+
+namespace quincunx::tools {
+
+// Makes missing folders, hands out a temporary name beside the final one, and renames on commit(); without
+// commit() the destructor removes what was written. Move-only. Two processes may write the same path; the
+// last commit stays.
+class AtomicFile {
+ public:
+  // Errors: kIoFailure when the folder cannot be made or written, or `path` names a folder.
+  static Result<AtomicFile> create(const std::string& path);
+
+  ~AtomicFile();
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) noexcept;
+
+  const std::string& temporary_path() const { return temporary_; }
+  const std::string& path() const { return path_; }
+  Status commit();  // errors: kIoFailure; the temporary file is then gone
+
+ private:
+  AtomicFile(std::string path, std::string temporary);
+  void discard() noexcept;
+
+  std::string path_;
+  std::string temporary_;  // empty: nothing to remove
+};
+
+// Writes a text file whole or not at all. Errors: kIoFailure.
+Status write_text(const std::string& path, std::string_view text);
+
+}  // namespace quincunx::tools

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// FramePattern: "out/frame.%04d.png" and its relatives, expanded with a frame number.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "quincunx/status.h"
+
+namespace quincunx::tools {
+
+enum class FileFormat : std::uint8_t { kPng, kExr };
+
+// A path with at most one number in it: '#' stands for four digits, '@' for one, and runs add up as
+// OpenImageIO and Nuke have it ("#@" is five digits, "@@@" three); printf's "%d", "%4d" and "%04d" work too,
+// and "%%" is a percent sign. Numbers wider than the field are written whole. A value; thread-safe.
+class FramePattern {
+ public:
+  // Errors: kInvalidArgument for an empty path, two numbers, a conversion other than %d, or an extension that
+  // is neither .png nor .exr (in any case of letters).
+  static Result<FramePattern> parse(const std::string& pattern);
+
+  bool has_number() const { return has_number_; }
+  FileFormat format() const { return format_; }
+
+  std::string expand(std::int64_t frame) const;  // the pattern itself where it has no number
+
+  // Errors: kInvalidArgument when there is no number but more than one frame: they would overwrite one
+  // another.
+  Status check_count(std::int64_t frames) const;
+
+ private:
+  FramePattern() = default;
+
+  std::string pattern_;
+  std::string prefix_;
+  std::string suffix_;
+  int digits_ = 0;
+  bool zero_padded_ = true;
+  bool has_number_ = false;
+  FileFormat format_ = FileFormat::kPng;
+};
+
+}  // namespace quincunx::tools

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include <nlohmann/json.hpp>
+
+#include "tools/run_report.h"
+
+namespace quincunx::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename Number>
+Json known(Number value) {
+  return value >= 0 ? Json(value) : Json(nullptr);
+}
+
+Json known(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json size_json(Extent extent) {
+  return Json::array({extent.width, extent.height});
+}
+
+Json vector_json(Vec2 vector) {
+  return Json::array({vector.x, vector.y});
+}
+
+Json statistics_json(const std::vector<PassStatistics>& rows) {
+  Json list = Json::array();
+  for (const PassStatistics& row : rows) {
+    list.push_back({{"name", row.name},
+                    {"clock", row.clock},
+                    {"count", row.count},
+                    {"median_ms", known(row.median_ms)},
+                    {"p95_ms", known(row.p95_ms)},
+                    {"min_ms", known(row.min_ms)},
+                    {"bytes", known(row.bytes)}});
+  }
+  return list;
+}
+
+Json frames_json(const std::vector<FrameRow>& frames) {
+  Json list = Json::array();
+  for (const FrameRow& frame : frames) {
+    list.push_back({{"index", frame.index},
+                    {"seconds", frame.seconds},
+                    {"render", size_json(frame.render)},
+                    {"ratio", vector_json(frame.ratio)},
+                    {"jitter", vector_json(frame.jitter)},
+                    {"frame_ms", known(frame.frame_ms)},
+                    {"device_ms", known(frame.device_ms)},
+                    {"used_previous", frame.used_previous},
+                    {"non_finite_pixels", known(frame.non_finite_pixels)}});
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string to_json(const RunReport& report) {
+  Json settings = Json::object();
+  for (const auto& [name, value] : report.settings)
+    settings[name] = value;
+  Json left_out = Json::array();
+  for (const LeftOut& item : report.left_out)
+    left_out.push_back({{"what", item.what}, {"why", item.why}});
+  const Json json = {
+      {"program", report.program},
+      {"version", report.version},
+      {"command_line", known(report.command_line)},
+      {"scene", report.scene},
+      {"scene_summary", known(report.scene_summary)},
+      {"seed", report.seed},
+      {"output", size_json(report.output)},
+      {"target", size_json(report.target)},
+      {"method", report.method},
+      {"settings", settings},
+      {"gl",
+       {{"platform", known(report.gl.platform)},
+        {"vendor", known(report.gl.vendor)},
+        {"renderer", known(report.gl.renderer)},
+        {"version", known(report.gl.version)}}},
+      {"cl",
+       {{"platform", known(report.cl.platform)},
+        {"device", known(report.cl.device)},
+        {"driver", known(report.cl.driver)},
+        {"version", known(report.cl.version)},
+        {"compute_units", known(report.cl.compute_units)}}},
+      {"interop", known(report.interop)},
+      {"interop_reason", known(report.interop_reason)},
+      {"passes", statistics_json(report.passes)},
+      {"steps", statistics_json(report.steps)},
+      {"frames", frames_json(report.frames)},
+      {"left_out", left_out},
+      {"files", report.files},
+      {"wall_seconds", known(report.wall_seconds)},
+  };
+  // Text that is not UTF-8 (a file name, say) must not stop a report.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace quincunx::tools

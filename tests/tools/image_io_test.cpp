@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#include "tools/image_io.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "temporary_folder.h"
+
+namespace quincunx::tools {
+namespace {
+
+// A half constant is written by its bits, so that the test does not lean on anyone's conversion.
+constexpr std::uint16_t kHalfOne = 0x3c00;
+constexpr std::uint16_t kHalfMax = 0x7bff;       // 65504
+constexpr std::uint16_t kHalfDenormal = 0x0001;  // 2^-24
+
+TEST(Png, ReturnsEveryCode) {
+  const testing::TemporaryFolder folder;
+  const Extent extent{16, 16};
+  std::vector<std::uint8_t> texels(1024);
+  for (int i = 0; i < 256; ++i) {
+    texels[i * 4] = static_cast<std::uint8_t>(i);
+    texels[i * 4 + 1] = static_cast<std::uint8_t>(255 - i);
+    texels[i * 4 + 2] = static_cast<std::uint8_t>(i * 7);
+    texels[i * 4 + 3] = static_cast<std::uint8_t>(i * 3);
+  }
+  for (const PngAlpha alpha : {PngAlpha::kOpaque, PngAlpha::kKeep}) {
+    const std::string path = folder.file("a.png");
+    const Status status = write_png(path, extent, texels.data(), 0, alpha);
+    ASSERT_TRUE(status.ok()) << status.message();
+    const Result<LoadedImage> image = read_image(path);
+    ASSERT_TRUE(image.ok()) << image.status().message();
+    const int channels = alpha == PngAlpha::kKeep ? 4 : 3;
+    ASSERT_EQ(image->channels.size(), static_cast<std::size_t>(channels));
+    EXPECT_EQ(image->extent, extent);
+    for (int i = 0; i < 256; ++i) {
+      for (int c = 0; c < channels; ++c) {
+        ASSERT_EQ(std::lround(image->at(i % 16, i / 16, c) * 255.0f), texels[i * 4 + c]) << i << " " << c;
+      }
+    }
+  }
+}
+
+TEST(Png, SkipsTheEndOfLongRows) {
+  const testing::TemporaryFolder folder;
+  std::vector<std::uint8_t> texels(2 * 64, 9);
+  texels[64] = 200;
+  ASSERT_TRUE(write_png(folder.file("a.png"), {2, 2}, texels.data(), 64).ok());
+  const Result<LoadedImage> image = read_image(folder.file("a.png"));
+  ASSERT_TRUE(image.ok());
+  EXPECT_EQ(std::lround(image->at(0, 1, 0) * 255.0f), 200);
+  EXPECT_EQ(std::lround(image->at(1, 1, 0) * 255.0f), 9);
+}
+
+TEST(Exr, ReturnsChannelsTypesAndValues) {
+  const testing::TemporaryFolder folder;
+  const Extent extent{3, 2};
+  std::vector<std::uint16_t> rgba(6 * 4, kHalfOne);
+  rgba[0] = kHalfMax;
+  rgba[4] = kHalfDenormal;
+  std::vector<float> depth = {1, 2, 1e10f, 1.0e-20f, 5.0000005f, -6};
+  std::vector<float> velocity = {1.25f, -2, 3, -4, 5, -6, 7, -8, 9, -10, 11, -12};
+  const std::vector<float> reactive = {0, 0.25f, 0.5f, 1, 0, 0};
+  std::vector<Channel> channels;
+  for (int c = 0; c < 4; ++c) {
+    channels.push_back({std::string(1, "RGBA"[c]), ChannelType::kHalf, &rgba[c], 8, 24, ChannelType::kHalf});
+  }
+  channels.push_back({"Z", ChannelType::kFloat, depth.data(), 0, 0, ChannelType::kFloat});
+  channels.push_back({"backward.u", ChannelType::kFloat, &velocity[0], 8, 24, ChannelType::kFloat});
+  channels.push_back({"backward.v", ChannelType::kFloat, &velocity[1], 8, 24, ChannelType::kFloat});
+  channels.push_back({"reactive.mask", ChannelType::kFloat, reactive.data(), 0, 0, ChannelType::kHalf});
+  const Status status = write_exr(folder.file("a.exr"), extent, channels);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(folder.entries(), 1);
+
+  const Result<LoadedImage> image = read_image(folder.file("a.exr"));
+  ASSERT_TRUE(image.ok()) << image.status().message();
+  ASSERT_EQ(image->channels.size(), 8U);
+  const int z = image->channel("Z");
+  const int u = image->channel("backward.u");
+  const int v = image->channel("backward.v");
+  const int mask = image->channel("reactive.mask");
+  ASSERT_TRUE(z >= 0 && u >= 0 && v >= 0 && mask >= 0);
+  EXPECT_EQ(image->channel("nothing"), -1);
+  EXPECT_EQ(image->stored[z], ChannelType::kFloat);
+  EXPECT_EQ(image->stored[u], ChannelType::kFloat);
+  EXPECT_EQ(image->stored[mask], ChannelType::kHalf);
+  EXPECT_EQ(image->stored[image->channel("A")], ChannelType::kHalf);
+  EXPECT_EQ(image->at(0, 0, image->channel("R")), 65504.0f);
+  EXPECT_EQ(image->at(1, 0, image->channel("R")), std::ldexp(1.0f, -24));
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(image->at(i % 3, i / 3, z), depth[i]);
+    EXPECT_EQ(image->at(i % 3, i / 3, u), velocity[i * 2]);
+    EXPECT_EQ(image->at(i % 3, i / 3, v), velocity[i * 2 + 1]);
+    EXPECT_EQ(image->at(i % 3, i / 3, mask), reactive[i]);
+  }
+}
+
+TEST(Exr, KeepsNonFiniteValues) {
+  const testing::TemporaryFolder folder;
+  const float infinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> values = {std::nanf(""), infinity, -infinity};
+  const Channel channel{"Z", ChannelType::kFloat, values.data(), 0, 0, ChannelType::kFloat};
+  ASSERT_TRUE(write_exr(folder.file("a.exr"), {3, 1}, {&channel, 1}).ok());
+  const Result<LoadedImage> image = read_image(folder.file("a.exr"));
+  ASSERT_TRUE(image.ok());
+  EXPECT_TRUE(std::isnan(image->at(0, 0, 0)));
+  EXPECT_EQ(image->at(1, 0, 0), infinity);
+  EXPECT_EQ(image->at(2, 0, 0), -infinity);
+}
+
+TEST(Exr, ReturnsAttributes) {
+  const testing::TemporaryFolder folder;
+  const std::vector<float> values = {1};
+  const Channel channel{"Z", ChannelType::kFloat, values.data(), 0, 0, ChannelType::kFloat};
+  Matrix matrix{};
+  for (int i = 0; i < 16; ++i)
+    matrix[i] = static_cast<float>(i) + 0.5f;
+  const std::vector<Attribute> attributes = {
+      {"quincunx:version", std::string("1")},
+      {"quincunx:jitter", Vec2{0.25f, -0.25f}},
+      {"quincunx:frameIndex", 120},
+      {"quincunx:near", 0.1f},
+      {"worldToCamera", matrix},
+      {"FramesPerSecond", Rational{30000, 1001}},
+  };
+  ASSERT_TRUE(write_exr(folder.file("a.exr"), {1, 1}, {&channel, 1}, attributes).ok());
+  const Result<LoadedImage> image = read_image(folder.file("a.exr"));
+  ASSERT_TRUE(image.ok());
+  for (const Attribute& wanted : attributes) {
+    const Attribute* found = image->attribute(wanted.name);
+    ASSERT_NE(found, nullptr) << wanted.name;
+    EXPECT_EQ(found->value.index(), wanted.value.index()) << wanted.name;
+    EXPECT_TRUE(found->value == wanted.value) << wanted.name;
+  }
+}
+
+TEST(Exr, RefusesBadChannels) {
+  const testing::TemporaryFolder folder;
+  const float value = 1;
+  const Channel good{"Z", ChannelType::kFloat, &value, 0, 0, ChannelType::kFloat};
+  Channel nameless = good;
+  nameless.name.clear();
+  Channel empty = good;
+  empty.data = nullptr;
+  const std::vector<std::vector<Channel>> cases = {{}, {nameless}, {empty}, {good, good}};
+  for (const std::vector<Channel>& channels : cases) {
+    EXPECT_EQ(write_exr(folder.file("a.exr"), {1, 1}, channels).code(), StatusCode::kInvalidArgument);
+  }
+  EXPECT_EQ(write_exr(folder.file("a.exr"), {0, 1}, {&good, 1}).code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(ReadImage, NamesTheFileAndTheReason) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.file("text.exr")) << "this is no picture";
+  std::ofstream(folder.file("empty.png")) << "";
+  for (const char* name : {"missing.exr", "text.exr", "empty.png", "."}) {
+    const Result<LoadedImage> image = read_image(folder.file(name));
+    ASSERT_FALSE(image.ok()) << name;
+    EXPECT_EQ(image.status().code(), StatusCode::kIoFailure);
+    EXPECT_NE(image.status().message().find(folder.file(name)), std::string::npos)
+        << image.status().message();
+    EXPECT_EQ(image.status().message().find('\n'), std::string::npos) << image.status().message();
+  }
+}
+
+TEST(ReadImage, RefusesTruncatedFiles) {
+  const testing::TemporaryFolder folder;
+  std::vector<float> noise(64 * 64);
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    noise[i] = std::sin(static_cast<float>(i * i));
+  const Channel channel{"Z", ChannelType::kFloat, noise.data(), 0, 0, ChannelType::kFloat};
+  const std::string path = folder.file("a.exr");
+  ASSERT_TRUE(write_exr(path, {64, 64}, {&channel, 1}).ok());
+  const auto size = std::filesystem::file_size(path);
+  for (const auto part : {size / 2, size / 8, std::uintmax_t{100}, std::uintmax_t{5}}) {
+    std::filesystem::resize_file(path, part);
+    const Result<LoadedImage> image = read_image(path);
+    EXPECT_FALSE(image.ok()) << part;
+    EXPECT_EQ(image.status().message().find('\n'), std::string::npos) << image.status().message();
+  }
+}
+
+TEST(WriteImage, LeavesNothingBehindOnFailure) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.file("plain")) << "x";
+  const std::vector<std::uint8_t> texel(4);
+  const Status status = write_png(folder.file("plain/a.png"), {1, 1}, texel.data());
+  EXPECT_EQ(status.code(), StatusCode::kIoFailure);
+  EXPECT_NE(status.message().find("plain/a.png"), std::string::npos);
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+}  // namespace
+}  // namespace quincunx::tools

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+#include "tools/run_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "temporary_folder.h"
+#include "tools/report_graph.h"
+
+namespace quincunx::tools {
+namespace {
+
+RunReport example(int frames) {
+  RunReport report;
+  report.program = "quincunx-render";
+  report.version = "0.1.0";
+  report.command_line = "quincunx-render --frames 240";
+  report.scene = "courtyard";
+  report.scene_summary = "a courtyard at dusk";
+  report.seed = 18446744073709551615U;
+  report.output = {1280, 720};
+  report.target = {1280, 720};
+  report.method = "quincunx";
+  report.settings = {{"scale path", "sweep"}, {"jitter", "on"}};
+  report.gl = {"surfaceless", "Mesa", "llvmpipe", "4.5"};
+  report.cl = {"PoCL", "cpu", "3.1", "OpenCL 3.0", 2};
+  report.interop = "copy";
+  report.interop_reason = "the device has no cl_khr_gl_sharing";
+  const double samples[] = {3, 1, 2, 4};
+  const std::uint64_t bytes[] = {10000000, 20000000, 30000000};
+  report.passes = {statistics_of("resolve_quincunx", "OpenCL event", samples, bytes)};
+  report.left_out = {{"velocity target", "nothing moves"}};
+  for (int i = 0; i < frames; ++i) {
+    FrameRow row;
+    row.index = i;
+    row.render = {640 + 2 * i, 360 + i};
+    row.ratio = {static_cast<float>(row.render.width) / 1280.0f,
+                 static_cast<float>(row.render.height) / 720.0f};
+    report.frames.push_back(row);
+  }
+  report.wall_seconds = 10;
+  return report;
+}
+
+TEST(PassStatistics, OrderStatisticsAreExact) {
+  std::vector<double> samples;
+  for (int i = 100; i >= 1; --i)
+    samples.push_back(i);
+  const PassStatistics even = statistics_of("a", "clock", samples);
+  EXPECT_EQ(even.count, 100);
+  EXPECT_EQ(even.median_ms, 50.5);
+  EXPECT_EQ(even.p95_ms, 95);
+  EXPECT_EQ(even.min_ms, 1);
+  samples.pop_back();  // 2 to 100
+  EXPECT_EQ(statistics_of("a", "clock", samples).median_ms, 51);
+  EXPECT_EQ(statistics_of("a", "clock", std::vector<double>{7}).p95_ms, 7);
+}
+
+TEST(PassStatistics, UnknownSamplesDoNotCount) {
+  const double samples[] = {-1, std::nan(""), 5, std::numeric_limits<double>::infinity()};
+  const PassStatistics one = statistics_of("a", "clock", samples);
+  EXPECT_EQ(one.count, 1);
+  EXPECT_EQ(one.median_ms, 5);
+  const PassStatistics none = statistics_of("a", "clock", {});
+  EXPECT_EQ(none.count, 0);
+  EXPECT_LT(none.median_ms, 0);
+  EXPECT_LT(none.bytes, 0);
+}
+
+TEST(RunReport, JsonHoldsEveryFrame) {
+  const auto json = nlohmann::json::parse(to_json(example(240)));
+  EXPECT_EQ(json["frames"].size(), 240U);
+  EXPECT_EQ(json["frames"][239]["render"], (nlohmann::json{1118, 599}));
+  EXPECT_TRUE(json["frames"][0]["frame_ms"].is_null());
+  EXPECT_EQ(json["seed"].get<std::uint64_t>(), 18446744073709551615U);
+  EXPECT_EQ(json["passes"][0]["median_ms"], 2.5);
+  EXPECT_EQ(json["passes"][0]["bytes"], 20000000);
+  EXPECT_EQ(json["settings"]["jitter"], "on");
+  EXPECT_EQ(json["left_out"][0]["why"], "nothing moves");
+  EXPECT_EQ(json["cl"]["compute_units"], 2);
+}
+
+TEST(RunReport, JsonOfAnEmptyReportIsValid) {
+  const auto json = nlohmann::json::parse(to_json({}));
+  EXPECT_TRUE(json["interop"].is_null());
+  EXPECT_TRUE(json["frames"].is_array());
+  EXPECT_TRUE(json["left_out"].is_array());
+}
+
+TEST(RunReport, JsonSurvivesBadText) {
+  RunReport report = example(1);
+  report.command_line = "quincunx-render --scene \"\xff\xfe\".gltf";
+  EXPECT_TRUE(nlohmann::json::accept(to_json(report)));
+}
+
+TEST(RunReport, TextIsOnePageWhateverTheLength) {
+  for (const int frames : {0, 1, 5, 240, 100000}) {
+    const std::string text = to_text(example(frames));
+    EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 60) << frames;
+    EXPECT_NE(text.find("llvmpipe"), std::string::npos);
+    EXPECT_NE(text.find("the device has no cl_khr_gl_sharing"), std::string::npos);
+    EXPECT_NE(text.find("resolve_quincunx"), std::string::npos);
+    EXPECT_NE(text.find("nothing moves"), std::string::npos);
+  }
+}
+
+TEST(RunReport, TextShowsFirstAndLastFrame) {
+  const std::string text = to_text(example(240));
+  EXPECT_NE(text.find("640x360"), std::string::npos);
+  EXPECT_NE(text.find("1118x599"), std::string::npos);
+}
+
+TEST(RunReport, WritesBothFiles) {
+  const testing::TemporaryFolder folder;
+  ASSERT_TRUE(write_report(folder.file("report"), example(3)).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder.file("report.txt")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("report.json")));
+  EXPECT_EQ(folder.entries(), 2);
+}
+
+TEST(RatioGraph, DrawsARampAndALevel) {
+  std::vector<double> ramp;
+  for (int i = 0; i < 8; ++i)
+    ramp.push_back(0.3 + 0.1 * i);
+  const std::string graph = ratio_graph(ramp);
+  EXPECT_EQ(graph.substr(0, graph.find('\n')), "  1.000 |       *");
+  EXPECT_NE(graph.find("  0.300 |*\n"), std::string::npos);
+  EXPECT_EQ(ratio_graph(std::vector<double>(3, 0.71)), "  0.710 |***\n        +---\n");
+  EXPECT_EQ(ratio_graph({}), "");
+}
+
+}  // namespace
+}  // namespace quincunx::tools
