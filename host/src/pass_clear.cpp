@@ -86,7 +86,7 @@ void ClearPass::enqueue(const cl::CommandQueue& queue, const ImageView& image, E
   encode_texel(image.format, value, params.bits);
   std::copy_n(value, 4, params.value);
   kernel_.setArg(0, params);
-  kernel_.setArg(1, image.memory);
+  set_memory(kernel_, 1, image.memory);
   enqueue_grid(device_, queue, kernel_, render.width, render.height, event);
 }
 

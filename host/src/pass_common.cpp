@@ -20,6 +20,10 @@ TexelLayout layout_of(const ImageView& view) {
   return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
 }
 
+void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
+  kernel.setArg(index, sizeof(memory), &memory);
+}
+
 void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   int items_x, int items_y, cl::Event* event) {
   // A CPU runs a group as one loop along a row; a GPU wants a compact tile.

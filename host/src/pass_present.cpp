@@ -37,9 +37,9 @@ void PresentPass::launch(const cl::CommandQueue& queue, const ImageView& resolve
                              .counter = counter.index,
                              .exposure = exposure == 0 ? 1 : exposure};
   kernel_.setArg(0, params);
-  kernel_.setArg(1, resolved.memory);
-  kernel_.setArg(2, presented.memory);
-  kernel_.setArg(3, counter.memory);
+  set_memory(kernel_, 1, resolved.memory);
+  set_memory(kernel_, 2, presented.memory);
+  set_memory(kernel_, 3, counter.memory);
   enqueue_grid(device_, queue, kernel_, (extent.width + kPixelsPerItem - 1) / kPixelsPerItem, extent.height,
                event);
 }

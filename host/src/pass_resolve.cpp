@@ -101,15 +101,15 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   kernel_.setArg(index++, params);
   kernel_.setArg(index++, tables.get(queue, current.render, current.jitter));
   kernel_.setArg(index++, tables.get(queue, previous.render, previous.jitter));
-  kernel_.setArg(index++, current.colour.memory);
-  kernel_.setArg(index++, previous.colour.memory);
+  set_memory(kernel_, index++, current.colour.memory);
+  set_memory(kernel_, index++, previous.colour.memory);
   if (velocity_ != VelocitySource::kNone) {
-    kernel_.setArg(index++, motion_of(current, velocity_).memory);
-    kernel_.setArg(index++, motion_of(previous, velocity_).memory);
+    set_memory(kernel_, index++, motion_of(current, velocity_).memory);
+    set_memory(kernel_, index++, motion_of(previous, velocity_).memory);
   }
-  if (reads_reactive_) kernel_.setArg(index++, current.reactive.memory);
-  kernel_.setArg(index++, output.memory);
-  kernel_.setArg(index++, counter.memory);
+  if (reads_reactive_) set_memory(kernel_, index++, current.reactive.memory);
+  set_memory(kernel_, index++, output.memory);
+  set_memory(kernel_, index++, counter.memory);
   enqueue_grid(device_, queue, kernel_, extent.width, extent.height, event);
 }
 

@@ -35,9 +35,9 @@ void ScalePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, const
                            .counter = counter.index};
   kernel_.setArg(0, params);
   kernel_.setArg(1, tables.get(queue, inputs.render, inputs.jitter));
-  kernel_.setArg(2, inputs.colour.memory);
-  kernel_.setArg(3, output.memory);
-  kernel_.setArg(4, counter.memory);
+  set_memory(kernel_, 2, inputs.colour.memory);
+  set_memory(kernel_, 3, output.memory);
+  set_memory(kernel_, 4, counter.memory);
   enqueue_grid(device_, queue, kernel_, extent.width, extent.height, event);
 }
 
