@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+# Sourced by run.sh and test.sh: which Debian packages the project needs, and how to install the missing ones.
+# Names hold for Debian 12 (bookworm) and 13 (trixie).
+
+build_packages=(
+  g++ cmake ninja-build pkg-config libgtest-dev   # configuring includes the tests
+  libspdlog-dev libfmt-dev libcli11-dev nlohmann-json3-dev libglm-dev libxxhash-dev
+  libopenimageio-dev libopenexr-dev libimath-dev libfreetype-dev
+  libtinygltf-dev libstb-dev
+  libepoxy-dev libegl-dev libgl-dev
+  ocl-icd-opencl-dev opencl-clhpp-headers
+)
+run_packages=(
+  pocl-opencl-icd                        # an OpenCL device on every CPU
+  libegl1 libegl-mesa0 libgl1-mesa-dri   # OpenGL without a window or a GPU
+  fonts-dejavu-core                      # captions of the contact sheet
+)
+test_packages=(clang clang-format python3)
+optional_test_packages=(oclgrind)        # memory checks of kernels; Debian 13 has it no more
+
+say() { printf '%s\n' "$*"; }
+fail() {
+  printf '%s\n' "$*" >&2
+  exit 1
+}
+
+# ensure_packages NAME...: installs those that are missing; does nothing, and needs no network, when all are there.
+ensure_packages() {
+  command -v dpkg-query >/dev/null && command -v apt-get >/dev/null ||
+    fail "This script installs Debian packages with apt-get, which is not here. Please install the equivalents of: $*"
+  local missing=() name
+  for name in "$@"; do
+    [[ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$name" 2>/dev/null)" == ?i* ]] || missing+=("$name")
+  done
+  if ((${#missing[@]} == 0)); then
+    return
+  fi
+  say "Quincunx needs ${#missing[@]} Debian packages that are not installed yet:"
+  say "  ${missing[*]}"
+  local as_root=()
+  if ((EUID != 0)); then
+    command -v sudo >/dev/null ||
+      fail "Installing them needs root. Please run as root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+    say "Installing them needs root, so sudo may ask for your password; nothing else runs as root."
+  fi
+  say "Installing them with apt-get."
+  # The package list may be older than the mirror, or not there at all on a fresh machine.
+  "${as_root[@]}" apt-get update -q=2 ||
+    say "apt-get update did not work (no network?); trying with the package list that is there."
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}" ||
+    fail "apt-get could not install the packages (see above). With a network, try again; or install them by hand."
+}
+
+# known_packages NAME...: prints those that are installed or that the archive has.
+known_packages() {
+  local name
+  for name in "$@"; do
+    if [[ "$(dpkg-query -W -f='${db:Status-Abbrev}' "$name" 2>/dev/null)" == ?i* ]] ||
+      apt-cache show "$name" >/dev/null 2>&1; then
+      say "$name"
+    fi
+  done
+}
+
+# configure_and_build PRESET [TARGET...]: into build/PRESET; says one line and shows the tools' words only on failure.
+configure_and_build() {
+  local preset=$1 log
+  shift
+  mkdir -p "build/$preset"
+  log="build/$preset/configure.log"
+  local launcher=()
+  if command -v ccache >/dev/null; then
+    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  if ! cmake --preset "$preset" "${launcher[@]}" >"$log" 2>&1; then
+    cat "$log" >&2
+    fail "cmake could not configure build/$preset; the reason is above."
+  fi
+  local targets=()
+  if (($# > 0)); then
+    targets=(--target "$@")
+  fi
+  cmake --build "build/$preset" "${targets[@]}" || fail "The build in build/$preset failed; the first error is above."
+}

@@ -1,0 +1,19 @@
+# Installs into an empty prefix, configures and builds the client with nothing else to go by, and runs it.
+function(step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE log ERROR_VARIABLE log)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${what} failed (${result}):\n${log}")
+  endif()
+  message(STATUS "${what}: good")
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+step("configure" ${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
+     -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
+     -D GL_INTEROP=${GL_INTEROP})
+step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
+step("run" ${WORK}/build/client)
+if(GL_INTEROP)
+  step("run with OpenGL" ${WORK}/build/gl_client)
+endif()
