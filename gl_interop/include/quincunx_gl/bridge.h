@@ -28,8 +28,8 @@ const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
   Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
-  Extent target;                     // of the inputs
-  Extent output;                     // of the presented picture
+  Extent target = {};                // of the inputs
+  Extent output = {};                // of the presented picture
   bool depth = false;                // hand depth over
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values

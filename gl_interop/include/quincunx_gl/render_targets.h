@@ -10,7 +10,7 @@
 namespace quincunx::gl {
 
 struct TargetNeeds {
-  Extent target;         // allocated size, at least the largest viewport
+  Extent target = {};    // allocated size, at least the largest viewport
   bool velocity = true;  // RG16F, uv per frame
   bool reactive = true;  // R8
 };
@@ -36,7 +36,7 @@ class RenderTargets {
   void clear(Extent render) const;
 
  private:
-  Extent extent_;
+  Extent extent_ = {};
   Framebuffer framebuffer_;
   Texture colour_;
   Texture depth_;

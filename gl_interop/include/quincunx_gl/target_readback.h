@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// read_targets: a frame's render targets as host memory, for files and tests. Waits for GL; never used in a
+// frame that must be fast.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "quincunx_gl/render_targets.h"
+
+namespace quincunx::gl {
+
+// The top left `render` of each target, tightly packed, top row first; empty for targets that do not exist.
+struct TargetPixels {
+  Extent render;
+  std::vector<std::uint16_t> colour;    // RGBA, half
+  std::vector<float> depth;             // reversed infinite
+  std::vector<std::uint16_t> velocity;  // RG, half, uv
+  std::vector<std::uint8_t> reactive;
+};
+
+// `render` must lie within the targets' extent.
+TargetPixels read_targets(const RenderTargets& targets, Extent render);
+
+}  // namespace quincunx::gl

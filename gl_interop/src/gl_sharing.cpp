@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "gl_sharing.h"
+
+#include <CL/cl_gl.h>
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+
+#include "stopwatch.h"
+
+namespace quincunx::gl {
+namespace {
+
+constexpr int kGroupSide = 8;
+
+constexpr const char* kDepthSource = R"(#version 450 core
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = 0) uniform sampler2D depth;
+layout(binding = 0, r32f) writeonly uniform image2D copy;
+layout(location = 0) uniform ivec2 render;
+void main() {
+  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(texel, render))) return;
+  imageStore(copy, texel, vec4(texelFetch(depth, texel, 0).r));
+}
+)";
+
+Program build_depth_program() {
+  const char* source = kDepthSource;
+  Program program = Program::adopt(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
+  GLint linked = GL_FALSE;
+  if (program) glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
+  if (linked != GL_TRUE) {
+    std::string log(1024, '\0');
+    GLsizei length = 0;
+    if (program) glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), &length, log.data());
+    log.resize(static_cast<std::size_t>(length));
+    throw InteropError(fmt::format("the compute shader that copies depth was refused: {}", log));
+  }
+  return program;
+}
+
+// What clCreateContext was told: zero where `name` is not among it.
+cl_context_properties context_property(cl_context context, cl_context_properties name) {
+  std::size_t bytes = 0;
+  if (clGetContextInfo(context, CL_CONTEXT_PROPERTIES, 0, nullptr, &bytes) != CL_SUCCESS) return 0;
+  std::vector<cl_context_properties> all(bytes / sizeof(cl_context_properties));
+  if (all.empty() ||
+      clGetContextInfo(context, CL_CONTEXT_PROPERTIES, bytes, all.data(), nullptr) != CL_SUCCESS) {
+    return 0;
+  }
+  for (std::size_t i = 0; i + 1 < all.size() && all[i] != 0; i += 2) {
+    if (all[i] == name) return all[i + 1];
+  }
+  return 0;
+}
+
+// Empty when the device shares with the context, else one clause that says why not.
+std::string find_obstacle(const EglContext& context, const Device& device, const std::vector<Plane>& planes) {
+  const std::string& name = device.info().name;
+  if (!device.info().gl_sharing) return fmt::format("'{}' does not offer cl_khr_gl_sharing", name);
+  const auto wanted = reinterpret_cast<cl_context_properties>(context.context());
+  if (context_property(device.context(), CL_GL_CONTEXT_KHR) != wanted) {
+    return fmt::format("the OpenCL context of '{}' was not made for this OpenGL context", name);
+  }
+  std::set<PixelFormat> formats = {PixelFormat::kRGBA8};
+  for (const Plane& plane : planes)
+    formats.insert(plane.format);
+  for (const PixelFormat format : formats) {
+    if (std::string failure = probe_sharing(device, format); !failure.empty()) {
+      return fmt::format("on '{}' {}", name, failure);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Bridge>> GlSharing::create(const EglContext& context, const Device& device,
+                                                  const BridgeSettings& settings) {
+  if (std::string obstacle = find_obstacle(context, device, planes_of(settings)); !obstacle.empty()) {
+    return Status::unsupported(std::move(obstacle));
+  }
+  std::string reason = fmt::format("'{}' shares textures with '{}', as a probe of every format has shown",
+                                   device.info().name, context.info().renderer);
+  try {
+    return std::unique_ptr<Bridge>(new GlSharing(device, settings, std::move(reason)));
+  } catch (const std::exception& error) {
+    return Status::device(
+        fmt::format("sharing textures with '{}' failed: {}", device.info().name, error.what()));
+  }
+}
+
+GlSharing::GlSharing(const Device& device, const BridgeSettings& settings, std::string reason)
+    : Bridge(settings, std::move(reason)),
+      device_(device),
+      planes_(planes_of(settings)),
+      ring_(settings.slots, settings.target),
+      presented_(Texture::create()),
+      output_(device),
+      pixels_(static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8)) {
+  if (settings.depth) depth_program_ = build_depth_program();
+  slots_.reserve(static_cast<std::size_t>(settings.slots));
+  for (int i = 0; i < settings.slots; ++i)
+    slots_.push_back(make_slot());
+
+  glTextureStorage2D(presented_.get(), 1, GL_RGBA8, settings.output.width, settings.output.height);
+  glTextureParameteri(presented_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  output_view_ = {.memory = output_.add(presented_.get(), PixelFormat::kRGBA8, CL_MEM_READ_WRITE),
+                  .storage = Storage::kImage,
+                  .format = PixelFormat::kRGBA8,
+                  .extent = settings.output};
+}
+
+GlSharing::~GlSharing() {
+  // Neither side may still be at work on textures that go now.
+  if (const cl_int code = clFinish(device_.queue()); code != CL_SUCCESS) log_release_failure(code);
+  glFinish();
+}
+
+GlSharing::Slot GlSharing::make_slot() {
+  Slot slot = {
+      .targets = RenderTargets(
+          {.target = settings_.target, .velocity = settings_.velocity, .reactive = settings_.reactive}),
+      .depth_copy = {},
+      .shared = SharedTextures(device_),
+      .views = {}};
+  if (settings_.depth) {
+    slot.depth_copy = Texture::create();
+    glTextureStorage2D(slot.depth_copy.get(), 1, GL_R32F, settings_.target.width, settings_.target.height);
+    glTextureParameteri(slot.depth_copy.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  }
+  for (const Plane& plane : planes_) {
+    GLuint texture = slot.targets.colour();
+    if (plane.kind == PlaneKind::kDepth) texture = slot.depth_copy.get();
+    if (plane.kind == PlaneKind::kVelocity) texture = slot.targets.velocity();
+    if (plane.kind == PlaneKind::kReactive) texture = slot.targets.reactive();
+    view_of(slot.views, plane.kind) = {.memory = slot.shared.add(texture, plane.format, CL_MEM_READ_ONLY),
+                                       .storage = Storage::kImage,
+                                       .format = plane.format,
+                                       .extent = settings_.target};
+  }
+  return slot;
+}
+
+Result<const RenderTargets*> GlSharing::begin_draw(int slot) {
+  if (Status status = ring_.begin_draw(slot); !status.ok()) return status;
+  try {
+    slot_at(slot).shared.release();  // nothing to do where acquire() of a later slot has done it
+    slot_at(slot).shared.wait_for_release();
+    return &slot_at(slot).targets;
+  } catch (const std::exception& error) {
+    return Status::device(fmt::format("begin_draw({}) on '{}': {}", slot, device_.info().name, error.what()));
+  }
+}
+
+void GlSharing::copy_depth(const Slot& slot, Extent render) const {
+  glUseProgram(depth_program_.get());
+  glUniform2i(0, render.width, render.height);
+  glBindTextureUnit(0, slot.targets.depth());
+  glBindSampler(0, 0);
+  glBindImageTexture(0, slot.depth_copy.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  glDispatchCompute(static_cast<GLuint>((render.width + kGroupSide - 1) / kGroupSide),
+                    static_cast<GLuint>((render.height + kGroupSide - 1) / kGroupSide), 1);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
+  glBindTextureUnit(0, 0);
+  glUseProgram(0);
+}
+
+Status GlSharing::submit(int slot, Extent render) {
+  if (Status status = ring_.submit(slot, render); !status.ok()) return status;
+  if (settings_.depth) copy_depth(slot_at(slot), render);
+  glFlush();
+  return {};
+}
+
+Result<SharedFrame> GlSharing::acquire(int slot) {
+  if (Status status = ring_.acquire(slot); !status.ok()) return status;
+  const Stopwatch watch;
+  try {
+    // The readers of a retired slot are all enqueued by now, and this frame's are not yet: begin_draw() will
+    // then wait for the last frame only.
+    for (int other = 0; other < slots(); ++other) {
+      if (ring_.is_retired(other)) slot_at(other).shared.release();
+    }
+    slot_at(slot).shared.acquire();
+  } catch (const std::exception& error) {
+    return Status::device(fmt::format("acquire({}) on '{}': {}", slot, device_.info().name, error.what()));
+  }
+  traffic_.bytes_in = 0;
+  traffic_.acquire_ms = watch.milliseconds();
+  return slot_at(slot).views;
+}
+
+Result<ImageView> GlSharing::begin_present() {
+  try {
+    output_.acquire();
+    presenting_ = true;
+    return output_view_;
+  } catch (const std::exception& error) {
+    return Status::device(fmt::format("begin_present() on '{}': {}", device_.info().name, error.what()));
+  }
+}
+
+Status GlSharing::present() {
+  if (!presenting_) {
+    return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
+  }
+  const Stopwatch watch;
+  try {
+    output_.release();
+    output_.wait_for_release();
+  } catch (const std::exception& error) {
+    return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
+  }
+  presenting_ = false;
+  pixels_are_current_ = false;
+  traffic_.bytes_out = 0;
+  traffic_.present_ms = watch.milliseconds();
+  return {};
+}
+
+const std::uint8_t* GlSharing::presented_pixels() {
+  if (!pixels_are_current_ && !presenting_) {
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
+    glGetTextureImage(presented_.get(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels_.size()),
+                      pixels_.data());
+    pixels_are_current_ = true;
+  }
+  return pixels_.data();
+}
+
+}  // namespace quincunx::gl

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// GlSharing: the bridge where one driver serves both sides. Textures are handed over, no pixel moves.
+//
+// Rests on cl_khr_gl_sharing. A depth texture would reach OpenCL as another image type, and only with
+// cl_khr_gl_depth_images; a compute shader copies the viewport's part of it to R32F instead, on every driver
+// alike. Where cl_khr_gl_event is missing, glFinish() comes before OpenCL takes textures, and the release is
+// waited for before GL takes them back.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plane.h"
+#include "quincunx_gl/bridge.h"
+#include "shared_textures.h"
+#include "slot_ring.h"
+
+namespace quincunx::gl {
+
+class GlSharing final : public Bridge {
+ public:
+  // Errors: kUnsupported with the reason when device, context or probe say no; kDeviceFailure.
+  static Result<std::unique_ptr<Bridge>> create(const EglContext& context, const Device& device,
+                                                const BridgeSettings& settings);
+  ~GlSharing() override;
+
+  Interop kind() const override { return Interop::kGl; }
+  Result<const RenderTargets*> begin_draw(int slot) override;
+  Status submit(int slot, Extent render) override;
+  Result<SharedFrame> acquire(int slot) override;
+  Result<ImageView> begin_present() override;
+  Status present() override;
+  GLuint presented_texture() const override { return presented_.get(); }
+  const std::uint8_t* presented_pixels() override;
+
+ private:
+  struct Slot {
+    RenderTargets targets;
+    Texture depth_copy;  // R32F; none where depth is not handed over
+    SharedTextures shared;
+    SharedFrame views;
+  };
+
+  GlSharing(const Device& device, const BridgeSettings& settings, std::string reason);
+  Slot& slot_at(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  Slot make_slot();
+  void copy_depth(const Slot& slot, Extent render) const;
+
+  Device device_;
+  std::vector<Plane> planes_;
+  SlotRing ring_;
+  std::vector<Slot> slots_;
+  Program depth_program_;
+  Texture presented_;
+  SharedTextures output_;
+  ImageView output_view_;
+  std::vector<std::uint8_t> pixels_;
+  bool pixels_are_current_ = false;
+  bool presenting_ = false;
+};
+
+}  // namespace quincunx::gl

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+#include "pixel_buffer.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+namespace quincunx::gl {
+namespace {
+
+// Drivers use host memory in place only where it starts on a page; PoCL's wide loads want 128 bytes. GL
+// promises no more than 64.
+constexpr std::size_t kPageBytes = 4096;
+
+std::size_t bytes_to_page(const void* address) {
+  const auto value = reinterpret_cast<std::uintptr_t>(address);
+  return (kPageBytes - value % kPageBytes) % kPageBytes;
+}
+
+}  // namespace
+
+PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer)
+    : device_(device),
+      transfer_(transfer),
+      size_((bytes + kPageBytes - 1) / kPageBytes * kPageBytes),
+      buffer_(Buffer::create()) {
+  constexpr GLbitfield kAccess =
+      GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  const auto allocated = static_cast<GLsizeiptr>(size_ + kPageBytes);
+  glNamedBufferStorage(buffer_.get(), allocated, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
+  void* const mapped = glMapNamedBufferRange(buffer_.get(), 0, allocated, kAccess);
+  if (mapped == nullptr) {
+    throw InteropError(fmt::format("OpenGL could not map a pixel buffer of {} bytes (error 0x{:04x})",
+                                   allocated, glGetError()));
+  }
+  gl_offset_ = bytes_to_page(mapped);
+  bytes_ = static_cast<std::uint8_t*>(mapped) + gl_offset_;
+
+  cl_int code = CL_SUCCESS;
+  const bool in_place = transfer_ == Transfer::kZeroCopy;
+  memory_ = ClMem::adopt(clCreateBuffer(
+      device_.context(), CL_MEM_READ_WRITE | (in_place ? CL_MEM_USE_HOST_PTR : cl_mem_flags{0}), size_,
+      in_place ? bytes_ : nullptr, &code));
+  check_cl(code, "clCreateBuffer for a pixel buffer");
+  if (in_place) {
+    host_owns_ = false;
+    take_back(Access::kOverwrite);
+    wait();
+  }
+}
+
+PixelBuffer::~PixelBuffer() {
+  if (!memory_) return;  // moved from
+  cl_int code = CL_SUCCESS;
+  if (transfer_ == Transfer::kZeroCopy && host_owns_) {
+    code = clEnqueueUnmapMemObject(device_.queue(), memory_.get(), bytes_, 0, nullptr, nullptr);
+    if (code != CL_SUCCESS) log_release_failure(code);
+  }
+  // OpenCL may still be at work on the memory that GL is about to free.
+  code = clFinish(device_.queue());
+  if (code != CL_SUCCESS) log_release_failure(code);
+}
+
+void PixelBuffer::take_back(Access access) {
+  const cl_map_flags flags = access == Access::kRead ? CL_MAP_READ : CL_MAP_WRITE_INVALIDATE_REGION;
+  cl_int code = CL_SUCCESS;
+  cl_event event = nullptr;
+  const void* mapped = clEnqueueMapBuffer(device_.queue(), memory_.get(), CL_FALSE, flags, 0, size_, 0,
+                                          nullptr, &event, &code);
+  check_cl(code, "clEnqueueMapBuffer");
+  pending_ = ClEvent::adopt(event);
+  host_owns_ = true;
+  if (mapped != bytes_)
+    throw InteropError("clEnqueueMapBuffer did not give back the host memory it was made of");
+}
+
+void PixelBuffer::hand_over() {
+  if (!host_owns_) return;
+  wait();
+  check_cl(clEnqueueUnmapMemObject(device_.queue(), memory_.get(), bytes_, 0, nullptr, nullptr),
+           "clEnqueueUnmapMemObject");
+  host_owns_ = false;
+}
+
+void PixelBuffer::enqueue_write(const ImageView& view, Extent extent) {
+  // Offsets are whole rows, so that the rectangle lies within rows on both sides.
+  const std::array<std::size_t, 3> origin = {0, view.offset / view.pitch, 0};
+  const std::array<std::size_t, 3> region = {extent.width * bytes_per_pixel(view.format),
+                                             static_cast<std::size_t>(extent.height), 1};
+  cl_event event = nullptr;
+  check_cl(clEnqueueWriteBufferRect(device_.queue(), memory_.get(), CL_FALSE, origin.data(), origin.data(),
+                                    region.data(), view.pitch, 0, view.pitch, 0, bytes_, 0, nullptr, &event),
+           "clEnqueueWriteBufferRect");
+  pending_ = ClEvent::adopt(event);
+}
+
+void PixelBuffer::enqueue_read() {
+  cl_event event = nullptr;
+  check_cl(
+      clEnqueueReadBuffer(device_.queue(), memory_.get(), CL_FALSE, 0, size_, bytes_, 0, nullptr, &event),
+      "clEnqueueReadBuffer");
+  pending_ = ClEvent::adopt(event);
+}
+
+}  // namespace quincunx::gl

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "plane.h"
+
+namespace quincunx::gl {
+
+GlFormat gl_format(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kR8:
+      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
+    case PixelFormat::kR32F:
+      return {GL_R32F, GL_RED, GL_FLOAT};
+    case PixelFormat::kRG16F:
+      return {GL_RG16F, GL_RG, GL_HALF_FLOAT};
+    case PixelFormat::kRG32F:
+      return {GL_RG32F, GL_RG, GL_FLOAT};
+    case PixelFormat::kRGBA8:
+      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+    case PixelFormat::kRGBA16F:
+      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
+    case PixelFormat::kRGBA32F:
+      return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
+    case PixelFormat::kNone:
+      break;
+  }
+  return {};
+}
+
+std::vector<Plane> planes_of(const BridgeSettings& settings) {
+  std::vector<Plane> planes = {{PlaneKind::kColour, PixelFormat::kRGBA16F, GL_COLOR_ATTACHMENT0}};
+  if (settings.depth) planes.push_back({PlaneKind::kDepth, PixelFormat::kR32F, GL_DEPTH_ATTACHMENT});
+  if (settings.velocity) planes.push_back({PlaneKind::kVelocity, PixelFormat::kRG16F, GL_COLOR_ATTACHMENT1});
+  if (settings.reactive) planes.push_back({PlaneKind::kReactive, PixelFormat::kR8, GL_COLOR_ATTACHMENT2});
+  return planes;
+}
+
+ImageView& view_of(SharedFrame& frame, PlaneKind kind) {
+  switch (kind) {
+    case PlaneKind::kDepth:
+      return frame.depth;
+    case PlaneKind::kVelocity:
+      return frame.velocity;
+    case PlaneKind::kReactive:
+      return frame.reactive;
+    case PlaneKind::kColour:
+      break;
+  }
+  return frame.colour;
+}
+
+}  // namespace quincunx::gl

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx_gl/egl_context.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "skip.h"
+
+namespace quincunx::gl {
+namespace {
+
+void expect_usable(const EglContext& context) {
+  EXPECT_EQ(eglGetCurrentContext(), context.context());
+  GLint major = 0;
+  GLint minor = 0;
+  GLint profile = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  EXPECT_GE(major * 10 + minor, 45);
+  EXPECT_TRUE(profile & GL_CONTEXT_CORE_PROFILE_BIT);
+  EXPECT_FALSE(context.info().renderer.empty());
+  EXPECT_FALSE(context.info().vendor.empty());
+  EXPECT_FALSE(context.info().version.empty());
+  EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+}
+
+TEST(EglContext, SurfacelessPlatform) {
+  auto context = EglContext::create(Platform::kSurfaceless);
+  if (!context.ok()) QUINCUNX_SKIP(context.status().message());
+  EXPECT_EQ(context->info().platform, Platform::kSurfaceless);
+  expect_usable(context.value());
+}
+
+TEST(EglContext, DevicePlatform) {
+  auto context = EglContext::create(Platform::kDevice);
+  if (!context.ok()) QUINCUNX_SKIP(context.status().message());
+  EXPECT_EQ(context->info().platform, Platform::kDevice);
+  expect_usable(context.value());
+}
+
+TEST(EglContext, AutoTakesADeviceOnlyForAGpu) {
+  auto context = EglContext::create();
+  ASSERT_TRUE(context.ok()) << context.status().message();
+  expect_usable(context.value());
+  if (context->info().software) {
+    EXPECT_EQ(context->info().platform, Platform::kSurfaceless);
+  } else {
+    EXPECT_EQ(context->info().platform, Platform::kDevice);
+  }
+}
+
+TEST(EglContext, LlvmpipeIsKnownAsSoftware) {
+  auto context = EglContext::create();
+  ASSERT_TRUE(context.ok()) << context.status().message();
+  const bool llvmpipe = context->info().renderer.find("llvmpipe") != std::string::npos;
+  if (!llvmpipe) QUINCUNX_SKIP("this machine renders with " + context->info().renderer);
+  EXPECT_TRUE(context->info().software);
+}
+
+// Both live on one EGL display; the end of the first must not end the second.
+TEST(EglContext, TwoContextsOfOneDisplayLiveApart) {
+  auto second = [] {
+    auto first = EglContext::create();
+    EXPECT_TRUE(first.ok()) << first.status().message();
+    return EglContext::create();
+  }();
+  ASSERT_TRUE(second.ok()) << second.status().message();
+  expect_usable(second.value());
+  ASSERT_TRUE(second->make_current().ok());
+  expect_usable(second.value());
+}
+
+TEST(EglContext, MakeCurrentSwitches) {
+  auto first = EglContext::create();
+  auto second = EglContext::create();
+  ASSERT_TRUE(first.ok() && second.ok());
+  expect_usable(second.value());
+  ASSERT_TRUE(first->make_current().ok());
+  expect_usable(first.value());
+}
+
+TEST(EglContext, MovedContextIsTheSame) {
+  auto created = EglContext::create();
+  ASSERT_TRUE(created.ok()) << created.status().message();
+  void* const raw = created->context();
+  EglContext moved = std::move(created).value();
+  EXPECT_EQ(moved.context(), raw);
+  expect_usable(moved);
+}
+
+TEST(EglContext, LeavesNothingCurrentBehind) {
+  { auto context = EglContext::create(); }
+  EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
+}
+
+}  // namespace
+}  // namespace quincunx::gl

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+// What GL holds arrives in OpenCL bit for bit, and nothing but the viewport moves.
+#include "interop_fixture.h"
+
+namespace quincunx::gl::testing {
+namespace {
+
+struct Case {
+  const char* name;
+  Extent target;
+  Extent render;
+};
+
+constexpr std::array kCases = {
+    Case{"smallest", {1, 1}, {1, 1}},
+    Case{"one_pixel_of_many", {64, 48}, {1, 1}},
+    Case{"odd_in_odd", {37, 29}, {7, 5}},
+    Case{"whole_odd_target", {33, 17}, {33, 17}},
+    Case{"one_column", {50, 40}, {1, 40}},
+    Case{"one_row", {50, 40}, {50, 1}},
+    Case{"half_a_frame", {1280, 720}, {909, 511}},
+    Case{"supersampled", {2560, 1440}, {1811, 1019}},
+};
+
+class RoundTripTest : public InteropTest {
+ protected:
+  void expect_exact(const Case& c, Transfer transfer);
+};
+
+void RoundTripTest::expect_exact(const Case& c, Transfer transfer) {
+  const BridgeSettings settings = all_planes(c.target, {8, 8});
+  HostCopy bridge(*device_, settings, "test", transfer);
+  const std::vector<Plane> planes = planes_of(settings);
+
+  // Twice in the same slot: the second time OpenCL's memory holds what must stay outside the viewport.
+  for (const std::uint32_t seed : {11u, 12u}) {
+    auto targets = bridge.begin_draw(0);
+    ASSERT_TRUE(targets.ok()) << targets.status().message();
+    for (const Plane& plane : planes) {
+      fill_plane(*targets.value(), plane, random_texels(plane.format, c.target, seed));
+    }
+    ASSERT_TRUE(bridge.submit(0, c.render).ok());
+    auto frame = bridge.acquire(0);
+    ASSERT_TRUE(frame.ok()) << frame.status().message();
+    for (const Plane& plane : planes) {
+      const std::size_t texel = bytes_per_pixel(plane.format);
+      const ImageView& view = view_of(frame.value(), plane.kind);
+      EXPECT_EQ(view.extent, c.target);
+      EXPECT_EQ(view.format, plane.format);
+      EXPECT_EQ(view.offset % 16, 0u);
+      EXPECT_EQ(view.pitch % 16, 0u);
+      const Bytes drawn = random_texels(plane.format, c.target, seed);
+      const Bytes poison = random_texels(plane.format, c.target, 99);
+      const Bytes seen = download(view, c.target);
+      EXPECT_TRUE(crop(seen, c.target, c.render, texel) == crop(drawn, c.target, c.render, texel))
+          << c.name << ", plane " << static_cast<int>(plane.kind) << ", frame " << seed;
+      if (seed == 12u) {
+        EXPECT_TRUE(seen == overlay(poison, drawn, c.target, c.render, texel))
+            << c.name << ", plane " << static_cast<int>(plane.kind) << " was touched outside the viewport";
+      }
+      upload(view, poison);
+    }
+    std::uint64_t bytes = 0;
+    for (const Plane& plane : planes) {
+      bytes += static_cast<std::uint64_t>(c.render.area()) * bytes_per_pixel(plane.format);
+    }
+    EXPECT_EQ(bridge.traffic().bytes_in, bytes);
+  }
+}
+
+TEST_F(RoundTripTest, HostMemoryInPlace) {
+  if (!device_->info().host_unified_memory) GTEST_SKIP() << "this device's memory is not the host's";
+  for (const Case& c : kCases)
+    expect_exact(c, Transfer::kZeroCopy);
+}
+
+TEST_F(RoundTripTest, CopiedToTheDevice) {
+  for (const Case& c : kCases)
+    expect_exact(c, Transfer::kExplicit);
+}
+
+TEST_F(RoundTripTest, PlanesThatWereNotAskedForAreEmpty) {
+  auto bridge = Bridge::create(*context_, *device_, {.target = {16, 16}, .output = {16, 16}});
+  ASSERT_TRUE(bridge.ok()) << bridge.status().message();
+  auto targets = bridge.value()->begin_draw(0);
+  ASSERT_TRUE(targets.ok());
+  EXPECT_EQ(targets.value()->velocity(), 0u);
+  EXPECT_EQ(targets.value()->reactive(), 0u);
+  targets.value()->clear({16, 16});
+  ASSERT_TRUE(bridge.value()->submit(0, {16, 16}).ok());
+  auto frame = bridge.value()->acquire(0);
+  ASSERT_TRUE(frame.ok());
+  EXPECT_TRUE(frame->colour);
+  EXPECT_FALSE(frame->depth);
+  EXPECT_FALSE(frame->velocity);
+  EXPECT_FALSE(frame->reactive);
+}
+
+constexpr const char* kVertexSource = R"(#version 450 core
+void main() {  // the upper left quarter of the viewport, as a person sees it
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  gl_Position = vec4(-1.0 + corner.x, corner.y, 0.25, 1.0);
+}
+)";
+constexpr const char* kFragmentSource = R"(#version 450 core
+layout(location = 0) out vec4 colour;
+layout(location = 1) out vec2 velocity;
+layout(location = 2) out float reactive;
+void main() {
+  colour = vec4(gl_FragCoord.xy, 3.0, 1.0);
+  velocity = -gl_FragCoord.yx;
+  reactive = 1.0;
+}
+)";
+
+Program build(const char* vertex, const char* fragment) {
+  Program program = Program::create();
+  for (const auto& [stage, source] :
+       {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
+    const GLuint shader = glCreateShader(static_cast<GLenum>(stage));
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    glAttachShader(program.get(), shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program.get());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
+  EXPECT_EQ(linked, GL_TRUE);
+  return program;
+}
+
+// A picture drawn by a shader: row 0 of OpenCL's view is the top of what was drawn.
+TEST_F(RoundTripTest, DrawnPictureHasItsTopRowFirst) {
+  constexpr Extent kTarget = {40, 30};
+  constexpr Extent kRender = {20, 14};
+  auto bridge = Bridge::create(*context_, *device_, all_planes(kTarget, {8, 8}));
+  ASSERT_TRUE(bridge.ok()) << bridge.status().message();
+  auto targets = bridge.value()->begin_draw(1);
+  ASSERT_TRUE(targets.ok());
+  const Program program = build(kVertexSource, kFragmentSource);
+  const VertexArray vertices = VertexArray::create();
+  glBindVertexArray(vertices.get());
+  glUseProgram(program.get());
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GREATER);
+  glBindFramebuffer(GL_FRAMEBUFFER, targets.value()->framebuffer());
+  glViewport(0, 0, kRender.width, kRender.height);
+  targets.value()->clear(kRender);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  ASSERT_TRUE(bridge.value()->submit(1, kRender).ok());
+  auto frame = bridge.value()->acquire(1);
+  ASSERT_TRUE(frame.ok());
+
+  const Bytes depth = download(frame->depth, kRender);
+  const Bytes reactive = download(frame->reactive, kRender);
+  const Bytes colour = download(frame->colour, kRender);
+  for (int y = 0; y < kRender.height; ++y) {
+    for (int x = 0; x < kRender.width; ++x) {
+      const bool covered = x < kRender.width / 2 && y < kRender.height / 2;
+      const std::size_t at = static_cast<std::size_t>(y) * kRender.width + x;
+      EXPECT_EQ(reactive[at], covered ? 255 : 0) << x << ", " << y;
+      EXPECT_EQ(depth[4 * at + 3], covered ? 0x3e : 0) << x << ", " << y;   // the top byte of 0.25f
+      EXPECT_EQ(colour[8 * at + 5], covered ? 0x42 : 0) << x << ", " << y;  // the top byte of half 3
+    }
+  }
+  // Halves of (0.5, 0.5) at the top left, of (0.5, 1.5) one row below.
+  EXPECT_EQ(colour[1], 0x38);
+  EXPECT_EQ(colour[3], 0x38);
+  EXPECT_EQ(colour[8 * kRender.width + 1], 0x38);
+  EXPECT_EQ(colour[8 * kRender.width + 3], 0x3e);
+}
+
+}  // namespace
+}  // namespace quincunx::gl::testing
