@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// MeshBuilder: meshes from simple solids, for the procedural scenes.
+//
+// Everything comes out with unit normals, triangles counter-clockwise seen from outside, and texture
+// coordinates that read like a picture seen from outside: u to the right, v downwards, in metres times
+// Pen::uv_per_metre unless a function says otherwise. Angles in radians, lengths in metres. Not thread-safe;
+// cheap to create.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "scene.h"
+
+namespace quincunx::scenes {
+
+// How what is added next is placed and painted.
+struct Pen {
+  glm::mat4 placement{1};  // mesh from local; no mirroring
+  glm::vec4 colour{1};     // vertex colour
+  float uv_per_metre = 1;
+  float cell = 1e9f;  // longest edge of the pieces of a plane, so that colour can vary over it
+};
+
+struct UvRect {
+  glm::vec2 top_left{0, 0};
+  glm::vec2 bottom_right{1, 1};
+};
+
+class MeshBuilder {
+ public:
+  Pen pen;
+
+  explicit MeshBuilder(int material) { mesh_.material = material; }
+
+  std::uint32_t vertex(glm::vec3 position, glm::vec3 normal, glm::vec2 uv);
+  void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
+
+  // Parallelogram origin + s * right + t * up; its front is where `right` points right and `up` up.
+  void patch(glm::vec3 origin, glm::vec3 right, glm::vec3 up);
+  void picture(glm::vec3 origin, glm::vec3 right, glm::vec3 up, UvRect uv = {});
+
+  // A leaf: a quad seen from both sides, with one normal for both; uv is the whole texture.
+  void card(glm::vec3 centre, glm::vec3 half_right, glm::vec3 half_up, glm::vec3 normal);
+
+  void box(glm::vec3 low, glm::vec3 high);
+
+  // Turned on the y axis. The profile (radius, height) runs from bottom to top; corners sharper than 35
+  // degrees stay sharp. No caps: start and end at radius 0 to close it.
+  void lathe(std::span<const glm::vec2> profile, int segments);
+
+  // Sweep of a circle; no caps. A closed path must not repeat its first point.
+  void tube(std::span<const glm::vec3> path, float radius, int sides, bool closed = false);
+  void tube(std::span<const glm::vec3> path, std::span<const float> radii, int sides, bool closed = false);
+
+  void rod(glm::vec3 from, glm::vec3 to, float radius, int sides);  // with caps
+  void ring(glm::vec3 centre, glm::vec3 axis, float radius, float thickness, int segments, int sides);
+  void annulus(glm::vec3 centre, glm::vec3 normal, float inner, float outer, int segments);
+  void sphere(glm::vec3 centre, float radius, int segments);
+
+  // Convex outline in the xy plane, counter-clockwise seen from +z, from z = back to z = front.
+  void prism(std::span<const glm::vec2> outline, float back, float front);
+
+  // Flat strip of the given width along a path in the xy plane, facing +z, with round joints and ends.
+  void stroke(std::span<const glm::vec2> path, float width, float z);
+
+  bool empty() const { return mesh_.indices.empty(); }
+  Mesh take();  // leaves the builder empty, pen and material unchanged
+
+ private:
+  Mesh mesh_;
+};
+
+// Two unit vectors that make a right-handed frame with the unit vector `axis`: cross(x, y) = axis.
+std::array<glm::vec3, 2> frame_around(glm::vec3 axis);
+
+// Points of a wire that hangs between two points; `sag` is how far its middle lies below the chord.
+std::vector<glm::vec3> hanging_wire(glm::vec3 from, glm::vec3 to, float sag, int pieces);
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "procedural_courtyard.h"
+
+#include <array>
+#include <cmath>
+
+#include "ambient_occlusion.h"
+#include "procedural_props.h"
+#include "procedural_scenes.h"
+
+namespace quincunx::scenes {
+
+namespace {
+
+CourtyardMaterials add_masonry(SceneAssembly& assembly, std::uint64_t seed) {
+  CourtyardMaterials m{};
+  m.brick = assembly.add_surface("brick", brick_surface(1024, seed), 0.8f);
+  m.ashlar = assembly.add_surface("ashlar", ashlar_surface(1024, seed + 1), 0.8f);
+  m.plaster = assembly.add_surface("limewash", plaster_surface(512, seed + 2), 0.7f);
+  m.paving = assembly.add_surface("paving", paving_surface(1024, seed + 3), 0.8f);
+  m.planks = assembly.add_surface("planks", plank_surface(512, seed + 4), 0.8f);
+  m.limestone = assembly.add_surface("limestone", stone_surface(512, seed + 5), 0.7f);
+  m.tiles = assembly.add(plain_material("roof tiles", {0.46f, 0.19f, 0.11f}, 0.85f));
+  m.terracotta = assembly.add(plain_material("terracotta", {0.50f, 0.22f, 0.12f}, 0.8f));
+  m.soil = assembly.add(plain_material("soil", {0.06f, 0.045f, 0.03f}, 1));
+  return m;
+}
+
+void add_metals(SceneAssembly& assembly, CourtyardMaterials& m) {
+  m.iron = assembly.add(plain_material("wrought iron", {0.028f, 0.031f, 0.034f}, 0.5f));
+  m.gilt = assembly.add(plain_material("gilt", {0.85f, 0.60f, 0.24f}, 0.35f, 0.75f));
+  m.bronze = assembly.add(plain_material("bronze", {0.10f, 0.065f, 0.035f}, 0.45f, 0.2f));
+  m.shutters = assembly.add(plain_material("shutters", {0.075f, 0.16f, 0.135f}, 0.6f));
+  assembly.scene.materials[static_cast<std::size_t>(m.shutters)].double_sided = true;
+  m.window = assembly.add(plain_material("window panes", {0.02f, 0.025f, 0.03f}, 0.1f));
+  m.lamp = assembly.add(lamp_material("lamp", {42, 24, 9}));
+  m.ember = assembly.add(lamp_material("ember", {22, 5.5f, 1.0f}));
+}
+
+void add_clear_materials(SceneAssembly& assembly, CourtyardMaterials& m, std::uint64_t seed) {
+  Material water = plain_material("water", {0.05f, 0.13f, 0.13f}, 0.1f);
+  water.base_colour.a = 0.78f;
+  water.alpha_mode = AlphaMode::kBlend;
+  water.reactive = 0.5f;
+  water.normal_texture.texture = assembly.add(water_normal_texture(512, seed + 6));
+  m.water = assembly.add(water);
+  Material glass = plain_material("glass", {0.85f, 0.87f, 0.85f}, 0.08f);
+  glass.base_colour = {0.05f, 0.055f, 0.05f, 0.22f};
+  glass.alpha_mode = AlphaMode::kBlend;
+  glass.double_sided = true;
+  glass.reactive = 0.4f;
+  m.glass = assembly.add(glass);
+}
+
+CourtyardMaterials add_materials(SceneAssembly& assembly, std::uint64_t seed) {
+  CourtyardMaterials m = add_masonry(assembly, seed);
+  add_metals(assembly, m);
+  add_clear_materials(assembly, m, seed);
+  m.poster_title = add_picture_material(assembly, "notice: quincunx", poster_texture(quincunx_poster(seed)));
+  m.poster_figures = add_picture_material(assembly, "notice: figures", poster_texture(figures_poster(seed)));
+  m.plants.leaves = assembly.add(leaf_material(assembly.add(leaf_texture(512, seed))));
+  m.plants.bark = assembly.add(plain_material("bark", {0.16f, 0.12f, 0.085f}, 0.95f));
+  m.plants.fruit = assembly.add(plain_material("orange", {0.85f, 0.28f, 0.02f}, 0.5f));
+  return m;
+}
+
+// Late afternoon: the sun stands low on the right, behind the camera.
+void set_light(Scene& scene) {
+  scene.sun.direction = glm::normalize(glm::vec3(-0.66f, -0.50f, -0.56f));
+  scene.sun.irradiance = {7.6f, 5.3f, 3.1f};
+  scene.sky.zenith = {0.13f, 0.27f, 0.62f};
+  scene.sky.horizon = {0.80f, 0.74f, 0.68f};
+  scene.sky.ground = {0.30f, 0.22f, 0.15f};
+  scene.exposure = 0.9f;
+}
+
+Camera camera_at(double seconds) {
+  const float angle = phase_at(seconds, kCourtyardDuration);
+  Camera camera;
+  camera.vertical_fov = 0.92f;
+  const glm::vec3 eye(1.3f + 0.75f * std::sin(angle), 1.72f + 0.10f * std::cos(angle),
+                      9.2f - 0.45f * std::cos(angle));
+  const glm::vec3 target(-0.35f + 0.12f * std::sin(angle), 2.95f, -5.0f);
+  camera.world_from_camera = looking_from(eye, target);
+  return camera;
+}
+
+}  // namespace
+
+Scene make_courtyard(std::uint64_t seed) {
+  SceneAssembly assembly;
+  const CourtyardMaterials materials = add_materials(assembly, seed);
+  add_courtyard_ground(assembly, materials);
+  add_courtyard_arcade(assembly, materials);
+  add_courtyard_facade(assembly, materials);
+  add_courtyard_tower(assembly, materials);
+  add_courtyard_garden(assembly, materials, seed);
+  add_courtyard_props(assembly, materials);
+  add_courtyard_motion(assembly, materials, seed);
+  Scene scene = assembly.finish();
+  set_light(scene);
+  add_courtyard_particles(scene, seed);
+  bake_ambient_occlusion(scene, {}, [](const Material& material) { return !material.unlit; });
+  scene.duration = kCourtyardDuration;
+  scene.camera_moves = true;
+  scene.camera = camera_at;
+  return scene;
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The built-in scenes. Each is a pure function of its seed; docs/scenes.md says what each is for.
+//
+// name, summary and reason are left to the catalogue. All repeat without a jump after Scene::duration.
+#pragma once
+
+#include <cstdint>
+
+#include "scene.h"
+
+namespace quincunx::scenes {
+
+Scene make_courtyard(std::uint64_t seed);
+Scene make_chart(std::uint64_t seed);
+Scene make_pan(std::uint64_t seed);
+Scene make_wires(std::uint64_t seed);
+Scene make_wheel(std::uint64_t seed);
+Scene make_occluders(std::uint64_t seed);
+Scene make_particles(std::uint64_t seed);
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "scene_catalog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "gltf_loader.h"
+#include "procedural_scenes.h"
+
+namespace quincunx::scenes {
+
+namespace {
+
+struct BuiltIn {
+  const char* name;
+  const char* summary;
+  const char* reason;
+  Scene (*make)(std::uint64_t seed);
+};
+
+constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
+    {"courtyard", "A courtyard with a fountain among four orange trees, late in the afternoon",
+     "everything at once: fine railings, lettering, foliage, moving objects, lamps, water, particles, a "
+     "moving camera",
+     make_courtyard},
+    {"chart", "A still chart: zone plate, star, slanted edges, line pairs, text, patches",
+     "resolution of one still frame: nothing moves, so every method must converge", make_chart},
+    {"pan", "A brick wall with posters behind columns, crates and a railing",
+     "only the camera moves: velocity follows from depth, no velocity target is needed", make_pan},
+    {"wires", "Power lines, a wire fence and a lattice mast before sky and brickwork",
+     "lines thinner than a pixel under a slow camera: flicker and broken lines", make_wires},
+    {"wheel", "Spoked wheels with lettering on their rims, turning at three speeds",
+     "rotation: velocity that varies within an object, a camera that stands still", make_wheel},
+    {"occluders", "Slats, hoops and balls that circle fast before a lettered wall",
+     "tens of pixels a frame before detail: what they uncover has no history", make_occluders},
+    {"particles", "Smoke, sparks and tinted glass before a lettered wall",
+     "transparents without velocity: reactive values must keep their trails away", make_particles},
+});
+
+bool is_gltf_path(std::string_view name) {
+  std::string lower(name);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower.ends_with(".gltf") || lower.ends_with(".glb");
+}
+
+std::string names_in_a_row() {
+  std::string names;
+  for (const BuiltIn& entry : kBuiltIns)
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<SceneEntry> list_scenes() {
+  std::vector<SceneEntry> entries;
+  entries.reserve(kBuiltIns.size());
+  for (const BuiltIn& entry : kBuiltIns)
+    entries.push_back({entry.name, entry.summary, entry.reason});
+  return entries;
+}
+
+Result<Scene> open_scene(const std::string& name, std::uint64_t seed) {
+  if (is_gltf_path(name)) return load_gltf(name);
+  const auto entry = std::find_if(kBuiltIns.begin(), kBuiltIns.end(),
+                                  [&](const BuiltIn& candidate) { return name == candidate.name; });
+  if (entry == kBuiltIns.end()) {
+    return Status::invalid(
+        fmt::format("there is no scene '{}': the built-in ones are {}; a file must end in .gltf or .glb",
+                    name, names_in_a_row()));
+  }
+  Scene scene = entry->make(seed);
+  scene.name = entry->name;
+  scene.summary = entry->summary;
+  scene.reason = entry->reason;
+  return scene;
+}
+
+}  // namespace quincunx::scenes
