@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "quincunx/frame.h"
 #include "quincunx/status.h"
@@ -16,12 +17,17 @@
 namespace quincunx::scenes {
 
 struct FrameView {
-  Extent render;                // viewport
-  Vec2 jitter;                  // render pixels: samples lie at pixel centre + jitter
+  Extent render = {};                // viewport
+  Vec2 jitter = {};                  // render pixels: samples lie at pixel centre + jitter
   double seconds = 0;           // scene time of this frame
   double previous_seconds = 0;  // scene time of the previous frame: velocity = this position - that one
-  float lod_bias = 0;           // of every texture
+  float aspect =
+      0;  // of the picture, width / height; 0: the viewport's. A viewport is rounded to pixels, so frames
+          // of one picture at several resolutions show the same only with the picture's own aspect
+  float lod_bias = 0;  // of every texture
 };
+
+struct TruthSettings;
 
 class Renderer {
  public:
@@ -41,6 +47,9 @@ class Renderer {
   CameraMotion camera_motion(const FrameView& view) const;
 
  private:
+  friend Result<std::vector<float>> render_truth(Renderer& renderer, const TruthSettings& settings,
+                                                 double seconds);
+
   struct Impl;
   explicit Renderer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

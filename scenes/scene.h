@@ -143,4 +143,7 @@ SceneNeeds needs_of(const Scene& scene);
 // World bounds of all instances at time 0.
 Bounds bounds_of(const Scene& scene);
 
+// The axis-aligned box around a transformed box.
+Bounds transformed(const Bounds& box, const glm::mat4& transform);
+
 }  // namespace quincunx::scenes

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The fixed-function state of each part of a frame.
+#pragma once
+
+#include "quincunx/image.h"
+#include "quincunx_gl/render_targets.h"
+
+namespace quincunx::scenes {
+
+// Rows top-down, depth from 0 to 1, for the life of the guard; then GL's defaults for all that a frame
+// changes.
+class DrawState {
+ public:
+  DrawState();
+  ~DrawState();
+  DrawState(const DrawState&) = delete;
+  DrawState& operator=(const DrawState&) = delete;
+};
+
+// Depth whole to infinity and the viewport's part of the reactive values to 0. Colour and velocity need no
+// clear: surfaces and sky cover every pixel. Leaves the scissor on the viewport.
+void clear_for_frame(const gl::RenderTargets& targets, Extent render);
+
+void set_opaque_state();   // writes colour, velocity, depth
+void set_sky_state();      // colour and velocity where nothing was drawn
+void set_blended_state();  // blends premultiplied colour, accumulates reactive values
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,34 @@
+// Per frame values, shared by all programs. Mirrors FrameBlock of frame_block.h.
+layout(std140, binding = 0) uniform Frame {
+  mat4 clip_from_world;           // jitter excluded
+  mat4 previous_clip_from_world;  // jitter excluded
+  mat4 clip_to_previous_clip;     // (ndc, depth, 1) of this frame to clip of the previous one
+  mat4 shadow_from_world;         // to (u, v, depth) of the shadow map
+  vec4 jitter;                    // xy: render pixels, zw: 1 / render extent
+  vec4 jitter_clip;               // xy: what to add to clip.xy per w so that pixel centre + jitter is sampled
+  vec4 camera_position;           // w: texture LOD bias
+  vec4 camera_right;
+  vec4 camera_up;
+  vec4 ray_centre;                // world direction of ndc (0, 0); of ndc (x, y): centre + x * ray_x + y * ray_y
+  vec4 ray_x;
+  vec4 ray_y;
+  vec4 to_sun;                    // unit
+  vec4 sun_irradiance;            // w: world size of a shadow texel, 0: no shadows
+  vec4 sun_radiance;              // w: 1 - cosine of the disc's radius
+  vec4 zenith;
+  vec4 horizon;
+  vec4 ground;
+} frame;
+
+const float kLargestHalf = 65504.0;
+
+// Finite in RGBA16F whatever came before: max() also turns NaN into 0 where min and max follow IEEE 754.
+vec3 storable(vec3 colour) { return min(max(colour, vec3(0.0)), vec3(kLargestHalf)); }
+
+// Sky radiance along a unit direction, blurred as a surface of this roughness sees it.
+vec3 sky_radiance(vec3 direction, float roughness) {
+  float height = direction.y;
+  vec3 above = mix(frame.horizon.rgb, frame.zenith.rgb, sqrt(max(height, 0.0)));
+  float blur = max(roughness, 0.01);
+  return mix(frame.ground.rgb, above, smoothstep(-blur, blur, height));
+}

@@ -1,0 +1,21 @@
+// shadow.vert: meshes as the sun sees them. Options: MASK.
+#include "frame.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 2) in vec2 uv;
+layout(location = 4) in vec4 world_rows[3];
+
+#ifdef MASK
+out vec2 v_uv;
+#endif
+
+void main() {
+  vec4 local = vec4(position, 1.0);
+  vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));
+  vec3 at = (frame.shadow_from_world * vec4(world, 1.0)).xyz;
+  // Row 0 of the map is v = 0, whatever the clip origin: GL_UPPER_LEFT turns y over.
+  gl_Position = vec4(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, at.z, 1.0);
+#ifdef MASK
+  v_uv = uv;
+#endif
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Cameras as matrices. Pure functions, double precision inside.
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "quincunx/frame.h"
+#include "scene.h"
+
+namespace quincunx::scenes {
+
+// Clip space: x right, y up, depth = z / w from 1 at the near plane to 0 at infinity (reversed, infinite).
+struct ViewMatrices {
+  glm::dmat4 world_from_camera{1};
+  glm::dmat4 camera_from_world{1};
+  glm::dmat4 clip_from_camera{1};
+  glm::dmat4 camera_from_clip{1};
+
+  glm::mat4 clip_from_world() const { return clip_from_camera * camera_from_world; }
+};
+
+ViewMatrices view_of(const Camera& camera, float aspect);
+
+// (ndc.x, ndc.y, depth, 1) of `now` to homogeneous clip coordinates of `before`. Exactly the identity where
+// the two are equal.
+glm::mat4 clip_to_previous_clip(const ViewMatrices& now, const ViewMatrices& before);
+CameraMotion camera_motion_between(const ViewMatrices& now, const ViewMatrices& before);
+
+// Left, right, bottom, top and near plane; inside is positive. There is no far plane.
+class Frustum {
+ public:
+  // `margin`: part of the half viewport to add on each side, for jitter.
+  Frustum(const glm::mat4& clip_from_world, float margin);
+  bool may_see(const Bounds& box) const;
+
+ private:
+  std::array<glm::vec4, 5> planes_;
+};
+
+}  // namespace quincunx::scenes
