@@ -17,8 +17,10 @@ int main() {
   const Extent render{32, 32}, output{64, 48};
   auto device = Device::open("cpu");
   if (!device.ok()) return fail(device.status());
-  auto plan =
-      plan_for({}, {.method = Method::kBilinear, .output = output, .target = output, .present = false});
+  const SceneNeeds needs{.background = false};  // so the plan holds a clear
+  auto plan = plan_for(
+      needs,
+      {.method = Method::kBilinear, .output = output, .target = output, .present = false, .clear = true});
   if (!plan.ok()) return fail(plan.status());
   auto service = ResolveService::create(device.value(), plan.value());
   if (!service.ok()) return fail(service.status());
