@@ -2,6 +2,9 @@
 add_library(quincunx_options INTERFACE)
 target_compile_options(quincunx_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                        -Wno-sign-conversion -Wnon-virtual-dtor)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(quincunx_options INTERFACE -Wno-restrict)  # false alarms on std::string (GCC bug 105651)
+endif()
 if(QUINCUNX_WERROR)
   target_compile_options(quincunx_options INTERFACE -Werror)
 endif()

@@ -74,7 +74,10 @@ const cl::Buffer& AxisTables::get(const cl::CommandQueue& queue, Extent render, 
   slot.last_use = ++uses_;
   if (known) return slot.buffer;
   // Only a caller eight viewports ahead of the device ever waits here.
-  if (slot.written() != nullptr) slot.written.wait();
+  if (slot.written() != nullptr &&
+      slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
+    slot.written.wait();
+  }
   slot.render = render;
   slot.jitter = jitter;
   fill_axis(render.width, output_.width, jitter.x, slot.taps.data());

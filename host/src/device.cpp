@@ -31,8 +31,8 @@ std::string trimmed(std::string text) {
 }
 
 bool has_extension(const cl::Device& device, const std::string& extension) {
-  const std::string all = " " + device.getInfo<CL_DEVICE_EXTENSIONS>() + " ";
-  return all.find(" " + extension + " ") != std::string::npos;
+  const std::string all = fmt::format(" {} ", device.getInfo<CL_DEVICE_EXTENSIONS>());
+  return all.find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
 DeviceInfo info_of(const cl::Device& device) {

@@ -26,6 +26,9 @@ TexelLayout layout_of(const ImageView& view);
 // CLHPP takes no raw handle as an argument.
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
+// Work-items that cover `width` pixels, kPixelsPerItem each.
+inline int items_for(int width) { return (width + kPixelsPerItem - 1) / kPixelsPerItem; }
+
 // At least items_x x items_y work-items, in groups of one fixed size: a device compiles a kernel anew for
 // each size.
 void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,

@@ -5,11 +5,6 @@
 #include "program_cache.h"
 
 namespace quincunx {
-namespace {
-
-constexpr int kPixelsPerItem = 4;  // PIXELS of present.cl
-
-}  // namespace
 
 PresentPass::PresentPass(const Device::Impl& device, const ResolveSettings& settings)
     : device_(device),

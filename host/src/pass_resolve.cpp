@@ -110,7 +110,7 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   if (reads_reactive_) set_memory(kernel_, index++, current.reactive.memory);
   set_memory(kernel_, index++, output.memory);
   set_memory(kernel_, index++, counter.memory);
-  enqueue_grid(device_, queue, kernel_, extent.width, extent.height, event);
+  enqueue_grid(device_, queue, kernel_, items_for(extent.width), extent.height, event);
 }
 
 }  // namespace quincunx

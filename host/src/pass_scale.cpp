@@ -10,6 +10,7 @@ ScalePass::ScalePass(const Device::Impl& device, Method method, const ResolveSet
     : device_(device),
       settings_(settings),
       name_(method == Method::kPoint ? "scale_point" : "scale_bilinear"),
+      pixels_per_item_(method == Method::kPoint ? 1 : kPixelsPerItem),
       kernel_(build_kernel(device, name_, scale_options(settings))) {}
 
 void ScalePass::warm_up(const cl::CommandQueue& queue) {
@@ -38,7 +39,8 @@ void ScalePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, const
   set_memory(kernel_, 2, inputs.colour.memory);
   set_memory(kernel_, 3, output.memory);
   set_memory(kernel_, 4, counter.memory);
-  enqueue_grid(device_, queue, kernel_, extent.width, extent.height, event);
+  enqueue_grid(device_, queue, kernel_, pixels_per_item_ == 1 ? extent.width : items_for(extent.width),
+               extent.height, event);
 }
 
 }  // namespace quincunx

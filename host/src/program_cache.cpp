@@ -33,10 +33,7 @@ std::atomic<int> g_loaded = 0;
 
 std::string_view embedded(std::string_view name) {
   for (const EmbeddedFile& file : embedded_kernel_files()) {
-    if (file.name == name || (file.name.size() > name.size() && file.name.ends_with(name) &&
-                              file.name[file.name.size() - name.size() - 1] == '/')) {
-      return file.text;
-    }
+    if (file.name == name) return file.text;
   }
   throw std::out_of_range(fmt::format("no embedded kernel file '{}'", name));
 }

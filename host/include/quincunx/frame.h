@@ -26,14 +26,15 @@ struct CameraMotion {
 // the service reads the previous frame where the caller left it and copies nothing. So give frames n and n -
 // 1 different memory; a ring of three lets the renderer run ahead.
 struct FrameInputs {
-  ImageView colour;    // RGBA16F or RGBA32F, linear, premultiplied
-  ImageView depth;     // R32F, reversed infinite depth; only read where the plan says so
-  ImageView velocity;  // RG16F or RG32F, this position - previous position; only read where the plan says so
-  ImageView reactive;  // R8, 0: trust history, 1: ignore it; only read where the plan says so
-  Extent render;       // the viewport, within the images' extents; any size from 1x1
-  Vec2 jitter;  // render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1]
-  Vec2 velocity_scale;  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
-  CameraMotion camera;
+  ImageView colour = {};  // RGBA16F or RGBA32F, linear, premultiplied
+  ImageView depth = {};   // R32F, reversed infinite depth; only read where the plan says so
+  ImageView velocity =
+      {};  // RG16F or RG32F, this position - previous position; only read where the plan says so
+  ImageView reactive = {};  // R8, 0: trust history, 1: ignore it; only read where the plan says so
+  Extent render = {};       // the viewport, within the images' extents; any size from 1x1
+  Vec2 jitter = {};  // render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1]
+  Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
+  CameraMotion camera = {};
   float exposure = 0;             // multiplies linear colour in the present pass; 0: 1
   bool reset = false;             // a cut: nothing of the previous frame may be used
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
@@ -41,8 +42,8 @@ struct FrameInputs {
 
 // Where the results go. At least one is needed; each has the plan's output extent.
 struct FrameOutputs {
-  ImageView resolved;   // RGBA32F or RGBA16F as planned: linear, output extent
-  ImageView presented;  // RGBA8: exposed, tone mapped, sRGB encoded
+  ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent
+  ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
 };
 
 struct PassReport {
@@ -56,8 +57,8 @@ struct FrameReport {
 
   Status status;  // not ok: nothing was enqueued and no output was touched
   std::uint64_t frame_index = 0;
-  Extent render;
-  Vec2 ratio;                  // render / output, recomputed from the integer viewport
+  Extent render = {};
+  Vec2 ratio = {};             // render / output, recomputed from the integer viewport
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
   int pass_count = 0;
   std::array<PassReport, kMaxPasses> passes;

@@ -56,7 +56,7 @@ struct ImageView {
   cl_mem memory = nullptr;
   Storage storage = Storage::kBuffer;
   PixelFormat format = PixelFormat::kNone;
-  Extent extent;
+  Extent extent = {};
   std::size_t offset = 0;  // bytes from the start of the buffer to texel (0, 0); a multiple of 16
   std::size_t pitch = 0;   // bytes from one row to the next; a multiple of the texel size; 0: tightly packed
 

@@ -35,13 +35,14 @@ struct SceneNeeds {
 
 struct ResolveSettings {
   Method method = Method::kQuincunx;
-  Extent output;                                 // the picture's size
-  Extent target;                                 // the inputs' allocated size: at least the largest viewport
+  Extent output = {};                            // the picture's size
+  Extent target = {};                            // the inputs' allocated size: at least the largest viewport
   PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
   PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
   Storage storage = Storage::kBuffer;            // of the inputs and the presented picture
   bool present = true;                           // run the present pass
+  bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;         // of the present pass: +- half a code value, fixed pattern
   float velocity_weight = 1;  // K of f = 1/(1 + K(|v0|^2 + |v1|^2)), v in output pixels a frame; >= 0
@@ -54,6 +55,8 @@ enum class VelocitySource {
   kCamera,  // depth and the camera's motion: only the camera moves
 };
 
+const char* name_of(VelocitySource source);
+
 struct PlannedPass {
   std::string kernel;       // "resolve_quincunx"
   std::string options;      // the -D options of the variant
@@ -63,7 +66,7 @@ struct PlannedPass {
 
 struct PlannedBuffer {
   std::string name;
-  Extent extent;
+  Extent extent = {};
   PixelFormat format = PixelFormat::kNone;
   std::uint64_t bytes = 0;
   bool owned = false;  // by the service; else the caller brings it
@@ -85,7 +88,8 @@ struct ResolvePlan {
   std::vector<LeftOut> left_out;
 
   bool keeps_previous_frame() const { return settings.method == Method::kQuincunx; }
-  std::string explain() const;  // a page of plain text
+  std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ
+  std::string explain() const;              // a page of plain text
 };
 
 // Errors: kInvalidArgument; the message names every bad field.

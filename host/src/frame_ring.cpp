@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+#include "frame_ring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace quincunx {
+namespace {
+
+// Device time of one pass; -1 where the queue does not profile.
+double milliseconds(const cl::Event& event) {
+  cl_ulong start = 0;
+  cl_ulong end = 0;
+  const cl_event raw = event();
+  if (clGetEventProfilingInfo(raw, CL_PROFILING_COMMAND_START, sizeof(start), &start, nullptr) !=
+          CL_SUCCESS ||
+      clGetEventProfilingInfo(raw, CL_PROFILING_COMMAND_END, sizeof(end), &end, nullptr) != CL_SUCCESS) {
+    return -1;
+  }
+  return static_cast<double>(end - start) * 1e-6;
+}
+
+}  // namespace
+
+FrameRing::Slot& FrameRing::begin() {
+  if (next_ - taken_ == kFrames) {
+    Slot& oldest = slots_[taken_ % kFrames];
+    // The device may still write its counter.
+    if (oldest.done() != nullptr && oldest.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
+      oldest.done.wait();
+    }
+    ++taken_;
+  }
+  Slot& slot = slots_[next_ % kFrames];
+  slot.report = {};
+  slot.passes.fill({});
+  slot.done = {};
+  slot.non_finite = 0;
+  return slot;
+}
+
+std::optional<FrameReport> FrameRing::next_completed() {
+  if (taken_ == next_) return std::nullopt;
+  Slot& slot = slots_[taken_ % kFrames];
+  const auto state = slot.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+  if (state > CL_COMPLETE) return std::nullopt;
+  FrameReport report = slot.report;
+  if (state < 0) {
+    report.status = Status::device(
+        fmt::format("frame {} failed on the device: {} ({})", report.frame_index, error_name(state), state));
+  } else {
+    for (int i = 0; i < report.pass_count; ++i)
+      report.passes[i].ms = milliseconds(slot.passes[i]);
+    report.non_finite_pixels = slot.non_finite;
+  }
+  ++taken_;
+  return report;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Bytes that the passes of one frame read and write, each texel counted once. Pure.
+#pragma once
+
+#include <cstdint>
+
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+
+// One rendered frame read by the resolve: colour and, as planned, velocity, depth and reactive.
+std::uint64_t scale_bytes(const ResolveSettings& settings, Extent render);
+std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent previous_render);
+std::uint64_t present_bytes(const ResolveSettings& settings);
+
+}  // namespace quincunx

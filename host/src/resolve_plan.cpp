@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx/resolve_plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "frame_traffic.h"
+#include "kernel_options.h"
+
+namespace quincunx {
+namespace {
+
+constexpr int kLargestSide = 32768;
+
+bool usable(Extent extent) {
+  return extent.width >= 1 && extent.height >= 1 && extent.width <= kLargestSide &&
+         extent.height <= kLargestSide;
+}
+
+// Collects complaints so that one message names every bad field.
+class Complaints {
+ public:
+  void add(std::string text) { text_ += (text_.empty() ? "" : "; ") + std::move(text); }
+  Status status() const { return text_.empty() ? Status() : Status::invalid(text_); }
+
+ private:
+  std::string text_;
+};
+
+void check_extent(Complaints& complaints, const char* field, Extent extent) {
+  if (usable(extent)) return;
+  complaints.add(fmt::format("settings.{} is {}x{}; both sides must lie in [1, {}]", field, extent.width,
+                             extent.height, kLargestSide));
+}
+
+void check_format(Complaints& complaints, const char* field, PixelFormat format, PixelFormat half,
+                  PixelFormat full) {
+  if (format == half || format == full) return;
+  complaints.add(fmt::format("settings.{} is {}; it must be {} or {}", field, name_of(format), name_of(half),
+                             name_of(full)));
+}
+
+Status check(const ResolveSettings& settings) {
+  Complaints complaints;
+  check_extent(complaints, "output", settings.output);
+  check_extent(complaints, "target", settings.target);
+  check_format(complaints, "colour", settings.colour, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
+  check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  if (!(settings.velocity_weight >= 0 && std::isfinite(settings.velocity_weight))) {
+    complaints.add(fmt::format("settings.velocity_weight is {}; it must be finite and at least 0",
+                               settings.velocity_weight));
+  }
+  return complaints.status();
+}
+
+VelocitySource velocity_source(const SceneNeeds& needs, Method method) {
+  if (method != Method::kQuincunx) return VelocitySource::kNone;
+  if (needs.moving_objects) return VelocitySource::kTarget;
+  return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
+}
+
+void plan_passes(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  switch (settings.method) {
+    case Method::kPoint:
+      plan.passes.push_back({"scale_point", scale_options(settings), "the method: the nearest sample",
+                             scale_bytes(settings, settings.target)});
+      break;
+    case Method::kBilinear:
+      plan.passes.push_back({"scale_bilinear", scale_options(settings),
+                             "the method: four samples, jitter-aware",
+                             scale_bytes(settings, settings.target)});
+      break;
+    case Method::kQuincunx:
+      plan.passes.push_back({"resolve_quincunx", quincunx_options(plan),
+                             "the method: this frame and the previous one",
+                             quincunx_bytes(plan, settings.target, settings.target)});
+      plan.passes.push_back({"scale_bilinear", scale_options(settings),
+                             "in place of resolve_quincunx on the first frame and after a reset",
+                             scale_bytes(settings, settings.target)});
+      break;
+  }
+  if (settings.present) {
+    plan.passes.push_back(
+        {"present", present_options(settings), "an 8-bit sRGB picture is wanted", present_bytes(settings)});
+  }
+  for (const PixelFormat format : plan.clears()) {
+    plan.passes.push_back({"clear_region", clear_options(settings.storage, format),
+                           "nothing covers every pixel: clear() is called before drawing",
+                           static_cast<std::uint64_t>(settings.target.area()) * bytes_per_pixel(format)});
+  }
+}
+
+void add_buffer(ResolvePlan& plan, std::string name, Extent extent, PixelFormat format, bool owned) {
+  const std::uint64_t bytes = static_cast<std::uint64_t>(extent.area()) * bytes_per_pixel(format);
+  plan.buffers.push_back({std::move(name), extent, format, bytes, owned});
+}
+
+void plan_buffers(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  const int frames = plan.keeps_previous_frame() ? 2 : 1;
+  for (int age = 0; age < frames; ++age) {
+    const char* which = age == 0 ? "" : " of the previous frame";
+    add_buffer(plan, fmt::format("colour{}", which), settings.target, settings.colour, false);
+    if (plan.velocity == VelocitySource::kTarget) {
+      add_buffer(plan, fmt::format("velocity{}", which), settings.target, settings.velocity, false);
+    }
+    if (plan.reads_depth)
+      add_buffer(plan, fmt::format("depth{}", which), settings.target, PixelFormat::kR32F, false);
+    if (plan.reads_reactive && age == 0)
+      add_buffer(plan, "reactive", settings.target, PixelFormat::kR8, false);
+  }
+  add_buffer(plan, "resolved", settings.output, settings.resolved, true);
+  if (settings.present) add_buffer(plan, "presented", settings.output, PixelFormat::kRGBA8, false);
+}
+
+void note_left_out(ResolvePlan& plan) {
+  const auto note = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
+  const SceneNeeds& needs = plan.needs;
+  const bool quincunx = plan.settings.method == Method::kQuincunx;
+  if (!quincunx) {
+    note("the previous frame", "the method uses one frame only");
+    note("velocity", "the method uses one frame only");
+    note("reactive values", "the method uses one frame only");
+  }
+  if (quincunx && plan.velocity == VelocitySource::kCamera) {
+    note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
+  }
+  if (quincunx && plan.velocity == VelocitySource::kNone) {
+    note("velocity", "nothing moves: both frames count alike");
+  }
+  if (!plan.reads_depth) note("depth in the resolve", "no pass reads it");
+  if (quincunx && !needs.transparents) note("reactive values", "the scene has no transparents");
+  if (!plan.settings.present) note("present", "no 8-bit picture is wanted");
+  if (needs.background) {
+    note("clear_region", "the background covers every pixel of the viewport");
+  } else if (!plan.settings.clear) {
+    note("clear_region", "the renderer clears its own targets");
+  }
+}
+
+std::string size_text(std::uint64_t bytes) {
+  return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+}  // namespace
+
+const char* name_of(Method method) {
+  switch (method) {
+    case Method::kPoint:
+      return "point";
+    case Method::kBilinear:
+      return "bilinear";
+    case Method::kQuincunx:
+      return "quincunx";
+  }
+  return "unknown";
+}
+
+const char* name_of(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return "clamp";
+    case ToneMap::kReinhard:
+      return "reinhard";
+    case ToneMap::kAces:
+      return "aces";
+  }
+  return "unknown";
+}
+
+const char* name_of(VelocitySource source) {
+  switch (source) {
+    case VelocitySource::kNone:
+      return "none";
+    case VelocitySource::kTarget:
+      return "target";
+    case VelocitySource::kCamera:
+      return "depth and camera";
+  }
+  return "unknown";
+}
+
+Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings) {
+  if (Status status = check(settings); !status.ok()) return status;
+  ResolvePlan plan;
+  plan.needs = needs;
+  plan.settings = settings;
+  plan.velocity = velocity_source(needs, settings.method);
+  plan.reads_depth = plan.velocity == VelocitySource::kCamera;
+  plan.reads_reactive = settings.method == Method::kQuincunx && needs.transparents;
+  plan_passes(plan);
+  plan_buffers(plan);
+  note_left_out(plan);
+  return plan;
+}
+
+std::vector<PixelFormat> ResolvePlan::clears() const {
+  std::vector<PixelFormat> formats;
+  if (!settings.clear || needs.background) return formats;
+  const auto add = [&](PixelFormat wanted) {
+    for (const PixelFormat format : formats) {
+      // One variant fills images of any format, and buffers of one texel size.
+      if (settings.storage == Storage::kImage || bytes_per_pixel(format) == bytes_per_pixel(wanted)) return;
+    }
+    formats.push_back(wanted);
+  };
+  add(settings.colour);
+  if (velocity == VelocitySource::kTarget) add(settings.velocity);
+  if (reads_reactive) add(PixelFormat::kR8);
+  return formats;
+}
+
+std::string ResolvePlan::explain() const {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto yes = [](bool value) { return value ? "yes" : "no"; };
+  fmt::format_to(
+      out, "Scene needs    moving objects {}, camera motion {}, transparents {}, covering background {}\n",
+      yes(needs.moving_objects), yes(needs.camera_motion), yes(needs.transparents), yes(needs.background));
+  fmt::format_to(out, "Settings       {}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
+                 name_of(settings.method), settings.output.width, settings.output.height,
+                 settings.target.width, settings.target.height,
+                 settings.storage == Storage::kImage ? "image" : "buffer", name_of(settings.tone_map),
+                 yes(settings.dither));
+  fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
+                 name_of(velocity));
+  for (const PlannedPass& pass : passes) {
+    fmt::format_to(out, "  {:<17} {:>11}  {}\n  {:<17} {:>11}  {}\n", pass.kernel, size_text(pass.bytes),
+                   pass.reason, "", "", pass.options);
+  }
+  text += "\nBuffers\n";
+  for (const PlannedBuffer& buffer : buffers) {
+    fmt::format_to(out, "  {:<31} {:>5}x{:<5} {:<8} {:>11}  {}\n", buffer.name, buffer.extent.width,
+                   buffer.extent.height, name_of(buffer.format), size_text(buffer.bytes),
+                   buffer.owned ? "owned unless the caller gives it" : "the caller's");
+  }
+  text += "\nLeft out\n";
+  for (const LeftOut& left : left_out)
+    fmt::format_to(out, "  {:<31} {}\n", left.what, left.why);
+  return text;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx/resolve_service.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <vector>
+
+#include "frame_ring.h"
+#include "frame_traffic.h"
+#include "pass_clear.h"
+#include "pass_present.h"
+#include "pass_resolve.h"
+#include "pass_scale.h"
+#include "program_cache.h"
+
+namespace quincunx {
+
+struct ResolveService::Impl {
+  Impl(const Device& on, const ResolvePlan& to_do);
+
+  void warm_up();
+  void enqueue(const FrameInputs& inputs, const FrameOutputs& outputs, FrameRing::Slot& slot);
+  void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
+  Status check_history(const FrameInputs& inputs) const;
+  ClearPass* clear_pass(const ImageView& image);
+  bool uses_previous(const FrameInputs& inputs) const {
+    return plan.keeps_previous_frame() && has_previous && !inputs.reset;
+  }
+
+  Device device;
+  ResolvePlan plan;
+  AxisTables tables;
+  ScalePass scale;
+  std::optional<ResolvePass> resolve;
+  std::optional<PresentPass> present;
+  std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
+  Image resolved;                                         // where the caller gives none
+  cl::Buffer counter;                                     // of non-finite pixels, one uint a slot of the ring
+  FrameInputs previous;
+  bool has_previous = false;
+  FrameRing ring;
+};
+
+ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
+    : device(on),
+      plan(to_do),
+      tables(*on.impl(), to_do.settings.output),
+      scale(*on.impl(), to_do.settings.method, to_do.settings),
+      counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {
+  const Device::Impl& impl = *device.impl();
+  if (plan.keeps_previous_frame()) resolve.emplace(impl, plan);
+  if (plan.settings.present) present.emplace(impl, plan.settings);
+  for (const PixelFormat format : plan.clears()) {
+    clears.emplace_back(format, ClearPass(impl, plan.settings.storage, format));
+  }
+}
+
+void ResolveService::Impl::warm_up() {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  scale.warm_up(queue);
+  if (resolve) resolve->warm_up(queue);
+  if (present) present->warm_up(queue);
+  for (auto& [format, pass] : clears)
+    pass.warm_up(queue);
+  // The commands around the kernels have a first time too.
+  const cl_uint zero = 0;
+  cl_uint back = 1;
+  queue.enqueueFillBuffer(counter, zero, 0, sizeof(zero));
+  queue.enqueueReadBuffer(counter, CL_FALSE, 0, sizeof(back), &back);
+  queue.finish();
+}
+
+void ResolveService::Impl::add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const {
+  slot.report.passes[slot.report.pass_count++] = {.kernel = kernel, .bytes = bytes};
+}
+
+// What validate() cannot see: the previous frame must still be where it was.
+Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
+  if (!uses_previous(inputs)) return {};
+  const auto same = [](const ImageView& a, const ImageView& b) {
+    return a.memory == b.memory && a.offset == b.offset;
+  };
+  if (!same(inputs.colour, previous.colour)) return {};
+  return Status::invalid(
+      "colour is the memory of the previous frame, which this dispatch reads as history; give consecutive "
+      "frames "
+      "different memory, or set reset");
+}
+
+void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
+                                   FrameRing::Slot& slot) {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  const ResolveSettings& settings = plan.settings;
+  const int index = ring.index_of(slot);
+  const Counter count = {counter(), index};
+  const cl_uint zero = 0;
+  queue.enqueueFillBuffer(counter, zero, index * sizeof(zero), sizeof(zero));
+
+  const ImageView& target = outputs.resolved ? outputs.resolved : resolved.view();
+  cl::Event* event = slot.passes.data();
+  if (uses_previous(inputs)) {
+    resolve->enqueue(queue, tables, inputs, previous, target, count, event++);
+    add_pass(slot, ResolvePass::kernel_name(), quincunx_bytes(plan, inputs.render, previous.render));
+    slot.report.used_previous = true;
+  } else {
+    scale.enqueue(queue, tables, inputs, target, count, event++);
+    add_pass(slot, scale.kernel_name(), scale_bytes(settings, inputs.render));
+  }
+  if (outputs.presented) {
+    present->enqueue(queue, target, inputs.exposure, outputs.presented, count, event++);
+    add_pass(slot, PresentPass::kernel_name(), present_bytes(settings));
+  }
+  queue.enqueueReadBuffer(counter, CL_FALSE, index * sizeof(zero), sizeof(slot.non_finite), &slot.non_finite,
+                          nullptr, &slot.done);
+  queue.flush();
+}
+
+ClearPass* ResolveService::Impl::clear_pass(const ImageView& image) {
+  for (auto& [format, pass] : clears) {
+    if (image.storage == Storage::kImage || bytes_per_pixel(format) == bytes_per_pixel(image.format))
+      return &pass;
+  }
+  return nullptr;
+}
+
+ResolveService::ResolveService(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ResolveService::ResolveService(ResolveService&&) noexcept = default;
+ResolveService& ResolveService::operator=(ResolveService&&) noexcept = default;
+
+ResolveService::~ResolveService() {
+  if (!impl_) return;
+  // The device may still write the counters of the ring.
+  if (Status status = finish(); !status.ok())
+    spdlog::warn("closing the resolve service: {}", status.message());
+}
+
+Result<ResolveService> ResolveService::create(const Device& device, const ResolvePlan& plan) {
+  if (plan.settings.storage == Storage::kImage && !device.info().images) {
+    return Status::unsupported(
+        fmt::format("'{}' has no images; plan with buffer storage", device.info().name));
+  }
+  try {
+    auto impl = std::make_unique<Impl>(device, plan);
+    auto resolved = device.allocate(plan.settings.output, plan.settings.resolved);
+    if (!resolved.ok()) return resolved.status();
+    impl->resolved = std::move(resolved).value();
+    impl->warm_up();
+    return ResolveService(std::move(impl));
+  } catch (const cl::Error& error) {
+    return describe(error, "creating the resolve service", device.info().name);
+  } catch (const BuildError& error) {
+    return Status::device(fmt::format("on '{}' {}", device.info().name, error.what()));
+  }
+}
+
+FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs) {
+  FrameReport refused;
+  refused.frame_index = inputs.frame_index;
+  refused.render = inputs.render;
+  refused.status = validate(impl_->plan, inputs, outputs);
+  if (refused.ok()) refused.status = impl_->check_history(inputs);
+  if (!refused.ok()) return refused;
+  try {
+    FrameRing::Slot& slot = impl_->ring.begin();
+    slot.report.frame_index = inputs.frame_index;
+    slot.report.render = inputs.render;
+    const Extent output = impl_->plan.settings.output;
+    slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
+                         static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
+    impl_->enqueue(inputs, outputs, slot);
+    impl_->ring.commit();
+    impl_->previous = inputs;
+    impl_->has_previous = true;
+    return slot.report;
+  } catch (const cl::Error& error) {
+    // Part of the frame may be queued; what it left behind is not to be trusted as history.
+    impl_->has_previous = false;
+    refused.status = describe(error, "dispatch", impl_->device.info().name);
+    return refused;
+  }
+}
+
+std::optional<FrameReport> ResolveService::next_completed() {
+  return impl_->ring.next_completed();
+}
+
+Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {
+  if (!image) return Status::invalid("the image to clear is empty; it needs an allocation");
+  if (image.storage != impl_->plan.settings.storage) {
+    return Status::invalid("the image to clear has another storage than the plan; they must agree");
+  }
+  if (render.width < 1 || render.height < 1 || render.width > image.extent.width ||
+      render.height > image.extent.height) {
+    return Status::invalid(
+        fmt::format("the rectangle to clear is {}x{}; it must lie within 1x1 and the image's {}x{}",
+                    render.width, render.height, image.extent.width, image.extent.height));
+  }
+  ClearPass* pass = impl_->clear_pass(image);
+  if (pass == nullptr) {
+    return Status::invalid(
+        fmt::format("a clear of {} is not in the plan; set settings.clear for a scene without a "
+                    "covering background",
+                    name_of(image.format)));
+  }
+  try {
+    pass->enqueue(impl_->device.impl()->queue, image, render, value, nullptr);
+    impl_->device.impl()->queue.flush();
+    return {};
+  } catch (const cl::Error& error) {
+    return describe(error, ClearPass::kernel_name(), impl_->device.info().name);
+  }
+}
+
+Status ResolveService::finish() {
+  return impl_->device.finish();
+}
+
+const ResolvePlan& ResolveService::plan() const {
+  return impl_->plan;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "quincunx/resolve_service.h"
+
+namespace quincunx {
+namespace {
+
+class FrameCheck {
+ public:
+  explicit FrameCheck(const ResolvePlan& plan) : plan_(plan) {}
+
+  void input(const char* field, const ImageView& image, PixelFormat format, Extent at_least) {
+    image_in(field, image, format, plan_.settings.storage);
+    if (image && (image.extent.width < at_least.width || image.extent.height < at_least.height)) {
+      complain(fmt::format("{}.extent is {}x{}; it must hold the viewport of {}x{}", field,
+                           image.extent.width, image.extent.height, at_least.width, at_least.height));
+    }
+  }
+
+  void output(const char* field, const ImageView& image, PixelFormat format, Storage storage) {
+    image_in(field, image, format, storage);
+    if (image && image.extent != plan_.settings.output) {
+      complain(fmt::format("{}.extent is {}x{}; it must be the output's {}x{}", field, image.extent.width,
+                           image.extent.height, plan_.settings.output.width, plan_.settings.output.height));
+    }
+  }
+
+  void finite(const char* field, float value, float low, float high) {
+    if (value >= low && value <= high) return;
+    complain(fmt::format("{} is {}; it must lie in [{}, {}]", field, value, low, high));
+  }
+
+  void complain(const std::string& text) { complaints_ += (complaints_.empty() ? "" : "; ") + text; }
+  Status status() const { return complaints_.empty() ? Status() : Status::invalid(complaints_); }
+
+ private:
+  void image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage) {
+    if (!image) {
+      complain(fmt::format("{} is missing; the plan needs it as {}", field, name_of(format)));
+      return;
+    }
+    if (image.format != format) {
+      complain(
+          fmt::format("{}.format is {}; the plan has {}", field, name_of(image.format), name_of(format)));
+    }
+    if (image.storage != storage) {
+      complain(fmt::format("{}.storage is {}; the plan has {}", field, name(image.storage), name(storage)));
+    }
+    if (image.storage == Storage::kBuffer) layout(field, image);
+  }
+
+  void layout(const char* field, const ImageView& image) {
+    const std::size_t texel = bytes_per_pixel(image.format);
+    const std::size_t row = static_cast<std::size_t>(image.extent.width) * texel;
+    if (texel != 0 && image.pitch != 0 && (image.pitch < row || image.pitch % texel != 0)) {
+      complain(fmt::format("{}.pitch is {}; it must be a multiple of {} and at least {}", field, image.pitch,
+                           texel, row));
+    }
+    if (image.offset % 16 != 0) {
+      complain(fmt::format("{}.offset is {}; it must be a multiple of 16", field, image.offset));
+    }
+    if (image.pitch > kLargestPitch) {
+      complain(fmt::format("{}.pitch is {}; it must be at most {}", field, image.pitch, kLargestPitch));
+    }
+  }
+
+  static constexpr std::size_t kLargestPitch = std::size_t{1} << 30;
+  static const char* name(Storage storage) { return storage == Storage::kImage ? "image" : "buffer"; }
+
+  const ResolvePlan& plan_;
+  std::string complaints_;
+};
+
+void check_camera(FrameCheck& check, const CameraMotion& camera) {
+  for (const float element : camera.clip_to_previous_clip) {
+    if (!std::isfinite(element)) {
+      check.complain("camera.clip_to_previous_clip holds a value that is not finite; all 16 must be numbers");
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
+  constexpr float kLargest = 1e6f;
+  FrameCheck check(plan);
+  const ResolveSettings& settings = plan.settings;
+  if (inputs.render.width < 1 || inputs.render.height < 1 || inputs.render.width > settings.target.width ||
+      inputs.render.height > settings.target.height) {
+    check.complain(fmt::format("render is {}x{}; it must lie within 1x1 and the target's {}x{}",
+                               inputs.render.width, inputs.render.height, settings.target.width,
+                               settings.target.height));
+  }
+  check.input("colour", inputs.colour, settings.colour, inputs.render);
+  if (plan.velocity == VelocitySource::kTarget) {
+    check.input("velocity", inputs.velocity, settings.velocity, inputs.render);
+    check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);
+    check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
+  }
+  if (plan.reads_depth) {
+    check.input("depth", inputs.depth, PixelFormat::kR32F, inputs.render);
+    check_camera(check, inputs.camera);
+  }
+  if (plan.reads_reactive) check.input("reactive", inputs.reactive, PixelFormat::kR8, inputs.render);
+  check.finite("jitter.x", inputs.jitter.x, -1, 1);
+  check.finite("jitter.y", inputs.jitter.y, -1, 1);
+  check.finite("exposure", inputs.exposure, 0, kLargest);
+  if (!outputs.resolved && !outputs.presented) {
+    check.complain("outputs are both missing; give resolved, presented or both");
+  }
+  if (outputs.resolved) check.output("resolved", outputs.resolved, settings.resolved, Storage::kBuffer);
+  if (outputs.presented && !settings.present) {
+    check.complain("presented is given, but the plan has no present pass; set settings.present");
+  } else if (outputs.presented) {
+    check.output("presented", outputs.presented, PixelFormat::kRGBA8, settings.storage);
+  }
+  return check.status();
+}
+
+}  // namespace quincunx

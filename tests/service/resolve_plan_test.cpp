@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx/resolve_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx {
+namespace {
+
+ResolveSettings settings(Method method) {
+  ResolveSettings result;
+  result.method = method;
+  result.output = {1280, 720};
+  result.target = {1280, 720};
+  return result;
+}
+
+ResolvePlan plan(const SceneNeeds& needs, const ResolveSettings& wanted) {
+  auto result = plan_for(needs, wanted);
+  EXPECT_TRUE(result.ok()) << result.status().message();
+  return result.value();
+}
+
+bool has_pass(const ResolvePlan& plan, const std::string& kernel) {
+  return std::any_of(plan.passes.begin(), plan.passes.end(),
+                     [&](const auto& pass) { return pass.kernel == kernel; });
+}
+
+bool has_buffer(const ResolvePlan& plan, const std::string& name) {
+  return std::any_of(plan.buffers.begin(), plan.buffers.end(),
+                     [&](const auto& buffer) { return buffer.name == name; });
+}
+
+bool leaves_out(const ResolvePlan& plan, const std::string& what) {
+  return std::any_of(plan.left_out.begin(), plan.left_out.end(),
+                     [&](const auto& left) { return left.what == what; });
+}
+
+TEST(ResolvePlan, MovingObjectsNeedAVelocityTarget) {
+  const ResolvePlan p = plan({.moving_objects = true}, settings(Method::kQuincunx));
+  EXPECT_EQ(p.velocity, VelocitySource::kTarget);
+  EXPECT_TRUE(has_buffer(p, "velocity"));
+  EXPECT_TRUE(has_buffer(p, "velocity of the previous frame"));
+  EXPECT_FALSE(p.reads_depth);
+  EXPECT_FALSE(has_buffer(p, "depth"));
+}
+
+TEST(ResolvePlan, OnlyACameraMeansDepthInsteadOfAVelocityTarget) {
+  const ResolvePlan p = plan({.moving_objects = false, .camera_motion = true}, settings(Method::kQuincunx));
+  EXPECT_EQ(p.velocity, VelocitySource::kCamera);
+  EXPECT_TRUE(p.reads_depth);
+  EXPECT_TRUE(has_buffer(p, "depth"));
+  EXPECT_FALSE(has_buffer(p, "velocity"));
+  EXPECT_TRUE(leaves_out(p, "velocity target"));
+}
+
+TEST(ResolvePlan, NothingMovingReadsNeitherVelocityNorDepth) {
+  const ResolvePlan p = plan({.moving_objects = false, .camera_motion = false, .transparents = false},
+                             settings(Method::kQuincunx));
+  EXPECT_EQ(p.velocity, VelocitySource::kNone);
+  EXPECT_FALSE(p.reads_depth);
+  EXPECT_FALSE(p.reads_reactive);
+  for (const char* name : {"velocity", "depth", "reactive"})
+    EXPECT_FALSE(has_buffer(p, name)) << name;
+  EXPECT_TRUE(leaves_out(p, "reactive values"));
+  EXPECT_TRUE(leaves_out(p, "velocity"));
+}
+
+TEST(ResolvePlan, SingleFrameMethodsKeepNoHistory) {
+  for (const Method method : {Method::kPoint, Method::kBilinear}) {
+    const ResolvePlan p = plan({}, settings(method));
+    EXPECT_FALSE(p.keeps_previous_frame());
+    EXPECT_FALSE(has_buffer(p, "colour of the previous frame"));
+    EXPECT_FALSE(has_pass(p, "resolve_quincunx"));
+    EXPECT_TRUE(has_pass(p, method == Method::kPoint ? "scale_point" : "scale_bilinear"));
+    EXPECT_TRUE(leaves_out(p, "the previous frame"));
+  }
+}
+
+TEST(ResolvePlan, ClearIsThereOnlyWhenWantedAndNeeded) {
+  ResolveSettings wanted = settings(Method::kBilinear);
+  EXPECT_FALSE(has_pass(plan({.background = false}, wanted), "clear_region"));
+  wanted.clear = true;
+  EXPECT_TRUE(has_pass(plan({.background = false}, wanted), "clear_region"));
+  EXPECT_FALSE(has_pass(plan({.background = true}, wanted), "clear_region"));
+}
+
+TEST(ResolvePlan, PresentIsThereOnlyWhenWanted) {
+  ResolveSettings wanted = settings(Method::kBilinear);
+  EXPECT_TRUE(has_pass(plan({}, wanted), "present"));
+  wanted.present = false;
+  EXPECT_FALSE(has_pass(plan({}, wanted), "present"));
+  EXPECT_FALSE(has_buffer(plan({}, wanted), "presented"));
+}
+
+// Counted by hand at 1280x720: two frames of 8-byte colour and 4-byte velocity, one of 1-byte reactive, 16
+// bytes out.
+TEST(ResolvePlan, BytesFollowFromTheFormats) {
+  const ResolvePlan p = plan({}, settings(Method::kQuincunx));
+  constexpr std::uint64_t kPixels = 1280 * 720;
+  EXPECT_EQ(p.passes[0].kernel, "resolve_quincunx");
+  EXPECT_EQ(p.passes[0].bytes, kPixels * (2 * 8 + 2 * 4 + 1 + 16));
+  EXPECT_EQ(p.passes.back().kernel, "present");
+  EXPECT_EQ(p.passes.back().bytes, kPixels * (16 + 4));
+}
+
+TEST(ResolvePlan, VariantFollowsFromTheScene) {
+  const auto options = [](const SceneNeeds& needs) {
+    return plan(needs, settings(Method::kQuincunx)).passes.front().options;
+  };
+  const std::string moving = options({});
+  const std::string still = options({.moving_objects = false, .camera_motion = false, .transparents = false});
+  const std::string camera = options({.moving_objects = false});
+  EXPECT_NE(moving, still);
+  EXPECT_NE(moving, camera);
+  EXPECT_NE(still, camera);
+}
+
+TEST(ResolvePlan, ExplainSaysEverything) {
+  const std::string text = plan({.moving_objects = false}, settings(Method::kQuincunx)).explain();
+  for (const char* part : {"resolve_quincunx", "present", "depth", "WEIGHT", "MiB", "velocity target",
+                           "nothing but the camera moves", "1280x720", "Left out"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is missing in:\n" << text;
+  }
+}
+
+TEST(ResolvePlan, EveryBadFieldIsNamed) {
+  ResolveSettings bad = settings(Method::kQuincunx);
+  bad.output = {0, 720};
+  bad.target = {1280, -1};
+  bad.colour = PixelFormat::kR8;
+  bad.velocity = PixelFormat::kRGBA16F;
+  bad.resolved = PixelFormat::kRGBA8;
+  bad.velocity_weight = std::nanf("");
+  const auto result = plan_for({}, bad);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.status().code(), StatusCode::kInvalidArgument);
+  for (const char* field : {"settings.output", "settings.target", "settings.colour", "settings.velocity",
+                            "settings.resolved", "settings.velocity_weight"}) {
+    EXPECT_NE(result.status().message().find(field), std::string::npos) << field;
+  }
+}
+
+}  // namespace
+}  // namespace quincunx

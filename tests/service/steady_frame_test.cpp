@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+// A steady frame allocates nothing, compiles nothing and never waits for the device. The OpenCL entry points
+// that could do so are replaced in this executable by ones that count and pass on, and so is operator new.
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "service_fixture.h"
+
+namespace {
+
+std::atomic<bool> g_counting = false;
+std::atomic<int> g_heap = 0;
+std::atomic<int> g_create = 0;
+std::atomic<int> g_compile = 0;
+std::atomic<int> g_wait = 0;
+std::atomic<int> g_enqueue = 0;
+
+void count(std::atomic<int>& counter) {
+  if (g_counting) ++counter;
+}
+
+template <typename Function>
+Function next(const char* name) {
+  return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  count(g_heap);
+  void* memory = std::malloc(size != 0 ? size : 1);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+extern "C" {
+
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+  count(g_create);
+  static const auto real = next<decltype(&clCreateBuffer)>("clCreateBuffer");
+  return real(context, flags, size, host, error);
+}
+cl_mem clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
+                     const cl_image_desc* desc, void* host, cl_int* error) {
+  count(g_create);
+  static const auto real = next<decltype(&clCreateImage)>("clCreateImage");
+  return real(context, flags, format, desc, host, error);
+}
+cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* error) {
+  count(g_create);
+  static const auto real = next<decltype(&clCreateKernel)>("clCreateKernel");
+  return real(program, name, error);
+}
+cl_int clBuildProgram(cl_program program, cl_uint count_of, const cl_device_id* devices, const char* options,
+                      void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+  count(g_compile);
+  static const auto real = next<decltype(&clBuildProgram)>("clBuildProgram");
+  return real(program, count_of, devices, options, notify, user);
+}
+cl_int clFinish(cl_command_queue queue) {
+  count(g_wait);
+  static const auto real = next<decltype(&clFinish)>("clFinish");
+  return real(queue);
+}
+cl_int clWaitForEvents(cl_uint count_of, const cl_event* events) {
+  count(g_wait);
+  static const auto real = next<decltype(&clWaitForEvents)>("clWaitForEvents");
+  return real(count_of, events);
+}
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                           size_t size, void* memory, cl_uint waits, const cl_event* list, cl_event* event) {
+  if (blocking) count(g_wait);
+  static const auto real = next<decltype(&clEnqueueReadBuffer)>("clEnqueueReadBuffer");
+  return real(queue, buffer, blocking, offset, size, memory, waits, list, event);
+}
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                            size_t size, const void* memory, cl_uint waits, const cl_event* list,
+                            cl_event* event) {
+  if (blocking) count(g_wait);
+  static const auto real = next<decltype(&clEnqueueWriteBuffer)>("clEnqueueWriteBuffer");
+  return real(queue, buffer, blocking, offset, size, memory, waits, list, event);
+}
+void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags,
+                         size_t offset, size_t size, cl_uint waits, const cl_event* list, cl_event* event,
+                         cl_int* error) {
+  if (blocking) count(g_wait);
+  static const auto real = next<decltype(&clEnqueueMapBuffer)>("clEnqueueMapBuffer");
+  return real(queue, buffer, blocking, flags, offset, size, waits, list, event, error);
+}
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
+                              const cl_event* list, cl_event* event) {
+  count(g_enqueue);
+  static const auto real = next<decltype(&clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
+  return real(queue, kernel, dimensions, offset, global, local, waits, list, event);
+}
+
+}  // extern "C"
+
+namespace quincunx {
+namespace {
+
+using testing::HostFrame;
+using testing::ServiceRig;
+
+void reset_counts() {
+  g_heap = g_create = g_compile = g_wait = g_enqueue = 0;
+}
+
+void run_steady_frames(const SceneNeeds& needs, Method method) {
+  constexpr int kFrames = 200;
+  ServiceRig rig(needs, method, {64, 48}, {96, 72});
+  // Two frames in each of three slots: every path (first frame, steady) has been taken once.
+  std::vector<FrameInputs> frames;
+  for (int i = 0; i < 3; ++i)
+    frames.push_back(rig.upload({.render = {48, 36}}));
+  for (int i = 0; i < 6; ++i)
+    ASSERT_TRUE(rig.dispatch(frames[i % 3]).ok());
+  ASSERT_TRUE(rig.service().finish().ok());
+  while (rig.service().next_completed()) {
+  }
+  reset_counts();
+  int refused = 0;
+  int taken = 0;
+  g_counting = true;
+  for (int i = 0; i < kFrames; ++i) {
+    FrameInputs inputs = frames[i % 3];
+    inputs.render = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
+    inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
+    inputs.reset = i % 50 == 49;
+    refused += rig.dispatch(inputs).ok() ? 0 : 1;
+    while (rig.service().next_completed())
+      ++taken;
+    if (i % 4 == 3) {
+      // A renderer waits for its pictures; so as not to run far ahead of the device, this loop stands still here.
+      g_counting = false;
+      ASSERT_TRUE(rig.service().finish().ok());
+      g_counting = true;
+    }
+  }
+  g_counting = false;
+  EXPECT_EQ(refused, 0);
+  EXPECT_GE(g_enqueue.load(), kFrames) << "the counters must see the frames";
+  EXPECT_EQ(g_create.load(), 0) << "memory or kernel objects were created";
+  EXPECT_EQ(g_compile.load(), 0) << "a program was built";
+  EXPECT_EQ(g_wait.load(), 0) << "the host waited for the device";
+  EXPECT_EQ(g_heap.load(), 0) << "the host allocated";
+  ASSERT_TRUE(rig.service().finish().ok());
+  while (rig.service().next_completed())
+    ++taken;
+  EXPECT_EQ(taken, kFrames);
+}
+
+TEST(SteadyFrame, Point) {
+  run_steady_frames({}, Method::kPoint);
+}
+TEST(SteadyFrame, Bilinear) {
+  run_steady_frames({}, Method::kBilinear);
+}
+TEST(SteadyFrame, QuincunxWithVelocityTarget) {
+  run_steady_frames({}, Method::kQuincunx);
+}
+TEST(SteadyFrame, QuincunxWithCameraVelocity) {
+  run_steady_frames({.moving_objects = false, .transparents = false}, Method::kQuincunx);
+}
+
+TEST(SteadyFrame, TheCountersCount) {
+  reset_counts();
+  g_counting = true;
+  {
+    Device device = Device::open().value();
+    const auto image = device.allocate({4, 4}, PixelFormat::kR8);
+    static_cast<void>(device.finish());
+  }
+  g_counting = false;
+  EXPECT_GT(g_heap.load(), 0);
+  EXPECT_EQ(g_create.load(), 1);
+  EXPECT_EQ(g_wait.load(), 1);
+}
+
+}  // namespace
+}  // namespace quincunx

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// validate() needs no device: views here hold a made-up handle that is never dereferenced.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "quincunx/resolve_service.h"
+
+namespace quincunx {
+namespace {
+
+const cl_mem kMadeUp = reinterpret_cast<cl_mem>(0x10);
+
+ImageView view(PixelFormat format, Extent extent = {1280, 720}) {
+  return {.memory = kMadeUp, .format = format, .extent = extent};
+}
+
+class Validate : public ::testing::Test {
+ protected:
+  Validate() {
+    settings_.output = {1280, 720};
+    settings_.target = {1280, 720};
+    inputs_.colour = view(PixelFormat::kRGBA16F);
+    inputs_.velocity = view(PixelFormat::kRG16F);
+    inputs_.reactive = view(PixelFormat::kR8);
+    inputs_.depth = view(PixelFormat::kR32F);
+    inputs_.render = {908, 512};
+    inputs_.jitter = {0.25f, -0.25f};
+    outputs_.resolved = view(PixelFormat::kRGBA32F);
+    outputs_.presented = view(PixelFormat::kRGBA8);
+  }
+
+  Status check(const SceneNeeds& needs = {}) const {
+    return validate(plan_for(needs, settings_).value(), inputs_, outputs_);
+  }
+
+  ResolveSettings settings_;
+  FrameInputs inputs_;
+  FrameOutputs outputs_;
+};
+
+TEST_F(Validate, AGoodFramePasses) {
+  EXPECT_TRUE(check().ok()) << check().message();
+  outputs_.resolved = {};
+  EXPECT_TRUE(check().ok());
+}
+
+TEST_F(Validate, WhatThePlanDoesNotReadMayBeMissing) {
+  inputs_.depth = {};
+  EXPECT_TRUE(check().ok());
+  inputs_.velocity = {};
+  EXPECT_FALSE(check().ok());
+  inputs_.depth = view(PixelFormat::kR32F);
+  EXPECT_TRUE(check({.moving_objects = false}).ok());
+  inputs_.reactive = {};
+  EXPECT_TRUE(check({.moving_objects = false, .transparents = false}).ok());
+}
+
+TEST_F(Validate, EachBadFieldIsNamed) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  struct Case {
+    std::string field;
+    std::function<void(FrameInputs&, FrameOutputs&)> spoil;
+  };
+  const std::vector<Case> cases = {
+      {"colour is missing", [](auto& in, auto&) { in.colour = {}; }},
+      {"colour.format", [](auto& in, auto&) { in.colour.format = PixelFormat::kRGBA32F; }},
+      {"colour.storage", [](auto& in, auto&) { in.colour.storage = Storage::kImage; }},
+      {"colour.extent",
+       [](auto& in, auto&) {
+         in.colour.extent = {900, 512};
+       }},
+      {"colour.pitch", [](auto& in, auto&) { in.colour.pitch = 1280 * 8 - 8; }},
+      {"colour.pitch", [](auto& in, auto&) { in.colour.pitch = 1280 * 8 + 3; }},
+      {"colour.offset", [](auto& in, auto&) { in.colour.offset = 8; }},
+      {"velocity is missing", [](auto& in, auto&) { in.velocity = {}; }},
+      {"velocity_scale.x", [nan](auto& in, auto&) { in.velocity_scale.x = nan; }},
+      {"reactive is missing", [](auto& in, auto&) { in.reactive = {}; }},
+      {"render is 0x512", [](auto& in, auto&) { in.render.width = 0; }},
+      {"render is 1281x512", [](auto& in, auto&) { in.render.width = 1281; }},
+      {"jitter.x", [nan](auto& in, auto&) { in.jitter.x = nan; }},
+      {"jitter.y", [](auto& in, auto&) { in.jitter.y = 1.5f; }},
+      {"exposure", [](auto& in, auto&) { in.exposure = -1; }},
+      {"outputs", [](auto&, auto& out) { out = {}; }},
+      {"resolved.extent",
+       [](auto&, auto& out) {
+         out.resolved.extent = {1280, 721};
+       }},
+      {"resolved.format", [](auto&, auto& out) { out.resolved.format = PixelFormat::kRGBA16F; }},
+      {"presented.format", [](auto&, auto& out) { out.presented.format = PixelFormat::kRGBA16F; }},
+      {"presented.extent",
+       [](auto&, auto& out) {
+         out.presented.extent = {640, 360};
+       }},
+  };
+  for (const Case& bad : cases) {
+    FrameInputs inputs = inputs_;
+    FrameOutputs outputs = outputs_;
+    bad.spoil(inputs, outputs);
+    const Status status = validate(plan_for({}, settings_).value(), inputs, outputs);
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument) << bad.field;
+    EXPECT_NE(status.message().find(bad.field), std::string::npos)
+        << bad.field << " not in: " << status.message();
+  }
+}
+
+TEST_F(Validate, OneMessageNamesAllBadFields) {
+  inputs_.colour = {};
+  inputs_.jitter.x = 7;
+  outputs_.presented.extent = {1, 1};
+  const std::string message = check().message();
+  for (const char* field : {"colour", "jitter.x", "presented.extent"}) {
+    EXPECT_NE(message.find(field), std::string::npos) << field;
+  }
+}
+
+TEST_F(Validate, ACameraThatIsNotFiniteIsRefusedWhereItIsRead) {
+  inputs_.camera.clip_to_previous_clip[5] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(check().ok());
+  const Status status = check({.moving_objects = false});
+  EXPECT_NE(status.message().find("camera"), std::string::npos);
+}
+
+TEST_F(Validate, APresentedPictureNeedsAPresentPass) {
+  settings_.present = false;
+  EXPECT_NE(check().message().find("presented"), std::string::npos);
+  outputs_.presented = {};
+  EXPECT_TRUE(check().ok());
+}
+
+}  // namespace
+}  // namespace quincunx
