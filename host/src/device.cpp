@@ -221,8 +221,8 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     impl->info = infos[*chosen];
     impl->device = devices[*chosen];
     std::vector<cl_context_properties> all = {
-        CL_CONTEXT_PLATFORM,
-        reinterpret_cast<cl_context_properties>(devices[*chosen].getInfo<CL_DEVICE_PLATFORM>())};
+        CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(
+                                 cl::Platform(devices[*chosen].getInfo<CL_DEVICE_PLATFORM>())())};
     for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
       all.insert(all.end(), {p[0], p[1]});
     }
