@@ -36,9 +36,9 @@ PassStatistics statistics_of(std::string name, std::string clock, std::span<cons
 struct FrameRow {
   std::int64_t index = 0;
   double seconds = 0;     // scene time
-  Extent render;          // the viewport
-  Vec2 ratio;             // render / output: the true ratio
-  Vec2 jitter;            // render pixels
+  Extent render = {};     // the viewport
+  Vec2 ratio = {};        // render / output: the true ratio
+  Vec2 jitter = {};       // render pixels
   double frame_ms = -1;   // host clock, from one frame's start to the next's, files included
   double device_ms = -1;  // sum of the OpenCL passes
   bool used_previous = false;
