@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: MIT
+#include "cl_interposer.h"
+
+#include <CL/cl_gl.h>
+#include <dlfcn.h>
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace quincunx::gl::testing {
+namespace {
+
+constexpr std::uint8_t kJunk = 0xcd;
+
+struct SharedTexture {
+  GLuint texture = 0;
+  GLenum format = GL_NONE;
+  GLenum type = GL_NONE;
+  std::size_t texel = 0;
+  GLint width = 0;
+  GLint height = 0;
+  cl_image_format reported = {};
+  bool writable = false;
+  bool acquired = false;
+};
+
+struct State {
+  ClCounts counts;
+  bool sharing = false;
+  bool gl_event = false;
+  PretendSharing::Flaw flaw = PretendSharing::Flaw::kNone;
+  std::map<cl_mem, SharedTexture> textures;
+  std::map<cl_context, std::vector<cl_context_properties>> properties;
+};
+
+// Never destroyed: OpenCL may be called while the process ends.
+State& state() {
+  static State* const instance = new State;
+  return *instance;
+}
+
+template <typename Function>
+Function* next(const char* name) {
+  return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+struct KnownFormat {
+  GLint internal;
+  GLenum format;
+  GLenum type;
+  std::size_t texel;
+  cl_image_format reported;
+};
+
+constexpr std::array kKnownFormats = {
+    KnownFormat{GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8, {CL_RGBA, CL_HALF_FLOAT}},
+    KnownFormat{GL_RG16F, GL_RG, GL_HALF_FLOAT, 4, {CL_RG, CL_HALF_FLOAT}},
+    KnownFormat{GL_R32F, GL_RED, GL_FLOAT, 4, {CL_R, CL_FLOAT}},
+    KnownFormat{GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4, {CL_RGBA, CL_UNORM_INT8}},
+    KnownFormat{GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1, {CL_R, CL_UNORM_INT8}},
+};
+
+bool describe(GLuint texture, SharedTexture* shared) {
+  GLint internal = 0;
+  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_INTERNAL_FORMAT, &internal);
+  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_WIDTH, &shared->width);
+  glGetTextureLevelParameteriv(texture, 0, GL_TEXTURE_HEIGHT, &shared->height);
+  const auto known = std::find_if(kKnownFormats.begin(), kKnownFormats.end(),
+                                  [&](const KnownFormat& entry) { return entry.internal == internal; });
+  if (known == kKnownFormats.end()) return false;
+  shared->texture = texture;
+  shared->format = known->format;
+  shared->type = known->type;
+  shared->texel = known->texel;
+  shared->reported = known->reported;
+  return true;
+}
+
+std::size_t bytes_of(const SharedTexture& shared) {
+  return shared.texel * static_cast<std::size_t>(shared.width) * static_cast<std::size_t>(shared.height);
+}
+
+cl_int write_image(cl_command_queue queue, cl_mem image, const SharedTexture& shared, const void* texels) {
+  const std::array<std::size_t, 3> origin = {0, 0, 0};
+  const std::array<std::size_t, 3> region = {static_cast<std::size_t>(shared.width),
+                                             static_cast<std::size_t>(shared.height), 1};
+  return next<decltype(clEnqueueWriteImage)>("clEnqueueWriteImage")(
+      queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels, 0, nullptr, nullptr);
+}
+
+cl_int to_opencl(cl_command_queue queue, cl_mem image, const SharedTexture& shared) {
+  std::vector<std::uint8_t> texels(bytes_of(shared));
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glGetTextureImage(shared.texture, 0, shared.format, shared.type, static_cast<GLsizei>(texels.size()),
+                    texels.data());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  if (state().flaw == PretendSharing::Flaw::kWrongBytes) texels.back() ^= 1;
+  return write_image(queue, image, shared, texels.data());
+}
+
+cl_int to_opengl(cl_command_queue queue, cl_mem image, const SharedTexture& shared) {
+  std::vector<std::uint8_t> texels(bytes_of(shared));
+  const std::array<std::size_t, 3> origin = {0, 0, 0};
+  const std::array<std::size_t, 3> region = {static_cast<std::size_t>(shared.width),
+                                             static_cast<std::size_t>(shared.height), 1};
+  const cl_int code = next<decltype(clEnqueueReadImage)>("clEnqueueReadImage")(
+      queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels.data(), 0, nullptr, nullptr);
+  if (code != CL_SUCCESS) return code;
+  if (shared.writable) {
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(shared.texture, 0, 0, 0, shared.width, shared.height, shared.format, shared.type,
+                        texels.data());
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  }
+  std::fill(texels.begin(), texels.end(), kJunk);
+  return write_image(queue, image, shared, texels.data());
+}
+
+using Mover = cl_int (*)(cl_command_queue, cl_mem, const SharedTexture&);
+
+cl_int change_sides(cl_command_queue queue, cl_uint count, const cl_mem* images, bool acquire,
+                    cl_event* event) {
+  for (cl_uint i = 0; i < count; ++i) {
+    const auto found = state().textures.find(images[i]);
+    if (found == state().textures.end() || found->second.acquired == acquire) return CL_INVALID_GL_OBJECT;
+  }
+  const Mover move = acquire ? to_opencl : to_opengl;
+  for (cl_uint i = 0; i < count; ++i) {
+    SharedTexture& shared = state().textures[images[i]];
+    if (const cl_int code = move(queue, images[i], shared); code != CL_SUCCESS) return code;
+    shared.acquired = acquire;
+  }
+  if (event == nullptr) return CL_SUCCESS;
+  return clEnqueueMarkerWithWaitList(queue, 0, nullptr, event);
+}
+
+cl_int copy_out(const void* value, std::size_t bytes, std::size_t room, void* to, std::size_t* bytes_ret) {
+  if (bytes_ret != nullptr) *bytes_ret = bytes;
+  if (to == nullptr) return CL_SUCCESS;
+  if (room < bytes) return CL_INVALID_VALUE;
+  std::memcpy(to, value, bytes);
+  return CL_SUCCESS;
+}
+
+}  // namespace
+
+ClCounts& cl_counts() {
+  return state().counts;
+}
+
+PretendSharing::PretendSharing(bool with_gl_event, Flaw flaw) {
+  state().sharing = true;
+  state().gl_event = with_gl_event;
+  state().flaw = flaw;
+}
+
+PretendSharing::~PretendSharing() {
+  state().sharing = false;
+  state().textures.clear();
+  state().properties.clear();
+}
+
+int acquired_textures() {
+  return static_cast<int>(std::count_if(state().textures.begin(), state().textures.end(),
+                                        [](const auto& entry) { return entry.second.acquired; }));
+}
+
+}  // namespace quincunx::gl::testing
+
+using namespace quincunx::gl::testing;
+
+extern "C" {
+
+cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std::size_t room, void* value,
+                                   std::size_t* bytes_ret) {
+  const auto real = next<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+  if (name != CL_DEVICE_EXTENSIONS || !state().sharing) return real(device, name, room, value, bytes_ret);
+  std::size_t bytes = 0;
+  if (const cl_int code = real(device, name, 0, nullptr, &bytes); code != CL_SUCCESS) return code;
+  std::string all(bytes, '\0');
+  if (const cl_int code = real(device, name, bytes, all.data(), nullptr); code != CL_SUCCESS) return code;
+  all.resize(std::strlen(all.c_str()));
+  all += state().gl_event ? " cl_khr_gl_sharing cl_khr_gl_event" : " cl_khr_gl_sharing";
+  return copy_out(all.c_str(), all.size() + 1, room, value, bytes_ret);
+}
+
+cl_context CL_API_CALL clCreateContext(
+    const cl_context_properties* properties, cl_uint count, const cl_device_id* devices,
+    void(CL_CALLBACK* notify)(const char*, const void*, std::size_t, void*), void* user, cl_int* code) {
+  std::vector<cl_context_properties> plain;
+  std::vector<cl_context_properties> all;
+  for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
+    all.insert(all.end(), {p[0], p[1]});
+    if (p[0] != CL_GL_CONTEXT_KHR && p[0] != CL_EGL_DISPLAY_KHR) plain.insert(plain.end(), {p[0], p[1]});
+  }
+  const bool with_gl = all.size() != plain.size();
+  if (with_gl && state().flaw == PretendSharing::Flaw::kNoContext) {
+    if (code != nullptr) *code = CL_INVALID_GL_SHAREGROUP_REFERENCE_KHR;
+    return nullptr;
+  }
+  plain.push_back(0);
+  all.push_back(0);
+  const cl_context context = next<decltype(clCreateContext)>("clCreateContext")(
+      with_gl ? plain.data() : properties, count, devices, notify, user, code);
+  if (with_gl) state().properties[context] = all;
+  return context;
+}
+
+cl_int CL_API_CALL clGetContextInfo(cl_context context, cl_context_info name, std::size_t room, void* value,
+                                    std::size_t* bytes_ret) {
+  const auto found = state().properties.find(context);
+  if (name == CL_CONTEXT_PROPERTIES && found != state().properties.end()) {
+    return copy_out(found->second.data(), found->second.size() * sizeof(cl_context_properties), room, value,
+                    bytes_ret);
+  }
+  return next<decltype(clGetContextInfo)>("clGetContextInfo")(context, name, room, value, bytes_ret);
+}
+
+cl_mem CL_API_CALL clCreateFromGLTexture(cl_context context, cl_mem_flags flags, cl_GLenum, cl_GLint,
+                                         cl_GLuint texture, cl_int* code) {
+  SharedTexture shared;
+  if (!describe(texture, &shared)) {
+    *code = CL_INVALID_IMAGE_FORMAT_DESCRIPTOR;
+    return nullptr;
+  }
+  // Any format of the right size will do: texels only pass through.
+  cl_image_format stand_in = {CL_RGBA, CL_UNORM_INT8};
+  if (shared.texel == 8) stand_in = {CL_RGBA, CL_UNORM_INT16};
+  if (shared.texel == 1) stand_in = {CL_R, CL_UNORM_INT8};
+  cl_image_desc desc = {};
+  desc.image_type = CL_MEM_OBJECT_IMAGE2D;
+  desc.image_width = static_cast<std::size_t>(shared.width);
+  desc.image_height = static_cast<std::size_t>(shared.height);
+  const cl_mem image = next<decltype(clCreateImage)>("clCreateImage")(context, CL_MEM_READ_WRITE, &stand_in,
+                                                                      &desc, nullptr, code);
+  shared.writable = (flags & CL_MEM_READ_ONLY) == 0;
+  if (image != nullptr) state().textures[image] = shared;
+  return image;
+}
+
+cl_int CL_API_CALL clGetImageInfo(cl_mem image, cl_image_info name, std::size_t room, void* value,
+                                  std::size_t* bytes_ret) {
+  const auto found = state().textures.find(image);
+  if (name == CL_IMAGE_FORMAT && found != state().textures.end()) {
+    cl_image_format reported = found->second.reported;
+    if (state().flaw == PretendSharing::Flaw::kWrongFormat) reported.image_channel_order = CL_BGRA;
+    return copy_out(&reported, sizeof(reported), room, value, bytes_ret);
+  }
+  return next<decltype(clGetImageInfo)>("clGetImageInfo")(image, name, room, value, bytes_ret);
+}
+
+cl_int CL_API_CALL clEnqueueAcquireGLObjects(cl_command_queue queue, cl_uint count, const cl_mem* images,
+                                             cl_uint, const cl_event*, cl_event* event) {
+  ++state().counts.acquires;
+  return change_sides(queue, count, images, true, event);
+}
+
+cl_int CL_API_CALL clEnqueueReleaseGLObjects(cl_command_queue queue, cl_uint count, const cl_mem* images,
+                                             cl_uint, const cl_event*, cl_event* event) {
+  ++state().counts.releases;
+  return change_sides(queue, count, images, false, event);
+}
+
+cl_int CL_API_CALL clReleaseMemObject(cl_mem memory) {
+  // A released image that OpenCL still holds stays in the list, for acquired_textures() to show.
+  const auto found = state().textures.find(memory);
+  if (found != state().textures.end() && !found->second.acquired) state().textures.erase(found);
+  return next<decltype(clReleaseMemObject)>("clReleaseMemObject")(memory);
+}
+
+cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, std::size_t bytes, void* host,
+                                  cl_int* code) {
+  ++state().counts.creations;
+  return next<decltype(clCreateBuffer)>("clCreateBuffer")(context, flags, bytes, host, code);
+}
+
+cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
+                                 const cl_image_desc* desc, void* host, cl_int* code) {
+  ++state().counts.creations;
+  return next<decltype(clCreateImage)>("clCreateImage")(context, flags, format, desc, host, code);
+}
+
+cl_int CL_API_CALL clFinish(cl_command_queue queue) {
+  ++state().counts.blocking_waits;
+  return next<decltype(clFinish)>("clFinish")(queue);
+}
+
+void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+                                     cl_map_flags flags, std::size_t offset, std::size_t bytes, cl_uint count,
+                                     const cl_event* wait, cl_event* event, cl_int* code) {
+  if (blocking != CL_FALSE) ++state().counts.blocking_waits;
+  return next<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer")(queue, buffer, blocking, flags, offset,
+                                                                  bytes, count, wait, event, code);
+}
+
+}  // extern "C"

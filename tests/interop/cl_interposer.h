@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Stands between this executable and the OpenCL loader: counts what a steady frame must not do, and can play
+// a driver that shares with OpenGL, which no driver on a machine without a GPU does.
+//
+// The stand-in is no simulation of a GPU: it moves texels through host memory when textures change sides.
+// What it does check is the protocol. A texture that is taken twice, or given back without having been taken,
+// is CL_INVALID_GL_OBJECT as the specification has it; an image holds junk while OpenGL owns the texture.
+#pragma once
+
+#include <CL/cl.h>
+
+namespace quincunx::gl::testing {
+
+struct ClCounts {
+  int creations = 0;       // buffers and images
+  int blocking_waits = 0;  // clFinish, and transfers and maps that block
+  int acquires = 0;        // calls of clEnqueueAcquireGLObjects, and of its counterpart
+  int releases = 0;
+};
+
+ClCounts& cl_counts();
+
+// While it lives, every device offers cl_khr_gl_sharing. The GL context must be current on this thread.
+class PretendSharing {
+ public:
+  enum class Flaw { kNone, kWrongBytes, kWrongFormat, kNoContext };
+  explicit PretendSharing(bool with_gl_event, Flaw flaw = Flaw::kNone);
+  ~PretendSharing();
+  PretendSharing(const PretendSharing&) = delete;
+  PretendSharing& operator=(const PretendSharing&) = delete;
+};
+
+int acquired_textures();  // how many OpenCL holds now
+
+}  // namespace quincunx::gl::testing
