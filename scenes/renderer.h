@@ -17,8 +17,8 @@
 namespace quincunx::scenes {
 
 struct FrameView {
-  Extent render = {};                // viewport
-  Vec2 jitter = {};                  // render pixels: samples lie at pixel centre + jitter
+  Extent render = {};           // viewport
+  Vec2 jitter = {};             // render pixels: samples lie at pixel centre + jitter
   double seconds = 0;           // scene time of this frame
   double previous_seconds = 0;  // scene time of the previous frame: velocity = this position - that one
   float aspect =

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// FrameSequence: what each frame of a run is: its time, viewport, jitter and texture bias. Pure but for the
+// viewport it holds; one thread.
+#pragma once
+
+#include <cstdint>
+
+#include "quincunx/dynamic_viewport.h"
+#include "quincunx/status.h"
+#include "renderer.h"
+#include "scale_path.h"
+
+namespace quincunx::scenes {
+
+enum class Jitter : std::uint8_t {
+  kNone,
+  kQuincunx,  // (-1/4, -1/4) in even frames, (1/4, 1/4) in odd ones
+  kHalton,    // Halton (2, 3) about its mean, as many phases as the scale needs
+};
+
+const char* name_of(Jitter jitter);
+
+// Jitter of a frame in render pixels. `ratio`: render / output, decides the number of Halton phases, ceil(8 /
+// (x y)).
+Vec2 jitter_of(Jitter jitter, std::int64_t index, Vec2 ratio);
+
+struct SequenceSettings {
+  Extent output;
+  ScalePath scale_path;
+  Jitter jitter = Jitter::kNone;
+  std::int64_t frames = 1;
+  double fps = 60;
+  double start_seconds = 0;  // scene time of frame 0
+  float lod_bias = 0;
+};
+
+class FrameSequence {
+ public:
+  // Errors: kInvalidArgument for an empty output, no frames, or a rate that is not a positive number.
+  static Result<FrameSequence> create(const SequenceSettings& settings);
+
+  std::int64_t size() const { return settings_.frames; }
+  Extent target() const { return viewport_.target(); }  // holds the largest viewport
+  Extent output() const { return settings_.output; }
+
+  // Frame `index` in [0, size()). Its previous_seconds is one frame earlier, also for frame 0.
+  FrameView at(std::int64_t index);
+
+ private:
+  FrameSequence(const SequenceSettings& settings, const DynamicViewport& viewport)
+      : settings_(settings), viewport_(viewport) {}
+
+  SequenceSettings settings_;
+  DynamicViewport viewport_;
+};
+
+}  // namespace quincunx::scenes

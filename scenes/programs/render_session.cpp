@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "render_session.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "scene_catalog.h"
+#include "target_file.h"
+#include "tools/image_io.h"
+#include "tools/progress.h"
+
+namespace quincunx::scenes {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+constexpr int kContactSheetFrames = 24;
+
+}  // namespace
+
+struct RenderSession::DrawnFrame {
+  std::int64_t index = 0;
+  FrameView view;
+  Clock::time_point start;
+  gl::TargetPixels targets = {};  // only of --exr-frame
+};
+
+RenderSession::RenderSession(const RenderOptions& options) : options_(options) {}
+RenderSession::~RenderSession() = default;
+
+Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions& options) {
+  auto session = std::unique_ptr<RenderSession>(new RenderSession(options));
+  if (Status status = session->check_outputs(); !status.ok()) return status;
+  if (Status status = session->open_scene_and_context(); !status.ok()) return status;
+  if (Status status = session->open_service(); !status.ok()) return status;
+  return session;
+}
+
+// Before anything is drawn, so that a long run does not end in a wrong name.
+Status RenderSession::check_outputs() {
+  if (!options_.out.empty()) {
+    auto pattern = tools::FramePattern::parse(options_.out);
+    if (!pattern.ok()) return pattern.status();
+    if (Status status = pattern->check_count(options_.frames); !status.ok()) return status;
+    pattern_ = pattern.value();
+  }
+  if (options_.exr_frame >= options_.frames) {
+    return Status::invalid(fmt::format("--exr-frame {} is not drawn; there are frames 0 to {}",
+                                       options_.exr_frame, options_.frames - 1));
+  }
+  if (options_.exr_frame >= 0 && !pattern_) {
+    return Status::invalid("--exr-frame needs --out, beside which its files are written");
+  }
+  return {};
+}
+
+Status RenderSession::open_scene_and_context() {
+  auto sequence = sequence_for(options_);
+  if (!sequence.ok()) return sequence.status();
+  sequence_ = sequence.value();
+  if (options_.scene.empty()) options_.scene = list_scenes().front().name;
+  auto scene = open_scene(options_.scene, options_.seed);
+  if (!scene.ok()) return scene.status();
+  scene_ = std::move(scene).value();
+
+  Device::list();  // some drivers want OpenCL enumerated before a GL context exists
+  auto context = gl::EglContext::create(options_.platform);
+  if (!context.ok()) return context.status();
+  context_ = std::move(context).value();
+  auto device = gl::open_device(*context_, options_.device, options_.interop);
+  if (!device.ok()) return device.status();
+  device_ = device.value();
+  auto renderer = Renderer::create(scene_);
+  if (!renderer.ok()) return renderer.status();
+  renderer_ = std::move(renderer).value();
+  return {};
+}
+
+Status RenderSession::open_service() {
+  ResolveSettings settings;
+  settings.method = options_.method;
+  settings.output = options_.output;
+  settings.target = sequence_->target();
+  settings.tone_map = options_.tone_map;
+  settings.dither = options_.dither;
+  auto plan = plan_for(needs_of(scene_), settings);
+  if (!plan.ok()) return plan.status();
+
+  gl::BridgeSettings bridging;
+  bridging.interop = options_.interop;
+  bridging.target = settings.target;
+  bridging.output = settings.output;
+  bridging.depth = plan->reads_depth;
+  bridging.velocity = plan->velocity == VelocitySource::kTarget;
+  bridging.reactive = plan->reads_reactive;
+  auto bridge = gl::Bridge::create(*context_, *device_, bridging);
+  if (!bridge.ok()) return bridge.status();
+  bridge_ = std::move(bridge).value();
+  spdlog::info("interop: {} ({})", gl::name_of(bridge_->kind()), bridge_->reason());
+
+  settings.storage = bridge_->storage();
+  plan = plan_for(needs_of(scene_), settings);
+  if (!plan.ok()) return plan.status();
+  auto service = ResolveService::create(*device_, plan.value());
+  if (!service.ok()) return service.status();
+  service_.emplace(std::move(service).value());
+  if (wants_resolved()) {
+    auto image = device_->allocate(options_.output, settings.resolved);
+    if (!image.ok()) return image.status();
+    resolved_ = std::move(image).value();
+  }
+  return {};
+}
+
+bool RenderSession::wants_resolved() const {
+  return options_.exr_frame >= 0 || (pattern_ && pattern_->format() == tools::FileFormat::kExr);
+}
+
+Status RenderSession::draw(std::int64_t index) {
+  DrawnFrame frame = {.index = index, .view = sequence_->at(index), .start = Clock::now()};
+  const int slot = static_cast<int>(index % bridge_->slots());
+  auto targets = bridge_->begin_draw(slot);
+  if (!targets.ok()) return targets.status();
+  if (Status status = renderer_->draw(*targets.value(), frame.view); !status.ok()) return status;
+  if (index == options_.exr_frame) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
+  if (Status status = bridge_->submit(slot, frame.view.render); !status.ok()) return status;
+  draw_ms_.push_back(since(frame.start));
+  drawn_.push_back(std::move(frame));
+  return {};
+}
+
+Status RenderSession::dispatch(std::int64_t index) {
+  const FrameView& view = drawn_.front().view;
+  auto shared = bridge_->acquire(static_cast<int>(index % bridge_->slots()));
+  if (!shared.ok()) return shared.status();
+  auto presented = bridge_->begin_present();
+  if (!presented.ok()) return presented.status();
+  FrameInputs inputs;
+  inputs.colour = shared->colour;
+  inputs.depth = shared->depth;
+  inputs.velocity = shared->velocity;
+  inputs.reactive = shared->reactive;
+  inputs.render = view.render;
+  inputs.jitter = view.jitter;
+  inputs.camera = renderer_->camera_motion(view);
+  inputs.exposure = options_.exposure > 0 ? options_.exposure : scene_.exposure;
+  inputs.frame_index = static_cast<std::uint64_t>(index);
+  const FrameReport report = service_->dispatch(inputs, {resolved_.view(), presented.value()});
+  acquire_ms_.push_back(bridge_->traffic().acquire_ms);
+  bytes_in_.push_back(bridge_->traffic().bytes_in);
+  return report.status;
+}
+
+Status RenderSession::deliver(std::int64_t index) {
+  if (Status status = bridge_->present(); !status.ok()) return status;
+  present_ms_.push_back(bridge_->traffic().present_ms);
+  bytes_out_.push_back(bridge_->traffic().bytes_out);
+  const Clock::time_point start = Clock::now();
+  if (Status status = write_frame(index); !status.ok()) return status;
+  if (index == options_.exr_frame) {
+    if (Status status = write_exr_frame(index); !status.ok()) return status;
+  }
+  write_ms_.push_back(since(start));
+  const DrawnFrame& frame = drawn_.front();
+  rows_.push_back({.index = index,
+                   .seconds = frame.view.seconds,
+                   .render = frame.view.render,
+                   .jitter = frame.view.jitter,
+                   .frame_ms = since(frame.start)});
+  drawn_.pop_front();
+  return {};
+}
+
+Status RenderSession::write_frame(std::int64_t index) {
+  const std::uint8_t* pixels = bridge_->presented_pixels();
+  const FrameView& view = drawn_.front().view;
+  if (sheet_ && std::binary_search(sheet_frames_.begin(), sheet_frames_.end(), static_cast<int>(index))) {
+    const float ratio = static_cast<float>(view.render.width) / static_cast<float>(options_.output.width);
+    const tools::ContactSheetCaption caption = {
+        fmt::format("frame {:04}", index),
+        fmt::format("{:.2f} · {}×{}", ratio, view.render.width, view.render.height), std::min(ratio, 1.0f)};
+    if (Status status = sheet_->add(options_.output, pixels, caption); !status.ok()) return status;
+  }
+  if (!pattern_) return {};
+  const std::string path = pattern_->expand(index);
+  if (index == 0 || index + 1 == options_.frames) files_.push_back(path);
+  const Extent output = options_.output;
+  if (pattern_->format() == tools::FileFormat::kPng) {
+    std::vector<std::uint8_t> copy(pixels, pixels + output.area() * 4);
+    return writer_.push(
+        [path, output, copy = std::move(copy)] { return tools::write_png(path, output, copy.data()); });
+  }
+  auto resolved = download_resolved();
+  if (!resolved.ok()) return resolved.status();
+  return writer_.push(
+      [path, output, rgba = std::move(resolved).value()] { return write_rgba(path, output, rgba); });
+}
+
+Status RenderSession::write_exr_frame(std::int64_t index) {
+  DrawnFrame& frame = drawn_.front();
+  const FrameView& view = frame.view;
+  const TargetFile file = {.pixels = std::move(frame.targets),
+                           .view = view,
+                           .camera = scene_.camera(view.seconds),
+                           .output = options_.output,
+                           .index = index,
+                           .reset = index == 0,
+                           .fps = options_.fps};
+  const std::filesystem::path folder = std::filesystem::path(options_.out).parent_path();
+  const std::string targets_path = (folder / fmt::format("frame_{:04}_targets.exr", index)).string();
+  const std::string resolved_path = (folder / fmt::format("frame_{:04}_resolved.exr", index)).string();
+  if (Status status = write_targets(targets_path, file); !status.ok()) return status;
+  auto resolved = download_resolved();
+  if (!resolved.ok()) return resolved.status();
+  files_.push_back(targets_path);
+  files_.push_back(resolved_path);
+  return write_rgba(resolved_path, options_.output, resolved.value());
+}
+
+Result<std::vector<float>> RenderSession::download_resolved() const {
+  std::vector<float> rgba(static_cast<std::size_t>(options_.output.area()) * 4);
+  if (Status status = device_->download(resolved_.view(), options_.output, rgba.data()); !status.ok())
+    return status;
+  return rgba;
+}
+
+void RenderSession::collect_reports() {
+  while (auto report = service_->next_completed())
+    reports_.push_back(*report);
+}
+
+void RenderSession::begin_contact_sheet() {
+  if (options_.contact_sheet.empty()) return;
+  sheet_.emplace(tools::ContactSheetSettings{
+      .title = fmt::format("Quincunx · {}", scene_.name),
+      .subtitle = fmt::format("{}×{} · {} · {} · {}", options_.output.width, options_.output.height,
+                              name_of(options_.method), context_->info().renderer, device_->info().name)});
+  sheet_frames_ = tools::evenly_spaced(static_cast<int>(options_.frames), kContactSheetFrames);
+}
+
+// With overlap, GL draws the next frame while OpenCL works on this one.
+Status RenderSession::run_frame(std::int64_t index) {
+  const bool draw_next = index + 1 < options_.frames;
+  if (Status status = dispatch(index); !status.ok()) return status;
+  if (draw_next && options_.overlap) {
+    if (Status status = draw(index + 1); !status.ok()) return status;
+  }
+  if (Status status = deliver(index); !status.ok()) return status;
+  if (draw_next && !options_.overlap) {
+    if (Status status = draw(index + 1); !status.ok()) return status;
+  }
+  collect_reports();
+  return {};
+}
+
+Status RenderSession::run() {
+  using Show = tools::Progress::Show;
+  const Clock::time_point start = Clock::now();
+  begin_contact_sheet();
+  {
+    tools::Progress progress("rendering", options_.frames, options_.quiet ? Show::kNever : Show::kOnTerminal);
+    if (Status status = draw(0); !status.ok()) return status;
+    for (std::int64_t index = 0; index < options_.frames; ++index) {
+      if (Status status = run_frame(index); !status.ok()) return status;
+      progress.update(index + 1, fmt::format("{}x{}", rows_.back().render.width, rows_.back().render.height));
+    }
+  }
+  if (Status status = service_->finish(); !status.ok()) return status;
+  collect_reports();
+  if (Status status = writer_.finish(); !status.ok()) return status;
+  if (sheet_) {
+    if (Status status = sheet_->write(options_.contact_sheet); !status.ok()) return status;
+    files_.push_back(options_.contact_sheet);
+  }
+  wall_seconds_ = since(start) / 1000;
+  return {};
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "target_file.h"
+
+#include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <vector>
+
+#include "tools/exchange_format.h"
+#include "tools/image_io.h"
+#include "view_math.h"
+
+namespace quincunx::scenes {
+namespace {
+
+using tools::Attribute;
+using tools::Channel;
+using tools::ChannelType;
+
+constexpr const char* kColourNames[] = {"R", "G", "B", "A"};
+
+tools::Matrix to_attribute(const glm::mat4& matrix) {
+  tools::Matrix values;
+  std::copy_n(glm::value_ptr(matrix), values.size(), values.begin());
+  return values;
+}
+
+std::vector<float> linear_depth(const TargetFile& file) {
+  std::vector<float> z;
+  z.reserve(file.pixels.depth.size());
+  for (const float depth : file.pixels.depth)
+    z.push_back(tools::linear_z(depth, file.camera.near_plane));
+  return z;
+}
+
+std::vector<Vec2> backward_motion(const TargetFile& file) {
+  std::vector<Vec2> motion;
+  motion.reserve(file.pixels.velocity.size() / 2);
+  for (std::size_t i = 0; i + 1 < file.pixels.velocity.size(); i += 2) {
+    const Vec2 velocity = {glm::unpackHalf1x16(file.pixels.velocity[i]),
+                           glm::unpackHalf1x16(file.pixels.velocity[i + 1])};
+    motion.push_back(tools::backward_from_velocity(velocity, file.pixels.render));
+  }
+  return motion;
+}
+
+std::vector<float> reactive_mask(const TargetFile& file) {
+  std::vector<float> mask;
+  mask.reserve(file.pixels.reactive.size());
+  for (const std::uint8_t value : file.pixels.reactive)
+    mask.push_back(static_cast<float>(value) / 255.0f);
+  return mask;
+}
+
+std::vector<Attribute> attributes_of(const TargetFile& file) {
+  const ViewMatrices matrices = view_of(file.camera, file.view.aspect);
+  const auto extent = [](Extent e) {
+    return Vec2{static_cast<float>(e.width), static_cast<float>(e.height)};
+  };
+  return {
+      {"quincunx:version", 1},
+      {"quincunx:jitter", file.view.jitter},
+      {"quincunx:renderSize", extent(file.view.render)},
+      {"quincunx:outputSize", extent(file.output)},
+      {"quincunx:frameIndex", static_cast<int>(file.index)},
+      {"quincunx:reset", file.reset ? 1 : 0},
+      {"quincunx:near", file.camera.near_plane},
+      {"quincunx:depthKind", std::string("linear")},
+      {"quincunx:dt", static_cast<float>(file.view.seconds - file.view.previous_seconds)},
+      {"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))},
+      {"worldToNDC", to_attribute(matrices.clip_from_world())},
+      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}},
+  };
+}
+
+}  // namespace
+
+Status write_targets(const std::string& path, const TargetFile& file) {
+  std::vector<Channel> channels;
+  const auto* colour = file.pixels.colour.data();
+  for (int i = 0; i < 4; ++i) {
+    channels.push_back({.name = kColourNames[i], .data = colour + i, .pixel_stride = 4 * sizeof(*colour)});
+  }
+  const std::vector<float> z = linear_depth(file);
+  channels.push_back(
+      {.name = "Z", .type = ChannelType::kFloat, .data = z.data(), .stored = ChannelType::kFloat});
+  const std::vector<Vec2> motion = backward_motion(file);
+  if (!motion.empty()) {
+    for (int i = 0; i < 2; ++i) {
+      channels.push_back({.name = i == 0 ? "backward.u" : "backward.v",
+                          .type = ChannelType::kFloat,
+                          .data = &motion.data()->x + i,
+                          .pixel_stride = sizeof(Vec2),
+                          .stored = ChannelType::kFloat});
+    }
+  }
+  const std::vector<float> mask = reactive_mask(file);
+  if (!mask.empty()) {
+    channels.push_back({.name = "reactive.mask", .type = ChannelType::kFloat, .data = mask.data()});
+  }
+  return tools::write_exr(path, file.pixels.render, channels, attributes_of(file));
+}
+
+Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba) {
+  std::vector<Channel> channels;
+  for (int i = 0; i < 4; ++i) {
+    channels.push_back({.name = kColourNames[i],
+                        .type = ChannelType::kFloat,
+                        .data = rgba.data() + i,
+                        .pixel_stride = 4 * sizeof(float)});
+  }
+  return tools::write_exr(path, extent, channels);
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Writes a frame's render targets as one EXR of the exchange format (docs/inputs.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "quincunx/status.h"
+#include "quincunx_gl/target_readback.h"
+#include "renderer.h"
+
+namespace quincunx::scenes {
+
+struct TargetFile {
+  gl::TargetPixels pixels;
+  FrameView view;
+  Camera camera;
+  Extent output;
+  std::int64_t index = 0;
+  bool reset = false;
+  double fps = 60;
+};
+
+// R G B A and reactive.mask half, Z and backward.u/.v float, render extent. Errors: kIoFailure.
+Status write_targets(const std::string& path, const TargetFile& file);
+
+// A resolved or true picture: linear RGBA floats, tightly packed, stored as half. Errors: kIoFailure.
+Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba);
+
+}  // namespace quincunx::scenes
