@@ -30,20 +30,24 @@
 #endif
 
 __kernel void clear_region(const ClearParams params, CLEARED_TEXELS output) {
-  const int x = get_global_id(0);
   const int y = get_global_id(1);
-  if (x >= params.width || y >= params.height) return;
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
 
+  const int end = min(first + params.columns_per_item, params.width);
 #if OUTPUT_STORAGE == IMAGE
-  write_imagef(output, (int2)(x, y), (float4)(params.value[0], params.value[1], params.value[2], params.value[3]));
-#elif TEXEL_BYTES == 1
-  output[texel_index(params.output, x, y)] = (uchar)params.bits[0];
-#elif TEXEL_BYTES == 4
-  output[texel_index(params.output, x, y)] = params.bits[0];
-#elif TEXEL_BYTES == 8
-  output[texel_index(params.output, x, y)] = (uint2)(params.bits[0], params.bits[1]);
+  const float4 texel = (float4)(params.value[0], params.value[1], params.value[2], params.value[3]);
+  for (int x = first; x < end; ++x) write_imagef(output, (int2)(x, y), texel);
 #else
-  output[texel_index(params.output, x, y)] =
-      (uint4)(params.bits[0], params.bits[1], params.bits[2], params.bits[3]);
+#if TEXEL_BYTES == 1
+  const uchar texel = (uchar)params.bits[0];
+#elif TEXEL_BYTES == 4
+  const uint texel = params.bits[0];
+#elif TEXEL_BYTES == 8
+  const uint2 texel = (uint2)(params.bits[0], params.bits[1]);
+#else
+  const uint4 texel = (uint4)(params.bits[0], params.bits[1], params.bits[2], params.bits[3]);
+#endif
+  for (int x = first; x < end; ++x) output[texel_index(params.output, x, y)] = texel;
 #endif
 }

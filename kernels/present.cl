@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// present: exposure, tone map, sRGB encoding to 8 bits, four pixels per work-item.
+// present: exposure, tone map, sRGB encoding to 8 bits.
 //   params      in   extents, layouts, exposure (> 0, multiplies linear colour)
 //   source      in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer
 //   output      out  RGBA8 buffer or image of the output extent: sRGB colour, alpha linear
@@ -32,12 +32,12 @@
 #if OUTPUT_STORAGE == IMAGE
 #define PRESENTED_TEXELS write_only image2d_t
 #elif OUTPUT_STORAGE == BUFFER
-#define PRESENTED_TEXELS __global uchar*
+#define PRESENTED_TEXELS __global uchar* restrict
 #else
 #error "OUTPUT_STORAGE must be BUFFER or IMAGE"
 #endif
 
-#define PIXELS 4
+
 
 // In [0, 1): what is added before truncation. 0.5 rounds to nearest.
 static inline float4 rounding(int x, int y) {
@@ -68,7 +68,7 @@ static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int 
   if (count > 3) write_imagef(texels, (int2)(x + 3, y), values.scdef);
 #else
   const int index = texel_index(layout, x, y);
-  if (count == PIXELS) {
+  if (count == kBlock) {
     vstore16(codes, 0, texels + 4 * index);
     return;
   }
@@ -79,19 +79,22 @@ static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int 
 }
 
 __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESENTED_TEXELS output,
-                      __global uint* non_finite) {
-  const int x = get_global_id(0) * PIXELS;
+                      __global uint* restrict non_finite) {
   const int y = get_global_id(1);
-  if (x >= params.width || y >= params.height) return;
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
 
-  const int count = min(PIXELS, params.width - x);
-  float16 colour = load_resolved4(source, params.source, x, y, count);
-  if (any((as_int16(colour) & 0x7fffffff) >= NON_FINITE_BITS)) {
-    const uint met = (uint)any_non_finite4(colour.s0123) + (count > 1 && any_non_finite4(colour.s4567)) +
-                     (count > 2 && any_non_finite4(colour.s89ab)) + (count > 3 && any_non_finite4(colour.scdef));
-    colour = (float16)(sanitise4(colour.s0123), sanitise4(colour.s4567), sanitise4(colour.s89ab),
-                       sanitise4(colour.scdef));
-    atomic_add(non_finite + params.counter, met);
+  const int end = min(first + params.columns_per_item, params.width);
+  for (int x = first; x < end; x += kBlock) {
+    const int count = min(kBlock, params.width - x);
+    float16 colour = load_resolved4(source, params.source, x, y, count);
+    if (any((as_int16(colour) & 0x7fffffff) >= NON_FINITE_BITS)) {
+      const uint met = (uint)any_non_finite4(colour.s0123) + (count > 1 && any_non_finite4(colour.s4567)) +
+                       (count > 2 && any_non_finite4(colour.s89ab)) + (count > 3 && any_non_finite4(colour.scdef));
+      colour = (float16)(sanitise4(colour.s0123), sanitise4(colour.s4567), sanitise4(colour.s89ab),
+                         sanitise4(colour.scdef));
+      atomic_add(non_finite + params.counter, met);
+    }
+    store_codes(output, params.output, x, y, count, encode(colour, params.exposure, rounding(x, y)));
   }
-  store_codes(output, params.output, x, y, count, encode(colour, params.exposure, rounding(x, y)));
 }

@@ -32,78 +32,109 @@
 
 #if WEIGHT == 2
 #define MOTION_TEXELS DEPTH_TEXELS
+#define MOTION_VALUES float4
+#define load_motion4 load_depth4
 #else
 #define MOTION_TEXELS VELOCITY_TEXELS
+#define MOTION_VALUES float8
+#define load_motion4 load_velocity4
 #endif
 
-#if WEIGHT == 2
-// This position - previous position of what a texel shows, in uv of the viewport.
-static inline float2 velocity_from_depth(const CameraVelocity* camera, float depth, int x, int y) {
-  const float ndc_x = x * camera->step_x + camera->start_x;
-  const float ndc_y = y * camera->step_y + camera->start_y;
+static inline int4 nearest_of(__global const AxisTap* restrict columns) {
+  return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
+}
+
+#if WEIGHT == 1
+static inline int4 non_finite_motion(float8 velocity) {
+  return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
+}
+
+// K |v|^2 of four pixels from their velocities.
+static inline float4 speed_of(float8 velocity, float scale_x, float scale_y) {
+  const float8 scaled = velocity * (float8)(scale_x, scale_y, scale_x, scale_y, scale_x, scale_y, scale_x, scale_y);
+  const float8 squared = scaled * scaled;
+  return squared.even + squared.odd;
+}
+#elif WEIGHT == 2
+static inline int4 non_finite_motion(float4 depth) {
+  return non_finite_lanes(depth);
+}
+
+// K |v|^2 of four pixels from the depth at their texels: where the surface was, seen by the previous camera.
+static inline float4 speed_of(float4 depth, int4 column, int row, const CameraVelocity* camera, float scale_x,
+                              float scale_y) {
   __private const float* m = camera->to_previous;
-  const float previous_x = m[0] * ndc_x + m[4] * ndc_y + m[8] * depth + m[12];
-  const float previous_y = m[1] * ndc_x + m[5] * ndc_y + m[9] * depth + m[13];
-  const float previous_w = m[3] * ndc_x + m[7] * ndc_y + m[11] * depth + m[15];
-  return (float2)(ndc_x - previous_x / previous_w, previous_y / previous_w - ndc_y) * 0.5f;
+  const float4 ndc_x = convert_float4(column) * camera->step_x + camera->start_x;
+  const float ndc_y = (float)row * camera->step_y + camera->start_y;
+  const float4 x = m[0] * ndc_x + m[8] * depth + (m[4] * ndc_y + m[12]);
+  const float4 y = m[1] * ndc_x + m[9] * depth + (m[5] * ndc_y + m[13]);
+  const float4 w = m[3] * ndc_x + m[11] * depth + (m[7] * ndc_y + m[15]);
+  const float4 velocity_x = (ndc_x - x / w) * (0.5f * scale_x);
+  const float4 velocity_y = (ndc_y - y / w) * (0.5f * scale_y);
+  return velocity_x * velocity_x + velocity_y * velocity_y;
 }
 #endif
 
-__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* axes0,
-                               __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
+__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* restrict axes0,
+                               __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
 #if WEIGHT != 0
                                MOTION_TEXELS motion0, MOTION_TEXELS motion1,
 #endif
 #if REACTIVE
                                REACTIVE_TEXELS reactive0,
 #endif
-                               OUTPUT_TEXELS output, __global uint* non_finite) {
-  const int x = get_global_id(0);
+                               OUTPUT_TEXELS output, __global uint* restrict non_finite) {
   const int y = get_global_id(1);
-  if (x >= params.output_width || y >= params.output_height) return;
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.output_width || y >= params.output_height) return;
 
-  const AxisTap column0 = axes0[x];
-  const AxisTap row0 = axes0[params.output_width + y];
-  const AxisTap column1 = axes1[x];
-  const AxisTap row1 = axes1[params.output_width + y];
-  bool non_finite0;
-  bool non_finite1;
-  const float4 c0 = sample_bilinear(colour0, params.frame0.colour, params.frame0.width, params.frame0.height, column0,
-                                    row0, &non_finite0);
-  const float4 c1 = sample_bilinear(colour1, params.frame1.colour, params.frame1.width, params.frame1.height, column1,
-                                    row1, &non_finite1);
+  const int end = min(first + params.columns_per_item, params.output_width);
+  const AxisTap row0 = axes0[params.row_axis + y];
+  const AxisTap row1 = axes1[params.row_axis + y];
+  for (int x = first; x < end; x += kBlock) {
+    uint met0;
+    uint met1;
+    FourPixels c0 = sample_four(colour0, params.frame0.colour, params.frame0.width, params.frame0.height, axes0 + x, row0,
+                                &met0);
+    const FourPixels c1 = sample_four(colour1, params.frame1.colour, params.frame1.width, params.frame1.height, axes1 + x,
+                                      row1, &met1);
+#if WEIGHT != 0 || REACTIVE
+    const int4 nearest0 = nearest_of(axes0 + x);
+#endif
 
-  float trust = 1.0f;
-  float speed = 0.0f;  // K (|v0|^2 + |v1|^2)
+    float4 trust = 1.0f;
+    float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)
 #if REACTIVE
-  trust -= load_reactive(reactive0, params.frame0.reactive, column0.nearest, row0.nearest);
+    trust -= load_reactive4(reactive0, params.frame0.reactive, nearest0, row0.nearest);
 #endif
 #if WEIGHT != 0
+    const int4 nearest1 = nearest_of(axes1 + x);
+    const MOTION_VALUES input0 = load_motion4(motion0, params.frame0.velocity, nearest0, row0.nearest);
+    const MOTION_VALUES input1 = load_motion4(motion1, params.frame1.velocity, nearest1, row1.nearest);
+#endif
 #if WEIGHT == 1
-  const float2 v0 = load_velocity(motion0, params.frame0.velocity, column0.nearest, row0.nearest);
-  const float2 v1 = load_velocity(motion1, params.frame1.velocity, column1.nearest, row1.nearest);
-  const float2 input0 = v0;
-  const float2 input1 = v1;
-#else
-  const float2 input0 = load_depth(motion0, params.frame0.velocity, column0.nearest, row0.nearest);
-  const float2 input1 = load_depth(motion1, params.frame1.velocity, column1.nearest, row1.nearest);
-  const float2 v0 = velocity_from_depth(&params.camera0, input0.x, column0.nearest, row0.nearest);
-  const float2 v1 = velocity_from_depth(&params.camera1, input1.x, column1.nearest, row1.nearest);
+    speed = speed_of(input0, params.velocity0_scale_x, params.velocity0_scale_y) +
+            speed_of(input1, params.velocity1_scale_x, params.velocity1_scale_y);
+#elif WEIGHT == 2
+    speed = speed_of(input0, nearest0, row0.nearest, &params.camera0, params.velocity0_scale_x, params.velocity0_scale_y) +
+            speed_of(input1, nearest1, row1.nearest, &params.camera1, params.velocity1_scale_x, params.velocity1_scale_y);
 #endif
-  const float2 p0 = v0 * (float2)(params.velocity0_scale_x, params.velocity0_scale_y);
-  const float2 p1 = v1 * (float2)(params.velocity1_scale_x, params.velocity1_scale_y);
-  speed = dot(p0, p0) + dot(p1, p1);
-#endif
-  // share = f / (1 + f), and so 1 - share = 1 / (1 + f).
-  float share = trust / (1.0f + trust + speed);
+
+    // share = f / (1 + f), and so 1 - share = 1 / (1 + f).
+    float4 share = trust / (1.0f + trust + speed);
 #if WEIGHT != 0
-  if (is_non_finite(speed)) {
-    // Too fast for a float, or not finite to begin with: either way the previous frame has no weight.
-    share = 0.0f;
-    non_finite0 |= any_non_finite2(input0) || any_non_finite2(input1);
-  }
+    if (any_non_finite4(speed)) {
+      // Too fast for a float, or not finite to begin with: either way the previous frame has no weight.
+      share = select(share, 0.0f, non_finite_lanes(speed));
+      met0 |= lane_bits(non_finite_motion(input0) | non_finite_motion(input1));
+    }
 #endif
-  if (non_finite1) share = 0.0f;
-  if (non_finite0 || non_finite1) atomic_inc(non_finite + params.counter);
-  store_output(output, params.output, x, y, c0 * (1.0f - share) + c1 * share);
+    if (met1) share = select(share, 0.0f, (int4)(met1) << (int4)(31, 30, 29, 28));
+    if (met0 | met1) count_pixels(non_finite + params.counter, met0 | met1, params.output_width - x);
+    c0.p0 = c0.p0 * (1.0f - share.s0) + c1.p0 * share.s0;
+    c0.p1 = c0.p1 * (1.0f - share.s1) + c1.p1 * share.s1;
+    c0.p2 = c0.p2 * (1.0f - share.s2) + c1.p2 * share.s2;
+    c0.p3 = c0.p3 * (1.0f - share.s3) + c1.p3 * share.s3;
+    store_four(output, params.output, x, y, params.output_width, c0);
+  }
 }

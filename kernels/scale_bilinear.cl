@@ -10,15 +10,19 @@
 // Reference: tests/reference/scale_bilinear.cpp
 #include "bilinear.h"
 
-__kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
-                             OUTPUT_TEXELS output, __global uint* non_finite) {
-  const int x = get_global_id(0);
+__kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* restrict axes, COLOUR_TEXELS source,
+                             OUTPUT_TEXELS output, __global uint* restrict non_finite) {
   const int y = get_global_id(1);
-  if (x >= params.output_width || y >= params.output_height) return;
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.output_width || y >= params.output_height) return;
 
-  bool met_non_finite;
-  const float4 colour = sample_bilinear(source, params.source, params.source_width, params.source_height, axes[x],
-                                        axes[params.output_width + y], &met_non_finite);
-  if (met_non_finite) atomic_inc(non_finite + params.counter);
-  store_output(output, params.output, x, y, colour);
+  const int end = min(first + params.columns_per_item, params.output_width);
+  const AxisTap row = axes[params.row_axis + y];
+  for (int x = first; x < end; x += kBlock) {
+    uint met;
+    const FourPixels colour =
+        sample_four(source, params.source, params.source_width, params.source_height, axes + x, row, &met);
+    if (met) count_pixels(non_finite + params.counter, met, params.output_width - x);
+    store_four(output, params.output, x, y, params.output_width, colour);
+  }
 }

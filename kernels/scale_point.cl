@@ -10,18 +10,20 @@
 #include "sanitise.h"
 #include "texel.h"
 
-__kernel void scale_point(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
-                          OUTPUT_TEXELS output, __global uint* non_finite) {
-  const int x = get_global_id(0);
+__kernel void scale_point(const ScaleParams params, __global const AxisTap* restrict axes, COLOUR_TEXELS source,
+                          OUTPUT_TEXELS output, __global uint* restrict non_finite) {
   const int y = get_global_id(1);
-  if (x >= params.output_width || y >= params.output_height) return;
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.output_width || y >= params.output_height) return;
 
-  const int column = axes[x].nearest;
-  const int row = axes[params.output_width + y].nearest;
-  float4 colour = load_colour(source, params.source, column, row);
-  if (any_non_finite4(colour)) {
-    colour = sanitise4(colour);
-    atomic_inc(non_finite + params.counter);
+  const int end = min(first + params.columns_per_item, params.output_width);
+  const int row = axes[params.row_axis + y].nearest;
+  for (int x = first; x < end; ++x) {
+    float4 colour = load_colour(source, params.source, axes[x].nearest, row);
+    if (any_non_finite4(colour)) {
+      colour = sanitise4(colour);
+      atomic_inc(non_finite + params.counter);
+    }
+    store_output(output, params.output, x, y, colour);
   }
-  store_output(output, params.output, x, y, colour);
 }

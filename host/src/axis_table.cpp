@@ -46,7 +46,7 @@ void fill_axis(int render, int output, double jitter, AxisTap* taps) {
 }
 
 AxisTables::AxisTables(const Device::Impl& device, Extent output) : output_(output) {
-  const std::size_t count = static_cast<std::size_t>(output.width) + static_cast<std::size_t>(output.height);
+  const std::size_t count = static_cast<std::size_t>(row_axis()) + static_cast<std::size_t>(output.height);
   for (Slot& slot : slots_) {
     slot.taps.resize(count);
     slot.buffer = cl::Buffer(device.context, CL_MEM_READ_ONLY, count * sizeof(AxisTap));
@@ -74,14 +74,15 @@ const cl::Buffer& AxisTables::get(const cl::CommandQueue& queue, Extent render, 
   slot.last_use = ++uses_;
   if (known) return slot.buffer;
   // Only a caller eight viewports ahead of the device ever waits here.
-  if (slot.written() != nullptr &&
-      slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
+  if (slot.written() != nullptr && slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
     slot.written.wait();
   }
   slot.render = render;
   slot.jitter = jitter;
   fill_axis(render.width, output_.width, jitter.x, slot.taps.data());
-  fill_axis(render.height, output_.height, jitter.y, slot.taps.data() + output_.width);
+  std::fill(slot.taps.begin() + output_.width, slot.taps.begin() + row_axis(),
+            slot.taps[static_cast<std::size_t>(output_.width) - 1]);
+  fill_axis(render.height, output_.height, jitter.y, slot.taps.data() + row_axis());
   queue.enqueueWriteBuffer(slot.buffer, CL_FALSE, 0, slot.taps.size() * sizeof(AxisTap), slot.taps.data(),
                            nullptr, &slot.written);
   return slot.buffer;

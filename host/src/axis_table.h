@@ -31,11 +31,14 @@ class AxisTables {
   AxisTables(const AxisTables&) = delete;
   AxisTables& operator=(const AxisTables&) = delete;
 
-  // AxisTap of each output column, then of each output row. Valid for kernels enqueued on the in-order
-  // `queue` before the eighth further call.
+  // AxisTap of each output column, then, from row_axis() on, of each output row. Valid for kernels enqueued
+  // on the in-order `queue` before the eighth further call.
   const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
 
   Extent output() const { return output_; }
+
+  // The columns are padded to whole blocks, repeating the last.
+  int row_axis() const { return (output_.width + kBlock - 1) / kBlock * kBlock; }
 
  private:
   // Enough that a slot's host memory is long since written when its turn comes again.

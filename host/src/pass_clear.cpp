@@ -82,12 +82,13 @@ void ClearPass::enqueue(const cl::CommandQueue& queue, const ImageView& image, E
   ClearParams params{};
   params.width = render.width;
   params.height = render.height;
+  params.columns_per_item = columns_per_item(device_, render.width);
   params.output = layout_of(image);
   encode_texel(image.format, value, params.bits);
   std::copy_n(value, 4, params.value);
   kernel_.setArg(0, params);
   set_memory(kernel_, 1, image.memory);
-  enqueue_grid(device_, queue, kernel_, render.width, render.height, event);
+  enqueue_rows(device_, queue, kernel_, render, params.columns_per_item, event);
 }
 
 }  // namespace quincunx

@@ -24,16 +24,21 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
   kernel.setArg(index, sizeof(memory), &memory);
 }
 
-void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-                  int items_x, int items_y, cl::Event* event) {
-  // A CPU runs a group as one loop along a row; a GPU wants a compact tile.
+int columns_per_item(const Device::Impl& device, int width) {
+  return device.info.kind == DeviceKind::kCpu ? round_up(width, kBlock) : kBlock;
+}
+
+void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event) {
+  // A CPU runs a group in one thread, a GPU wants a compact tile.
   const bool cpu = device.info.kind == DeviceKind::kCpu;
-  const int group_x = cpu ? 64 : 16;
-  const int group_y = cpu ? 1 : 8;
+  const int group_x = cpu ? 1 : 16;
+  const int group_y = cpu ? 4 : 8;
+  const int items_x = (extent.width + columns - 1) / columns;
   queue.enqueueNDRangeKernel(
       kernel, cl::NullRange,
       cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
-                  static_cast<std::size_t>(round_up(items_y, group_y))),
+                  static_cast<std::size_t>(round_up(extent.height, group_y))),
       cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
 }
 

@@ -26,13 +26,14 @@ TexelLayout layout_of(const ImageView& view);
 // CLHPP takes no raw handle as an argument.
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
-// Work-items that cover `width` pixels, kPixelsPerItem each.
-inline int items_for(int width) { return (width + kPixelsPerItem - 1) / kPixelsPerItem; }
+// Pixels of a row that one work-item makes: a whole row on a CPU, where the row's own values are then loaded
+// once, and one block elsewhere. A multiple of kBlock.
+int columns_per_item(const Device::Impl& device, int width);
 
-// At least items_x x items_y work-items, in groups of one fixed size: a device compiles a kernel anew for
-// each size.
-void enqueue_grid(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-                  int items_x, int items_y, cl::Event* event);
+// Enough work-items of `columns` x 1 pixels for the extent, in groups of one fixed size: a device compiles a
+// kernel anew for each size.
+void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event);
 
 // Small valid arguments for warm-up, 2x2 texels of any format up to 16 bytes.
 class Scratch {

@@ -30,13 +30,13 @@ void PresentPass::launch(const cl::CommandQueue& queue, const ImageView& resolve
                              .source = layout_of(resolved),
                              .output = layout_of(presented),
                              .counter = counter.index,
+                             .columns_per_item = columns_per_item(device_, extent.width),
                              .exposure = exposure == 0 ? 1 : exposure};
   kernel_.setArg(0, params);
   set_memory(kernel_, 1, resolved.memory);
   set_memory(kernel_, 2, presented.memory);
   set_memory(kernel_, 3, counter.memory);
-  enqueue_grid(device_, queue, kernel_, (extent.width + kPixelsPerItem - 1) / kPixelsPerItem, extent.height,
-               event);
+  enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);
 }
 
 }  // namespace quincunx

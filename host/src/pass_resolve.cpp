@@ -96,7 +96,9 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   const Extent extent = tables.output();
   ResolveParams params = params_for(extent, current, previous);
   params.output = layout_of(output);
+  params.row_axis = tables.row_axis();
   params.counter = counter.index;
+  params.columns_per_item = columns_per_item(device_, extent.width);
   cl_uint index = 0;
   kernel_.setArg(index++, params);
   kernel_.setArg(index++, tables.get(queue, current.render, current.jitter));
@@ -110,7 +112,7 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   if (reads_reactive_) set_memory(kernel_, index++, current.reactive.memory);
   set_memory(kernel_, index++, output.memory);
   set_memory(kernel_, index++, counter.memory);
-  enqueue_grid(device_, queue, kernel_, items_for(extent.width), extent.height, event);
+  enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);
 }
 
 }  // namespace quincunx

@@ -10,7 +10,6 @@ ScalePass::ScalePass(const Device::Impl& device, Method method, const ResolveSet
     : device_(device),
       settings_(settings),
       name_(method == Method::kPoint ? "scale_point" : "scale_bilinear"),
-      pixels_per_item_(method == Method::kPoint ? 1 : kPixelsPerItem),
       kernel_(build_kernel(device, name_, scale_options(settings))) {}
 
 void ScalePass::warm_up(const cl::CommandQueue& queue) {
@@ -33,14 +32,15 @@ void ScalePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, const
                            .source_height = inputs.render.height,
                            .source = layout_of(inputs.colour),
                            .output = layout_of(output),
-                           .counter = counter.index};
+                           .row_axis = tables.row_axis(),
+                           .counter = counter.index,
+                           .columns_per_item = columns_per_item(device_, extent.width)};
   kernel_.setArg(0, params);
   kernel_.setArg(1, tables.get(queue, inputs.render, inputs.jitter));
   set_memory(kernel_, 2, inputs.colour.memory);
   set_memory(kernel_, 3, output.memory);
   set_memory(kernel_, 4, counter.memory);
-  enqueue_grid(device_, queue, kernel_, pixels_per_item_ == 1 ? extent.width : items_for(extent.width),
-               extent.height, event);
+  enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);
 }
 
 }  // namespace quincunx

@@ -27,7 +27,6 @@ class ScalePass {
   const Device::Impl& device_;
   ResolveSettings settings_;
   const char* name_;
-  int pixels_per_item_;
   cl::Kernel kernel_;
 };
 

@@ -1,41 +1,66 @@
 // SPDX-License-Identifier: MIT
-// Bilinear sampling with axis tables. scale_bilinear and resolve_quincunx share it, so that a resolve without history
-// gives the same bits.
+// Bilinear sampling with axis tables, four output pixels of one row at a time. scale_bilinear and resolve_quincunx
+// share it, so that a resolve without history gives the same bits.
 #pragma once
 
 #include "sanitise.h"
 #include "texel.h"
-
-// The two texels of one row, as float8; a viewport one texel wide has only one.
-static inline float8 load_taps(COLOUR_TEXELS texels, TexelLayout layout, int width, int x, int y) {
-  if (width < 2) {
-    const float4 only = load_colour(texels, layout, x, y);
-    return (float8)(only, only);
-  }
-  return load_colour_pair(texels, layout, x, y);
-}
 
 static inline float4 weigh_taps(float8 upper, float8 lower, AxisTap column, AxisTap row) {
   const float8 pair = upper * row.weight0 + lower * row.weight1;
   return pair.lo * column.weight0 + pair.hi * column.weight1;
 }
 
-// Sets *non_finite when a tap of non-zero weight is NaN or infinite; those count as 0 and +-65504.
-static inline float4 sample_bilinear(COLOUR_TEXELS texels, TexelLayout layout, int width, int height, AxisTap column,
-                              AxisTap row, bool* non_finite) {
-  const int below = row.base + (height > 1 ? 1 : 0);
-  const float8 upper = load_taps(texels, layout, width, column.base, row.base);
-  const float8 lower = load_taps(texels, layout, width, column.base, below);
-  float4 mean = weigh_taps(upper, lower, column, row);
-  // NaN and Inf pass through any weight (0 * Inf is NaN), so one test of the mean covers all four taps.
-  *non_finite = false;
-  if (any_non_finite4(mean)) {
-    const bool left = column.weight0 != 0.0f;
-    const bool right = column.weight1 != 0.0f;
-    *non_finite = (row.weight0 != 0.0f && ((left && any_non_finite4(upper.lo)) || (right && any_non_finite4(upper.hi)))) ||
-                  (row.weight1 != 0.0f && ((left && any_non_finite4(lower.lo)) || (right && any_non_finite4(lower.hi))));
-    mean = weigh_taps((float8)(sanitise4(upper.lo), sanitise4(upper.hi)),
-                      (float8)(sanitise4(lower.lo), sanitise4(lower.hi)), column, row);
+// The plain way for any viewport and any values: NaN counts as 0, +-Inf as +-65504. Sets *non_finite when a tap of
+// non-zero weight is either.
+static inline float4 sample_careful(COLOUR_TEXELS texels, TexelLayout layout, int width, int height, AxisTap column,
+                                    AxisTap row, bool* non_finite) {
+  const int right = min(column.base + 1, width - 1);
+  const int below = min(row.base + 1, height - 1);
+  const float4 upper0 = load_colour(texels, layout, column.base, row.base);
+  const float4 upper1 = load_colour(texels, layout, right, row.base);
+  const float4 lower0 = load_colour(texels, layout, column.base, below);
+  const float4 lower1 = load_colour(texels, layout, right, below);
+  const bool upper_met = (column.weight0 != 0.0f && any_non_finite4(upper0)) ||
+                         (column.weight1 != 0.0f && any_non_finite4(upper1));
+  const bool lower_met = (column.weight0 != 0.0f && any_non_finite4(lower0)) ||
+                         (column.weight1 != 0.0f && any_non_finite4(lower1));
+  *non_finite = (row.weight0 != 0.0f && upper_met) || (row.weight1 != 0.0f && lower_met);
+  return weigh_taps((float8)(sanitise4(upper0), sanitise4(upper1)), (float8)(sanitise4(lower0), sanitise4(lower1)),
+                    column, row);
+}
+
+// The fast way: a viewport at least two texels wide, all taps finite.
+static inline float4 sample_finite(COLOUR_TEXELS texels, COLOUR_ROW upper, COLOUR_ROW lower, AxisTap column,
+                                   AxisTap row) {
+  return weigh_taps(load_colour_pair(texels, upper, column.base), load_colour_pair(texels, lower, column.base), column,
+                    row);
+}
+
+// The four pixels whose columns start at `columns`. Bit i of *non_finite: pixel i met NaN or Inf.
+static inline FourPixels sample_four(COLOUR_TEXELS texels, TexelLayout layout, int width, int height,
+                                     __global const AxisTap* restrict columns, AxisTap row, uint* non_finite) {
+  FourPixels mean;
+  *non_finite = 0;
+  if (width > 1) {
+    COLOUR_ROW upper = colour_row(texels, layout, row.base);
+    COLOUR_ROW lower = colour_row(texels, layout, min(row.base + 1, height - 1));
+    mean.p0 = sample_finite(texels, upper, lower, columns[0], row);
+    mean.p1 = sample_finite(texels, upper, lower, columns[1], row);
+    mean.p2 = sample_finite(texels, upper, lower, columns[2], row);
+    mean.p3 = sample_finite(texels, upper, lower, columns[3], row);
+    // NaN and Inf pass through any weight, 0 * Inf being NaN: all taps are finite if the means are.
+    if (!any_non_finite4x4(mean.p0, mean.p1, mean.p2, mean.p3)) return mean;
   }
+  float4 careful[kBlock];
+  for (int i = 0; i < kBlock; ++i) {
+    bool met;
+    careful[i] = sample_careful(texels, layout, width, height, columns[i], row, &met);
+    *non_finite |= met ? 1u << i : 0u;
+  }
+  mean.p0 = careful[0];
+  mean.p1 = careful[1];
+  mean.p2 = careful[2];
+  mean.p3 = careful[3];
   return mean;
 }

@@ -9,6 +9,9 @@ namespace quincunx {
 #define QUINCUNX_CHECK_SIZE(type, bytes)
 #endif
 
+// scale_bilinear, resolve_quincunx and present make this many neighbouring pixels of a row at once.
+enum { kBlock = 4 };
+
 // Where the texels of a buffer lie: texel (x, y) has the index offset + y * pitch + x. Both in texels; both zero for
 // an image.
 typedef struct TexelLayout {
@@ -45,9 +48,11 @@ typedef struct ScaleParams {
   int source_height;
   TexelLayout source;
   TexelLayout output;
-  int counter;  // index into non_finite
+  int row_axis;          // index of the first row in the axis table
+  int counter;           // index into non_finite
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
 } ScaleParams;
-QUINCUNX_CHECK_SIZE(ScaleParams, 36);
+QUINCUNX_CHECK_SIZE(ScaleParams, 44);
 
 // Velocity derived from depth at texel (i, j): the sample lies at ndc (i * step_x + start_x, j * step_y + start_y).
 typedef struct CameraVelocity {
@@ -62,33 +67,37 @@ typedef struct ResolveParams {
   SourceFrame frame0;  // this frame
   SourceFrame frame1;  // the previous one
   TexelLayout output;
-  int counter;  // index into non_finite
+  int row_axis;          // index of the first row in the axis tables
+  int counter;           // index into non_finite
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
   // From the units of the velocity source to sqrt(K) * pixels, per frame.
   float velocity0_scale_x, velocity0_scale_y;
   float velocity1_scale_x, velocity1_scale_y;
   CameraVelocity camera0;
   CameraVelocity camera1;
 } ResolveParams;
-QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 4 + 16 + 2 * 80);
+QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 12 + 16 + 2 * 80);
 
 typedef struct PresentParams {
   int width;
   int height;
   TexelLayout source;
   TexelLayout output;
-  int counter;  // index into non_finite
+  int counter;           // index into non_finite
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
   float exposure;
 } PresentParams;
-QUINCUNX_CHECK_SIZE(PresentParams, 32);
+QUINCUNX_CHECK_SIZE(PresentParams, 36);
 
 typedef struct ClearParams {
   int width;
   int height;
+  int columns_per_item;  // pixels that a work-item clears
   TexelLayout output;
   unsigned bits[4];  // one texel as a buffer holds it, in the lowest bytes
   float value[4];    // the same for an image
 } ClearParams;
-QUINCUNX_CHECK_SIZE(ClearParams, 48);
+QUINCUNX_CHECK_SIZE(ClearParams, 52);
 
 #undef QUINCUNX_CHECK_SIZE
 #ifdef __cplusplus

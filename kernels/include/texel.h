@@ -49,21 +49,26 @@
 #define REACTIVE_TEXELS read_only image2d_t
 #else
 #if SOURCE_FORMAT == HALF
-#define COLOUR_TEXELS __global const half*
+#define COLOUR_TEXELS __global const half* restrict
 #else
-#define COLOUR_TEXELS __global const float*
+#define COLOUR_TEXELS __global const float* restrict
 #endif
 #if VELOCITY_FORMAT == HALF
-#define VELOCITY_TEXELS __global const half*
+#define VELOCITY_TEXELS __global const half* restrict
 #else
-#define VELOCITY_TEXELS __global const float*
+#define VELOCITY_TEXELS __global const float* restrict
 #endif
-#define DEPTH_TEXELS __global const float*
-#define REACTIVE_TEXELS __global const uchar*
+#define DEPTH_TEXELS __global const float* restrict
+#define REACTIVE_TEXELS __global const uchar* restrict
 #endif
 
+// Of texel (0, y).
+static inline int row_index(TexelLayout layout, int y) {
+  return layout.offset + y * layout.pitch;
+}
+
 static inline int texel_index(TexelLayout layout, int x, int y) {
-  return layout.offset + y * layout.pitch + x;
+  return row_index(layout, y) + x;
 }
 
 // One colour texel.
@@ -77,49 +82,78 @@ static inline float4 load_colour(COLOUR_TEXELS texels, TexelLayout layout, int x
 #endif
 }
 
-// The colour texels (x, y) and (x + 1, y).
-static inline float8 load_colour_pair(COLOUR_TEXELS texels, TexelLayout layout, int x, int y) {
+// A row of colour to read pairs from.
 #if SOURCE_STORAGE == IMAGE
-  return (float8)(read_imagef(texels, (int2)(x, y)), read_imagef(texels, (int2)(x + 1, y)));
+#define COLOUR_ROW int
+#elif SOURCE_FORMAT == HALF
+#define COLOUR_ROW __global const uint2*
+#else
+#define COLOUR_ROW __global const float4*
+#endif
+
+static inline COLOUR_ROW colour_row(COLOUR_TEXELS texels, TexelLayout layout, int y) {
+#if SOURCE_STORAGE == IMAGE
+  return y;
+#else
+  return (COLOUR_ROW)texels + row_index(layout, y);
+#endif
+}
+
+// The colour texels x and x + 1 of a row.
+static inline float8 load_colour_pair(COLOUR_TEXELS texels, COLOUR_ROW row, uint x) {
+#if SOURCE_STORAGE == IMAGE
+  return (float8)(read_imagef(texels, (int2)(x, row)), read_imagef(texels, (int2)(x + 1, row)));
 #elif SOURCE_FORMAT == HALF
   // Through private memory: PoCL 3.1 assumes 16-byte alignment in vload_half8, and texels promise 8.
-  const uint4 bits = vload4(0, (__global const uint*)(texels + 4 * texel_index(layout, x, y)));
+  const uint4 bits = vload4(0, (__global const uint*)(row + x));
   return vload_half8(0, (__private const half*)&bits);
 #else
-  return vload8(0, texels + 4 * texel_index(layout, x, y));
+  return vload8(0, (__global const float*)(row + x));
 #endif
 }
 
-static inline float2 load_velocity(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y) {
+// The velocities of four texels of one row, x and y in turn.
+static inline float8 load_velocity4(VELOCITY_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
-  return read_imagef(texels, (int2)(x, y)).xy;
-#elif VELOCITY_FORMAT == HALF
-  return vload_half2(texel_index(layout, x, y), texels);
+  return (float8)(read_imagef(texels, (int2)(x.s0, y)).xy, read_imagef(texels, (int2)(x.s1, y)).xy,
+                  read_imagef(texels, (int2)(x.s2, y)).xy, read_imagef(texels, (int2)(x.s3, y)).xy);
 #else
-  return vload2(texel_index(layout, x, y), texels);
+  const int row = row_index(layout, y);
+#if VELOCITY_FORMAT == HALF
+  __global const uint* pairs = (__global const uint*)texels + row;
+  const uint4 bits = (uint4)(pairs[x.s0], pairs[x.s1], pairs[x.s2], pairs[x.s3]);
+  return vload_half8(0, (__private const half*)&bits);
+#else
+  return (float8)(vload2(row + x.s0, texels), vload2(row + x.s1, texels), vload2(row + x.s2, texels),
+                  vload2(row + x.s3, texels));
+#endif
 #endif
 }
 
-static inline float load_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y) {
+static inline float4 load_depth4(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
-  return read_imagef(texels, (int2)(x, y)).x;
+  return (float4)(read_imagef(texels, (int2)(x.s0, y)).x, read_imagef(texels, (int2)(x.s1, y)).x,
+                  read_imagef(texels, (int2)(x.s2, y)).x, read_imagef(texels, (int2)(x.s3, y)).x);
 #else
-  return texels[texel_index(layout, x, y)];
+  __global const float* row = texels + row_index(layout, y);
+  return (float4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3]);
 #endif
 }
 
-static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y) {
+static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
-  return read_imagef(texels, (int2)(x, y)).x;
+  return (float4)(read_imagef(texels, (int2)(x.s0, y)).x, read_imagef(texels, (int2)(x.s1, y)).x,
+                  read_imagef(texels, (int2)(x.s2, y)).x, read_imagef(texels, (int2)(x.s3, y)).x);
 #else
-  return (float)texels[texel_index(layout, x, y)] * (1.0f / 255.0f);
+  __global const uchar* row = texels + row_index(layout, y);
+  return convert_float4((int4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3])) * (1.0f / 255.0f);
 #endif
 }
 
 #if OUTPUT_FORMAT == HALF
-#define OUTPUT_TEXELS __global half*
+#define OUTPUT_TEXELS __global half* restrict
 #else
-#define OUTPUT_TEXELS __global float*
+#define OUTPUT_TEXELS __global float* restrict
 #endif
 
 // Finite values only; half saturates instead of becoming infinite.
@@ -131,11 +165,29 @@ static inline void store_output(OUTPUT_TEXELS texels, TexelLayout layout, int x,
 #endif
 }
 
+// kBlock neighbours of a row. Not an array: PoCL keeps those in memory.
+typedef struct FourPixels {
+  float4 p0, p1, p2, p3;
+} FourPixels;
+
+// Those of four pixels, from x on, that lie inside `width`.
+static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int width, FourPixels pixels) {
+  store_output(texels, layout, x, y, pixels.p0);
+  if (x + 3 < width) {
+    store_output(texels, layout, x + 1, y, pixels.p1);
+    store_output(texels, layout, x + 2, y, pixels.p2);
+    store_output(texels, layout, x + 3, y, pixels.p3);
+  } else {
+    if (x + 1 < width) store_output(texels, layout, x + 1, y, pixels.p1);
+    if (x + 2 < width) store_output(texels, layout, x + 2, y, pixels.p2);
+  }
+}
+
 // A resolved picture being read back: always a buffer, in SOURCE_FORMAT.
 #if SOURCE_FORMAT == HALF
-#define RESOLVED_TEXELS __global const half*
+#define RESOLVED_TEXELS __global const half* restrict
 #else
-#define RESOLVED_TEXELS __global const float*
+#define RESOLVED_TEXELS __global const float* restrict
 #endif
 
 static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
