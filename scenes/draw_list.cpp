@@ -7,7 +7,7 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr int kGroupFrom = 12;  // visible instances of a mesh from which they are drawn in one go
+constexpr int kGroupFrom = 12;  // visible instances of a part from which they are drawn in one go
 
 float squared_distance(const glm::vec3& a, const glm::vec3& b) {
   const glm::vec3 d = a - b;
@@ -17,33 +17,33 @@ float squared_distance(const glm::vec3& a, const glm::vec3& b) {
 }  // namespace
 
 void DrawList::append(std::vector<Batch>& batches, const Item& item, const InstanceData& data) {
-  const bool joins = !batches.empty() && !batches.back().particles && batches.back().mesh == item.mesh &&
+  const bool joins = !batches.empty() && !batches.back().particles && batches.back().range == item.range &&
                      batches.back().light_set == item.light_set && batches.back().program == item.program &&
                      batches.back().mirrored == item.mirrored;
   if (!joins) {
-    batches.push_back({item.mesh, item.program, item.light_set, item.mirrored,
+    batches.push_back({item.range, item.program, item.light_set, item.mirrored,
                        static_cast<std::uint32_t>(instances_.size()), 0, false});
   }
   ++batches.back().count;
   instances_.push_back(data);
 }
 
-void DrawList::build_casters(const SceneLayout& layout, const std::vector<InstanceData>& placed) {
+void DrawList::build_casters(const SceneLayout& layout, const std::vector<InstanceData>& placed,
+                             bool moving) {
   items_.clear();
   instances_.clear();
   opaque_.clear();
   blended_.clear();
   for (std::size_t i = 0; i < layout.instances.size(); ++i) {
     const PlacedInstance& instance = layout.instances[i];
-    if (!instance.casts_shadow) continue;
+    if (!instance.casts_shadow || instance.moves != moving) continue;
     Item item;
-    item.mesh = instance.mesh;
-    item.mirrored = instance.mirrored;
+    item.range = instance.mesh;
     item.instance = static_cast<std::uint32_t>(i);
     items_.push_back(item);
   }
   std::sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
-    return std::tie(a.mesh, a.mirrored, a.instance) < std::tie(b.mesh, b.mirrored, b.instance);
+    return std::tie(a.range, a.instance) < std::tie(b.range, b.instance);
   });
   for (const Item& item : items_)
     append(opaque_, item, placed[item.instance]);
@@ -53,19 +53,18 @@ void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& box
                        const glm::vec3& eye) {
   items_.clear();
   blended_items_.clear();
-  for (std::size_t i = 0; i < layout.instances.size(); ++i) {
-    const PlacedInstance& instance = layout.instances[i];
-    const Bounds& box = boxes[i];
-    if (layout.meshes[static_cast<std::size_t>(instance.mesh)].index_count == 0 || !frustum.may_see(box))
-      continue;
-    const SurfaceFeatures& features = layout.programs[static_cast<std::size_t>(instance.program)];
+  for (const Piece& piece : layout.pieces) {
+    const PlacedInstance& instance = layout.instances[static_cast<std::size_t>(piece.instance)];
+    const Bounds& box = instance.moves ? boxes[static_cast<std::size_t>(piece.instance)] : piece.box;
+    if (!frustum.may_see(box)) continue;
+    const SurfaceFeatures& features = layout.programs[static_cast<std::size_t>(piece.program)];
     Item item;
     item.stage = features.mask ? 1 : 0;
-    item.mesh = instance.mesh;
-    item.program = instance.program;
-    item.light_set = instance.light_set;
+    item.range = piece.part;
+    item.program = piece.program;
+    item.light_set = piece.light_set;
     item.mirrored = instance.mirrored;
-    item.instance = static_cast<std::uint32_t>(i);
+    item.instance = static_cast<std::uint32_t>(piece.instance);
     const glm::vec3 centre = 0.5f * (box.low + box.high);
     item.distance = glm::distance(centre, eye);
     if (features.blend) {
@@ -78,15 +77,15 @@ void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& box
   }
 }
 
-void DrawList::group_repeated_meshes(std::size_t meshes) {
-  mesh_groups_.assign(meshes, {0.0f, 0});
+void DrawList::group_repeated_parts(std::size_t parts) {
+  part_groups_.assign(parts, {0.0f, 0});
   for (const Item& item : items_) {
-    auto& [sum, count] = mesh_groups_[static_cast<std::size_t>(item.mesh)];
+    auto& [sum, count] = part_groups_[static_cast<std::size_t>(item.range)];
     sum += item.distance;
     ++count;
   }
   for (Item& item : items_) {
-    const auto& [sum, count] = mesh_groups_[static_cast<std::size_t>(item.mesh)];
+    const auto& [sum, count] = part_groups_[static_cast<std::size_t>(item.range)];
     item.group_distance = count >= kGroupFrom ? sum / static_cast<float>(count) : item.distance;
   }
 }
@@ -98,10 +97,10 @@ void DrawList::build_view(const SceneLayout& layout, const std::vector<InstanceD
   opaque_.clear();
   blended_.clear();
   collect(layout, boxes, frustum, eye);
-  group_repeated_meshes(layout.meshes.size());
+  group_repeated_parts(layout.parts.size());
   std::sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
-    return std::tie(a.stage, a.group_distance, a.mesh, a.program, a.light_set, a.mirrored, a.distance,
-                    a.instance) < std::tie(b.stage, b.group_distance, b.mesh, b.program, b.light_set,
+    return std::tie(a.stage, a.group_distance, a.range, a.program, a.light_set, a.mirrored, a.distance,
+                    a.instance) < std::tie(b.stage, b.group_distance, b.range, b.program, b.light_set,
                                            b.mirrored, b.distance, b.instance);
   });
   for (const Item& item : items_)

@@ -13,7 +13,7 @@ namespace quincunx::scenes {
 
 // One instanced draw.
 struct Batch {
-  int mesh = 0;
+  int range = 0;  // index into SceneLayout::parts; of casters, into SceneLayout::meshes
   int program = 0;
   int light_set = -1;
   bool mirrored = false;
@@ -25,8 +25,8 @@ struct Batch {
 // Reused from frame to frame: the vectors keep their capacity.
 class DrawList {
  public:
-  // Everything that casts a shadow, by mesh.
-  void build_casters(const SceneLayout& layout, const std::vector<InstanceData>& placed);
+  // What casts a shadow, by mesh: either all that stands still or all that moves.
+  void build_casters(const SceneLayout& layout, const std::vector<InstanceData>& placed, bool moving);
 
   // What the frustum sees: opaque front to back (near things hide fill cost; a mesh with many instances stays
   // one draw), then alpha-tested, as `opaque`; blended instances and particles back to front as `blended`.
@@ -43,7 +43,7 @@ class DrawList {
   struct Item {
     int stage = 0;  // 0 opaque, 1 alpha-tested
     float group_distance = 0;
-    int mesh = 0;
+    int range = 0;
     int program = 0;
     int light_set = -1;
     bool mirrored = false;
@@ -53,14 +53,14 @@ class DrawList {
 
   void collect(const SceneLayout& layout, const std::vector<Bounds>& boxes, const Frustum& frustum,
                const glm::vec3& eye);
-  void group_repeated_meshes(std::size_t meshes);
+  void group_repeated_parts(std::size_t parts);
   void append(std::vector<Batch>& batches, const Item& item, const InstanceData& data);
   void merge_blended(const std::vector<InstanceData>& placed, const glm::vec3& eye,
                      const std::vector<Particle>& particles);
 
   std::vector<Item> items_;
   std::vector<Item> blended_items_;
-  std::vector<std::pair<float, int>> mesh_groups_;  // sum of distances, count
+  std::vector<std::pair<float, int>> part_groups_;  // sum of distances, count
   std::vector<InstanceData> instances_;
   std::vector<Batch> opaque_;
   std::vector<Batch> blended_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 
@@ -71,18 +72,16 @@ std::optional<float> cutoff_of(const Scene& scene, int texture) {
 Result<GpuScene> GpuScene::upload(const Scene& scene, const SceneLayout& layout) {
   GpuScene gpu;
   if (Status status = gpu.upload_textures(scene); !status.ok()) return status;
-  gpu.upload_meshes(scene);
+  gpu.upload_meshes(scene, layout.indices);
   gpu.upload_materials(scene);
   gpu.upload_light_sets(layout.light_sets);
   return gpu;
 }
 
-void GpuScene::upload_meshes(const Scene& scene) {
+void GpuScene::upload_meshes(const Scene& scene, const std::vector<std::uint32_t>& indices) {
   std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;
   for (const Mesh& mesh : scene.meshes) {
     vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-    indices.insert(indices.end(), mesh.indices.begin(), mesh.indices.end());
   }
   vertices_ = buffer_of(vertices.data(), vertices.size() * sizeof(Vertex));
   indices_ = buffer_of(indices.data(), indices.size() * sizeof(std::uint32_t));

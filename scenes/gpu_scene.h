@@ -28,7 +28,7 @@ class GpuScene {
     bool double_sided = false;
   };
 
-  void upload_meshes(const Scene& scene);
+  void upload_meshes(const Scene& scene, const std::vector<std::uint32_t>& indices);
   Status upload_textures(const Scene& scene);
   void upload_materials(const Scene& scene);
   void upload_light_sets(const std::vector<LightsBlock>& sets);

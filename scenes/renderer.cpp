@@ -85,12 +85,12 @@ CameraMotion Renderer::camera_motion(const FrameView& view) const {
 
 void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) const {
   const SurfacePrograms& programs = surface_programs[static_cast<std::size_t>(batch.program)];
-  const MeshRange& mesh = layout.meshes[static_cast<std::size_t>(batch.mesh)];
+  const MeshRange& part = layout.parts[static_cast<std::size_t>(batch.range)];
   glUseProgram(velocity ? programs.with_velocity.get() : programs.plain.get());
   glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
-  gpu.bind_material(mesh.material);
+  gpu.bind_material(part.material);
   gpu.bind_light_set(batch.light_set);
-  draw_mesh(mesh, batch.first, batch.count);
+  draw_mesh(part, batch.first, batch.count);
 }
 
 void Renderer::Impl::draw_opaque(bool velocity) const {

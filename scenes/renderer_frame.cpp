@@ -74,7 +74,7 @@ Status Renderer::Impl::create_programs() {
 
 void Renderer::Impl::create_streams() {
   frame_stream = StreamBuffer(sizeof(FrameBlock));
-  instance_stream = StreamBuffer(layout.instances.size() * sizeof(InstanceData));
+  instance_stream = StreamBuffer(layout.pieces.size() * sizeof(InstanceData));
   surface_array = surface_vertex_array(gpu);
   if (!scene.particles) return;
   const std::size_t most = most_particles(scene, particles);

@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <map>
 
+#include "light_sets.h"
+#include "mesh_parts.h"
+
 namespace quincunx::scenes {
 namespace {
 
 constexpr int kMotionSamples = 32;       // places over the duration at which a moving instance is looked up
 constexpr float kFloorFlatness = 0.02f;  // height over width of what is a floor rather than a caster
+constexpr float kPartPerLightRange = 1;  // diagonal of a part of a mesh, in ranges of the shortest light
 
 void include(Bounds& bounds, const Bounds& more) {
   bounds.low = glm::min(bounds.low, more.low);
@@ -30,18 +34,6 @@ Bounds reach_of(const Instance& instance, const Bounds& box, double duration) {
   return {reach.low - 0.5f * step, reach.high + 0.5f * step};
 }
 
-MeshRange range_of(const Mesh& mesh, const MeshRange* before, std::size_t vertices_before) {
-  MeshRange range;
-  range.first_index = before != nullptr ? before->first_index + before->index_count : 0;
-  range.index_count = static_cast<std::uint32_t>(mesh.indices.size());
-  range.base_vertex = static_cast<std::int32_t>(vertices_before);
-  range.material = mesh.material;
-  if (!mesh.vertices.empty()) range.box = {mesh.vertices[0].position, mesh.vertices[0].position};
-  for (const Vertex& vertex : mesh.vertices)
-    include(range.box, {vertex.position, vertex.position});
-  return range;
-}
-
 SurfaceFeatures features_of(const Mesh& mesh, const Material& material) {
   SurfaceFeatures f;
   f.unlit = material.unlit;
@@ -58,91 +50,160 @@ SurfaceFeatures features_of(const Mesh& mesh, const Material& material) {
   return f;
 }
 
-bool reaches(const PointLight& light, const Bounds& box) {
-  const glm::vec3 nearest = glm::clamp(light.position, box.low, box.high);
-  const glm::vec3 offset = light.position - nearest;
-  return glm::dot(offset, offset) < light.range * light.range;
-}
-
-// The lights that reach a box, as a bit mask.
-std::uint32_t lights_on(const Scene& scene, const Bounds& box) {
-  std::uint32_t mask = 0;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if (reaches(scene.lights[i], box)) mask |= 1u << i;
-  }
-  return mask;
-}
-
-LightsBlock light_set(const Scene& scene, std::uint32_t mask) {
-  LightsBlock block;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    if ((mask >> i & 1u) == 0) continue;
-    const PointLight& light = scene.lights[i];
-    block.position[count] = glm::vec4(light.position, 1 / (light.range * light.range));
-    block.intensity[count++] = glm::vec4(light.intensity, 0);
-  }
-  return block;
-}
-
-int loop_count(std::uint32_t mask) {
-  int lights = 0;
-  for (; mask != 0; mask &= mask - 1)
-    ++lights;
-  for (const int count : {0, 2, 4, 8}) {
-    if (lights <= count) return count;
-  }
-  return 16;
-}
-
 // A floor under everything only receives: leaving it out keeps the map's texels for what casts.
 bool is_floor(const Bounds& box, const Bounds& all) {
   const glm::vec3 size = box.high - box.low;
   const float width = std::max(size.x, size.z);
-  const bool flat = size.y <= kFloorFlatness * width;
-  const bool at_bottom = box.high.y <= all.low.y + kFloorFlatness * width;
-  return flat && at_bottom;
+  return size.y <= kFloorFlatness * width && box.high.y <= all.low.y + kFloorFlatness * width;
 }
 
-ShadowFit fit_shadow(const Scene& scene, std::vector<PlacedInstance>& instances) {
-  ShadowFit fit;
-  if (!scene.sun.casts_shadows || scene.sun.irradiance == glm::vec3(0) || instances.empty()) return fit;
-  Bounds all = instances[0].reach;
-  for (const PlacedInstance& instance : instances)
-    include(all, instance.reach);
+class Layouter {
+ public:
+  explicit Layouter(const Scene& scene) : scene_(scene), lights_(scene) {}
 
-  const glm::vec3 along = glm::normalize(scene.sun.direction);
-  const glm::vec3 helper = std::abs(along.y) < 0.9f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-  const glm::vec3 right = glm::normalize(glm::cross(helper, along));
-  const glm::mat4 light_from_world =
-      glm::transpose(glm::mat4(glm::vec4(right, 0), glm::vec4(glm::cross(along, right), 0),
-                               glm::vec4(along, 0), glm::vec4(0, 0, 0, 1)));
-  Bounds box;
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    PlacedInstance& instance = instances[i];
-    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
-    instance.casts_shadow = material.alpha_mode != AlphaMode::kBlend && !mesh.indices.empty() &&
-                            (instance.moves || !is_floor(instance.reach, all));
-    if (!instance.casts_shadow) continue;
-    const Bounds seen = transformed(instance.reach, light_from_world);
-    if (!fit.enabled) box = seen;
-    include(box, seen);
-    fit.enabled = true;
-    fit.moves = fit.moves || instance.moves;
+  SceneLayout run() {
+    add_meshes();
+    place_instances();
+    find_casters();
+    add_pieces();
+    layout_.light_sets = lights_.take();
+    return std::move(layout_);
   }
-  if (!fit.enabled) return fit;
-  const glm::vec3 size = glm::max(box.high - box.low, glm::vec3(1e-3f)) * 1.01f;
-  const glm::vec3 low = 0.5f * (box.low + box.high) - 0.5f * size;
-  fit.texel_metres = std::max(size.x, size.y) / kShadowTexels;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      fit.shadow_from_world[column][row] = light_from_world[column][row] / size[row];
+
+ private:
+  struct PartsOfMesh {
+    int first = 0;
+    int count = 0;
+  };
+
+  // Only what stands alone is cut: instanced and moving meshes stay one draw each.
+  PartLimits limits_for(int mesh) const {
+    const auto uses = std::count_if(scene_.instances.begin(), scene_.instances.end(),
+                                    [&](const Instance& instance) { return instance.mesh == mesh; });
+    const bool moves =
+        std::any_of(scene_.instances.begin(), scene_.instances.end(),
+                    [&](const Instance& instance) { return instance.mesh == mesh && instance.motion; });
+    PartLimits limits;
+    const Mesh& source = scene_.meshes[static_cast<std::size_t>(mesh)];
+    const bool blends =
+        scene_.materials[static_cast<std::size_t>(source.material)].alpha_mode == AlphaMode::kBlend;
+    if (uses != 1 || moves || blends)
+      limits.many = source.indices.size();
+    else
+      for (const PointLight& light : scene_.lights) {
+        limits.metres = std::min(limits.metres, kPartPerLightRange * light.range);
+      }
+    return limits;
+  }
+
+  MeshRange range_of(const Mesh& mesh, std::size_t first, std::size_t count) const {
+    MeshRange range;
+    range.first_index = static_cast<std::uint32_t>(first);
+    range.index_count = static_cast<std::uint32_t>(count);
+    range.base_vertex = base_vertex_;
+    range.material = mesh.material;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::vec3& position = mesh.vertices[layout_.indices[first + i]].position;
+      if (i == 0) range.box = {position, position};
+      include(range.box, {position, position});
     }
-    fit.shadow_from_world[3][row] -= low[row] / size[row];
+    return range;
   }
-  return fit;
-}
+
+  void add_meshes() {
+    for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+      const Mesh& mesh = scene_.meshes[m];
+      const MeshParts parts = split_mesh(mesh, limits_for(static_cast<int>(m)));
+      std::size_t first = layout_.indices.size();
+      layout_.indices.insert(layout_.indices.end(), parts.indices.begin(), parts.indices.end());
+      layout_.meshes.push_back(range_of(mesh, first, parts.indices.size()));
+      parts_of_mesh_.push_back(
+          {static_cast<int>(layout_.parts.size()), static_cast<int>(parts.counts.size())});
+      for (const std::uint32_t count : parts.counts) {
+        layout_.parts.push_back(range_of(mesh, first, count));
+        first += count;
+      }
+      features_.push_back(features_of(mesh, scene_.materials[static_cast<std::size_t>(mesh.material)]));
+      base_vertex_ += static_cast<std::int32_t>(mesh.vertices.size());
+    }
+  }
+
+  void place_instances() {
+    for (const Instance& instance : scene_.instances) {
+      PlacedInstance placed;
+      placed.mesh = instance.mesh;
+      placed.moves = static_cast<bool>(instance.motion);
+      placed.transform = placed.moves ? instance.motion(0) : instance.transform;
+      placed.mirrored = glm::determinant(glm::mat3(placed.transform)) < 0;
+      placed.reach =
+          reach_of(instance, layout_.meshes[static_cast<std::size_t>(instance.mesh)].box, scene_.duration);
+      layout_.instances.push_back(placed);
+    }
+  }
+
+  void find_casters() {
+    if (layout_.instances.empty()) return;
+    Bounds all = layout_.instances[0].reach;
+    for (const PlacedInstance& instance : layout_.instances)
+      include(all, instance.reach);
+    std::vector<ShadowCaster> casters;
+    bool moves = false;
+    for (PlacedInstance& instance : layout_.instances) {
+      const MeshRange& mesh = layout_.meshes[static_cast<std::size_t>(instance.mesh)];
+      instance.casts_shadow = !features_[static_cast<std::size_t>(instance.mesh)].blend &&
+                              mesh.index_count > 0 && (instance.moves || !is_floor(instance.reach, all));
+      if (!instance.casts_shadow) continue;
+      moves = moves || instance.moves;
+      add_caster(instance, casters);
+    }
+    layout_.shadow = fit_shadow(scene_, casters);
+    layout_.shadow.moves = moves;
+  }
+
+  void add_caster(const PlacedInstance& instance, std::vector<ShadowCaster>& casters) const {
+    const PartsOfMesh& parts = parts_of_mesh_[static_cast<std::size_t>(instance.mesh)];
+    for (int p = parts.first; p < parts.first + parts.count; ++p) {
+      const MeshRange& part = layout_.parts[static_cast<std::size_t>(p)];
+      casters.push_back({instance.moves ? instance.reach : transformed(part.box, instance.transform),
+                         static_cast<double>(part.index_count) / 3});
+    }
+  }
+
+  void add_pieces() {
+    for (std::size_t i = 0; i < layout_.instances.size(); ++i) {
+      const PlacedInstance& instance = layout_.instances[i];
+      const PartsOfMesh& parts = parts_of_mesh_[static_cast<std::size_t>(instance.mesh)];
+      for (int p = parts.first; p < parts.first + parts.count; ++p) {
+        Piece piece;
+        piece.instance = static_cast<int>(i);
+        piece.part = p;
+        piece.box = instance.moves
+                        ? instance.reach
+                        : transformed(layout_.parts[static_cast<std::size_t>(p)].box, instance.transform);
+        choose_program(features_[static_cast<std::size_t>(instance.mesh)], piece);
+        layout_.pieces.push_back(piece);
+      }
+    }
+  }
+
+  void choose_program(SurfaceFeatures features, Piece& piece) {
+    const std::uint32_t mask = features.unlit ? 0 : lights_.reaching(piece.box);
+    features.shadows = layout_.shadow.enabled && !features.unlit;
+    features.point_lights = LightSets::loop_count(mask);
+    piece.light_set = lights_.index_of(mask);
+    const auto [program, added] = programs_.emplace(features, static_cast<int>(layout_.programs.size()));
+    if (added) layout_.programs.push_back(features);
+    piece.program = program->second;
+  }
+
+  const Scene& scene_;
+  SceneLayout layout_;
+  LightSets lights_;
+  std::vector<PartsOfMesh> parts_of_mesh_;
+  std::vector<SurfaceFeatures> features_;
+  std::map<SurfaceFeatures, int> programs_;
+  std::int32_t base_vertex_ = 0;
+};
 
 }  // namespace
 
@@ -167,44 +228,7 @@ std::vector<std::string> SurfaceFeatures::defines() const {
 }
 
 SceneLayout lay_out(const Scene& scene) {
-  SceneLayout layout;
-  std::vector<SurfaceFeatures> mesh_features;
-  std::size_t vertices = 0;
-  for (const Mesh& mesh : scene.meshes) {
-    layout.meshes.push_back(
-        range_of(mesh, layout.meshes.empty() ? nullptr : &layout.meshes.back(), vertices));
-    vertices += mesh.vertices.size();
-    mesh_features.push_back(features_of(mesh, scene.materials[static_cast<std::size_t>(mesh.material)]));
-  }
-  for (const Instance& instance : scene.instances) {
-    PlacedInstance placed;
-    placed.mesh = instance.mesh;
-    placed.moves = static_cast<bool>(instance.motion);
-    placed.transform = placed.moves ? instance.motion(0) : instance.transform;
-    placed.mirrored = glm::determinant(glm::mat3(placed.transform)) < 0;
-    placed.reach =
-        reach_of(instance, layout.meshes[static_cast<std::size_t>(instance.mesh)].box, scene.duration);
-    layout.instances.push_back(placed);
-  }
-  layout.shadow = fit_shadow(scene, layout.instances);
-
-  std::map<std::uint32_t, int> sets;
-  std::map<SurfaceFeatures, int> programs;
-  for (PlacedInstance& placed : layout.instances) {
-    SurfaceFeatures features = mesh_features[static_cast<std::size_t>(placed.mesh)];
-    const std::uint32_t mask = features.unlit ? 0 : lights_on(scene, placed.reach);
-    features.shadows = layout.shadow.enabled && !features.unlit;
-    features.point_lights = loop_count(mask);
-    if (mask != 0) {
-      const auto [set, added] = sets.emplace(mask, static_cast<int>(layout.light_sets.size()));
-      if (added) layout.light_sets.push_back(light_set(scene, mask));
-      placed.light_set = set->second;
-    }
-    const auto [program, added] = programs.emplace(features, static_cast<int>(layout.programs.size()));
-    if (added) layout.programs.push_back(features);
-    placed.program = program->second;
-  }
-  return layout;
+  return Layouter(scene).run();
 }
 
 }  // namespace quincunx::scenes

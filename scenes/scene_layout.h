@@ -10,10 +10,9 @@
 
 #include "frame_block.h"
 #include "scene.h"
+#include "shadow_fit.h"
 
 namespace quincunx::scenes {
-
-inline constexpr int kShadowTexels = 2048;  // side of the shadow map
 
 // Which variant of the surface shader draws something.
 struct SurfaceFeatures {
@@ -34,6 +33,7 @@ struct SurfaceFeatures {
   std::vector<std::string> defines() const;
 };
 
+// A range of the index buffer: a mesh, or a part of one.
 struct MeshRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
@@ -43,27 +43,29 @@ struct MeshRange {
 };
 
 struct PlacedInstance {
-  int mesh = 0;
+  int mesh = 0;  // index into SceneLayout::meshes
   bool moves = false;
   bool mirrored = false;  // negative determinant: the winding is reversed
   bool casts_shadow = false;
-  glm::mat4 transform{1};  // where it stands, if it does not move
+  glm::mat4 transform{1};  // where it stands, if it does not move; else where it is at time 0
   Bounds reach;            // world bounds; of a moving one over the whole duration
-  int program = 0;         // index into SceneLayout::programs
-  int light_set = -1;      // index into SceneLayout::light_sets; -1: none
 };
 
-// The sun's orthographic view around all that casts shadows, fixed for the scene so that shadows never crawl.
-struct ShadowFit {
-  bool enabled = false;
-  bool moves = false;              // some caster moves
-  glm::mat4 shadow_from_world{1};  // to (u, v, depth), each within [0, 1] for casters
-  float texel_metres = 0;          // world size of a texel, the larger side
+// What is culled, sorted and drawn: an instance of a part.
+struct Piece {
+  int instance = 0;
+  int part = 0;        // index into SceneLayout::parts
+  Bounds box;          // world bounds, if the instance does not move
+  int program = 0;     // index into SceneLayout::programs
+  int light_set = -1;  // index into SceneLayout::light_sets; -1: none
 };
 
 struct SceneLayout {
+  std::vector<std::uint32_t> indices;  // of all meshes, the triangles of a part together
   std::vector<MeshRange> meshes;
+  std::vector<MeshRange> parts;
   std::vector<PlacedInstance> instances;
+  std::vector<Piece> pieces;
   std::vector<SurfaceFeatures> programs;
   std::vector<LightsBlock> light_sets;
   ShadowFit shadow;

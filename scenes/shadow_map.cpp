@@ -29,6 +29,22 @@ gl::Texture depth_texture() {
   return texture;
 }
 
+Result<gl::Framebuffer> depth_framebuffer(GLuint texture) {
+  gl::Framebuffer framebuffer = gl::Framebuffer::create();
+  glNamedFramebufferTexture(framebuffer.get(), GL_DEPTH_ATTACHMENT, texture, 0);
+  glNamedFramebufferDrawBuffer(framebuffer.get(), GL_NONE);
+  if (glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return Status::device(
+        "the driver refuses a framebuffer with only a 16-bit depth texture, which shadows need");
+  }
+  return framebuffer;
+}
+
+void clear_depth(GLuint framebuffer) {
+  const float infinity = 1;
+  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &infinity);
+}
+
 }  // namespace
 
 Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layout) {
@@ -46,44 +62,54 @@ Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layou
   if (!cut_out.ok()) return cut_out.status();
   map.cut_out_ = std::move(cut_out).value();
   map.texture_ = depth_texture();
-  map.framebuffer_ = gl::Framebuffer::create();
-  glNamedFramebufferTexture(map.framebuffer_.get(), GL_DEPTH_ATTACHMENT, map.texture_.get(), 0);
-  glNamedFramebufferDrawBuffer(map.framebuffer_.get(), GL_NONE);
-  if (glCheckNamedFramebufferStatus(map.framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
-    return Status::device(
-        "the driver refuses a framebuffer with only a 16-bit depth texture, which shadows need");
-  }
-  map.instances_ = StreamBuffer(layout.instances.size() * sizeof(InstanceData));
+  Result<gl::Framebuffer> framebuffer = depth_framebuffer(map.texture_.get());
+  if (!framebuffer.ok()) return framebuffer.status();
+  map.framebuffer_ = std::move(framebuffer).value();
+  const std::size_t bytes = layout.instances.size() * sizeof(InstanceData);
+  map.still_instances_ = StreamBuffer(bytes);
+  if (!layout.shadow.moves) return map;
+  map.still_texture_ = depth_texture();
+  Result<gl::Framebuffer> still = depth_framebuffer(map.still_texture_.get());
+  if (!still.ok()) return still.status();
+  map.still_framebuffer_ = std::move(still).value();
+  map.moving_instances_ = StreamBuffer(bytes);
   return map;
 }
 
 void ShadowMap::update(const SceneLayout& layout, const GpuScene& gpu,
                        const std::vector<InstanceData>& placed, double seconds) {
   if (!texture_) return;
-  const bool drawn = drawn_seconds_ == drawn_seconds_;
-  if (drawn && (!layout.shadow.moves || drawn_seconds_ == seconds)) return;
+  const bool first = drawn_seconds_ != drawn_seconds_;
+  if (!first && (!layout.shadow.moves || drawn_seconds_ == seconds)) return;
   drawn_seconds_ = seconds;
-  list_.build_casters(layout, placed);
-  draw(layout, gpu);
-}
-
-void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu) {
-  const std::vector<InstanceData>& data = list_.instances();
-  const GLintptr offset = instances_.write(data.data(), data.size() * sizeof(InstanceData));
-  glBindVertexBuffer(kInstanceSlot, instances_.get(), offset, sizeof(InstanceData));
-
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
-  glViewport(0, 0, kShadowTexels, kShadowTexels);
   glDisable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
+  if (first) {
+    const GLuint framebuffer = layout.shadow.moves ? still_framebuffer_.get() : framebuffer_.get();
+    clear_depth(framebuffer);
+    list_.build_casters(layout, placed, false);
+    draw(layout, gpu, framebuffer, still_instances_);
+  }
+  if (!layout.shadow.moves) return;
+  glCopyImageSubData(still_texture_.get(), GL_TEXTURE_2D, 0, 0, 0, 0, texture_.get(), GL_TEXTURE_2D, 0, 0, 0,
+                     0, kShadowTexels, kShadowTexels, 1);
+  list_.build_casters(layout, placed, true);
+  draw(layout, gpu, framebuffer_.get(), moving_instances_);
+}
+
+void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint framebuffer,
+                     StreamBuffer& instances) {
+  const std::vector<InstanceData>& data = list_.instances();
+  const GLintptr offset = instances.write(data.data(), data.size() * sizeof(InstanceData));
+  glBindVertexBuffer(kInstanceSlot, instances.get(), offset, sizeof(InstanceData));
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, kShadowTexels, kShadowTexels);
   glEnable(GL_DEPTH_CLAMP);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeBias, kConstantBias);
-  const float infinity = 1;
-  glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, &infinity);
   for (const Batch& batch : list_.opaque()) {
-    const auto mesh = static_cast<std::size_t>(batch.mesh);
+    const auto mesh = static_cast<std::size_t>(batch.range);
     glUseProgram(mask_of_mesh_[mesh] ? cut_out_.get() : solid_.get());
     if (mask_of_mesh_[mesh]) gpu.bind_material(layout.meshes[mesh].material);
     glDisable(GL_CULL_FACE);  // open meshes cast shadows from both sides

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ShadowMap: the sun's depth map, drawn anew only when something that casts a shadow has moved.
+// ShadowMap: the sun's depth map. What stands still is drawn once; what moves is drawn over a copy of that.
 #pragma once
 
 #include <limits>
@@ -25,14 +25,17 @@ class ShadowMap {
   GLuint texture() const { return texture_.get(); }  // compares; 0: none
 
  private:
-  void draw(const SceneLayout& layout, const GpuScene& gpu);
+  void draw(const SceneLayout& layout, const GpuScene& gpu, GLuint framebuffer, StreamBuffer& instances);
 
-  gl::Texture texture_;
+  gl::Texture texture_;  // all casters
   gl::Framebuffer framebuffer_;
+  gl::Texture still_texture_;  // only those that stand still, where others move: the start of each update
+  gl::Framebuffer still_framebuffer_;
   gl::Program solid_;
   gl::Program cut_out_;
   std::vector<bool> mask_of_mesh_;
-  StreamBuffer instances_;
+  StreamBuffer still_instances_;
+  StreamBuffer moving_instances_;
   DrawList list_;
   double drawn_seconds_ = std::numeric_limits<double>::quiet_NaN();
 };
