@@ -14,12 +14,13 @@ namespace {
 
 CourtyardMaterials add_masonry(SceneAssembly& assembly, std::uint64_t seed) {
   CourtyardMaterials m{};
-  m.brick = assembly.add_surface("brick", brick_surface(1024, seed), 0.8f);
-  m.ashlar = assembly.add_surface("ashlar", ashlar_surface(1024, seed + 1), 0.8f);
-  m.plaster = assembly.add_surface("limewash", plaster_surface(512, seed + 2), 0.7f);
-  m.paving = assembly.add_surface("paving", paving_surface(1024, seed + 3), 0.8f);
-  m.planks = assembly.add_surface("planks", plank_surface(512, seed + 4), 0.8f);
-  m.limestone = assembly.add_surface("limestone", stone_surface(512, seed + 5), 0.7f);
+  using Detail = SceneAssembly::Detail;
+  m.brick = assembly.add_surface("brick", brick_surface(512, seed));
+  m.ashlar = assembly.add_surface("ashlar", ashlar_surface(512, seed + 1));
+  m.plaster = assembly.add_surface("limewash", plaster_surface(512, seed + 2), Detail::kColour);
+  m.paving = assembly.add_surface("paving", paving_surface(1024, seed + 3), Detail::kReliefAndRoughness);
+  m.planks = assembly.add_surface("planks", plank_surface(256, seed + 4), Detail::kColour);
+  m.limestone = assembly.add_surface("limestone", stone_surface(256, seed + 5), Detail::kColour);
   m.tiles = assembly.add(plain_material("roof tiles", {0.46f, 0.19f, 0.11f}, 0.85f));
   m.terracotta = assembly.add(plain_material("terracotta", {0.50f, 0.22f, 0.12f}, 0.8f));
   m.soil = assembly.add(plain_material("soil", {0.06f, 0.045f, 0.03f}, 1));

@@ -13,9 +13,20 @@ namespace quincunx::scenes {
 
 inline constexpr double kCourtyardDuration = 8;
 inline constexpr glm::vec3 kFountain{0, 0, -0.6f};
+inline constexpr float kPorticoFloor = 0.64f;
 
-// Parts of the scene that are collected apart (SceneAssembly::still).
-enum CourtyardPart { kGround, kArcade, kFacade, kGarden };
+// Parts of the scene that are collected apart (SceneAssembly::still), so that few lamps reach each.
+enum CourtyardPart {
+  kArcade,
+  kFacade,
+  kTower,
+  kRightWall,
+  kFountainPart,
+  kGarden,
+  kProps,
+  kTrees,
+  kPots = kTrees + 4
+};
 
 struct CourtyardMaterials {
   int brick, ashlar, plaster, paving, planks, limestone, tiles;

@@ -50,7 +50,6 @@ constexpr float kTerrace = 4.3f;
 constexpr int kFacadeBays = 5;
 constexpr float kFacadeX = -6.5f;
 constexpr float kFacadeZ = -7.8f;
-constexpr float kPorticoFloor = 0.64f;
 constexpr float kStorey = 5.0f;
 constexpr float kEaves = 7.7f;
 constexpr float kFacadeWidth = kFacadeBays * kBay;
@@ -59,8 +58,8 @@ void add_right_wall(SceneAssembly& assembly, const CourtyardMaterials& m) {
   constexpr float kX = 6.5f;
   constexpr float kHeight = 0.8f;
   constexpr float kPitch = 3.4f;
-  const Stand wall(assembly.still(m.ashlar, kGround), glm::mat4(1), kAshlarRepeat);
-  const Stand stone(assembly.still(m.limestone, kGround), glm::mat4(1), kStoneRepeat);
+  const Stand wall(assembly.still(m.ashlar, kRightWall), glm::mat4(1), kAshlarRepeat);
+  const Stand stone(assembly.still(m.limestone, kRightWall), glm::mat4(1), kStoneRepeat);
   for (int i = 0; i < 6; ++i) {
     const float z = kFacadeZ + 0.4f + kPitch * static_cast<float>(i);
     (*wall).box({kX - 0.28f, 0, z - 0.28f}, {kX + 0.28f, 2.15f, z + 0.28f});
@@ -69,7 +68,7 @@ void add_right_wall(SceneAssembly& assembly, const CourtyardMaterials& m) {
     if (i == 5) break;
     (*wall).box({kX - 0.2f, 0, z + 0.28f}, {kX + 0.2f, kHeight, z + kPitch - 0.28f});
     (*stone).box({kX - 0.26f, kHeight, z + 0.28f}, {kX + 0.26f, kHeight + 0.1f, z + kPitch - 0.28f});
-    const Stand rail(assembly.still(m.iron, kGround),
+    const Stand rail(assembly.still(m.iron, kRightWall),
                      moved_to({kX, kHeight + 0.1f, z + 0.28f}) * turned(-kQuarter, {0, 1, 0}), 1);
     add_railing(*rail, {kPitch - 0.56f, 1.15f, 0.125f, 0.009f});
   }
@@ -146,7 +145,7 @@ void add_upper_storey(SceneAssembly& assembly, const CourtyardMaterials& m, cons
                   kStoneRepeat);
   add_cornice(*top, kFacadeWidth, 0.5f, 0.5f);
   const Stand roof(assembly.still(m.tiles, kFacade), flush * moved_to({-0.2f, kEaves + 0.24f, 0.6f}), 1);
-  add_tile_roof(*roof, kFacadeWidth + 0.4f, 3.4f, 1.25f);
+  add_tile_roof(*roof, kFacadeWidth + 0.4f, 3.4f, 1.9f);
 }
 
 void add_balcony(SceneAssembly& assembly, const CourtyardMaterials& m, const glm::mat4& front) {
@@ -180,10 +179,22 @@ void add_inscription(SceneAssembly& assembly, const CourtyardMaterials& m, const
 }  // namespace
 
 void add_courtyard_ground(SceneAssembly& assembly, const CourtyardMaterials& m) {
-  const Stand paving(assembly.still(m.paving, kGround), glm::mat4(1), kPavingRepeat, 0.3f);
-  (*paving).patch({kArcadeX - 0.2f, 0, 12.5f}, {13.2f, 0, 0}, {0, 0, -20.4f});
-  const Stand walk(assembly.still(m.paving, kArcade), glm::mat4(1), kPavingRepeat, 0.3f);
-  (*walk).patch({kArcadeBack, 0, 12.5f}, {kArcadeX - 0.2f - kArcadeBack, 0, 0}, {0, 0, -20.4f});
+  struct Strip {
+    int part;
+    float left, right, near, far;
+  };
+  constexpr float kNear = 12.5f;
+  constexpr float kWall = kArcadeX - 0.2f;
+  constexpr std::array kStrips = std::to_array<Strip>({{kArcade, kArcadeBack, kWall, kNear, kFacadeZ},
+                                                       {kProps, kWall, -1.0f, kNear, 1.0f},
+                                                       {kFountainPart, kWall, 6.5f, 1.0f, -5.4f},
+                                                       {kRightWall, -1.0f, 6.5f, kNear, 1.0f},
+                                                       {kFacade, kWall, 6.5f, -5.4f, kFacadeZ}});
+  for (const Strip& strip : kStrips) {
+    const Stand paving(assembly.still(m.paving, strip.part), glm::mat4(1), kPavingRepeat, 0.3f);
+    (*paving).patch({strip.left, 0, strip.near}, {strip.right - strip.left, 0, 0},
+                    {0, 0, strip.far - strip.near});
+  }
   add_right_wall(assembly, m);
 }
 
@@ -215,6 +226,10 @@ void add_courtyard_arcade(SceneAssembly& assembly, const CourtyardMaterials& m) 
     (*ceiling).box({x - 0.08f, kTerrace - 0.47f, -depth}, {x + 0.08f, kTerrace - 0.25f, -0.45f});
   }
   add_terrace_house(assembly, m, front);
+  // Its far end is closed.
+  const Stand end(assembly.still(m.plaster, kArcade), moved_to({kArcadeBack, 0, kFacadeZ + 0.02f}),
+                  kPlasterRepeat);
+  (*end).patch({0, 0, 0}, {depth, 0, 0}, {0, kTerrace, 0});
 }
 
 void add_courtyard_facade(SceneAssembly& assembly, const CourtyardMaterials& m) {
@@ -234,16 +249,16 @@ void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
   for (int side = 0; side < 4; ++side) {
     const glm::mat4 face = moved_to(middle) * turned(kQuarter * static_cast<float>(side), {0, 1, 0}) *
                            moved_to({-kWidth / 2, 0, kWidth / 2});
-    const Stand brick(assembly.still(m.brick, kGarden), face, kBrickRepeat, 0.8f);
-    const Stand stone(assembly.still(m.limestone, kGarden), face, kStoneRepeat, 0.8f);
+    const Stand brick(assembly.still(m.brick, kTower), face, kBrickRepeat, 0.8f);
+    const Stand stone(assembly.still(m.limestone, kTower), face, kStoneRepeat, 0.8f);
     (*brick).patch({0, 6, 0}, {kWidth, 0, 0}, {0, kBelfry - 6, 0});
     add_arch_wall(*brick, *stone, {2, kWidth / 2, kBelfry, kBelfry + 1.5f, 0.52f, kTop, 0.4f});
-    const Stand band(assembly.still(m.limestone, kGarden), face * moved_to({0, kBelfry, 0}), kStoneRepeat);
+    const Stand band(assembly.still(m.limestone, kTower), face * moved_to({0, kBelfry, 0}), kStoneRepeat);
     add_cornice(*band, kWidth, 0.35f, 0.28f);
-    const Stand crown(assembly.still(m.limestone, kGarden), face * moved_to({0, kTop + 0.2f, 0}),
+    const Stand crown(assembly.still(m.limestone, kTower), face * moved_to({0, kTop + 0.2f, 0}),
                       kStoneRepeat);
     add_cornice(*crown, kWidth, 0.5f, 0.4f);
-    MeshBuilder& roof = assembly.still(m.tiles, kGarden);
+    MeshBuilder& roof = assembly.still(m.tiles, kTower);
     roof.pen.placement = face;
     const glm::vec3 apex(kWidth / 2, kTop + 2.6f, -kWidth / 2);
     const glm::vec3 low(-0.45f, kTop + 0.2f, 0.45f);
@@ -255,12 +270,12 @@ void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
     roof.triangle(a, a + 1, a + 2);
     roof.pen.placement = glm::mat4(1);
   }
-  const Stand dial(assembly.still(m.limestone, kGarden), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)),
+  const Stand dial(assembly.still(m.limestone, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)),
                    kStoneRepeat);
   (*dial).annulus({0, 0, 0.03f}, {0, 0, 1}, 0, 0.95f, 40);
-  const Stand gilt(assembly.still(m.gilt, kGarden), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
+  const Stand gilt(assembly.still(m.gilt, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
   (*gilt).ring({0, 0, 0.03f}, {0, 0, 1}, 0.97f, 0.05f, 40, 6);
-  const Stand ink(assembly.still(m.iron, kGarden), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
+  const Stand ink(assembly.still(m.iron, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
   for (int hour = 0; hour < 12; ++hour) {
     const float angle = glm::two_pi<float>() * static_cast<float>(hour) / 12;
     const glm::vec2 out(std::sin(angle), std::cos(angle));

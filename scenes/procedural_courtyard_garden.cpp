@@ -14,7 +14,7 @@ constexpr float kTau = glm::two_pi<float>();
 constexpr float kTreeOffset = 3.7f;  // of the four corners from the centre
 
 void add_fountain(SceneAssembly& assembly, const CourtyardMaterials& m) {
-  MeshBuilder& stone = assembly.still(m.limestone, kGarden);
+  MeshBuilder& stone = assembly.still(m.limestone, kFountainPart);
   stone.pen.placement = moved_to(kFountain);
   const std::array<glm::vec2, 15> basin{{{1.72f, 0},
                                          {1.72f, 0.12f},
@@ -51,8 +51,8 @@ void add_fountain(SceneAssembly& assembly, const CourtyardMaterials& m) {
 }
 
 // A square planter of limestone with a tree in it.
-void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot) {
-  MeshBuilder& stone = assembly.still(m.limestone, kGarden);
+void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot, int part) {
+  MeshBuilder& stone = assembly.still(m.limestone, part);
   stone.pen.placement = moved_to(foot);
   constexpr float kHalf = 0.62f;
   stone.box({-kHalf, 0, -kHalf}, {kHalf, 0.1f, kHalf});
@@ -63,13 +63,13 @@ void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3
     stone.box({-inner, 0.46f, side > 0 ? inner : -kHalf}, {inner, 0.56f, side > 0 ? kHalf : -inner});
   }
   stone.pen.placement = glm::mat4(1);
-  MeshBuilder& soil = assembly.still(m.soil, kGarden);
+  MeshBuilder& soil = assembly.still(m.soil, part);
   soil.patch(foot + glm::vec3(-0.5f, 0.51f, 0.5f), {1, 0, 0}, {0, 0, -1});
 }
 
-void add_pot(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot, float size,
+void add_pot(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot, float size, int part,
              Random& random) {
-  MeshBuilder& clay = assembly.still(m.terracotta, kGarden);
+  MeshBuilder& clay = assembly.still(m.terracotta, part);
   clay.pen.placement = moved_to(foot);
   const std::array<glm::vec2, 9> profile{{{0.0f, 0.0f},
                                           {0.26f * size, 0.0f},
@@ -82,46 +82,50 @@ void add_pot(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foo
                                           {0.0f, 0.66f * size}}};
   clay.lathe(profile, 28);
   clay.pen.placement = glm::mat4(1);
-  add_bush(assembly.still(m.plants.leaves, kGarden), foot + glm::vec3(0, 0.66f * size, 0), 0.55f * size,
+  add_bush(assembly.still(m.plants.leaves, part), foot + glm::vec3(0, 0.66f * size, 0), 0.55f * size,
            0.75f * size, 90, random);
 }
 
-// Ranges of hills with the haze of their distance in their colour.
-void add_hills(SceneAssembly& assembly, Random& random) {
-  const int haze = assembly.add(unlit_material("hills", glm::vec3(1)));
-  MeshBuilder& hills = assembly.still(haze);
+// The land beyond: a meadow and ranges of hills, with the haze of their distance in their colour.
+void add_country(SceneAssembly& assembly, Random& random) {
+  MeshBuilder& land = assembly.still(assembly.add(unlit_material("country", glm::vec3(1))));
   struct Range {
-    float distance, height, low;
+    float distance, low, height;
     glm::vec3 foot, top;
   };
   constexpr std::array kRanges =
-      std::to_array<Range>({{420, 62, 20, {0.62f, 0.50f, 0.40f}, {0.42f, 0.42f, 0.46f}},
-                            {260, 34, 8, {0.46f, 0.37f, 0.26f}, {0.25f, 0.26f, 0.24f}},
-                            {130, 12, 2, {0.30f, 0.24f, 0.12f}, {0.13f, 0.15f, 0.08f}}});
+      std::to_array<Range>({{420, 16, 62, {0.66f, 0.53f, 0.42f}, {0.40f, 0.41f, 0.47f}},
+                            {260, 6, 34, {0.50f, 0.39f, 0.26f}, {0.25f, 0.26f, 0.25f}},
+                            {130, 1, 11, {0.34f, 0.27f, 0.12f}, {0.14f, 0.15f, 0.08f}},
+                            {8, -9, 0, {0.16f, 0.14f, 0.05f}, {0.16f, 0.14f, 0.05f}}});
+  constexpr int kPieces = 96;
+  std::vector<std::uint32_t> before(kPieces + 1);
   for (const Range& range : kRanges) {
-    constexpr int kPieces = 96;
     const float a = random.range(0, kTau);
     const float b = random.range(0, kTau);
-    std::uint32_t before = 0;
-    for (int i = 0; i <= kPieces; ++i) {
-      const float turn =
-          kTau * (static_cast<float>(i) / kPieces - 0.25f);  // from the left over the front to the right
-      const float angle = 0.75f * turn + 0.25f * glm::half_pi<float>();
+    std::vector<std::uint32_t> feet(kPieces + 1);
+    for (std::uint32_t i = 0; i <= kPieces; ++i) {
+      const float angle = kTau * (static_cast<float>(i) / kPieces -
+                                  0.5f);  // from behind over the left to the front and right
       const glm::vec3 out(std::sin(angle), 0, -std::cos(angle));
       const float wave = 0.5f + 0.25f * std::sin(3 * angle + a) + 0.16f * std::sin(7 * angle + b) +
                          0.05f * std::sin(19 * angle + a) + 0.02f * std::sin(43 * angle + b);
-      const glm::vec3 ground = out * range.distance - glm::vec3(0, 8, 0);
-      hills.pen.colour = glm::vec4(range.foot, 1);
-      const std::uint32_t low = hills.vertex(ground, -out, {0, 0});
-      hills.pen.colour = glm::vec4(range.top, 1);
-      const std::uint32_t high =
-          hills.vertex(ground + glm::vec3(0, 8 + range.low + range.height * wave, 0), -out, {0, 0});
-      if (i > 0) {
-        hills.triangle(before, low, high);
-        hills.triangle(before, high, before + 1);
+      land.pen.colour = glm::vec4(range.foot, 1);
+      feet[i] = land.vertex(out * range.distance - glm::vec3(0, 0.7f, 0), -out, {0, 0});
+      if (range.height > 0) {
+        land.pen.colour = glm::vec4(range.top, 1);
+        land.vertex(out * range.distance + glm::vec3(0, range.low + range.height * wave, 0), -out, {0, 0});
+        if (i > 0) {
+          land.triangle(feet[i - 1], feet[i], feet[i] + 1);
+          land.triangle(feet[i - 1], feet[i] + 1, feet[i - 1] + 1);
+        }
       }
-      before = low;
+      if (i > 0 && range.distance < kRanges.front().distance) {  // the ground up to the range behind
+        land.triangle(feet[i - 1], feet[i], before[i]);
+        land.triangle(feet[i - 1], before[i], before[i - 1]);
+      }
     }
+    before = feet;
   }
 }
 
@@ -130,9 +134,10 @@ void add_hills(SceneAssembly& assembly, Random& random) {
 void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, std::uint64_t seed) {
   Random random(seed, 11);
   add_fountain(assembly, m);
+  int part = kTrees;
   for (const glm::vec2 corner : {glm::vec2(-1, -1), {1, -1}, {-1, 1}, {1, 1}}) {
     const glm::vec3 foot = kFountain + kTreeOffset * glm::vec3(corner.x, 0, corner.y);
-    add_planter(assembly, m, foot);
+    add_planter(assembly, m, foot, part++);
     Tree tree;
     tree.foot = foot + glm::vec3(0, 0.5f, 0);
     tree.trunk = random.range(1.15f, 1.35f);
@@ -144,12 +149,19 @@ void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, 
   add_ivy(leaves, {{3.9f, 0.5f, -7.72f}, {2.6f, 0, 0}, {0, 6.6f, 0}, 620, 0.19f}, random);
   add_ivy(leaves, {{-6.42f, 4.9f, 5.0f}, {0, 0, -5.2f}, {0, -2.0f, 0}, 330, 0.16f}, random);
   add_ivy(leaves, {{6.26f, 0, 3.4f}, {0, 0, 2.4f}, {0, 2.2f, 0}, 260, 0.16f}, random);
-  add_pot(assembly, m, {-5.7f, 0, 6.6f}, 0.8f, random);
-  add_pot(assembly, m, {-5.8f, 0, 1.4f}, 0.7f, random);
-  add_pot(assembly, m, {-5.8f, 0, -3.8f}, 0.75f, random);
-  add_pot(assembly, m, {4.9f, 0, 6.9f}, 0.95f, random);
-  add_pot(assembly, m, {-1.75f, 0.64f, -7.55f}, 0.6f, random);
-  add_pot(assembly, m, {1.75f, 0.64f, -7.55f}, 0.6f, random);
+  struct Pot {
+    glm::vec3 foot;
+    float size;
+  };
+  part = kPots;
+  for (const Pot& pot : {Pot{{-5.7f, 0, 6.6f}, 0.8f},
+                         {{-5.8f, 0, 1.4f}, 0.7f},
+                         {{-5.8f, 0, -3.8f}, 0.75f},
+                         {{4.9f, 0, 6.9f}, 0.95f},
+                         {{-1.75f, kPorticoFloor, -7.55f}, 0.6f},
+                         {{1.75f, kPorticoFloor, -7.55f}, 0.6f}}) {
+    add_pot(assembly, m, pot.foot, pot.size, part++, random);
+  }
   for (const glm::vec3 foot : {glm::vec3(9.0f, -0.5f, -3),
                                {9.6f, -0.5f, -8.5f},
                                {12.5f, -0.8f, -13},
@@ -159,16 +171,14 @@ void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, 
                                {23.0f, -1, -17}}) {
     add_cypress(leaves, foot, random.range(5.5f, 8.0f), random);
   }
-  MeshBuilder& meadow = assembly.still(assembly.add(plain_material("meadow", {0.15f, 0.15f, 0.055f}, 1)));
-  meadow.patch({6.7f, -0.6f, 60}, {200, 0, 0}, {0, 0, -260});
-  add_hills(assembly, random);
+  add_country(assembly, random);
 }
 
 void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   // The notice on its easel, under glass, turned towards the camera.
   const glm::mat4 easel = moved_to({3.25f, 0, 5.0f}) * turned(-0.42f, {0, 1, 0});
   const glm::mat4 board = easel * moved_to({0, 0.62f, 0}) * turned(-0.14f, {1, 0, 0});
-  MeshBuilder& wood = assembly.still(m.planks, kGarden);
+  MeshBuilder& wood = assembly.still(m.planks, kProps);
   constexpr float kWidth = 0.96f;
   constexpr float kHeight = 1.28f;
   wood.pen.placement = board;
@@ -182,10 +192,10 @@ void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   wood.rod({0, kHeight + 0.1f, -0.1f}, {0, -0.55f, -0.62f}, 0.026f, 8);
   wood.box({-kWidth / 2, 0, -0.05f}, {kWidth / 2, kHeight, -0.02f});
   wood.pen.placement = glm::mat4(1);
-  MeshBuilder& sheet = assembly.still(m.poster_title, kGarden);
+  MeshBuilder& sheet = assembly.still(m.poster_title, kProps);
   sheet.pen.placement = board;
   sheet.picture({-kWidth / 2, 0, -0.015f}, {kWidth, 0, 0}, {0, kHeight, 0});
-  MeshBuilder& glass = assembly.still(m.glass, kGarden);
+  MeshBuilder& glass = assembly.still(m.glass, kProps);
   glass.pen.placement = board;
   glass.picture({-kWidth / 2, 0, 0.02f}, {kWidth, 0, 0}, {0, kHeight, 0});
   // Notices on the arcade's back wall.

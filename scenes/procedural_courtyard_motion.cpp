@@ -13,6 +13,9 @@ constexpr float kTau = glm::two_pi<float>();
 constexpr float kTrack = 2.35f;  // radius of the rails round the fountain
 constexpr glm::vec3 kBrazier{-3.1f, 0, 4.9f};
 
+constexpr glm::vec3 kLampIntensity(3.4f, 1.9f, 0.75f);
+constexpr float kLampRange = 3.6f;
+
 // --- Lanterns: a shade, four bars, glass and a bulb, hanging from their origin.
 
 struct LanternMeshes {
@@ -54,13 +57,13 @@ void add_lanterns(SceneAssembly& assembly, const CourtyardMaterials& m) {
   for (int i = 0; i < 7; ++i) {
     const float z = 10.4f - 2.6f * (static_cast<float>(i) + 0.5f);
     hang_lantern(assembly, arcade, {-7.9f, 4.05f, z}, {0, 0, 1}, i);
-    assembly.scene.lights.push_back({{-7.9f, 2.98f, z}, glm::vec3(3.4f, 1.9f, 0.75f), 4.5f});
+    assembly.scene.lights.push_back({{-7.9f, 2.98f, z}, kLampIntensity, kLampRange});
   }
   const LanternMeshes portico = make_lantern(assembly, m, 0.65f);
   for (int i = 0; i < 5; ++i) {
     const float x = -5.2f + 2.6f * static_cast<float>(i);
     hang_lantern(assembly, portico, {x, 4.7f, -9.0f}, {1, 0, 0}, i + 3);
-    assembly.scene.lights.push_back({{x, 3.73f, -9.0f}, glm::vec3(3.4f, 1.9f, 0.75f), 4.5f});
+    assembly.scene.lights.push_back({{x, 3.73f, -9.0f}, kLampIntensity, kLampRange});
   }
 }
 
@@ -113,11 +116,11 @@ void add_pennants(SceneAssembly& assembly, const CourtyardMaterials& m) {
 // --- A clockwork cart on rails round the fountain.
 
 void add_rails(SceneAssembly& assembly, const CourtyardMaterials& m) {
-  MeshBuilder& iron = assembly.still(m.iron, kGarden);
+  MeshBuilder& iron = assembly.still(m.iron, kFountainPart);
   for (const float radius : {kTrack - 0.16f, kTrack + 0.16f}) {
     iron.ring(kFountain + glm::vec3(0, 0.03f, 0), {0, 1, 0}, radius, 0.016f, 96, 6);
   }
-  MeshBuilder& wood = assembly.still(m.planks, kGarden);
+  MeshBuilder& wood = assembly.still(m.planks, kFountainPart);
   for (int i = 0; i < 48; ++i) {
     wood.pen.placement =
         moved_to(kFountain) * turned(kTau * static_cast<float>(i) / 48, {0, 1, 0}) * moved_to({kTrack, 0, 0});
@@ -170,7 +173,7 @@ void add_cart(SceneAssembly& assembly, const CourtyardMaterials& m) {
 
 void add_wind_wheel(SceneAssembly& assembly, const CourtyardMaterials& m) {
   const glm::vec3 hub(-4.0f, 10.6f, -9.0f);
-  MeshBuilder& iron = assembly.still(m.iron, kGarden);
+  MeshBuilder& iron = assembly.still(m.iron, kTower);
   for (const glm::vec2 foot : {glm::vec2(-0.45f, -0.4f), {0.45f, -0.4f}, {0.45f, 0.4f}, {-0.45f, 0.4f}}) {
     iron.rod({hub.x + foot.x, 8.0f, hub.z - 0.4f + foot.y}, hub + glm::vec3(0.1f * foot.x, -0.05f, -0.3f),
              0.022f, 6);
@@ -243,7 +246,7 @@ void add_swifts(SceneAssembly& assembly, std::uint64_t seed) {
 }
 
 void add_brazier(SceneAssembly& assembly, const CourtyardMaterials& m) {
-  MeshBuilder& iron = assembly.still(m.iron, kGarden);
+  MeshBuilder& iron = assembly.still(m.iron, kProps);
   iron.pen.placement = moved_to(kBrazier);
   const std::array<glm::vec2, 7> bowl{{{0, 0.42f},
                                        {0.18f, 0.44f},
@@ -260,7 +263,7 @@ void add_brazier(SceneAssembly& assembly, const CourtyardMaterials& m) {
   }
   iron.ring({0, 0.2f, 0}, {0, 1, 0}, 0.31f, 0.012f, 32, 6);
   iron.pen.placement = glm::mat4(1);
-  MeshBuilder& coals = assembly.still(m.ember, kGarden);
+  MeshBuilder& coals = assembly.still(m.ember, kProps);
   Random random(5, 23);  // the same coals whatever the seed
   for (int i = 0; i < 26; ++i) {
     const float angle = random.range(0, kTau);

@@ -66,7 +66,8 @@ Scene make_occluders(std::uint64_t seed) {
   MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(1024, seed + 2)));
   paving.pen.uv_per_metre = 1 / 2.4f;
   paving.patch({-12, 0, 12}, {24, 0, 0}, {0, 0, -15});
-  const int wood = assembly.add_surface("planks", plank_surface(512, seed + 4));
+  const int wood =
+      assembly.add_surface("planks", plank_surface(256, seed + 4), SceneAssembly::Detail::kColour);
   const int blue = assembly.add(plain_material("blue enamel", glm::vec3(0.05f, 0.16f, 0.42f), 0.3f));
   const int red = assembly.add(plain_material("red enamel", glm::vec3(0.60f, 0.06f, 0.04f), 0.3f));
   add_carousel(assembly, make_slat(assembly, wood), {3.4f, 6, 2}, 1.9f);

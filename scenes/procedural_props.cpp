@@ -105,10 +105,11 @@ int add_picture_material(SceneAssembly& assembly, const std::string& name, Textu
 }
 
 void add_poster_wall(SceneAssembly& assembly, float width, float height, float z, std::uint64_t seed) {
-  MeshBuilder& brick = assembly.still(assembly.add_surface("brick", brick_surface(1024, seed), 0.8f));
+  MeshBuilder& brick = assembly.still(assembly.add_surface("brick", brick_surface(512, seed)));
   brick.pen.uv_per_metre = 1 / 1.92f;
   brick.patch({-width / 2, 0.5f, z}, {width, 0, 0}, {0, height - 0.5f, 0});
-  MeshBuilder& stone = assembly.still(assembly.add_surface("stone", stone_surface(512, seed + 1)));
+  MeshBuilder& stone = assembly.still(
+      assembly.add_surface("stone", stone_surface(256, seed + 1), SceneAssembly::Detail::kColour));
   stone.box({-width / 2, 0, z - 0.2f}, {width / 2, 0.5f, z + 0.08f});
   stone.box({-width / 2, height, z - 0.3f}, {width / 2, height + 0.18f, z + 0.15f});
   const int materials[] = {

@@ -23,11 +23,14 @@ int SceneAssembly::add(Mesh mesh) {
   return static_cast<int>(scene.meshes.size()) - 1;
 }
 
-int SceneAssembly::add_surface(const std::string& name, const Surface& surface, float normal_strength) {
-  Material material = plain_material(name, glm::vec3(1), 1);
+int SceneAssembly::add_surface(const std::string& name, const Surface& surface, Detail detail) {
+  constexpr float kNormalStrength = 0.8f;
+  const bool own_roughness = detail == Detail::kReliefAndRoughness;
+  Material material = plain_material(name, glm::vec3(1), own_roughness ? 1 : surface.roughness.front());
   material.base_colour_texture.texture = add(colour_texture(surface));
-  material.normal_texture.texture = add(normal_texture(surface, normal_strength));
-  material.metallic_roughness_texture.texture = add(roughness_texture(surface));
+  if (detail != Detail::kColour)
+    material.normal_texture.texture = add(normal_texture(surface, kNormalStrength));
+  if (own_roughness) material.metallic_roughness_texture.texture = add(roughness_texture(surface));
   return add(std::move(material));
 }
 

@@ -21,8 +21,10 @@ class SceneAssembly {
   int add(Texture texture);  // the indices within the scene
   int add(Material material);
   int add(Mesh mesh);
-  // A rough dielectric with the colour, normal and roughness textures of a surface.
-  int add_surface(const std::string& name, const Surface& surface, float normal_strength = 1);
+  // A dielectric with the colour of a surface and, where asked for, its relief and its own roughness; each is
+  // a texture more to sample.
+  enum class Detail { kColour, kRelief, kReliefAndRoughness };
+  int add_surface(const std::string& name, const Surface& surface, Detail detail = Detail::kRelief);
 
   // What stands still is collected in one mesh per material and part of the scene; parts that lie apart let
   // the renderer leave out what is not seen, and the lamps that do not reach.
