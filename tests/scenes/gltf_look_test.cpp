@@ -108,6 +108,18 @@ TEST_F(GltfLook, ImagesFromEverywhere) {
   EXPECT_EQ(material.metallic_roughness_texture.texture, -1);
 }
 
+// Legal, and a decoder's trap: an IDAT chunk without data ahead of the real one.
+TEST_F(GltfLook, AnEmptyDataChunkInAPng) {
+  GltfFile file = textured({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  Bytes encoded = png(2, 1, kPixels);
+  const Bytes empty = {0, 0, 0, 0, 'I', 'D', 'A', 'T', 0x35, 0xaf, 0x06, 0x1e};
+  encoded.insert(encoded.begin() + 33, empty.begin(), empty.end());  // after signature and IHDR
+  file.root["images"][0] = {{"uri", "data:image/png;base64," + base64(encoded)}};
+  const Scene scene = load(file);
+  ASSERT_EQ(scene.textures.size(), 1u);
+  EXPECT_EQ(scene.textures[0].rgba, kPixels);
+}
+
 TEST_F(GltfLook, ATextureForColourAndForDataBecomesTwo) {
   const Scene scene =
       load(textured({{"pbrMetallicRoughness",
