@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "interop_fixture.h"
+#include "skip.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -50,7 +51,7 @@ constexpr std::array<Extent, 5> kOutputs = {Extent{1, 1}, Extent{7, 5}, Extent{2
                                             Extent{1279, 719}};
 
 TEST_F(PresentTest, HostMemoryInPlace) {
-  if (!device_->info().host_unified_memory) GTEST_SKIP() << "this device's memory is not the host's";
+  if (!device_->info().host_unified_memory) QUINCUNX_SKIP("this device's memory is not the host's");
   for (const Extent output : kOutputs)
     expect_exact(output, Transfer::kZeroCopy);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What GL holds arrives in OpenCL bit for bit, and nothing but the viewport moves.
 #include "interop_fixture.h"
+#include "skip.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -69,7 +70,7 @@ void RoundTripTest::expect_exact(const Case& c, Transfer transfer) {
 }
 
 TEST_F(RoundTripTest, HostMemoryInPlace) {
-  if (!device_->info().host_unified_memory) GTEST_SKIP() << "this device's memory is not the host's";
+  if (!device_->info().host_unified_memory) QUINCUNX_SKIP("this device's memory is not the host's");
   for (const Case& c : kCases)
     expect_exact(c, Transfer::kZeroCopy);
 }
