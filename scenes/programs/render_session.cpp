@@ -2,7 +2,6 @@
 #include "render_session.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
@@ -104,7 +103,6 @@ Status RenderSession::open_service() {
   auto bridge = gl::Bridge::create(*context_, *device_, bridging);
   if (!bridge.ok()) return bridge.status();
   bridge_ = std::move(bridge).value();
-  spdlog::info("interop: {} ({})", gl::name_of(bridge_->kind()), bridge_->reason());
 
   settings.storage = bridge_->storage();
   plan = plan_for(needs_of(scene_), settings);

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// What a user types: help, lists, and one clear sentence for each mistake.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "program_run.h"
+
+namespace quincunx {
+namespace {
+
+using testing::ProgramResult;
+using testing::run_program;
+
+class CommandLine : public ::testing::Test {
+ protected:
+  ProgramResult run(const std::string& arguments) { return run_program(folder_, arguments); }
+
+  // Fails with `code` and one line on stderr that holds `part`; nothing on stdout; no file but the two
+  // captures.
+  void expect_refused(const std::string& arguments, int code, const std::string& part) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, code) << arguments << "\n" << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << arguments << "\n" << result.err;
+    EXPECT_LE(std::count(result.err.begin(), result.err.end(), '\n'), 2) << result.err;
+    EXPECT_EQ(folder_.entries(), 2) << arguments;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(CommandLine, HelpHasExamples) {
+  const ProgramResult result = run("--help");
+  EXPECT_EQ(result.exit_code, 0);
+  for (const char* part : {"Examples:", "--scene", "--scale-path", "--truth", "--explain", "--interop"}) {
+    EXPECT_NE(result.out.find(part), std::string::npos) << part;
+  }
+}
+
+TEST_F(CommandLine, VersionAndLists) {
+  EXPECT_EQ(run("--version").out.rfind("quincunx-render ", 0), 0u);
+  const ProgramResult scenes = run("--list-scenes");
+  EXPECT_EQ(scenes.exit_code, 0);
+  for (const char* name : {"chart", "pan", "wires", "wheel", "occluders"}) {
+    EXPECT_NE(scenes.out.find(name), std::string::npos) << name;
+  }
+  const ProgramResult devices = run("--list-devices");
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_NE(devices.out.find("OpenCL 0"), std::string::npos);
+  EXPECT_NE(devices.out.find("OpenGL"), std::string::npos);
+}
+
+TEST_F(CommandLine, ExplainPlansWithoutRendering) {
+  const ProgramResult moving = run("--explain --scene wheel");
+  EXPECT_EQ(moving.exit_code, 0) << moving.err;
+  EXPECT_NE(moving.out.find("WEIGHT=1"), std::string::npos) << moving.out;
+  const ProgramResult camera = run("--explain --scene pan");
+  EXPECT_NE(camera.out.find("WEIGHT=2"), std::string::npos) << camera.out;
+  EXPECT_NE(camera.out.find("velocity target"), std::string::npos);
+  const ProgramResult still = run("--explain --scene chart");
+  EXPECT_NE(still.out.find("WEIGHT=0"), std::string::npos) << still.out;
+}
+
+TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
+  expect_refused("--no-such-option", 2, "--no-such-option");
+  expect_refused("--output 1280", 2, "WIDTHxHEIGHT");
+  expect_refused("--output 0x720", 2, "WIDTHxHEIGHT");
+  expect_refused("--scale abc --out '{}/a.png'", 2, "abc");
+  expect_refused("--scale 0 --out '{}/a.png'", 2, "scale");
+  expect_refused("--scale 3 --out '{}/a.png'", 2, "scale");
+  expect_refused("--scale-path zigzag --out '{}/a.png'", 2, "zigzag");
+  expect_refused("--scale 0.5 --scale-path sweep", 2, "--scale");
+  expect_refused("--method magic", 2, "magic");
+  expect_refused("--frames 0", 2, "--frames");
+  expect_refused("--fps -3", 2, "--fps");
+  expect_refused("--shutter 0.5", 2, "--truth");
+  expect_refused("--frames 2 --out '{}/same.png'", 2, "same.png");
+  expect_refused("--out '{}/frame.jpg'", 2, ".jpg");
+  expect_refused("--scene nowhere", 2, "nowhere");
+  expect_refused("--scene chart --device none-such", 2, "none-such");
+  expect_refused("--exr-frame 5 --frames 2 --out '{}/f.%d.png'", 2, "--exr-frame");
+}
+
+TEST_F(CommandLine, BadSceneFilesAreExitOneAndOneSentence) {
+  expect_refused("--scene '{}/missing.gltf'", 1, "missing.gltf");
+  expect_refused("--scene /dev/null.glb", 1, "/dev/null.glb");
+}
+
+TEST_F(CommandLine, AFolderThatCannotBeWrittenIsAnError) {
+  const ProgramResult result = run("-q --output 32x32 --scene chart --out /proc/none/a.png");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("/proc/none"), std::string::npos) << result.err;
+}
+
+}  // namespace
+}  // namespace quincunx

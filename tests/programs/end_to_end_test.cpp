@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// From scene to file: invariants of whole frames.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "program_run.h"
+#include "tools/image_io.h"
+
+namespace quincunx {
+namespace {
+
+using testing::ProgramResult;
+using testing::read_file;
+using testing::run_program;
+
+class EndToEnd : public ::testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return folder_.file(name); }
+
+  void render(const std::string& arguments) {
+    const ProgramResult result = run_program(folder_, "-q --output 160x90 " + arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "") << "quiet means quiet";
+  }
+
+  tools::LoadedImage image(const std::string& name) const {
+    auto loaded = tools::read_image(path(name));
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded.value();
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(EndToEnd, AStillSceneIsBitStableFromFrameThree) {
+  render("--scene chart --scale 0.71 --frames 7 --out '{}/f.%04d.exr'");
+  const auto third = image("f.0002.exr").pixels;
+  for (int index = 3; index < 7; ++index) {
+    EXPECT_EQ(image("f.000" + std::to_string(index) + ".exr").pixels, third) << "frame " << index;
+  }
+  EXPECT_NE(image("f.0000.exr").pixels, third) << "the second frame must add something";
+}
+
+TEST_F(EndToEnd, ScaleOneWithoutJitterIsTheIdentity) {
+  for (const std::string method : {"point", "bilinear", "quincunx"}) {
+    render("--scene chart --scale 1 --jitter none --frames 3 --exr-frame 2 --method " + method +
+           " --out '{}/f.%04d.png'");
+    const auto drawn = image("frame_0002_targets.exr");
+    const auto resolved = image("frame_0002_resolved.exr");
+    ASSERT_EQ(drawn.extent, resolved.extent);
+    for (const char* name : {"R", "G", "B", "A"}) {
+      const int from = drawn.channel(name);
+      const int to = resolved.channel(name);
+      ASSERT_GE(from, 0);
+      ASSERT_GE(to, 0);
+      for (int y = 0; y < drawn.extent.height; ++y) {
+        for (int x = 0; x < drawn.extent.width; ++x)
+          ASSERT_EQ(drawn.at(x, y, from), resolved.at(x, y, to)) << method;
+      }
+    }
+  }
+}
+
+TEST_F(EndToEnd, TwoRunsAgreeBitForBit) {
+  const std::string arguments = "--scene particles --scale-path random --seed 7 --frames 6 --out ";
+  render(arguments + "'{}/a.%04d.png'");
+  render(arguments + "'{}/b.%04d.png'");
+  render(arguments + "'{}/c.%04d.png' --no-overlap");
+  for (int index = 0; index < 6; ++index) {
+    const std::string number = ".000" + std::to_string(index) + ".png";
+    EXPECT_EQ(image("a" + number).pixels, image("b" + number).pixels) << index;
+    EXPECT_EQ(image("a" + number).pixels, image("c" + number).pixels)
+        << index << ": overlap must not change a pixel";
+  }
+}
+
+TEST_F(EndToEnd, TheTargetFileHoldsEveryChannel) {
+  render("--scene occluders --scale 0.5 --frames 2 --exr-frame 1 --out '{}/f.%04d.png'");
+  const auto targets = image("frame_0001_targets.exr");
+  EXPECT_EQ(targets.extent, (Extent{80, 45 + 1}));  // the ladder keeps the output's parity: 90 - 2k
+  for (const char* name : {"R", "G", "B", "A", "Z", "backward.u", "backward.v"}) {
+    EXPECT_GE(targets.channel(name), 0) << name;
+  }
+  for (const float value : targets.pixels)
+    ASSERT_TRUE(std::isfinite(value));
+  for (const char* name : {"quincunx:jitter", "quincunx:renderSize", "quincunx:outputSize", "quincunx:near",
+                           "quincunx:frameIndex", "worldToCamera", "worldToNDC"}) {
+    EXPECT_NE(targets.attribute(name), nullptr) << name;
+  }
+  EXPECT_EQ(std::get<Vec2>(targets.attribute("quincunx:jitter")->value), (Vec2{0.25f, 0.25f}));
+}
+
+// The two-frame resolve must come closer to supersampled truth than one bilinear frame on a still scene.
+TEST_F(EndToEnd, QuincunxIsCloserToTruthThanBilinear) {
+  render("--scene chart --scale 0.71 --frames 4 --method quincunx --out '{}/q.%04d.exr'");
+  render("--scene chart --scale 0.71 --frames 1 --method bilinear --out '{}/b.exr'");
+  render("--scene chart --truth 6 --out '{}/t.exr'");
+  const auto truth = image("t.exr").pixels;
+  const auto error = [&](const std::vector<float>& pixels) {
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const double difference = std::clamp(pixels[i], 0.0f, 1.0f) - std::clamp(truth[i], 0.0f, 1.0f);
+      sum += difference * difference;
+    }
+    return sum / static_cast<double>(pixels.size());
+  };
+  const double quincunx = error(image("q.0003.exr").pixels);
+  const double bilinear = error(image("b.exr").pixels);
+  EXPECT_LT(quincunx, bilinear);
+  RecordProperty("quincunx_mse", std::to_string(quincunx));
+  RecordProperty("bilinear_mse", std::to_string(bilinear));
+}
+
+TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
+  render("--scene wheel --scale-path ramp:0.4,1.2 --frames 9 --report '{}/report'");
+  const std::string text = read_file(path("report.txt"));
+  for (const char* part : {"resolve_quincunx", "present", "llvmpipe", "copy", "wheel", "ramp:0.4,1.2"}) {
+    if (std::string(part) == "llvmpipe") continue;  // another renderer is as good
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+  const auto json = nlohmann::json::parse(read_file(path("report.json")));
+  ASSERT_EQ(json.at("frames").size(), 9u);
+  EXPECT_EQ(json.at("seed"), 0);
+  const std::string dumped = json.dump();
+  EXPECT_NE(dumped.find("192"), std::string::npos) << "the last viewport is 192 wide";
+}
+
+TEST_F(EndToEnd, ContactSheetAndJson) {
+  const ProgramResult result = run_program(
+      folder_, "--output 160x90 --scene pan --frames 5 --json --contact-sheet '{}/sheet.png' 2>/dev/null");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(nlohmann::json::parse(result.out).at("frames").size(), 5u) << "stdout is JSON and nothing else";
+  EXPECT_GT(image("sheet.png").extent.width, 160);
+}
+
+TEST_F(EndToEnd, ShutterBlursWhatMoves) {
+  render("--scene occluders --truth 4 --out '{}/sharp.exr'");
+  render("--scene occluders --truth 4 --shutter 1 --out '{}/blurred.exr'");
+  render("--scene chart --truth 4 --out '{}/still.exr'");
+  render("--scene chart --truth 4 --shutter 1 --out '{}/still_blurred.exr'");
+  EXPECT_NE(image("sharp.exr").pixels, image("blurred.exr").pixels);
+  EXPECT_EQ(image("still.exr").pixels, image("still_blurred.exr").pixels) << "nothing moves on the chart";
+}
+
+}  // namespace
+}  // namespace quincunx

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "frame_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace quincunx::scenes {
+namespace {
+
+SequenceSettings settings(const std::string& path = "sweep") {
+  SequenceSettings result;
+  result.output = {1280, 720};
+  result.scale_path = ScalePath::parse(path, 0).value();
+  result.jitter = Jitter::kQuincunx;
+  result.frames = 240;
+  return result;
+}
+
+TEST(FrameSequence, TimeGoesByTheFrameRate) {
+  FrameSequence sequence = FrameSequence::create(settings()).value();
+  EXPECT_DOUBLE_EQ(sequence.at(0).seconds, 0);
+  EXPECT_DOUBLE_EQ(sequence.at(30).seconds, 0.5);
+  EXPECT_DOUBLE_EQ(sequence.at(30).previous_seconds, 29.0 / 60);
+  EXPECT_DOUBLE_EQ(sequence.at(0).previous_seconds, -1.0 / 60);
+}
+
+TEST(FrameSequence, AViewportOfTheLadderAndTheAspectOfThePicture) {
+  FrameSequence sequence = FrameSequence::create(settings()).value();
+  EXPECT_EQ(sequence.at(0).render, (Extent{640, 360}));
+  EXPECT_EQ(sequence.at(239).render, (Extent{908, 512}));
+  EXPECT_FLOAT_EQ(sequence.at(239).aspect, 1280.0f / 720);
+  EXPECT_EQ(sequence.target(), (Extent{1280, 720}));
+  EXPECT_EQ(FrameSequence::create(settings("ramp:0.5,1.5")).value().target(), (Extent{1920, 1080}));
+}
+
+TEST(FrameSequence, QuincunxJitterIsSymmetricAndAlternates) {
+  for (std::int64_t index = 0; index < 10; ++index) {
+    const Vec2 now = jitter_of(Jitter::kQuincunx, index, {1, 1});
+    const Vec2 next = jitter_of(Jitter::kQuincunx, index + 1, {1, 1});
+    EXPECT_EQ(now.x + next.x, 0);
+    EXPECT_EQ(std::abs(now.x - next.x), 0.5f) << "half a pixel apart";
+    EXPECT_EQ(now.x, now.y);
+  }
+}
+
+TEST(FrameSequence, HaltonHasZeroMeanAndEnoughPhases) {
+  for (const float scale : {1.0f, 0.71f, 0.5f, 0.33f}) {
+    const int phases = static_cast<int>(std::ceil(8 / (static_cast<double>(scale) * scale)));
+    double x = 0;
+    double y = 0;
+    for (int i = 0; i < phases; ++i) {
+      const Vec2 jitter = jitter_of(Jitter::kHalton, i, {scale, scale});
+      EXPECT_LE(std::abs(jitter.x), 0.6f);
+      EXPECT_LE(std::abs(jitter.y), 0.6f);
+      for (int k = 0; k < i; ++k)
+        EXPECT_NE(jitter, jitter_of(Jitter::kHalton, k, {scale, scale}));
+      x += jitter.x;
+      y += jitter.y;
+    }
+    EXPECT_NEAR(x, 0, 1e-4);
+    EXPECT_NEAR(y, 0, 1e-4);
+    EXPECT_EQ(jitter_of(Jitter::kHalton, 0, {scale, scale}),
+              jitter_of(Jitter::kHalton, phases, {scale, scale}));
+  }
+}
+
+TEST(FrameSequence, BadSettingsAreNamed) {
+  const auto message = [](SequenceSettings bad) { return FrameSequence::create(bad).status().message(); };
+  SequenceSettings bad = settings();
+  bad.frames = 0;
+  EXPECT_NE(message(bad).find("frames"), std::string::npos);
+  bad = settings();
+  bad.fps = 0;
+  EXPECT_NE(message(bad).find("fps"), std::string::npos);
+  bad = settings();
+  bad.output = {0, 0};
+  EXPECT_NE(message(bad).find("output"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace quincunx::scenes

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Runs quincunx-render and gives back what a user would see.
+#pragma once
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tools/temporary_folder.h"
+
+namespace quincunx::testing {
+
+struct ProgramResult {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+inline std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// `arguments` go through a shell; "{}/" in them is the folder.
+inline ProgramResult run_program(const TemporaryFolder& folder, std::string arguments) {
+  for (std::size_t at; (at = arguments.find("{}/")) != std::string::npos;) {
+    arguments.replace(at, 3, folder.file(""));
+  }
+  const std::string out = folder.file("stdout");
+  const std::string err = folder.file("stderr");
+  const int status =
+      std::system(fmt::format("{} {} >'{}' 2>'{}'", QUINCUNX_RENDER, arguments, out, err).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
+}
+
+}  // namespace quincunx::testing
