@@ -7,7 +7,8 @@
 //   axes0, axes1       in   AxisTap of each output column, then row, for each frame's viewport and jitter
 //   colour0, colour1   in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
 //   motion0, motion1   in   WEIGHT 1: RG16F or RG32F velocity; WEIGHT 2: R32F depth; same viewports; the nearest sample
-//   reactive0          in   R8 of frame n, the nearest sample; 0 trusts the previous frame, 1 ignores it
+//                           WEIGHT 0: not read
+//   reactive0          in   REACTIVE 1: R8 of frame n, the nearest sample; 0 trusts the previous frame, 1 ignores it
 //   output             out  RGBA32F or RGBA16F, output extent
 //   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
 // Options: WEIGHT    1 velocity target (default) | 2 velocity from depth and camera | 0 plain mean: nothing moves
@@ -50,7 +51,8 @@ static inline int4 non_finite_motion(float8 velocity) {
 }
 
 // K |v|^2 of four pixels from their velocities.
-static inline float4 speed_of(float8 velocity, float scale_x, float scale_y) {
+static inline float4 speed_of(float8 velocity, int4 column, int row, const CameraVelocity* camera, float scale_x,
+                              float scale_y) {
   const float8 scaled = velocity * (float8)(scale_x, scale_y, scale_x, scale_y, scale_x, scale_y, scale_x, scale_y);
   const float8 squared = scaled * scaled;
   return squared.even + squared.odd;
@@ -75,66 +77,84 @@ static inline float4 speed_of(float4 depth, int4 column, int row, const CameraVe
 }
 #endif
 
-__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* restrict axes0,
-                               __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
-#if WEIGHT != 0
-                               MOTION_TEXELS motion0, MOTION_TEXELS motion1,
+static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
+  FourPixels mean;
+  mean.p0 = c0.p0 * (1.0f - share.s0) + c1.p0 * share.s0;
+  mean.p1 = c0.p1 * (1.0f - share.s1) + c1.p1 * share.s1;
+  mean.p2 = c0.p2 * (1.0f - share.s2) + c1.p2 * share.s2;
+  mean.p3 = c0.p3 * (1.0f - share.s3) + c1.p3 * share.s3;
+  return mean;
+}
+
+// Pixels first to end of row y. The fast way (`careful` false) returns the largest magnitudes it met; the plain one
+// is right for NaN and Inf as well and adds the pixels that met them to *met.
+__attribute__((always_inline)) static inline int4 resolve_row(
+    bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* restrict axes0,
+    __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, MOTION_TEXELS motion0,
+    MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output, uint* met) {
+  const SourceFrame frame0 = params->frame0;
+  const SourceFrame frame1 = params->frame1;
+  const AxisTap row0 = axes0[params->row_axis + y];
+  const AxisTap row1 = axes1[params->row_axis + y];
+  int4 largest = 0;
+  for (int x = first; x < end; x += kBlock) {
+    uint bits0;
+    uint bits1;
+    const FourPixels c0 =
+        sample_four(careful, colour0, frame0.colour, frame0.width, frame0.height, axes0 + x, row0, &bits0);
+    const FourPixels c1 =
+        sample_four(careful, colour1, frame1.colour, frame1.width, frame1.height, axes1 + x, row1, &bits1);
+
+    float4 trust = 1.0f;
+    float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)
+#if WEIGHT != 0 || REACTIVE
+    const int4 nearest0 = nearest_of(axes0 + x);
 #endif
 #if REACTIVE
-                               REACTIVE_TEXELS reactive0,
+    trust -= load_reactive4(reactive0, frame0.reactive, nearest0, row0.nearest);
 #endif
+#if WEIGHT != 0
+    const int4 nearest1 = nearest_of(axes1 + x);
+    const MOTION_VALUES input0 = load_motion4(motion0, frame0.velocity, nearest0, row0.nearest);
+    const MOTION_VALUES input1 = load_motion4(motion1, frame1.velocity, nearest1, row1.nearest);
+    speed = speed_of(input0, nearest0, row0.nearest, &params->camera0, params->velocity0_scale_x,
+                     params->velocity0_scale_y) +
+            speed_of(input1, nearest1, row1.nearest, &params->camera1, params->velocity1_scale_x,
+                     params->velocity1_scale_y);
+#endif
+    // share = f / (1 + f), and so 1 - share = 1 / (1 + f).
+    float4 share = trust / (1.0f + trust + speed);
+    if (careful) {
+#if WEIGHT != 0
+      // Too fast for a float, or not finite to begin with: either way the previous frame has no weight.
+      share = select(share, 0.0f, non_finite_lanes(speed));
+      bits0 |= lane_bits(non_finite_motion(input0) | non_finite_motion(input1));
+#endif
+      share = select(share, 0.0f, (int4)((int)bits1) << (int4)(31, 30, 29, 28));
+      *met += count_bits(bits0 | bits1, end - x);
+    }
+    const FourPixels mean = blend(c0, c1, share);
+    largest = larger_magnitude(largest_of(largest, mean), speed);
+    store_four(output, params->output, x, y, end, mean);
+  }
+  return largest;
+}
+
+__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* restrict axes0,
+                               __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
+                               MOTION_TEXELS motion0, MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0,
                                OUTPUT_TEXELS output, __global uint* restrict non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
 
   const int end = min(first + params.columns_per_item, params.output_width);
-  const AxisTap row0 = axes0[params.row_axis + y];
-  const AxisTap row1 = axes1[params.row_axis + y];
-  for (int x = first; x < end; x += kBlock) {
-    uint met0;
-    uint met1;
-    FourPixels c0 = sample_four(colour0, params.frame0.colour, params.frame0.width, params.frame0.height, axes0 + x, row0,
-                                &met0);
-    const FourPixels c1 = sample_four(colour1, params.frame1.colour, params.frame1.width, params.frame1.height, axes1 + x,
-                                      row1, &met1);
-#if WEIGHT != 0 || REACTIVE
-    const int4 nearest0 = nearest_of(axes0 + x);
-#endif
-
-    float4 trust = 1.0f;
-    float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)
-#if REACTIVE
-    trust -= load_reactive4(reactive0, params.frame0.reactive, nearest0, row0.nearest);
-#endif
-#if WEIGHT != 0
-    const int4 nearest1 = nearest_of(axes1 + x);
-    const MOTION_VALUES input0 = load_motion4(motion0, params.frame0.velocity, nearest0, row0.nearest);
-    const MOTION_VALUES input1 = load_motion4(motion1, params.frame1.velocity, nearest1, row1.nearest);
-#endif
-#if WEIGHT == 1
-    speed = speed_of(input0, params.velocity0_scale_x, params.velocity0_scale_y) +
-            speed_of(input1, params.velocity1_scale_x, params.velocity1_scale_y);
-#elif WEIGHT == 2
-    speed = speed_of(input0, nearest0, row0.nearest, &params.camera0, params.velocity0_scale_x, params.velocity0_scale_y) +
-            speed_of(input1, nearest1, row1.nearest, &params.camera1, params.velocity1_scale_x, params.velocity1_scale_y);
-#endif
-
-    // share = f / (1 + f), and so 1 - share = 1 / (1 + f).
-    float4 share = trust / (1.0f + trust + speed);
-#if WEIGHT != 0
-    if (any_non_finite4(speed)) {
-      // Too fast for a float, or not finite to begin with: either way the previous frame has no weight.
-      share = select(share, 0.0f, non_finite_lanes(speed));
-      met0 |= lane_bits(non_finite_motion(input0) | non_finite_motion(input1));
-    }
-#endif
-    if (met1) share = select(share, 0.0f, (int4)(met1) << (int4)(31, 30, 29, 28));
-    if (met0 | met1) count_pixels(non_finite + params.counter, met0 | met1, params.output_width - x);
-    c0.p0 = c0.p0 * (1.0f - share.s0) + c1.p0 * share.s0;
-    c0.p1 = c0.p1 * (1.0f - share.s1) + c1.p1 * share.s1;
-    c0.p2 = c0.p2 * (1.0f - share.s2) + c1.p2 * share.s2;
-    c0.p3 = c0.p3 * (1.0f - share.s3) + c1.p3 * share.s3;
-    store_four(output, params.output, x, y, params.output_width, c0);
+  uint met = 0;
+  if (min(params.frame0.width, params.frame1.width) > 1) {
+    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, motion0, motion1,
+                                     reactive0, output, &met);
+    if (!any_reached_infinity(largest)) return;
   }
+  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, motion0, motion1, reactive0, output, &met);
+  if (met) atomic_add(non_finite + params.counter, met);
 }

@@ -18,11 +18,25 @@ __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* r
 
   const int end = min(first + params.columns_per_item, params.output_width);
   const AxisTap row = axes[params.row_axis + y];
-  for (int x = first; x < end; x += kBlock) {
-    uint met;
-    const FourPixels colour =
-        sample_four(source, params.source, params.source_width, params.source_height, axes + x, row, &met);
-    if (met) count_pixels(non_finite + params.counter, met, params.output_width - x);
-    store_four(output, params.output, x, y, params.output_width, colour);
+  uint bits;
+  int4 largest = params.source_width > 1 ? 0 : NON_FINITE_BITS;
+  if (params.source_width > 1) {
+    for (int x = first; x < end; x += kBlock) {
+      const FourPixels colour = sample_four(false, source, params.source, params.source_width, params.source_height,
+                                            axes + x, row, &bits);
+      largest = largest_of(largest, colour);
+      store_four(output, params.output, x, y, end, colour);
+    }
   }
+  if (!any_reached_infinity(largest)) return;
+
+  // Rare: once more, the plain way.
+  uint met = 0;
+  for (int x = first; x < end; x += kBlock) {
+    const FourPixels colour = sample_four(true, source, params.source, params.source_width, params.source_height,
+                                          axes + x, row, &bits);
+    met += count_bits(bits, end - x);
+    store_four(output, params.output, x, y, end, colour);
+  }
+  if (met) atomic_add(non_finite + params.counter, met);
 }

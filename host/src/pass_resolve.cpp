@@ -105,11 +105,11 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   kernel_.setArg(index++, tables.get(queue, previous.render, previous.jitter));
   set_memory(kernel_, index++, current.colour.memory);
   set_memory(kernel_, index++, previous.colour.memory);
-  if (velocity_ != VelocitySource::kNone) {
-    set_memory(kernel_, index++, motion_of(current, velocity_).memory);
-    set_memory(kernel_, index++, motion_of(previous, velocity_).memory);
-  }
-  if (reads_reactive_) set_memory(kernel_, index++, current.reactive.memory);
+  // What a variant does not read may be any image or buffer.
+  const bool reads_motion = velocity_ != VelocitySource::kNone;
+  set_memory(kernel_, index++, (reads_motion ? motion_of(current, velocity_) : current.colour).memory);
+  set_memory(kernel_, index++, (reads_motion ? motion_of(previous, velocity_) : previous.colour).memory);
+  set_memory(kernel_, index++, (reads_reactive_ ? current.reactive : current.colour).memory);
   set_memory(kernel_, index++, output.memory);
   set_memory(kernel_, index++, counter.memory);
   enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);

@@ -30,37 +30,45 @@ static inline float4 sample_careful(COLOUR_TEXELS texels, TexelLayout layout, in
                     column, row);
 }
 
-// The fast way: a viewport at least two texels wide, all taps finite.
+// The fast way: a viewport at least two texels wide, all taps finite. NaN and Inf pass through any weight, 0 * Inf being
+// NaN: all taps are finite if the mean is.
 static inline float4 sample_finite(COLOUR_TEXELS texels, COLOUR_ROW upper, COLOUR_ROW lower, AxisTap column,
                                    AxisTap row) {
   return weigh_taps(load_colour_pair(texels, upper, column.base), load_colour_pair(texels, lower, column.base), column,
                     row);
 }
 
-// The four pixels whose columns start at `columns`. Bit i of *non_finite: pixel i met NaN or Inf.
-static inline FourPixels sample_four(COLOUR_TEXELS texels, TexelLayout layout, int width, int height,
-                                     __global const AxisTap* restrict columns, AxisTap row, uint* non_finite) {
+// The four pixels whose columns start at `columns`. `careful`, a constant, chooses the way; the plain one sets bit i of
+// *non_finite where pixel i met NaN or Inf.
+__attribute__((always_inline)) static inline FourPixels sample_four(bool careful, COLOUR_TEXELS texels,
+                                                                    TexelLayout layout, int width, int height,
+                                                                    __global const AxisTap* restrict columns,
+                                                                    AxisTap row, uint* non_finite) {
   FourPixels mean;
-  *non_finite = 0;
-  if (width > 1) {
+  if (careful) {
+    bool met0, met1, met2, met3;
+    mean.p0 = sample_careful(texels, layout, width, height, columns[0], row, &met0);
+    mean.p1 = sample_careful(texels, layout, width, height, columns[1], row, &met1);
+    mean.p2 = sample_careful(texels, layout, width, height, columns[2], row, &met2);
+    mean.p3 = sample_careful(texels, layout, width, height, columns[3], row, &met3);
+    *non_finite = (uint)met0 | (uint)met1 << 1 | (uint)met2 << 2 | (uint)met3 << 3;
+  } else {
     COLOUR_ROW upper = colour_row(texels, layout, row.base);
     COLOUR_ROW lower = colour_row(texels, layout, min(row.base + 1, height - 1));
     mean.p0 = sample_finite(texels, upper, lower, columns[0], row);
     mean.p1 = sample_finite(texels, upper, lower, columns[1], row);
     mean.p2 = sample_finite(texels, upper, lower, columns[2], row);
     mean.p3 = sample_finite(texels, upper, lower, columns[3], row);
-    // NaN and Inf pass through any weight, 0 * Inf being NaN: all taps are finite if the means are.
-    if (!any_non_finite4x4(mean.p0, mean.p1, mean.p2, mean.p3)) return mean;
   }
-  float4 careful[kBlock];
-  for (int i = 0; i < kBlock; ++i) {
-    bool met;
-    careful[i] = sample_careful(texels, layout, width, height, columns[i], row, &met);
-    *non_finite |= met ? 1u << i : 0u;
-  }
-  mean.p0 = careful[0];
-  mean.p1 = careful[1];
-  mean.p2 = careful[2];
-  mean.p3 = careful[3];
   return mean;
+}
+
+static inline int4 largest_of(int4 largest, FourPixels pixels) {
+  largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
+  return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
+}
+
+// How many of four bits belong to the first `count` pixels.
+static inline uint count_bits(uint bits, int count) {
+  return popcount(bits & ((1u << min(count, (int)kBlock)) - 1u));
 }

@@ -170,16 +170,16 @@ typedef struct FourPixels {
   float4 p0, p1, p2, p3;
 } FourPixels;
 
-// Those of four pixels, from x on, that lie inside `width`.
-static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int width, FourPixels pixels) {
+// Those of four pixels, from x on, that lie before `end`.
+static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int end, FourPixels pixels) {
   store_output(texels, layout, x, y, pixels.p0);
-  if (x + 3 < width) {
+  if (x + 3 < end) {
     store_output(texels, layout, x + 1, y, pixels.p1);
     store_output(texels, layout, x + 2, y, pixels.p2);
     store_output(texels, layout, x + 3, y, pixels.p3);
   } else {
-    if (x + 1 < width) store_output(texels, layout, x + 1, y, pixels.p1);
-    if (x + 2 < width) store_output(texels, layout, x + 2, y, pixels.p2);
+    if (x + 1 < end) store_output(texels, layout, x + 1, y, pixels.p1);
+    if (x + 2 < end) store_output(texels, layout, x + 2, y, pixels.p2);
   }
 }
 
