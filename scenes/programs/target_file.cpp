@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "target_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 #include <glm/gtc/type_ptr.hpp>
