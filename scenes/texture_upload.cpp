@@ -73,14 +73,15 @@ float coverage(const Level& level, float cutoff, float scale) {
   return static_cast<float>(passing) / static_cast<float>(level.texels.size());
 }
 
-// The scale of alpha with which a level covers as much as level 0 does.
+// The scale of alpha with which a level covers as much as level 0 does, as nearly as its texels allow.
 float alpha_scale(const Level& level, float cutoff, float wanted) {
   float low = 0, high = 8;
   for (int i = 0; i < kBisections; ++i) {
     const float middle = 0.5f * (low + high);
     (coverage(level, cutoff, middle) < wanted ? low : high) = middle;
   }
-  return high;
+  const float above = coverage(level, cutoff, high) - wanted;
+  return above <= wanted - coverage(level, cutoff, low) ? high : low;
 }
 
 void upload_level(GLuint name, int index, const Level& level, float scale, bool srgb) {
