@@ -29,7 +29,8 @@ unsigned half_bits(float value) {
 
 unsigned unorm8(float value) {
   if (!(value > 0)) return 0;
-  return static_cast<unsigned>(std::min(value, 1.0f) * 255.0f + 0.5f);
+  // In double: a float product may itself round up to the next half code.
+  return static_cast<unsigned>(std::min(static_cast<double>(value), 1.0) * 255 + 0.5);
 }
 
 }  // namespace

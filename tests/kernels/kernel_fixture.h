@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// What the kernel tests share: one device, frames on it with their reference twins, comparisons.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "../reference/passes.h"
+#include "axis_table.h"
+#include "pass_common.h"
+#include "quincunx/device.h"
+#include "quincunx/frame.h"
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx::testing {
+
+using reference::Pixel;
+
+const Device& device();  // the first one; opened once. Ends the program where there is none.
+const Device::Impl& impl();
+
+// The value that `format` holds for `value`.
+double stored_value(PixelFormat format, double value);
+std::size_t channel_count(PixelFormat format);
+std::vector<unsigned char> encode(PixelFormat format, const std::vector<Pixel>& pixels);
+std::vector<Pixel> decode(PixelFormat format, const std::vector<unsigned char>& bytes);
+
+// Owns the images of a test. Buffers have an offset, a pitch and rows beyond what is used; `outside` fills
+// what lies around the rectangle.
+class Rig {
+ public:
+  ImageView image(PixelFormat format, Storage storage, Extent used, const std::vector<Pixel>& pixels,
+                  double outside);
+  ImageView output(PixelFormat format, Extent extent, Storage storage = Storage::kBuffer);  // filled with -7
+  std::vector<unsigned char> bytes(const ImageView& view, Extent extent) const;
+  std::vector<Pixel> pixels(const ImageView& view, Extent extent) const;
+
+  Counter counter();  // zeroed
+  std::int64_t count(Counter counter) const;
+
+ private:
+  std::vector<Image> images_;
+  std::vector<cl::Buffer> buffers_;
+};
+
+enum class Pattern { kImpulse, kConstant, kRamp, kNoise, kExtremes, kNonFinite };
+const std::vector<Pattern>& all_patterns();
+std::vector<Pixel> pattern_pixels(Pattern pattern, Extent extent, unsigned seed);
+const char* name_of(Pattern pattern);
+
+struct FrameFormats {
+  Storage storage = Storage::kBuffer;
+  PixelFormat colour = PixelFormat::kRGBA16F;
+  PixelFormat velocity = PixelFormat::kRG16F;
+  bool with_velocity = false;
+  bool with_depth = false;
+  bool with_reactive = false;
+};
+
+struct FrameSpec {
+  Extent render;
+  Vec2 jitter = {};
+  Pattern colour = Pattern::kNoise;
+  Pattern velocity = Pattern::kNoise;
+  unsigned seed = 1;
+  double outside = 0;
+};
+
+// A frame for a pass and the same frame for its reference.
+struct TestFrame {
+  FrameInputs inputs;
+  reference::Frame reference;
+};
+
+TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec);
+TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec,
+                     const std::vector<Pixel>& colour);
+
+// The rendered extent at a scale: at least one pixel.
+Extent scaled(Extent output, double scale_x, double scale_y);
+
+// Every channel within bound(pixel index) of the reference, and all finite.
+void expect_close(const reference::Picture& expected, const std::vector<Pixel>& actual,
+                  const std::function<double(std::size_t)>& bound, const std::string& what);
+
+// What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal.
+double output_rounding(PixelFormat format, double magnitude);
+
+}  // namespace quincunx::testing

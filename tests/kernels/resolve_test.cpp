@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "kernel_fixture.h"
+#include "pass_resolve.h"
+#include "pass_scale.h"
+
+namespace quincunx {
+namespace {
+
+using testing::FrameFormats;
+using testing::FrameSpec;
+using testing::Pattern;
+using testing::Pixel;
+using testing::Rig;
+using testing::TestFrame;
+
+// Two bilinear samples (8 * 2^-24 of the largest tap, see scale_test.cpp), a share of the previous frame that
+// five operations and a division of 2.5 ulp leave within 16 * 2^-24, which weighs a difference of at most
+// twice the largest tap, and three operations more.
+constexpr double kResolveError = (8 + 2 * 16 + 4) * 0x1p-24;
+// Velocity from depth is a difference of two ndc of about 1, each off by some 8 * 2^-24, times half the
+// output's width; f changes by at most .65 of the change of |v| in pixels, on a difference of at most twice
+// the largest tap.
+constexpr double kCameraErrorPerPixel = 2 * 8 * 0x1p-24 / 2 * .65 * 2;
+constexpr double kDenormal = 0x1p-126;
+
+struct Variant {
+  VelocitySource velocity;
+  bool reactive;
+  Storage storage;
+  PixelFormat colour;
+  PixelFormat velocity_format;
+  PixelFormat resolved;
+};
+
+// A turn and a step forward: uv change over the picture and with depth.
+constexpr std::array<float, 16> kCameraStep = {1.0f,  0.01f,  0, 0.02f, -0.01f, 1.0f,   0, 0.005f,
+                                               0.03f, -0.02f, 1, 0.01f, 0.004f, 0.006f, 0, 1.0f};
+
+class Resolve : public ::testing::TestWithParam<Variant> {
+ protected:
+  Resolve() {
+    const Variant& v = GetParam();
+    plan_.settings = {
+        .colour = v.colour, .velocity = v.velocity_format, .resolved = v.resolved, .storage = v.storage};
+    plan_.velocity = v.velocity;
+    plan_.reads_depth = v.velocity == VelocitySource::kCamera;
+    plan_.reads_reactive = v.reactive;
+    formats_ = {.storage = v.storage,
+                .colour = v.colour,
+                .velocity = v.velocity_format,
+                .with_velocity = v.velocity == VelocitySource::kTarget,
+                .with_depth = v.velocity == VelocitySource::kCamera,
+                .with_reactive = v.reactive};
+    pass_ = std::make_unique<ResolvePass>(testing::impl(), plan_);
+  }
+
+  struct Run {
+    std::vector<unsigned char> bytes;
+    std::vector<Pixel> pixels;
+    std::int64_t non_finite = 0;
+  };
+
+  template <typename Enqueue>
+  Run run(Rig& rig, Extent output, Enqueue enqueue) {
+    AxisTables tables(testing::impl(), output);
+    const ImageView view = rig.output(plan_.settings.resolved, output);
+    const Counter counter = rig.counter();
+    enqueue(tables, view, counter);
+    Run result{rig.bytes(view, output), {}, 0};
+    result.pixels = testing::decode(plan_.settings.resolved, result.bytes);
+    result.non_finite = rig.count(counter);
+    return result;
+  }
+
+  Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
+    return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
+      pass_->enqueue(testing::impl().queue, tables, current.inputs, previous.inputs, view, counter, nullptr);
+    });
+  }
+
+  Run bilinear(Rig& rig, const TestFrame& current, Extent output) {
+    ScalePass scale(testing::impl(), Method::kBilinear, plan_.settings);
+    return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
+      scale.enqueue(testing::impl().queue, tables, current.inputs, view, counter, nullptr);
+    });
+  }
+
+  TestFrame frame(Rig& rig, const FrameSpec& spec) { return with_motion(make_frame(rig, formats_, spec)); }
+
+  TestFrame with_motion(TestFrame made) const {
+    made.inputs.camera.clip_to_previous_clip = kCameraStep;
+    std::copy(kCameraStep.begin(), kCameraStep.end(), made.reference.clip_to_previous_clip.begin());
+    made.inputs.velocity_scale = {-.5f, .75f};
+    made.reference.velocity_scale = {-.5, .75};
+    return made;
+  }
+
+  reference::Picture expected(const TestFrame& current, const TestFrame& previous, Extent output) const {
+    const auto weight = plan_.velocity == VelocitySource::kNone     ? reference::Weight::kPlain
+                        : plan_.velocity == VelocitySource::kTarget ? reference::Weight::kVelocity
+                                                                    : reference::Weight::kCamera;
+    return reference::resolve_quincunx(current.reference, previous.reference, weight, plan_.reads_reactive, 1,
+                                       output.width, output.height);
+  }
+
+  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) {
+    Rig rig;
+    const TestFrame current = frame(rig, now);
+    const TestFrame previous = frame(rig, before);
+    const Run actual = resolve(rig, current, previous, output);
+    const reference::Picture picture = expected(current, previous, output);
+    const double relative =
+        kResolveError +
+        (plan_.reads_depth ? kCameraErrorPerPixel * std::max(output.width, output.height) : 0);
+    const auto bound = [&](std::size_t i) {
+      return relative * picture.largest[i] + kDenormal +
+             testing::output_rounding(plan_.settings.resolved, picture.largest[i]);
+    };
+    const std::string what =
+        fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
+                    before.render.height, output.width, output.height, name_of(now.colour));
+    testing::expect_close(picture, actual.pixels, bound, what);
+    EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
+  }
+
+  ResolvePlan plan_;
+  FrameFormats formats_;
+  std::unique_ptr<ResolvePass> pass_;
+};
+
+TEST_P(Resolve, MatchesTheReferenceAtEverySizeScaleAndInput) {
+  const double scales[][4] = {{.05, .1, .1, .05}, {.5, .71, .5, .71},   {.71, .5, .9, .6},
+                              {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
+  unsigned seed = 0;
+  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
+    for (const auto& scale : scales) {
+      for (const Pattern pattern : testing::all_patterns()) {
+        // One input for each of the largest pictures: the reference is slow.
+        ++seed;
+        if (output.width == 257 && seed % 6 != 0 && pattern != Pattern::kNonFinite) continue;
+        const Pattern velocity = pattern == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise;
+        compare({.render = testing::scaled(output, scale[0], scale[1]),
+                 .jitter = {.25f, .25f},
+                 .colour = pattern,
+                 .velocity = velocity,
+                 .seed = seed},
+                {.render = testing::scaled(output, scale[2], scale[3]),
+                 .jitter = {-.25f, -.5f},
+                 .colour = pattern,
+                 .velocity = velocity,
+                 .seed = seed + 50},
+                output);
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
+TEST_P(Resolve, PoisonOutsideTheViewportChangesNoBit) {
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
+    Rig rig;
+    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
+    FrameSpec before{.render = {render.width, render.height + 2}, .jitter = {.5f, .5f}, .seed = 4};
+    const Run clean = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
+    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+      now.outside = before.outside = poison;
+      const Run poisoned = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
+      EXPECT_EQ(clean.bytes, poisoned.bytes) << render.width << "x" << render.height << ", poison " << poison;
+      EXPECT_EQ(poisoned.non_finite, 0);
+    }
+  }
+}
+
+TEST_P(Resolve, TwoRunsAgreeBitForBit) {
+  Rig rig;
+  const TestFrame current =
+      frame(rig, {.render = {183, 92}, .jitter = {.25f, .25f}, .colour = Pattern::kNonFinite});
+  const TestFrame previous = frame(rig, {.render = {150, 99}, .jitter = {-.25f, -.25f}, .seed = 2});
+  EXPECT_EQ(resolve(rig, current, previous, {257, 129}).bytes,
+            resolve(rig, current, previous, {257, 129}).bytes);
+}
+
+TEST_P(Resolve, AConstantStaysConstant) {
+  Rig rig;
+  const TestFrame current =
+      frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}, .colour = Pattern::kConstant});
+  const TestFrame previous =
+      frame(rig, {.render = {50, 31}, .jitter = {-.25f, -.25f}, .colour = Pattern::kConstant});
+  const Pixel value = current.reference.colour.front();
+  for (const Pixel& pixel : resolve(rig, current, previous, {64, 33}).pixels) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      ASSERT_NEAR(pixel[c], value[c],
+                  kResolveError * value[c] + testing::output_rounding(plan_.settings.resolved, value[c]));
+    }
+  }
+}
+
+// A previous frame that is NaN throughout leaves no trace: the picture is that of scale_bilinear, bit for
+// bit.
+TEST_P(Resolve, NothingOfANonFinitePreviousFrameSurvives) {
+  Rig rig;
+  const FrameSpec before{.render = {60, 40}, .jitter = {-.25f, -.25f}};
+  const TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Pixel> spoilt(60 * 40, Pixel{std::nan(""), infinity, 1, -infinity});
+  const TestFrame previous = with_motion(make_frame(rig, formats_, before, spoilt));
+  const Run resolved = resolve(rig, current, previous, {64, 33});
+  EXPECT_EQ(resolved.bytes, bilinear(rig, current, {64, 33}).bytes);
+  EXPECT_EQ(resolved.non_finite, 64 * 33);
+}
+
+TEST_P(Resolve, ANonFiniteTexelChangesItsFootprintOnly) {
+  const Extent output{90, 40};
+  const Extent render = testing::scaled(output, .71, .71);
+  const std::vector<Pixel> clean = pattern_pixels(Pattern::kNoise, render, 9);
+  std::vector<Pixel> spoilt = clean;
+  spoilt[static_cast<std::size_t>(12 * render.width + 20)] = {std::nan(""), 1, 1, 1};
+  const FrameSpec spec{.render = render, .jitter = {.25f, .25f}};
+  Rig rig;
+  const TestFrame previous = frame(rig, {.render = render, .jitter = {-.25f, -.25f}, .seed = 8});
+  const TestFrame clean_frame = with_motion(make_frame(rig, formats_, spec, clean));
+  const TestFrame spoilt_frame = with_motion(make_frame(rig, formats_, spec, spoilt));
+  const Run before = resolve(rig, clean_frame, previous, output);
+  const Run after = resolve(rig, spoilt_frame, previous, output);
+  std::int64_t touched = 0;
+  for (int y = 0; y < output.height; ++y) {
+    for (int x = 0; x < output.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * output.width + x);
+      if (sample_bilinear(spoilt_frame.reference, x, y, output.width, output.height).non_finite) {
+        ++touched;
+      } else {
+        EXPECT_EQ(before.pixels[i], after.pixels[i]) << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GT(touched, 0);
+  EXPECT_EQ(after.non_finite, touched);
+}
+
+// With f = 0 in every pixel the pass is scale_bilinear, bit for bit.
+TEST_P(Resolve, WithoutTrustItIsBilinear) {
+  if (!plan_.reads_reactive) return;
+  Rig rig;
+  TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
+  const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}, .seed = 2});
+  current.inputs.reactive = rig.image(PixelFormat::kR8, plan_.settings.storage, {45, 23},
+                                      std::vector<Pixel>(45 * 23, Pixel{1, 1, 1, 1}), 0);
+  EXPECT_EQ(resolve(rig, current, previous, {64, 33}).bytes, bilinear(rig, current, {64, 33}).bytes);
+}
+
+// A linear picture comes back in place from two frames with opposite jitter: a wrong sign in either would
+// show.
+TEST_P(Resolve, JitterIsTakenBackInBothFrames) {
+  const Extent output{128, 64};
+  const Extent render = testing::scaled(output, .71, .71);
+  Rig rig;
+  const auto ramp = [&](float jitter, Extent extent) {
+    std::vector<Pixel> colour;
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        colour.push_back({(x + .5 + static_cast<double>(jitter)) / extent.width,
+                          (y + .5 + static_cast<double>(jitter)) / extent.height, 0, 1});
+      }
+    }
+    return with_motion(make_frame(rig, formats_, {.render = extent, .jitter = {jitter, jitter}}, colour));
+  };
+  // The second case would hide a sign that is wrong in both: equal jitters do not cancel.
+  const float jitters[][2] = {{.25f, -.25f}, {.25f, .25f}, {0, .5f}};
+  for (const auto& jitter : jitters) {
+    const Run actual = resolve(rig, ramp(jitter[0], render), ramp(jitter[1], {100, 50}), output);
+    constexpr double kHalfRounding = 2 * 0x1p-12 + 2 * 0x1p-12;  // of values below 1, in and out
+    for (int y = 4; y < output.height - 4; ++y) {
+      for (int x = 4; x < output.width - 4; ++x) {
+        const Pixel& pixel = actual.pixels[static_cast<std::size_t>(y * output.width + x)];
+        ASSERT_NEAR(pixel[0], (x + .5) / output.width, kHalfRounding);
+        ASSERT_NEAR(pixel[1], (y + .5) / output.height, kHalfRounding);
+      }
+    }
+  }
+}
+
+std::vector<Variant> variants() {
+  using enum PixelFormat;
+  std::vector<Variant> all;
+  for (const VelocitySource velocity :
+       {VelocitySource::kNone, VelocitySource::kTarget, VelocitySource::kCamera}) {
+    for (const bool reactive : {false, true}) {
+      for (const PixelFormat resolved : {kRGBA32F, kRGBA16F}) {
+        for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
+          all.push_back({velocity, reactive, Storage::kBuffer, colour, kRG16F, resolved});
+          if (velocity == VelocitySource::kTarget) {
+            all.push_back({velocity, reactive, Storage::kBuffer, colour, kRG32F, resolved});
+          }
+        }
+        all.push_back({velocity, reactive, Storage::kImage, kRGBA16F, kRG16F, resolved});
+      }
+    }
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](const auto& instance) {
+  const Variant& v = instance.param;
+  const char* weight = v.velocity == VelocitySource::kNone     ? "plain"
+                       : v.velocity == VelocitySource::kTarget ? "velocity"
+                                                               : "camera";
+  return fmt::format("{}{}_{}_{}_{}_to_{}", weight, v.reactive ? "_reactive" : "",
+                     v.storage == Storage::kImage ? "image" : "buffer", name_of(v.colour),
+                     name_of(v.velocity_format), name_of(v.resolved));
+});
+
+// v is counted in pixels of the output: at the same uv velocity a larger picture trusts the previous frame
+// less.
+TEST(ResolveWeight, CountsOutputPixels) {
+  ResolvePlan plan;
+  plan.velocity = VelocitySource::kTarget;
+  plan.settings.velocity_weight = 2;
+  ResolvePass pass(testing::impl(), plan);
+  const FrameFormats formats{.with_velocity = true};
+  for (const Extent output : {Extent{100, 50}, Extent{200, 100}}) {
+    Rig rig;
+    const Extent render{40, 20};
+    TestFrame current =
+        make_frame(rig, formats, {.render = render}, std::vector<Pixel>(800, Pixel{0, 0, 0, 0}));
+    TestFrame previous =
+        make_frame(rig, formats, {.render = render}, std::vector<Pixel>(800, Pixel{1, 1, 1, 1}));
+    const Pixel uv = {.015625, -.0625, 0, 0};
+    current.inputs.velocity =
+        rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, std::vector<Pixel>(800, uv), 0);
+    previous.inputs.velocity =
+        rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, std::vector<Pixel>(800, Pixel{}), 0);
+    AxisTables tables(testing::impl(), output);
+    const ImageView view = rig.output(PixelFormat::kRGBA32F, output);
+    pass.enqueue(testing::impl().queue, tables, current.inputs, previous.inputs, view, rig.counter(),
+                 nullptr);
+    const double x = uv[0] * output.width;
+    const double y = uv[1] * output.height;
+    const double f = 1 / (1 + 2 * (x * x + y * y));
+    EXPECT_NEAR(rig.pixels(view, output).front()[0], f / (1 + f), kResolveError);
+  }
+}
+
+}  // namespace
+}  // namespace quincunx

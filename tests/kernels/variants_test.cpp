@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// Every row of variants.txt builds on the device, and every option string that the host makes is such a row.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "embedded_kernels.h"
+#include "kernel_fixture.h"
+#include "kernel_options.h"
+#include "program_cache.h"
+
+namespace quincunx {
+namespace {
+
+struct Row {
+  std::string kernel;
+  std::string options;
+
+  friend bool operator==(const Row&, const Row&) = default;
+};
+
+std::vector<Row> rows() {
+  std::ifstream file(QUINCUNX_VARIANTS);
+  std::vector<Row> found;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line.front() == '#') continue;
+    const std::size_t space = line.find(' ');
+    found.push_back({line.substr(0, space), space == std::string::npos ? "" : line.substr(space + 1)});
+  }
+  return found;
+}
+
+class KernelVariants : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(KernelVariants, EveryRowBuilds) {
+  int built = 0;
+  for (const Row& row : rows()) {
+    if (row.kernel != GetParam()) continue;
+    try {
+      build_kernel(testing::impl(), row.kernel, row.options);
+      ++built;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << row.kernel << " " << row.options << ": " << error.what();
+    }
+  }
+  EXPECT_GT(built, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
+                         ::testing::Values("clear_region", "scale_point", "scale_bilinear",
+                                           "resolve_quincunx", "present"),
+                         [](const auto& instance) { return instance.param; });
+
+TEST(Variants, EveryEmbeddedKernelHasRows) {
+  const std::vector<Row> all = rows();
+  for (const EmbeddedFile& file : embedded_kernel_files()) {
+    if (!file.name.ends_with(".cl")) continue;
+    const std::string kernel(file.name.substr(0, file.name.size() - 3));
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Row& row) { return row.kernel == kernel; }))
+        << kernel;
+  }
+}
+
+TEST(Variants, EveryOptionStringOfTheHostIsARow) {
+  using enum PixelFormat;
+  const std::vector<Row> all = rows();
+  const auto expect_row = [&](const std::string& kernel, const std::string& options) {
+    EXPECT_NE(std::find(all.begin(), all.end(), Row{kernel, options}), all.end()) << kernel << " " << options;
+  };
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    for (const PixelFormat format : {kR8, kR32F, kRG16F, kRG32F, kRGBA8, kRGBA16F, kRGBA32F}) {
+      expect_row("clear_region", clear_options(storage, format));
+    }
+    for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
+      for (const PixelFormat resolved : {kRGBA16F, kRGBA32F}) {
+        ResolvePlan plan;
+        plan.settings = {.colour = colour, .resolved = resolved, .storage = storage};
+        expect_row("scale_point", scale_options(plan.settings));
+        expect_row("scale_bilinear", scale_options(plan.settings));
+        for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
+          plan.settings.tone_map = tone_map;
+          for (const bool dither : {false, true}) {
+            plan.settings.dither = dither;
+            expect_row("present", present_options(plan.settings));
+          }
+        }
+        for (const VelocitySource velocity :
+             {VelocitySource::kNone, VelocitySource::kTarget, VelocitySource::kCamera}) {
+          plan.velocity = velocity;
+          for (const PixelFormat velocity_format : {kRG16F, kRG32F}) {
+            plan.settings.velocity = velocity_format;
+            for (const bool reactive : {false, true}) {
+              plan.reads_reactive = reactive;
+              expect_row("resolve_quincunx", quincunx_options(plan));
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace quincunx

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// What each pass should give, in double precision.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "picture.h"
+
+namespace quincunx::reference {
+
+Picture scale_point(const Frame& frame, int output_width, int output_height);
+Picture scale_bilinear(const Frame& frame, int output_width, int output_height);
+
+enum class Weight { kPlain, kVelocity, kCamera };
+
+// out = (c0 + f c1) / (1 + f), f = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in output pixels a frame.
+Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool reactive, double k,
+                         int output_width, int output_height);
+
+enum class Curve { kClamp, kReinhard, kAces };
+
+// 255 * the sRGB encoding of tone-mapped colour, and 255 * alpha, before rounding.
+Pixel present_codes(const Pixel& resolved, Curve curve, double exposure);
+
+// What the dither adds before truncation at a pixel, in [0, 1).
+double dither_offset(int x, int y);
+
+}  // namespace quincunx::reference

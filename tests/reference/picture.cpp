@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#include "picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace quincunx::reference {
+
+double sanitised(double value) {
+  if (std::isnan(value)) return 0;
+  if (std::isinf(value)) return value > 0 ? 65504 : -65504;
+  return value;
+}
+
+int nearest_texel(int x, int output, int render, double jitter) {
+  const double position = (x + 0.5) * render / output;
+  int best = 0;
+  for (int i = 1; i < render; ++i) {
+    const double distance = std::abs(i + 0.5 + jitter - position);
+    const double best_distance = std::abs(best + 0.5 + jitter - position);
+    if (distance < best_distance) best = i;
+  }
+  return best;
+}
+
+std::array<Tap, 2> bilinear_taps(int x, int output, int render, double jitter) {
+  const double position = (x + 0.5) * render / output;
+  const double u = position - 0.5 - jitter;
+  const int left = static_cast<int>(std::floor(u));
+  double right_weight = u - left;
+  if (right_weight < 0x1p-25) right_weight = 0;
+  if (right_weight > 1 - 0x1p-25) right_weight = 1;
+  return {Tap{std::clamp(left, 0, render - 1), 1 - right_weight},
+          Tap{std::clamp(left + 1, 0, render - 1), right_weight}};
+}
+
+namespace {
+
+std::size_t index(const Frame& frame, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
+}
+
+void add(Sample& sample, const Pixel& texel, double weight) {
+  if (weight == 0) return;
+  for (std::size_t c = 0; c < 4; ++c) {
+    if (!std::isfinite(texel[c])) sample.non_finite = true;
+    const double value = sanitised(texel[c]);
+    sample.value[c] += weight * value;
+    sample.largest = std::max(sample.largest, std::abs(value));
+  }
+}
+
+}  // namespace
+
+Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int output_height) {
+  const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
+  const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
+  Sample sample;
+  add(sample, frame.colour[index(frame, column, row)], 1);
+  return sample;
+}
+
+Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height) {
+  Sample sample;
+  for (const Tap& row : bilinear_taps(y, output_height, frame.height, frame.jitter_y)) {
+    for (const Tap& column : bilinear_taps(x, output_width, frame.width, frame.jitter_x)) {
+      add(sample, frame.colour[index(frame, column.texel, row.texel)], row.weight * column.weight);
+    }
+  }
+  return sample;
+}
+
+}  // namespace quincunx::reference

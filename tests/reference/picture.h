@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Pictures of the references: plain double-precision values, one struct a pixel.
+//
+// The references are scalar, direct and slow on purpose: they share no code with the kernels or their axis
+// tables.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace quincunx::reference {
+
+using Pixel = std::array<double, 4>;
+
+// One rendered frame as its viewport holds it: width * height values, row by row. NaN and infinities as they
+// are.
+struct Frame {
+  int width = 0;
+  int height = 0;
+  double jitter_x = 0;
+  double jitter_y = 0;
+  std::vector<Pixel> colour;
+  std::vector<std::array<double, 2>> velocity;  // of WEIGHT 1
+  std::vector<double> depth;                    // of WEIGHT 2
+  std::vector<double> reactive;
+  std::array<double, 2> velocity_scale = {1, 1};
+  std::array<double, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+};
+
+struct Picture {
+  int width = 0;
+  int height = 0;
+  std::vector<Pixel> pixels;
+  std::vector<double> largest;  // per pixel: the largest |tap| it was made from, for error bounds
+  std::int64_t non_finite = 0;  // pixels with NaN or infinite input of non-zero weight
+};
+
+// NaN counts as 0, infinities as +-65504.
+double sanitised(double value);
+
+// The texel whose sample lies nearest to output pixel x on an axis; of two equally near the lower one.
+int nearest_texel(int x, int output, int render, double jitter);
+
+struct Tap {
+  int texel;
+  double weight;
+};
+
+// The two taps of output pixel x on an axis, clamped to [0, render - 1] one by one. A weight below 2^-25 is
+// 0: the library rounds weights to multiples of 2^-24.
+std::array<Tap, 2> bilinear_taps(int x, int output, int render, double jitter);
+
+struct Sample {
+  Pixel value = {};
+  double largest = 0;
+  bool non_finite = false;
+};
+
+Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int output_height);
+Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height);
+
+}  // namespace quincunx::reference
