@@ -28,7 +28,6 @@ constexpr int kContactSheetFrames = 24;
 struct RenderSession::DrawnFrame {
   std::int64_t index = 0;
   FrameView view;
-  Clock::time_point start;
   gl::TargetPixels targets = {};  // only of --exr-frame
 };
 
@@ -123,14 +122,15 @@ bool RenderSession::wants_resolved() const {
 }
 
 Status RenderSession::draw(std::int64_t index) {
-  DrawnFrame frame = {.index = index, .view = sequence_->at(index), .start = Clock::now()};
+  const Clock::time_point start = Clock::now();
+  DrawnFrame frame = {.index = index, .view = sequence_->at(index)};
   const int slot = static_cast<int>(index % bridge_->slots());
   auto targets = bridge_->begin_draw(slot);
   if (!targets.ok()) return targets.status();
   if (Status status = renderer_->draw(*targets.value(), frame.view); !status.ok()) return status;
   if (index == options_.exr_frame) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
   if (Status status = bridge_->submit(slot, frame.view.render); !status.ok()) return status;
-  draw_ms_.push_back(since(frame.start));
+  draw_ms_.push_back(since(start));
   drawn_.push_back(std::move(frame));
   return {};
 }
@@ -172,7 +172,8 @@ Status RenderSession::deliver(std::int64_t index) {
                    .seconds = frame.view.seconds,
                    .render = frame.view.render,
                    .jitter = frame.view.jitter,
-                   .frame_ms = since(frame.start)});
+                   .frame_ms = since(last_delivery_)});
+  last_delivery_ = Clock::now();
   drawn_.pop_front();
   return {};
 }
@@ -265,6 +266,7 @@ Status RenderSession::run() {
   begin_contact_sheet();
   {
     tools::Progress progress("rendering", options_.frames, options_.quiet ? Show::kNever : Show::kOnTerminal);
+    last_delivery_ = start;
     if (Status status = draw(0); !status.ok()) return status;
     for (std::int64_t index = 0; index < options_.frames; ++index) {
       if (Status status = run_frame(index); !status.ok()) return status;

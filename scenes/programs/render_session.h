@@ -2,6 +2,7 @@
 // RenderSession: one run of quincunx-render: scene, GL, bridge, service, and the loop that drives them.
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -69,6 +70,7 @@ class RenderSession {
   FrameWriter writer_;
 
   std::deque<DrawnFrame> drawn_;  // drawn, not yet delivered
+  std::chrono::steady_clock::time_point last_delivery_;
   std::vector<FrameReport> reports_;
   std::vector<tools::FrameRow> rows_;
   std::vector<double> draw_ms_, acquire_ms_, present_ms_, write_ms_;
