@@ -50,8 +50,8 @@ struct Case {
   std::string name;
   std::uint64_t bytes = 0;
   std::function<void(cl::Event*)> run;
-  std::vector<double> ms;
-  std::vector<double> cpu_ms;
+  std::vector<double> ms = {};
+  std::vector<double> cpu_ms = {};
 };
 
 // Processor time of this process, all threads: on a CPU device what the kernel cost, however busy the machine

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tools/contact_sheet.h"
 
+#include <algorithm>
+
 #include "temporary_folder.h"
 #include "tools/image_io.h"
 
