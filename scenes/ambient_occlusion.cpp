@@ -77,7 +77,7 @@ float openness(const CubeGrid& grid, const Vertex& vertex, const std::vector<glm
   float hidden = 0;
   for (const glm::vec3 direction : directions) {
     const glm::vec3 ray = direction.x * x + direction.y * y + direction.z * vertex.normal;
-    for (float distance = 0; distance < settings.reach; distance += 0.8f * settings.cell) {
+    for (float distance = 0; distance < settings.reach; distance += settings.cell) {
       if (grid.is_filled(start + ray * distance)) {
         hidden += 1 - distance / settings.reach;
         break;

@@ -11,7 +11,7 @@ namespace quincunx::scenes {
 struct OcclusionSettings {
   float cell = 0.16f;     // metres: size of the cubes that the scene is measured in
   float reach = 2.6f;     // metres: what is further away does not darken
-  int directions = 48;    // over the hemisphere, cosine weighted
+  int directions = 32;    // over the hemisphere, cosine weighted
   float strength = 0.9f;  // 0: nothing happens, 1: a closed corner turns black
 };
 

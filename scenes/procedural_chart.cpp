@@ -18,8 +18,8 @@ constexpr glm::vec2 kPicture{1280, 720};
 constexpr float kMetresPerPixel = 0.01f;
 constexpr float kLayer = 0.002f;  // metres between what lies on top of each other
 constexpr glm::vec3 kBlack(0.005f);
-constexpr glm::vec3 kWhite(0.9f);
-constexpr glm::vec3 kPaper(0.42f);
+constexpr glm::vec3 kWhite(0.8f);
+constexpr glm::vec3 kPaper(0.30f);
 
 glm::vec2 place(glm::vec2 pixel) {
   return glm::vec2(pixel.x - kPicture.x / 2, kPicture.y / 2 - pixel.y) * kMetresPerPixel;
@@ -108,12 +108,27 @@ void add_slanted_square(ChartPen& pen, glm::vec2 centre, float half, float degre
   pen.quad({centre - x - y, centre + x - y, centre + x + y, centre - x + y}, colour, 2);
 }
 
-// Groups of five bars; the number over each is the width of a bar in hundredths of a pixel.
+// Groups of five bars, each with the width of a bar in pixels beside it.
 void add_line_pairs(ChartPen& pen, glm::vec2 corner, bool upright) {
-  constexpr std::array<float, 10> kWidths{8, 6, 4, 3, 2.5f, 2, 1.5f, 1.25f, 1, 0.75f};
-  constexpr float kLength = 66;
+  struct Group {
+    float width;
+    const char* label;
+  };
+  constexpr std::array kGroups = std::to_array<Group>({{8, "8"},
+                                                       {6, "6"},
+                                                       {4, "4"},
+                                                       {3, "3"},
+                                                       {2.5f, "2.5"},
+                                                       {2, "2"},
+                                                       {1.5f, "1.5"},
+                                                       {1.25f, "1.25"},
+                                                       {1, "1"},
+                                                       {0.75f, "0.75"}});
+  constexpr float kLength = 58;
+  constexpr std::size_t kSkippedAcross = 1;  // the widest does not fit one above the other
   float at = 0;
-  for (const float width : kWidths) {
+  for (std::size_t i = upright ? 0 : kSkippedAcross; i < kGroups.size(); ++i) {
+    const float width = kGroups[i].width;
     for (int bar = 0; bar < 5; ++bar) {
       const float low = at + 2 * width * static_cast<float>(bar);
       if (upright) {
@@ -122,7 +137,13 @@ void add_line_pairs(ChartPen& pen, glm::vec2 corner, bool upright) {
         pen.rectangle(corner + glm::vec2(0, low), corner + glm::vec2(kLength, low + width), kBlack, 2);
       }
     }
-    at += 9 * width + (upright ? 18 : 8);
+    const float middle = at + 4.5f * width;
+    if (upright) {
+      pen.text(kGroups[i].label, corner + glm::vec2(middle, kLength + 14), 7, kBlack, 0.18f, Align::kCentre);
+    } else {
+      pen.text(kGroups[i].label, corner + glm::vec2(-8, middle + 3), 6, kBlack, 0.18f, Align::kRight);
+    }
+    at += 9 * width + (upright ? 24 : 7);
   }
 }
 
@@ -193,7 +214,7 @@ void add_bright_patches(ChartPen& pen, glm::vec2 corner) {
   }
 }
 
-// A fan of lines that come together: the number beside it is where they are one pixel apart.
+// A fan of lines that come together, from six pixels wide to one and a half.
 void add_wedge(ChartPen& pen, glm::vec2 corner) {
   constexpr int kLines = 9;
   constexpr float kHeight = 210;
@@ -231,14 +252,14 @@ Scene make_chart(std::uint64_t) {
   add_zone_plate(pen, {175, 185}, 145);
   add_star(pen, {495, 185}, 145);
   pen.rectangle({665, 40}, {905, 330}, kWhite);
-  add_slanted_square(pen, {785, 120}, 58, 5, kBlack);
-  add_slanted_square(pen, {785, 256}, 58, 30, glm::vec3(0.18f));
+  add_slanted_square(pen, {785, 112}, 54, 5, kBlack);
+  add_slanted_square(pen, {785, 248}, 54, 30, glm::vec3(0.18f));
   pen.rectangle({930, 40}, {1050, 330}, kWhite);
   pen.rectangle({1070, 40}, {1250, 330}, kWhite);
   add_wedge(pen, {930, 80});
-  add_line_pairs(pen, {1128, 46}, false);
+  add_line_pairs(pen, {1140, 52}, false);
   pen.rectangle({30, 360}, {600, 450}, kWhite);
-  add_line_pairs(pen, {46, 372}, true);
+  add_line_pairs(pen, {50, 370}, true);
   add_text_block(pen, {40, 470});
   add_patches(pen, {665, 366});
   add_bright_patches(pen, {665, 530});

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 
 #include "ambient_occlusion.h"
 #include "procedural_props.h"
@@ -34,8 +35,8 @@ void add_metals(SceneAssembly& assembly, CourtyardMaterials& m) {
   m.shutters = assembly.add(plain_material("shutters", {0.075f, 0.16f, 0.135f}, 0.6f));
   assembly.scene.materials[static_cast<std::size_t>(m.shutters)].double_sided = true;
   m.window = assembly.add(plain_material("window panes", {0.02f, 0.025f, 0.03f}, 0.1f));
-  m.lamp = assembly.add(lamp_material("lamp", {42, 24, 9}));
-  m.ember = assembly.add(lamp_material("ember", {22, 5.5f, 1.0f}));
+  m.lamp = assembly.add(lamp_material("lamp", {34, 18, 6}));
+  m.ember = assembly.add(lamp_material("ember", {3.2f, 0.42f, 0.04f}));
 }
 
 void add_clear_materials(SceneAssembly& assembly, CourtyardMaterials& m, std::uint64_t seed) {
@@ -67,21 +68,43 @@ CourtyardMaterials add_materials(SceneAssembly& assembly, std::uint64_t seed) {
 
 // Late afternoon: the sun stands low on the right, behind the camera.
 void set_light(Scene& scene) {
-  scene.sun.direction = glm::normalize(glm::vec3(-0.66f, -0.50f, -0.56f));
-  scene.sun.irradiance = {7.6f, 5.3f, 3.1f};
-  scene.sky.zenith = {0.13f, 0.27f, 0.62f};
-  scene.sky.horizon = {0.80f, 0.74f, 0.68f};
-  scene.sky.ground = {0.30f, 0.22f, 0.15f};
-  scene.exposure = 0.9f;
+  scene.sun.direction = glm::normalize(glm::vec3(-0.70f, -0.47f, -0.53f));
+  scene.sun.irradiance = {9.6f, 6.4f, 3.5f};
+  scene.sky.zenith = {0.065f, 0.175f, 0.50f};
+  scene.sky.horizon = {0.56f, 0.51f, 0.48f};
+  scene.sky.ground = {0.24f, 0.165f, 0.10f};
+  scene.exposure = 0.8f;
+}
+
+// Clouds on a part of a cylinder far out, from the horizon up.
+void add_clouds(SceneAssembly& assembly, std::uint64_t seed) {
+  constexpr float kRadius = 450;
+  constexpr int kPieces = 48;
+  Material material = unlit_material("clouds", glm::vec3(0.95f, 0.86f, 0.80f));
+  material.alpha_mode = AlphaMode::kBlend;
+  material.reactive = 0;  // they stand still
+  material.base_colour_texture.texture = assembly.add(cloud_texture(1024, 512, seed));
+  MeshBuilder& clouds = assembly.still(assembly.add(material));
+  for (std::uint32_t i = 0; i <= kPieces; ++i) {
+    const float turn = static_cast<float>(i) / kPieces;
+    const float angle = glm::two_pi<float>() * (turn - 0.5f);
+    const glm::vec3 out(std::sin(angle), 0, -std::cos(angle));
+    clouds.vertex(kRadius * out + glm::vec3(0, 10, 0), -out, {2 * turn, 1});
+    const std::uint32_t high = clouds.vertex(kRadius * out + glm::vec3(0, 400, 0), -out, {2 * turn, 0});
+    if (i > 0) {
+      clouds.triangle(high - 3, high - 1, high);
+      clouds.triangle(high - 3, high, high - 2);
+    }
+  }
 }
 
 Camera camera_at(double seconds) {
   const float angle = phase_at(seconds, kCourtyardDuration);
   Camera camera;
-  camera.vertical_fov = 0.92f;
-  const glm::vec3 eye(1.3f + 0.75f * std::sin(angle), 1.72f + 0.10f * std::cos(angle),
-                      9.2f - 0.45f * std::cos(angle));
-  const glm::vec3 target(-0.35f + 0.12f * std::sin(angle), 2.95f, -5.0f);
+  camera.vertical_fov = 0.95f;
+  const glm::vec3 eye(1.5f + 0.75f * std::sin(angle), 1.80f + 0.10f * std::cos(angle),
+                      9.4f - 0.45f * std::cos(angle));
+  const glm::vec3 target(-0.45f + 0.12f * std::sin(angle), 3.35f, -5.0f);
   camera.world_from_camera = looking_from(eye, target);
   return camera;
 }
@@ -98,10 +121,13 @@ Scene make_courtyard(std::uint64_t seed) {
   add_courtyard_garden(assembly, materials, seed);
   add_courtyard_props(assembly, materials);
   add_courtyard_motion(assembly, materials, seed);
+  add_clouds(assembly, seed);
   Scene scene = assembly.finish();
   set_light(scene);
   add_courtyard_particles(scene, seed);
-  bake_ambient_occlusion(scene, {}, [](const Material& material) { return !material.unlit; });
+  bake_ambient_occlusion(scene, {}, [](const Material& material) {
+    return !material.unlit && material.base_colour_texture.texture >= 0;  // masonry; the rest is thin or dark
+  });
   scene.duration = kCourtyardDuration;
   scene.camera_moves = true;
   scene.camera = camera_at;

@@ -119,6 +119,8 @@ void add_portico(SceneAssembly& assembly, const CourtyardMaterials& m, const glm
   }
   const Stand plaster(assembly.still(m.plaster, kFacade), front, kPlasterRepeat);
   (*plaster).patch({0, 0, -2.4f}, {kFacadeWidth, 0, 0}, {0, kStorey, 0});
+  (*plaster).patch({0, 0, -0.1f}, {0, 0, -2.3f}, {0, kStorey, 0});
+  (*plaster).patch({kFacadeWidth, 0, -2.4f}, {0, 0, 2.3f}, {0, kStorey, 0});
   const float middle = kFacadeWidth / 2;
   (*trim).box({middle - 1.0f, kPorticoFloor, -2.4f}, {middle - 0.75f, 3.3f, -2.25f});
   (*trim).box({middle + 0.75f, kPorticoFloor, -2.4f}, {middle + 1.0f, 3.3f, -2.25f});
@@ -169,11 +171,11 @@ void add_inscription(SceneAssembly& assembly, const CourtyardMaterials& m, const
   const Stand letters(assembly.still(m.bronze, kFacade), front, 1);
   const auto write = [&](const char* text, float baseline, float height) {
     for (const Polyline& path :
-         text_strokes(text, {kFacadeWidth / 2, baseline}, {height, 0.55f, Align::kCentre})) {
+         text_strokes(text, {kFacadeWidth / 2, baseline}, {height, 3.1f, Align::kCentre})) {
       (*letters).stroke(path, 0.15f * height, 0.012f);
     }
   };
-  write("QUINCUNX", 4.5f, 0.26f);
+  write("QUINCUNX", 4.52f, 0.3f);
 }
 
 }  // namespace
@@ -241,10 +243,10 @@ void add_courtyard_facade(SceneAssembly& assembly, const CourtyardMaterials& m) 
 }
 
 void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
-  constexpr float kWidth = 3.4f;
-  constexpr float kClock = 13.6f;
-  constexpr float kBelfry = 15.0f;
-  constexpr float kTop = 18.2f;
+  constexpr float kWidth = 2.9f;
+  constexpr float kClock = 14.3f;
+  constexpr float kBelfry = 15.35f;
+  constexpr float kTop = 17.7f;
   const glm::vec3 middle(3.6f, 0, -21);
   for (int side = 0; side < 4; ++side) {
     const glm::mat4 face = moved_to(middle) * turned(kQuarter * static_cast<float>(side), {0, 1, 0}) *
@@ -252,7 +254,7 @@ void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
     const Stand brick(assembly.still(m.brick, kTower), face, kBrickRepeat, 0.8f);
     const Stand stone(assembly.still(m.limestone, kTower), face, kStoneRepeat, 0.8f);
     (*brick).patch({0, 6, 0}, {kWidth, 0, 0}, {0, kBelfry - 6, 0});
-    add_arch_wall(*brick, *stone, {2, kWidth / 2, kBelfry, kBelfry + 1.5f, 0.52f, kTop, 0.4f});
+    add_arch_wall(*brick, *stone, {2, kWidth / 2, kBelfry, kBelfry + 1.2f, 0.46f, kTop, 0.4f});
     const Stand band(assembly.still(m.limestone, kTower), face * moved_to({0, kBelfry, 0}), kStoneRepeat);
     add_cornice(*band, kWidth, 0.35f, 0.28f);
     const Stand crown(assembly.still(m.limestone, kTower), face * moved_to({0, kTop + 0.2f, 0}),
@@ -260,7 +262,7 @@ void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
     add_cornice(*crown, kWidth, 0.5f, 0.4f);
     MeshBuilder& roof = assembly.still(m.tiles, kTower);
     roof.pen.placement = face;
-    const glm::vec3 apex(kWidth / 2, kTop + 2.6f, -kWidth / 2);
+    const glm::vec3 apex(kWidth / 2, kTop + 2.0f, -kWidth / 2);
     const glm::vec3 low(-0.45f, kTop + 0.2f, 0.45f);
     const glm::vec3 right(kWidth + 0.9f, 0, 0);
     const glm::vec3 normal = glm::normalize(glm::cross(right, apex - low));
@@ -272,17 +274,17 @@ void add_courtyard_tower(SceneAssembly& assembly, const CourtyardMaterials& m) {
   }
   const Stand dial(assembly.still(m.limestone, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)),
                    kStoneRepeat);
-  (*dial).annulus({0, 0, 0.03f}, {0, 0, 1}, 0, 0.95f, 40);
+  (*dial).annulus({0, 0, 0.03f}, {0, 0, 1}, 0, 0.8f, 40);
   const Stand gilt(assembly.still(m.gilt, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
-  (*gilt).ring({0, 0, 0.03f}, {0, 0, 1}, 0.97f, 0.05f, 40, 6);
+  (*gilt).ring({0, 0, 0.03f}, {0, 0, 1}, 0.82f, 0.045f, 40, 6);
   const Stand ink(assembly.still(m.iron, kTower), moved_to(middle + glm::vec3(0, kClock, kWidth / 2)), 1);
   for (int hour = 0; hour < 12; ++hour) {
     const float angle = glm::two_pi<float>() * static_cast<float>(hour) / 12;
     const glm::vec2 out(std::sin(angle), std::cos(angle));
-    (*ink).stroke(std::array<glm::vec2, 2>{{0.74f * out, 0.86f * out}}, 0.06f, 0.035f);
+    (*ink).stroke(std::array<glm::vec2, 2>{{0.60f * out, 0.72f * out}}, 0.06f, 0.035f);
   }
-  (*ink).stroke(std::array<glm::vec2, 2>{{{0, 0}, {0.28f, -0.36f}}}, 0.07f, 0.04f);
-  (*ink).stroke(std::array<glm::vec2, 2>{{{0, 0}, {0.62f, 0.30f}}}, 0.045f, 0.045f);
+  (*ink).stroke(std::array<glm::vec2, 2>{{{0, 0}, {0.24f, -0.30f}}}, 0.07f, 0.04f);
+  (*ink).stroke(std::array<glm::vec2, 2>{{{0, 0}, {0.52f, 0.25f}}}, 0.045f, 0.045f);
 }
 
 }  // namespace quincunx::scenes

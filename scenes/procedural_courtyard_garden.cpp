@@ -140,8 +140,8 @@ void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, 
     add_planter(assembly, m, foot, part++);
     Tree tree;
     tree.foot = foot + glm::vec3(0, 0.5f, 0);
-    tree.trunk = random.range(1.15f, 1.35f);
-    tree.crown = random.range(0.88f, 1.0f);
+    tree.trunk = random.range(0.95f, 1.15f);
+    tree.crown = random.range(0.78f, 0.9f);
     tree.period = kCourtyardDuration;
     add_tree(assembly, m.plants, tree, random);
   }
@@ -176,11 +176,11 @@ void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, 
 
 void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   // The notice on its easel, under glass, turned towards the camera.
-  const glm::mat4 easel = moved_to({3.25f, 0, 5.0f}) * turned(-0.42f, {0, 1, 0});
+  const glm::mat4 easel = moved_to({3.35f, 0, 4.75f}) * turned(-0.36f, {0, 1, 0});
   const glm::mat4 board = easel * moved_to({0, 0.62f, 0}) * turned(-0.14f, {1, 0, 0});
   MeshBuilder& wood = assembly.still(m.planks, kProps);
-  constexpr float kWidth = 0.96f;
-  constexpr float kHeight = 1.28f;
+  constexpr float kWidth = 0.87f;
+  constexpr float kHeight = 1.16f;
   wood.pen.placement = board;
   wood.box({-kWidth / 2 - 0.06f, -0.06f, -0.06f}, {kWidth / 2 + 0.06f, 0, 0.05f});
   wood.box({-kWidth / 2 - 0.06f, kHeight, -0.06f}, {kWidth / 2 + 0.06f, kHeight + 0.06f, 0.05f});

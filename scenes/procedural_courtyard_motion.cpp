@@ -13,7 +13,7 @@ constexpr float kTau = glm::two_pi<float>();
 constexpr float kTrack = 2.35f;  // radius of the rails round the fountain
 constexpr glm::vec3 kBrazier{-3.1f, 0, 4.9f};
 
-constexpr glm::vec3 kLampIntensity(3.4f, 1.9f, 0.75f);
+constexpr glm::vec3 kLampIntensity(8.0f, 4.2f, 1.5f);
 constexpr float kLampRange = 3.6f;
 
 // --- Lanterns: a shade, four bars, glass and a bulb, hanging from their origin.
@@ -133,7 +133,7 @@ void add_cart(SceneAssembly& assembly, const CourtyardMaterials& m) {
   const int red = assembly.add(plain_material("red lacquer", {0.52f, 0.035f, 0.025f}, 0.32f));
   // The cart drives towards its local -z at x = kTrack.
   const auto ride = [](double seconds) {
-    return moved_to(kFountain) * turned(0.5f + phase_at(seconds, kCourtyardDuration), {0, 1, 0}) *
+    return moved_to(kFountain) * turned(phase_at(seconds, kCourtyardDuration) - 1.15f, {0, 1, 0}) *
            moved_to({kTrack, 0.05f, 0});
   };
   MeshBuilder body(red);
@@ -204,7 +204,7 @@ void add_wind_wheel(SceneAssembly& assembly, const CourtyardMaterials& m) {
   const std::array<glm::vec2, 3> tail{{{-0.75f, 0.62f}, {-0.35f, 0.85f}, {-0.75f, 1.08f}}};
   vane.prism(tail, -0.01f, 0.01f);
   assembly.move(assembly.add(vane.take()),
-                swinging(moved_to({3.6f, 20.7f, -21}), {0, 1, 0}, 0.5f, kCourtyardDuration, 1, 0.4f));
+                swinging(moved_to({3.6f, 19.6f, -21}), {0, 1, 0}, 0.5f, kCourtyardDuration, 1, 0.4f));
 }
 
 void add_swifts(SceneAssembly& assembly, std::uint64_t seed) {
@@ -216,7 +216,7 @@ void add_swifts(SceneAssembly& assembly, std::uint64_t seed) {
     const float out = side == 0 ? 1.0f : -1.0f;
     // Half the body and one sickle wing, flying towards -z.
     const std::array<glm::vec3, 4> outline{
-        {{0, 0, -0.16f}, {out * 0.16f, 0, -0.05f}, {out * 0.46f, 0, 0.14f}, {0, 0, 0.16f}}};
+        {{0, 0, -0.13f}, {out * 0.14f, 0, -0.06f}, {out * 0.38f, 0, 0.10f}, {out * 0.03f, 0, 0.12f}}};
     for (const float up : {1.0f, -1.0f}) {
       std::array<std::uint32_t, 4> index{};
       for (std::size_t i = 0; i < 4; ++i)
@@ -350,7 +350,7 @@ void add_courtyard_particles(Scene& scene, std::uint64_t seed) {
       const float wander = 0.16f * age * std::sin(kTau * (1.5f * age + ember.start * 7));
       const glm::vec3 at = ember.from + ember.velocity * age * 1.3f + glm::vec3(wander, 0, wander * 0.6f);
       const float glow = (1 - age) * (1 - age) * std::min(1.0f, 10 * age);
-      particles.push_back({at, ember.radius, glm::vec4(glm::vec3(20, 6.5f, 1.3f) * glow, 0)});
+      particles.push_back({at, ember.radius, glm::vec4(glm::vec3(14, 4.0f, 0.7f) * glow, 0)});
     }
   };
 }

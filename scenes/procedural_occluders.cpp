@@ -63,17 +63,17 @@ int make_ball(SceneAssembly& assembly, int paint) {
 Scene make_occluders(std::uint64_t seed) {
   SceneAssembly assembly;
   add_poster_wall(assembly, 20, 4.4f, -3.0f, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(1024, seed + 2)));
+  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
   paving.pen.uv_per_metre = 1 / 2.4f;
   paving.patch({-12, 0, 12}, {24, 0, 0}, {0, 0, -15});
   const int wood =
       assembly.add_surface("planks", plank_surface(256, seed + 4), SceneAssembly::Detail::kColour);
   const int blue = assembly.add(plain_material("blue enamel", glm::vec3(0.05f, 0.16f, 0.42f), 0.3f));
   const int red = assembly.add(plain_material("red enamel", glm::vec3(0.60f, 0.06f, 0.04f), 0.3f));
-  add_carousel(assembly, make_slat(assembly, wood), {3.4f, 6, 2}, 1.9f);
-  add_carousel(assembly, make_hoop(assembly, blue), {4.8f, 7, -2}, 2.3f);
-  add_carousel(assembly, make_ball(assembly, red), {6.0f, 5, 1}, 0.9f);
-  add_carousel(assembly, make_ball(assembly, blue), {2.6f, 3, 3}, 1.2f);
+  add_carousel(assembly, make_slat(assembly, wood), {3.4f, 11, 2}, 1.9f);
+  add_carousel(assembly, make_hoop(assembly, blue), {4.6f, 13, -2}, 2.35f);
+  add_carousel(assembly, make_ball(assembly, red), {6.0f, 11, 1}, 0.9f);
+  add_carousel(assembly, make_ball(assembly, blue), {2.6f, 5, 3}, 1.15f);
 
   Scene& scene = assembly.scene;
   set_daylight(scene);

@@ -40,20 +40,20 @@ void add_crates(SceneAssembly& assembly, int wood) {
 
 Scene make_pan(std::uint64_t seed) {
   SceneAssembly assembly;
-  add_poster_wall(assembly, 26, 4.6f, -9, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(1024, seed + 2)));
+  add_poster_wall(assembly, 44, 4.6f, -9, seed);
+  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
   paving.pen.uv_per_metre = 1 / 2.4f;
-  paving.patch({-16, 0, 8}, {32, 0, 0}, {0, 0, -17});
+  paving.patch({-22, 0, 8}, {44, 0, 0}, {0, 0, -17});
   MeshBuilder& columns = assembly.still(
       assembly.add_surface("limestone", stone_surface(256, seed + 3), SceneAssembly::Detail::kColour));
-  for (int i = 0; i < 6; ++i) {
-    columns.pen.placement = moved_to({-7.5f + 3.0f * static_cast<float>(i), 0, -6.2f});
+  for (int i = 0; i < 8; ++i) {
+    columns.pen.placement = moved_to({-10.5f + 3.0f * static_cast<float>(i), 0, -6.2f});
     add_column(columns, 0.2f, 3.2f);
   }
   columns.pen.placement = moved_to({-0.9f, 0, 0.6f});
   add_column(columns, 0.16f, 3.2f);
   columns.pen.placement = glm::mat4(1);
-  columns.box({-8.2f, 3.2f, -6.5f}, {8.2f, 3.55f, -5.9f});
+  columns.box({-11.2f, 3.2f, -6.5f}, {11.2f, 3.55f, -5.9f});
   add_crates(assembly,
              assembly.add_surface("planks", plank_surface(256, seed + 4), SceneAssembly::Detail::kColour));
   MeshBuilder& iron =

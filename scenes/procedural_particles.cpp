@@ -49,8 +49,8 @@ void add_smoke(const std::vector<Seedling>& smoke, double seconds, std::vector<P
     const float curl = 0.35f * std::sin(kTau * (age + one.tone));
     const glm::vec3 at =
         glm::vec3(-1.5f, 0.5f, -1.2f) + one.from + one.velocity * age + glm::vec3(curl * age, 0, 0);
-    const float alpha = 0.20f * std::sin(glm::pi<float>() * age);
-    const glm::vec3 grey = glm::vec3(0.55f, 0.53f, 0.52f) * (0.5f + 0.5f * one.tone);
+    const float alpha = 0.34f * std::sin(glm::pi<float>() * age);
+    const glm::vec3 grey = glm::vec3(0.42f, 0.41f, 0.42f) * (0.5f + 0.5f * one.tone);
     particles.push_back({at, 0.10f + 0.45f * age * one.radius, glm::vec4(grey * alpha, alpha)});
   }
 }
@@ -79,7 +79,7 @@ int add_glass(SceneAssembly& assembly, const char* name, glm::vec3 tint, float a
 Scene make_particles(std::uint64_t seed) {
   SceneAssembly assembly;
   add_poster_wall(assembly, 18, 4.4f, -3.4f, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(1024, seed + 2)));
+  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
   paving.pen.uv_per_metre = 1 / 2.4f;
   paving.patch({-10, 0, 8}, {20, 0, 0}, {0, 0, -12});
   MeshBuilder& iron = assembly.still(assembly.add(plain_material("iron", glm::vec3(0.04f), 0.5f)));

@@ -57,7 +57,8 @@ Texture poster_texture(const Poster& poster) {
     canvas.text(line, {middle, y}, {height, 0.06f, Align::kCentre}, 0.15f, opaque(poster.ink));
     y += 2.0f * 17 * unit;
   }
-  canvas.shade([&](glm::vec2 at) { return 0.86f + 0.16f * fractal_noise(at, 3, 4, poster.seed); });
+  const FractalNoise age(3, 3, poster.seed);
+  canvas.shade([&](glm::vec2 at) { return 0.86f + 0.16f * age(at); });
   return canvas.texture();
 }
 
@@ -133,10 +134,11 @@ void add_poster_wall(SceneAssembly& assembly, float width, float height, float z
 
 void set_daylight(Scene& scene) {
   scene.sun.direction = glm::normalize(glm::vec3(-0.45f, -0.75f, -0.5f));
-  scene.sun.irradiance = {3.4f, 3.1f, 2.6f};
-  scene.sky.zenith = {0.20f, 0.40f, 0.85f};
-  scene.sky.horizon = {0.75f, 0.85f, 1.0f};
-  scene.sky.ground = {0.26f, 0.23f, 0.20f};
+  scene.sun.irradiance = {4.6f, 4.1f, 3.3f};
+  scene.sky.zenith = {0.09f, 0.22f, 0.56f};
+  scene.sky.horizon = {0.46f, 0.56f, 0.70f};
+  scene.sky.ground = {0.17f, 0.15f, 0.12f};
+  scene.exposure = 0.8f;
   scene.sky.sun_radiance = {120, 110, 90};
 }
 

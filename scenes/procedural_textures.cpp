@@ -12,7 +12,7 @@ namespace quincunx::scenes {
 namespace {
 
 std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
+  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
 }
 
 float hash_unit(int x, int y, std::uint64_t seed) {
@@ -27,6 +27,7 @@ float smooth(float low, float high, float value) {
 }
 
 int wrapped(int value, int period) {
+  if (value >= 0 && value < period) return value;
   return ((value % period) + period) % period;
 }
 
@@ -90,41 +91,56 @@ Block stretcher_bond(glm::vec2 at, int columns, int rows) {
 
 }  // namespace
 
-float periodic_noise(glm::vec2 at, glm::ivec2 period, std::uint64_t seed) {
-  const glm::vec2 cell = glm::floor(at);
-  const glm::vec2 f = at - cell;
-  const glm::vec2 w = f * f * (3.0f - 2.0f * f);
-  const int x0 = wrapped(static_cast<int>(cell.x), period.x);
-  const int y0 = wrapped(static_cast<int>(cell.y), period.y);
-  const int x1 = (x0 + 1) % period.x;
-  const int y1 = (y0 + 1) % period.y;
-  return glm::mix(glm::mix(hash_unit(x0, y0, seed), hash_unit(x1, y0, seed), w.x),
-                  glm::mix(hash_unit(x0, y1, seed), hash_unit(x1, y1, seed), w.x), w.y);
+FractalNoise::FractalNoise(glm::ivec2 cells, int octaves, std::uint64_t seed) {
+  float sum = 0;
+  float weight = 1;
+  for (int k = 0; k < octaves; ++k) {
+    Octave octave{cells * (1 << k), weight, {}};
+    for (int y = 0; y < octave.cells.y; ++y) {
+      for (int x = 0; x < octave.cells.x; ++x) {
+        octave.values.push_back(hash_unit(x, y, seed + static_cast<std::uint64_t>(k)));
+      }
+    }
+    octaves_.push_back(std::move(octave));
+    sum += weight;
+    weight *= 0.55f;
+  }
+  for (Octave& octave : octaves_)
+    octave.weight /= sum;
 }
 
-float fractal_noise(glm::vec2 at, int period, int octaves, std::uint64_t seed) {
+float FractalNoise::operator()(glm::vec2 at) const {
   float sum = 0;
-  float weight = 0;
-  float amplitude = 1;
-  for (int octave = 0; octave < octaves; ++octave) {
-    const int cells = period << octave;
-    sum += amplitude * periodic_noise(at * static_cast<float>(cells), glm::ivec2(cells),
-                                      seed + static_cast<std::uint64_t>(octave));
-    weight += amplitude;
-    amplitude *= 0.55f;
+  for (const Octave& octave : octaves_) {
+    const glm::vec2 scaled = at * glm::vec2(octave.cells);
+    // Conversion truncates: cheaper than floor, which is a call.
+    const glm::ivec2 cell = glm::ivec2(scaled) - glm::ivec2(scaled.x < 0, scaled.y < 0);
+    const glm::vec2 f = scaled - glm::vec2(cell);
+    const glm::vec2 w = f * f * (3.0f - 2.0f * f);
+    const int x0 = wrapped(cell.x, octave.cells.x);
+    const int y0 = wrapped(cell.y, octave.cells.y);
+    const int x1 = x0 + 1 < octave.cells.x ? x0 + 1 : 0;
+    const int y1 = y0 + 1 < octave.cells.y ? y0 + 1 : 0;
+    const auto value = [&](int x, int y) {
+      return octave.values[static_cast<std::size_t>(y * octave.cells.x + x)];
+    };
+    sum += octave.weight * glm::mix(glm::mix(value(x0, y0), value(x1, y0), w.x),
+                                    glm::mix(value(x0, y1), value(x1, y1), w.x), w.y);
   }
-  return sum / weight;
+  return sum;
 }
 
 Surface brick_surface(int size, std::uint64_t seed) {
+  const FractalNoise wobbles(16, 3, seed + 40);
+  const FractalNoise grains(64, 3, seed + 20);
   constexpr int kColumns = 8;
   constexpr int kRows = 24;
   return make_surface(size, [&](glm::vec2 at) {
-    const float wobble = fractal_noise(at, 16, 3, seed + 40) - 0.5f;
+    const float wobble = wobbles(at) - 0.5f;
     const Block block = stretcher_bond(at, kColumns, kRows);
     const float tone = hash_unit(block.column, block.row, seed);
     const float burnt = hash_unit(block.column, block.row, seed + 9) > 0.86f ? 1.0f : 0.0f;
-    const float grain = fractal_noise(at, 64, 3, seed + 20);
+    const float grain = grains(at);
     const float face = smooth(0.05f, 0.15f, block.edge + wobble * 0.06f);
     glm::vec3 brick = glm::mix(glm::vec3(0.60f, 0.31f, 0.21f), glm::vec3(0.76f, 0.47f, 0.32f), tone);
     brick = glm::mix(brick, glm::vec3(0.42f, 0.24f, 0.20f), burnt * 0.7f);
@@ -136,13 +152,15 @@ Surface brick_surface(int size, std::uint64_t seed) {
 }
 
 Surface ashlar_surface(int size, std::uint64_t seed) {
+  const FractalNoise stains(4, 5, seed + 3);
+  const FractalNoise grains(48, 3, seed + 20);
   constexpr int kColumns = 3;
   constexpr int kRows = 6;
   return make_surface(size, [&](glm::vec2 at) {
     const Block block = stretcher_bond(at, kColumns, kRows);
     const float tone = hash_unit(block.column, block.row, seed);
-    const float stain = fractal_noise(at, 4, 5, seed + 3);
-    const float grain = fractal_noise(at, 48, 3, seed + 20);
+    const float stain = stains(at);
+    const float grain = grains(at);
     const float face = smooth(0.012f, 0.04f, block.edge);
     glm::vec3 stone = glm::mix(glm::vec3(0.78f, 0.70f, 0.57f), glm::vec3(0.88f, 0.81f, 0.69f), tone);
     stone *= 0.80f + 0.16f * stain + 0.16f * grain;
@@ -151,10 +169,13 @@ Surface ashlar_surface(int size, std::uint64_t seed) {
 }
 
 Surface plaster_surface(int size, std::uint64_t seed) {
+  const FractalNoise clouds(3, 5, seed);
+  const FractalNoise grains(64, 3, seed + 20);
+  const FractalNoise patches(5, 5, seed + 50);
   return make_surface(size, [&](glm::vec2 at) {
-    const float cloud = fractal_noise(at, 3, 5, seed);
-    const float grain = fractal_noise(at, 64, 3, seed + 20);
-    const float patch = smooth(0.56f, 0.64f, fractal_noise(at, 5, 5, seed + 50));
+    const float cloud = clouds(at);
+    const float grain = grains(at);
+    const float patch = smooth(0.56f, 0.64f, patches(at));
     glm::vec3 wash = glm::mix(glm::vec3(0.84f, 0.63f, 0.38f), glm::vec3(0.93f, 0.77f, 0.54f), cloud);
     wash = glm::mix(wash, glm::vec3(0.86f, 0.78f, 0.66f), patch * 0.6f);
     return Texel{wash * (0.90f + 0.14f * grain), grain * 1.2f - patch * 1.5f, 0.95f};
@@ -162,6 +183,9 @@ Surface plaster_surface(int size, std::uint64_t seed) {
 }
 
 Surface paving_surface(int size, std::uint64_t seed) {
+  const FractalNoise stains(4, 5, seed + 3);
+  const FractalNoise grains(48, 3, seed + 20);
+  const FractalNoise wears(3, 4, seed + 77);
   constexpr int kFlags = 4;  // a repeat holds 4 x 4 flags, two fives of a die each way
   return make_surface(size, [&](glm::vec2 at) {
     const glm::vec2 scaled = at * static_cast<float>(kFlags);
@@ -177,17 +201,19 @@ Surface paving_surface(int size, std::uint64_t seed) {
     const float joint = std::min(std::min(to_corner.x, to_corner.y) + pip, joint_of_pip);
     const float face = smooth(0.006f, 0.022f, joint);
     const float tone = hash_unit(static_cast<int>(cell.x), static_cast<int>(cell.y), seed);
-    const float stain = fractal_noise(at, 4, 5, seed + 3);
-    const float grain = fractal_noise(at, 48, 3, seed + 20);
-    glm::vec3 flag = glm::mix(glm::vec3(0.66f, 0.58f, 0.48f), glm::vec3(0.78f, 0.69f, 0.57f), tone);
+    const float stain = stains(at);
+    const float grain = grains(at);
+    glm::vec3 flag = glm::mix(glm::vec3(0.58f, 0.51f, 0.42f), glm::vec3(0.71f, 0.62f, 0.51f), tone);
     flag = glm::mix(flag, glm::vec3(0.34f, 0.27f, 0.25f), pip);
     flag *= 0.78f + 0.22f * stain + 0.14f * grain;
-    const float wear = smooth(0.45f, 0.65f, fractal_noise(at, 3, 4, seed + 77));
+    const float wear = smooth(0.45f, 0.65f, wears(at));
     return Texel{flag * glm::mix(0.6f, 1.0f, face), face * 2.5f + grain * 0.9f, glm::mix(0.8f, 0.48f, wear)};
   });
 }
 
 Surface plank_surface(int size, std::uint64_t seed) {
+  const FractalNoise warps(4, 3, seed + 5);
+  const FractalNoise fibres({128, 8}, 1, seed + 20);
   constexpr int kBoards = 6;
   return make_surface(size, [&](glm::vec2 at) {
     const float x = at.x * kBoards;
@@ -195,9 +221,9 @@ Surface plank_surface(int size, std::uint64_t seed) {
     const float inside = x - static_cast<float>(board);
     const float face = smooth(0.02f, 0.07f, std::min(inside, 1 - inside));
     const float tone = hash_unit(board, 0, seed);
-    const float warp = fractal_noise(at, 4, 3, seed + 5);
+    const float warp = warps(at);
     const float rings = 0.5f + 0.5f * std::sin(glm::two_pi<float>() * (3 * at.x + 2.5f * warp + tone) * 3);
-    const float fibre = periodic_noise(at * glm::vec2(128, 8), {128, 8}, seed + 20);
+    const float fibre = fibres(at);
     glm::vec3 wood = glm::mix(glm::vec3(0.33f, 0.20f, 0.12f), glm::vec3(0.50f, 0.33f, 0.20f), tone);
     wood *= 0.8f + 0.16f * rings + 0.2f * fibre;
     return Texel{wood * glm::mix(0.45f, 1.0f, face), face * 3 + fibre * 0.8f, 0.7f};
@@ -205,11 +231,23 @@ Surface plank_surface(int size, std::uint64_t seed) {
 }
 
 Surface stone_surface(int size, std::uint64_t seed) {
+  const FractalNoise clouds(3, 5, seed);
+  const FractalNoise grains(32, 3, seed + 20);
   return make_surface(size, [&](glm::vec2 at) {
-    const float cloud = fractal_noise(at, 3, 5, seed);
-    const float grain = fractal_noise(at, 32, 3, seed + 20);
+    const float cloud = clouds(at);
+    const float grain = grains(at);
     const glm::vec3 stone = glm::mix(glm::vec3(0.80f, 0.73f, 0.62f), glm::vec3(0.90f, 0.85f, 0.75f), cloud);
     return Texel{stone * (0.88f + 0.16f * grain), grain * 0.9f + cloud, 0.8f};
+  });
+}
+
+Surface grass_surface(int size, std::uint64_t seed) {
+  const FractalNoise meadow(3, 4, seed);
+  const FractalNoise blades({96, 48}, 2, seed + 20);
+  return make_surface(size, [&](glm::vec2 at) {
+    const float dry = smooth(0.35f, 0.75f, meadow(at));
+    const glm::vec3 grass = glm::mix(glm::vec3(0.36f, 0.42f, 0.20f), glm::vec3(0.47f, 0.48f, 0.25f), dry);
+    return Texel{grass * (0.62f + 0.6f * blades(at)), 0, 1};
   });
 }
 
@@ -291,14 +329,36 @@ Texture leaf_texture(int size, std::uint64_t seed) {
 }
 
 Texture water_normal_texture(int size, std::uint64_t seed) {
+  const FractalNoise swell(6, 4, seed);
   Surface surface = make_surface(size, [&](glm::vec2 at) {
     const glm::vec2 from_centre = at - 0.5f;
     const float radius = glm::length(from_centre);
-    const float noise = fractal_noise(at, 6, 4, seed);
+    const float noise = swell(at);
     const float ripple = std::sin(radius * 90 + noise * 5) * std::exp(-radius * 3);
     return Texel{glm::vec3(0), 2.4f * ripple + 6 * noise, 0.1f};
   });
   return normal_texture(surface);
+}
+
+Texture cloud_texture(int width, int height, std::uint64_t seed) {
+  const FractalNoise shapes({5, 6}, 6, seed);
+  const FractalNoise bends({3, 2}, 3, seed + 90);
+  Texture texture = blank_texture(width, height, true);
+  texture.wrap_v = Wrap::kClamp;
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const glm::vec2 at((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+                         (static_cast<float>(y) + 0.5f) / static_cast<float>(height));
+      const glm::vec2 bent = at + glm::vec2(0, 0.16f * bends(at));
+      const float density = smooth(0.50f, 0.78f, shapes(bent));
+      const float below = smooth(0.50f, 0.78f, shapes(bent - glm::vec2(0.006f, 0.03f)));
+      const float ends = smooth(0.0f, 0.25f, at.y) * smooth(1.0f, 0.8f, at.y);
+      const glm::vec3 colour =
+          glm::mix(glm::vec3(1.0f, 0.93f, 0.85f), glm::vec3(0.72f, 0.70f, 0.74f), 0.8f * below);
+      append(texture, glm::vec4(colour, 0.85f * density * ends));
+    }
+  }
+  return texture;
 }
 
 }  // namespace quincunx::scenes

@@ -16,10 +16,23 @@
 
 namespace quincunx::scenes {
 
-// Smooth value noise in [0, 1]; repeats after `period` cells each way.
-float periodic_noise(glm::vec2 at, glm::ivec2 period, std::uint64_t seed);
-// Octaves of it in [0, 1], repeating after [0, 1): the first has `period` cells each way.
-float fractal_noise(glm::vec2 at, int period, int octaves, std::uint64_t seed);
+// Smooth value noise in octaves, in [0, 1], repeating after [0, 1) each way: the first octave has `cells`
+// cells, each further one twice as many at 0.55 of the weight.
+class FractalNoise {
+ public:
+  FractalNoise(glm::ivec2 cells, int octaves, std::uint64_t seed);
+  FractalNoise(int cells, int octaves, std::uint64_t seed) : FractalNoise(glm::ivec2(cells), octaves, seed) {}
+
+  float operator()(glm::vec2 at) const;
+
+ private:
+  struct Octave {
+    glm::ivec2 cells;
+    float weight;
+    std::vector<float> values;
+  };
+  std::vector<Octave> octaves_;
+};
 
 // One square repeat of a surface.
 struct Surface {
@@ -35,6 +48,7 @@ Surface plaster_surface(int size, std::uint64_t seed);  // 4 m: weathered limewa
 Surface paving_surface(int size, std::uint64_t seed);   // 2.4 m: flags with inlaid diamonds, fives of a die
 Surface plank_surface(int size, std::uint64_t seed);    // 1 m: six upright boards
 Surface stone_surface(int size, std::uint64_t seed);    // 1 m: plain, finely worked
+Surface grass_surface(int size, std::uint64_t seed);    // 3 m: a mown meadow
 
 Texture colour_texture(const Surface& surface);
 Texture normal_texture(const Surface& surface, float strength = 1);  // glTF: green points up, against v
@@ -42,6 +56,8 @@ Texture roughness_texture(const Surface& surface);                   // G roughn
 
 Texture leaf_texture(int size, std::uint64_t seed);  // a sprig of leaves with alpha, stem at the bottom
 Texture water_normal_texture(int size, std::uint64_t seed);  // ripples round the centre
+Texture cloud_texture(int width, int height,
+                      std::uint64_t seed);  // streaks with alpha; repeats in u, ends softly in v
 
 // A picture to draw on, in pixels, y down; shapes are antialiased.
 class Canvas {

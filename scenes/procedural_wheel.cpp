@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <string_view>
 
 #include "procedural_props.h"
 #include "procedural_scenes.h"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kDuration = 8;
 constexpr float kTau = glm::two_pi<float>();
+constexpr float kGapAtSeam = 0.6f;  // cap heights between the last letter and the first
 
 struct WheelMaterials {
   int steel;
@@ -28,10 +30,12 @@ struct Wheel {
   const char* lettering;
 };
 
-// Lettering bent round the band, feet towards the hub.
+// Lettering bent round the band, feet towards the hub, spread so that it goes round once.
 void add_lettering(MeshBuilder& ink, const char* text, float radius, float cap_height) {
-  const TextStyle style{cap_height, 0.25f, Align::kLeft};
   const float around = kTau * (radius + cap_height / 2);
+  TextStyle style{cap_height, 0, Align::kLeft};
+  const float letters = static_cast<float>(std::string_view(text).size());
+  style.tracking = (around - text_width(text, style)) / (letters * cap_height) - kGapAtSeam / letters;
   for (Polyline path : text_strokes(text, {0, 0}, style)) {
     for (glm::vec2& point : path) {
       const float angle = kTau * point.x / around;  // clockwise from the top
@@ -77,18 +81,18 @@ void add_wheel(SceneAssembly& assembly, const WheelMaterials& materials, const W
 Scene make_wheel(std::uint64_t seed) {
   SceneAssembly assembly;
   add_poster_wall(assembly, 16, 4.4f, -2.6f, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(1024, seed + 2)));
+  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
   paving.pen.uv_per_metre = 1 / 2.4f;
   paving.patch({-9, 0, 7}, {18, 0, 0}, {0, 0, -10});
   const WheelMaterials materials{
-      assembly.add(plain_material("steel", glm::vec3(0.62f, 0.62f, 0.64f), 0.35f, 0.3f)),
+      assembly.add(plain_material("steel", glm::vec3(0.34f, 0.35f, 0.37f), 0.35f, 0.3f)),
       assembly.add(plain_material("tyre", glm::vec3(0.035f), 0.8f)),
       assembly.add(plain_material("band", glm::vec3(0.78f, 0.62f, 0.22f), 0.6f)),
       assembly.add(plain_material("ink", glm::vec3(0.02f), 0.9f))};
   constexpr std::array kWheels = std::to_array<Wheel>(
-      {{{-0.9f, 1.75f, 0}, 1.35f, 36, 2, "QUINCUNX * FIVE OF A DIE * QUINCUNX * 1 2 3 4 5 *"},
-       {{1.75f, 2.25f, 0.1f}, 0.85f, 28, -5, "ABCDEFGHIJKLM NOPQRSTUVWXYZ 0123456789"},
-       {{1.95f, 0.72f, 0.2f}, 0.6f, 20, 13, "QUINCUNX QUINCUNX QUINCUNX QUIN"}});
+      {{{-0.9f, 1.75f, 0}, 1.35f, 36, 2, "QUINCUNX * FIVE OF A DIE * QUINCUNX * 12345 * "},
+       {{1.75f, 2.25f, 0.1f}, 0.85f, 28, -5, "ABCDEFGHIJKLMNOPQRSTUVWXYZ 0123456789 "},
+       {{1.95f, 0.72f, 0.2f}, 0.6f, 20, 13, "QUINCUNX * QUINCUNX * QUINCUNX * "}});
   MeshBuilder& stand = assembly.still(materials.steel);
   for (const Wheel& wheel : kWheels) {
     add_wheel(assembly, materials, wheel);

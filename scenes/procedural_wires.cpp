@@ -4,7 +4,6 @@
 
 #include "procedural_props.h"
 #include "procedural_scenes.h"
-#include "random.h"
 
 namespace quincunx::scenes {
 
@@ -102,17 +101,12 @@ Scene make_wires(std::uint64_t seed) {
   const int copper = assembly.add(plain_material("cable", glm::vec3(0.03f, 0.03f, 0.035f), 0.5f));
   const int porcelain = assembly.add(plain_material("porcelain", glm::vec3(0.42f, 0.18f, 0.10f), 0.25f));
   const int red = assembly.add(plain_material("red paint", glm::vec3(0.6f, 0.05f, 0.03f), 0.4f));
-  assembly.still(iron);
   add_poster_wall(assembly, 16, 3.2f, -8, seed);
-  Material grass = plain_material("meadow", glm::vec3(0.16f, 0.19f, 0.07f), 1);
-  MeshBuilder& ground = assembly.still(assembly.add(grass));
-  Random random(seed, 3);
-  for (int z = 0; z < 24; ++z) {
-    for (int x = 0; x < 30; ++x) {
-      ground.pen.colour = glm::vec4(glm::vec3(random.range(0.8f, 1.15f)), 1);
-      ground.patch({-60 + 4 * x, -0.02f, 12 - 4 * z}, {4, 0, 0}, {0, 0, -4});
-    }
-  }
+  const int grass =
+      assembly.add_surface("meadow", grass_surface(512, seed + 3), SceneAssembly::Detail::kColour);
+  MeshBuilder& ground = assembly.still(grass);
+  ground.pen.uv_per_metre = 1 / 3.0f;
+  ground.patch({-120, -0.02f, 12}, {240, 0, 0}, {0, 0, -200});
   MeshBuilder& fence = assembly.still(galvanised);
   fence.pen.placement = moved_to({0.9f, 0, 0.4f}) * turned(0.35f, {0, 1, 0});
   add_fence(fence, 4.8f, 1.7f);

@@ -70,7 +70,7 @@ Material unlit_material(std::string name, glm::vec3 colour) {
 }
 
 Material lamp_material(std::string name, glm::vec3 radiance) {
-  Material material = plain_material(std::move(name), glm::vec3(0.8f), 0.6f);
+  Material material = plain_material(std::move(name), glm::vec3(0.04f), 0.6f);
   material.emissive = radiance;
   return material;
 }
