@@ -32,7 +32,7 @@
 #if OUTPUT_STORAGE == IMAGE
 #define PRESENTED_TEXELS write_only image2d_t
 #elif OUTPUT_STORAGE == BUFFER
-#define PRESENTED_TEXELS __global uchar* restrict
+#define PRESENTED_TEXELS __global uint* restrict
 #else
 #error "OUTPUT_STORAGE must be BUFFER or IMAGE"
 #endif
@@ -58,24 +58,32 @@ static inline uchar16 encode(float16 linear_colour, float exposure, float4 round
   return convert_uchar16(convert_int16(code));
 }
 
-// Up to four pixels from x on.
-static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, int count, uchar16 codes) {
+// Four pixels from x on, of which those before `end` exist.
+static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, int end, uchar16 codes) {
 #if OUTPUT_STORAGE == IMAGE
   const float16 values = convert_float16(codes) * (1.0f / 255.0f);
   write_imagef(texels, (int2)(x, y), values.s0123);
-  if (count > 1) write_imagef(texels, (int2)(x + 1, y), values.s4567);
-  if (count > 2) write_imagef(texels, (int2)(x + 2, y), values.s89ab);
-  if (count > 3) write_imagef(texels, (int2)(x + 3, y), values.scdef);
+  if (x + 1 < end) write_imagef(texels, (int2)(x + 1, y), values.s4567);
+  if (x + 2 < end) write_imagef(texels, (int2)(x + 2, y), values.s89ab);
+  if (x + 3 < end) write_imagef(texels, (int2)(x + 3, y), values.scdef);
 #else
-  const int index = texel_index(layout, x, y);
-  if (count == kBlock) {
-    vstore16(codes, 0, texels + 4 * index);
+  __global uint* pixels = texels + texel_index(layout, x, y);
+  const uint4 packed = as_uint4(codes);
+  if (x + 3 < end) {
+    vstore4(packed, 0, pixels);
     return;
   }
-  vstore4(codes.s0123, index, texels);
-  if (count > 1) vstore4(codes.s4567, index + 1, texels);
-  if (count > 2) vstore4(codes.s89ab, index + 2, texels);
+  pixels[0] = packed.s0;
+  if (x + 1 < end) pixels[1] = packed.s1;
+  if (x + 2 < end) pixels[2] = packed.s2;
 #endif
+}
+
+// One pixel of any value; sets bit `bit` of *met where it is NaN or infinite.
+static inline float4 load_careful(RESOLVED_TEXELS source, TexelLayout layout, int x, int y, uint bit, uint* met) {
+  const float4 colour = load_resolved(source, layout, x, y);
+  if (any_non_finite4(colour)) *met |= bit;
+  return sanitise4(colour);
 }
 
 __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESENTED_TEXELS output,
@@ -85,16 +93,28 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
   if (first >= params.width || y >= params.height) return;
 
   const int end = min(first + params.columns_per_item, params.width);
-  for (int x = first; x < end; x += kBlock) {
-    const int count = min(kBlock, params.width - x);
-    float16 colour = load_resolved4(source, params.source, x, y, count);
-    if (any((as_int16(colour) & 0x7fffffff) >= NON_FINITE_BITS)) {
-      const uint met = (uint)any_non_finite4(colour.s0123) + (count > 1 && any_non_finite4(colour.s4567)) +
-                       (count > 2 && any_non_finite4(colour.s89ab)) + (count > 3 && any_non_finite4(colour.scdef));
-      colour = (float16)(sanitise4(colour.s0123), sanitise4(colour.s4567), sanitise4(colour.s89ab),
-                         sanitise4(colour.scdef));
-      atomic_add(non_finite + params.counter, met);
-    }
-    store_codes(output, params.output, x, y, count, encode(colour, params.exposure, rounding(x, y)));
+  int16 largest = 0;
+  int x = first;
+  for (; x + kBlock <= end; x += kBlock) {
+    const float16 colour = load_resolved4(source, params.source, x, y);
+    largest = max(largest, as_int16(colour) & 0x7fffffff);
+    store_codes(output, params.output, x, y, end, encode(colour, params.exposure, rounding(x, y)));
   }
+  const int8 largest8 = max(largest.lo, largest.hi);
+  if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
+
+  // What is left over of the row or, which is rare, all of it once more: pixel by pixel.
+  uint met_count = 0;
+  for (; x < end; x += kBlock) {
+    uint met = 0;
+    const int last = end - 1;
+    const float4 p0 = load_careful(source, params.source, x, y, 1, &met);
+    const float4 p1 = load_careful(source, params.source, min(x + 1, last), y, 2, &met);
+    const float4 p2 = load_careful(source, params.source, min(x + 2, last), y, 4, &met);
+    const float4 p3 = load_careful(source, params.source, min(x + 3, last), y, 8, &met);
+    met_count += count_bits(met, end - x);
+    const float16 colour = (float16)(p0, p1, p2, p3);
+    store_codes(output, params.output, x, y, end, encode(colour, params.exposure, rounding(x, y)));
+  }
+  if (met_count) atomic_add(non_finite + params.counter, met_count);
 }

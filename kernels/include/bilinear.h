@@ -67,8 +67,3 @@ static inline int4 largest_of(int4 largest, FourPixels pixels) {
   largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
   return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
 }
-
-// How many of four bits belong to the first `count` pixels.
-static inline uint count_bits(uint bits, int count) {
-  return popcount(bits & ((1u << min(count, (int)kBlock)) - 1u));
-}

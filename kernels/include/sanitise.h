@@ -41,3 +41,8 @@ static inline bool any_reached_infinity(int4 largest) {
   const long2 hits = as_long2(largest >= NON_FINITE_BITS);
   return (hits.x | hits.y) != 0;
 }
+
+// How many of four bits belong to the first `count` pixels.
+static inline uint count_bits(uint bits, int count) {
+  return popcount(bits & ((1u << min(count, 4)) - 1u));
+}

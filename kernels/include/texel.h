@@ -198,9 +198,16 @@ static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, i
 #endif
 }
 
-// The texels (x, y) to (x + 3, y); those from `count` on repeat the last.
-static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y, int count) {
-  const int last = x + count - 1;
-  return (float16)(load_resolved(texels, layout, x, y), load_resolved(texels, layout, min(x + 1, last), y),
-                   load_resolved(texels, layout, min(x + 2, last), y), load_resolved(texels, layout, last, y));
+// The texels (x, y) to (x + 3, y).
+static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+  const int index = texel_index(layout, x, y);
+#if SOURCE_FORMAT == HALF
+  // Through private memory, as in load_colour_pair.
+  __global const uint* words = (__global const uint*)texels + 2 * index;
+  const uint4 lower = vload4(0, words);
+  const uint4 upper = vload4(1, words);
+  return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
+#else
+  return vload16(0, texels + 4 * index);
+#endif
 }
