@@ -83,20 +83,24 @@ CameraMotion Renderer::camera_motion(const FrameView& view) const {
   return camera_motion_between(matrices.now, matrices.before);
 }
 
-void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) const {
+void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) {
   const SurfacePrograms& programs = surface_programs[static_cast<std::size_t>(batch.program)];
   const MeshRange& part = layout.parts[static_cast<std::size_t>(batch.range)];
-  glUseProgram(velocity ? programs.with_velocity.get() : programs.plain.get());
+  const Bound wanted{velocity ? programs.with_velocity.get() : programs.plain.get(), part.material,
+                     batch.light_set};
+  if (wanted.program != bound.program) glUseProgram(wanted.program);
+  if (wanted.material != bound.material) gpu.bind_material(wanted.material);
+  if (wanted.light_set != bound.light_set) gpu.bind_light_set(wanted.light_set);
+  bound = wanted;
   glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
-  gpu.bind_material(part.material);
-  gpu.bind_light_set(batch.light_set);
   draw_mesh(part, batch.first, batch.count);
 }
 
-void Renderer::Impl::draw_opaque(bool velocity) const {
+void Renderer::Impl::draw_opaque(bool velocity) {
   set_opaque_state();
   glBindVertexBuffer(kInstanceSlot, instance_stream.get(), instance_offset, sizeof(InstanceData));
   glBindTextureUnit(kShadowUnit, shadows.texture());
+  bound = {};
   for (const Batch& batch : list.opaque())
     draw_batch(batch, velocity);
 }
@@ -107,9 +111,10 @@ void Renderer::Impl::draw_sky(bool velocity) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::Impl::draw_blended() const {
+void Renderer::Impl::draw_blended() {
   if (list.blended().empty()) return;
   set_blended_state();
+  bound = {};
   bool particles_bound = false;
   for (const Batch& batch : list.blended()) {
     if (batch.particles != particles_bound) {
@@ -123,6 +128,7 @@ void Renderer::Impl::draw_blended() const {
     glBindVertexBuffer(kInstanceSlot, particle_stream.get(), particle_offset, sizeof(Particle));
     glUseProgram(particle_program.get());
     glDisable(GL_CULL_FACE);
+    bound = {};
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count),
                                       batch.first);
   }

@@ -40,10 +40,10 @@ struct Renderer::Impl {
   void make_lists(const View& view, const FrameView& frame);
   void upload_frame(const FrameBlock& block);
 
-  void draw_opaque(bool velocity) const;
+  void draw_opaque(bool velocity);
   void draw_sky(bool velocity) const;
-  void draw_blended() const;
-  void draw_batch(const Batch& batch, bool velocity) const;
+  void draw_blended();
+  void draw_batch(const Batch& batch, bool velocity);
 
   Scene scene;
   SceneLayout layout;
@@ -57,6 +57,13 @@ struct Renderer::Impl {
   StreamBuffer frame_stream;
   StreamBuffer instance_stream;
   StreamBuffer particle_stream;
+  // What the last draw_batch() bound, to bind only what changes; -2: unknown.
+  struct Bound {
+    GLuint program = 0;
+    int material = -2;
+    int light_set = -2;
+  };
+  Bound bound;
   GLintptr instance_offset = 0;
   GLintptr particle_offset = 0;
 

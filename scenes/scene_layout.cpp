@@ -113,19 +113,43 @@ class Layouter {
   void add_meshes() {
     for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
       const Mesh& mesh = scene_.meshes[m];
-      const MeshParts parts = split_mesh(mesh, limits_for(static_cast<int>(m)));
+      const PartLimits limits = limits_for(static_cast<int>(m));
+      const MeshParts parts = split_mesh(mesh, limits);
       std::size_t first = layout_.indices.size();
       layout_.indices.insert(layout_.indices.end(), parts.indices.begin(), parts.indices.end());
       layout_.meshes.push_back(range_of(mesh, first, parts.indices.size()));
       parts_of_mesh_.push_back(
           {static_cast<int>(layout_.parts.size()), static_cast<int>(parts.counts.size())});
       for (const std::uint32_t count : parts.counts) {
-        layout_.parts.push_back(range_of(mesh, first, count));
+        add_part(range_of(mesh, first, count), static_cast<int>(m), limits.many);
         first += count;
       }
+      parts_of_mesh_.back().count = static_cast<int>(layout_.parts.size()) - parts_of_mesh_.back().first;
       features_.push_back(features_of(mesh, scene_.materials[static_cast<std::size_t>(mesh.material)]));
       base_vertex_ += static_cast<std::int32_t>(mesh.vertices.size());
     }
+  }
+
+  // Neighbours that the same lights reach become one part again, up to `many` triangles: fewer draws.
+  void add_part(const MeshRange& part, int mesh, std::size_t many) {
+    const int first = parts_of_mesh_.back().first;
+    if (static_cast<int>(layout_.parts.size()) > first) {
+      MeshRange& last = layout_.parts.back();
+      const bool small = last.index_count + part.index_count <= 3 * many;
+      if (small && lights_on_mesh(last.box, mesh) == lights_on_mesh(part.box, mesh)) {
+        last.index_count += part.index_count;
+        include(last.box, part.box);
+        return;
+      }
+    }
+    layout_.parts.push_back(part);
+  }
+
+  // Of a mesh that is cut, and so stands once and still.
+  std::uint32_t lights_on_mesh(const Bounds& box, int mesh) const {
+    const auto instance = std::find_if(scene_.instances.begin(), scene_.instances.end(),
+                                       [&](const Instance& candidate) { return candidate.mesh == mesh; });
+    return instance == scene_.instances.end() ? 0 : lights_.reaching(transformed(box, instance->transform));
   }
 
   void place_instances() {
