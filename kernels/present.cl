@@ -8,7 +8,7 @@
 //          DITHER          1 (default): colour rounds up or down by a fixed pattern of the position | 0: to nearest
 //          SOURCE_FORMAT   HALF (default) | FLOAT
 //          OUTPUT_STORAGE  BUFFER (default) | IMAGE
-// The code is exact to 0.002 before rounding. A colour that is a whole code keeps it under dither.
+// The code is exact to 0.003 before rounding. A colour that is a whole code keeps it under dither.
 // Source: dither pattern R2 after Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
 // Reference: tests/reference/present.cpp
 #ifndef TONE_MAP
@@ -39,23 +39,23 @@
 
 
 
-// In [0, 1): what is added before truncation. 0.5 rounds to nearest.
-static inline float4 rounding(int x, int y) {
+// What is added to four pixels before truncation, in [0, 1): 0.5 rounds to nearest, as alpha always does.
+static inline float16 rounding(int x, int y) {
 #if DITHER
   // x / g + y / g^2 modulo 1, g the plastic number 1.3247..., in units of 2^-32.
-  const uint4 phase = ((uint4)((uint)x) + (uint4)(0, 1, 2, 3)) * 3242174889u + (uint)y * 2447445414u;
-  return convert_float4(phase >> 8) * 0x1p-24f;
+  const uint16 pixel = (uint16)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3) * 3242174889u;
+  const uint16 phase = pixel + ((uint)x * 3242174889u + (uint)y * 2447445414u);
+  return convert_float16(as_int16(phase >> 8)) * 0x1p-24f;
 #else
   return 0.5f;
 #endif
 }
 
-static inline uchar16 encode(float16 linear_colour, float exposure, float4 round) {
-  const float16 encoded = srgb_code(tone_map(linear_colour * exposure));
-  const float4 alpha = clamp(linear_colour.s37bf, 0.0f, 1.0f) * 255.0f + 0.5f;
-  float16 code = fmin(encoded + round.s0000111122223333, 255.0f);
-  code.s37bf = alpha;
-  return convert_uchar16(convert_int16(code));
+static inline uchar16 encode(float16 colour, float exposure, float16 round) {
+  const int16 is_alpha = (int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1);
+  const float16 code = srgb_code(tone_map(colour * exposure)) + round;
+  const float16 alpha = clamp(colour, 0.0f, 1.0f) * 255.0f + 0.5f;
+  return convert_uchar16(convert_int16(fmin(select(code, alpha, is_alpha), 255.0f)));
 }
 
 // Four pixels from x on, of which those before `end` exist.

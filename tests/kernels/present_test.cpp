@@ -17,9 +17,9 @@ namespace {
 using testing::Pixel;
 using testing::Rig;
 
-// What present.cl promises before rounding; in it 5e-4 of the logarithm, 7e-4 of the power, and float
-// rounding of the tone curve, where 2^-22 of a value changes its code by less than 1e-4.
-constexpr double kCodeError = 0.002;
+// What present.cl promises before rounding: 0.001 from its logarithm, 0.0015 from its power, and float
+// rounding of the tone curve and both polynomials below 0.0005.
+constexpr double kCodeError = 0.003;
 
 struct Variant {
   ToneMap tone_map;
