@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "truth.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
