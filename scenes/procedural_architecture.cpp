@@ -179,7 +179,7 @@ void add_windows(MeshBuilder& glass, MeshBuilder& frame, MeshBuilder& shutters, 
 }
 
 void add_column(MeshBuilder& stone, float radius, float height) {
-  constexpr int kSegments = 20;
+  constexpr int kSegments = 18;
   const float r = radius;
   const float plinth = 0.16f;
   const float abacus = 0.14f;
@@ -190,7 +190,7 @@ void add_column(MeshBuilder& stone, float radius, float height) {
                                     {1.36f * r, plinth + 0.10f}, {1.12f * r, plinth + 0.12f},
                                     {1.10f * r, plinth + 0.15f}, {1.22f * r, plinth + 0.18f},
                                     {1.18f * r, plinth + 0.22f}, {1.0f * r, plinth + 0.24f}};
-  constexpr int kShaftPieces = 8;
+  constexpr int kShaftPieces = 5;
   const float foot = plinth + 0.24f;
   const float neck = top - 0.32f;
   for (int i = 1; i <= kShaftPieces; ++i) {

@@ -150,10 +150,11 @@ void add_upper_storey(SceneAssembly& assembly, const CourtyardMaterials& m, cons
   add_tile_roof(*roof, kFacadeWidth + 0.4f, 3.4f, 1.9f);
 }
 
-void add_balcony(SceneAssembly& assembly, const CourtyardMaterials& m, const glm::mat4& front) {
+void add_balcony(SceneAssembly& assembly, const CourtyardMaterials& m, const glm::mat4& front, int bay) {
   constexpr float kWidth = 2.2f;
   constexpr float kDepth = 0.75f;
-  const glm::mat4 at = front * moved_to({kFacadeWidth / 2 - kWidth / 2, kStorey + 0.1f, 0});
+  const glm::mat4 at =
+      front * moved_to({(static_cast<float>(bay) + 0.5f) * kBay - kWidth / 2, kStorey + 0.1f, 0});
   const Stand slab(assembly.still(m.limestone, kFacade), at, kStoneRepeat);
   (*slab).box({-0.1f, 0, -0.1f}, {kWidth + 0.1f, 0.12f, kDepth + 0.08f});
   for (const float x : {0.25f, kWidth - 0.4f})
@@ -171,11 +172,11 @@ void add_inscription(SceneAssembly& assembly, const CourtyardMaterials& m, const
   const Stand letters(assembly.still(m.bronze, kFacade), front, 1);
   const auto write = [&](const char* text, float baseline, float height) {
     for (const Polyline& path :
-         text_strokes(text, {kFacadeWidth / 2, baseline}, {height, 3.1f, Align::kCentre})) {
+         text_strokes(text, {kFacadeWidth / 2, baseline}, {height, 1.1f, Align::kCentre})) {
       (*letters).stroke(path, 0.15f * height, 0.012f);
     }
   };
-  write("QUINCUNX", 4.52f, 0.3f);
+  write("QUINCUNX", 4.53f, 0.34f);
 }
 
 }  // namespace
@@ -193,7 +194,7 @@ void add_courtyard_ground(SceneAssembly& assembly, const CourtyardMaterials& m) 
                                                        {kRightWall, -1.0f, 6.5f, kNear, 1.0f},
                                                        {kFacade, kWall, 6.5f, -5.4f, kFacadeZ}});
   for (const Strip& strip : kStrips) {
-    const Stand paving(assembly.still(m.paving, strip.part), glm::mat4(1), kPavingRepeat, 0.3f);
+    const Stand paving(assembly.still(m.paving, strip.part), glm::mat4(1), kPavingRepeat, 0.4f);
     (*paving).patch({strip.left, 0, strip.near}, {strip.right - strip.left, 0, 0},
                     {0, 0, strip.far - strip.near});
   }
@@ -238,7 +239,8 @@ void add_courtyard_facade(SceneAssembly& assembly, const CourtyardMaterials& m) 
   const glm::mat4 front = moved_to({kFacadeX, 0, kFacadeZ});
   add_portico(assembly, m, front);
   add_upper_storey(assembly, m, front);
-  add_balcony(assembly, m, front);
+  for (const int bay : {0, kFacadeBays - 1})
+    add_balcony(assembly, m, front, bay);
   add_inscription(assembly, m, front);
 }
 

@@ -146,7 +146,7 @@ void add_courtyard_garden(SceneAssembly& assembly, const CourtyardMaterials& m, 
     add_tree(assembly, m.plants, tree, random);
   }
   MeshBuilder& leaves = assembly.still(m.plants.leaves, kGarden);
-  add_ivy(leaves, {{3.9f, 0.5f, -7.72f}, {2.6f, 0, 0}, {0, 6.6f, 0}, 620, 0.19f}, random);
+  add_ivy(leaves, {{3.9f, 0.5f, -7.72f}, {2.6f, 0, 0}, {0, 6.6f, 0}, 480, 0.2f}, random);
   add_ivy(leaves, {{-6.42f, 4.9f, 5.0f}, {0, 0, -5.2f}, {0, -2.0f, 0}, 330, 0.16f}, random);
   add_ivy(leaves, {{6.26f, 0, 3.4f}, {0, 0, 2.4f}, {0, 2.2f, 0}, 260, 0.16f}, random);
   struct Pot {

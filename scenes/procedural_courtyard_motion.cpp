@@ -57,13 +57,14 @@ void add_lanterns(SceneAssembly& assembly, const CourtyardMaterials& m) {
   for (int i = 0; i < 7; ++i) {
     const float z = 10.4f - 2.6f * (static_cast<float>(i) + 0.5f);
     hang_lantern(assembly, arcade, {-7.9f, 4.05f, z}, {0, 0, 1}, i);
-    assembly.scene.lights.push_back({{-7.9f, 2.98f, z}, kLampIntensity, kLampRange});
+    // Every second one lights its surroundings: by day nobody misses the others, and each costs.
+    if (i % 2 == 0) assembly.scene.lights.push_back({{-7.9f, 2.98f, z}, kLampIntensity, kLampRange});
   }
   const LanternMeshes portico = make_lantern(assembly, m, 0.65f);
   for (int i = 0; i < 5; ++i) {
     const float x = -5.2f + 2.6f * static_cast<float>(i);
     hang_lantern(assembly, portico, {x, 4.7f, -9.0f}, {1, 0, 0}, i + 3);
-    assembly.scene.lights.push_back({{x, 3.73f, -9.0f}, kLampIntensity, kLampRange});
+    if (i % 2 == 0) assembly.scene.lights.push_back({{x, 3.73f, -9.0f}, kLampIntensity, kLampRange});
   }
 }
 
@@ -92,7 +93,7 @@ void add_pennants(SceneAssembly& assembly, const CourtyardMaterials& m) {
     float sag;
   };
   constexpr std::array kLines = std::to_array<Line>({{{-6.45f, 5.3f, 4.0f}, {6.5f, 4.7f, 2.8f}, 0.75f},
-                                                     {{-6.45f, 5.3f, -2.4f}, {6.5f, 4.7f, -4.0f}, 0.7f}});
+                                                     {{-6.45f, 5.3f, -2.4f}, {6.5f, 5.0f, -4.0f}, 0.45f}});
   MeshBuilder& iron = assembly.still(m.iron, kGarden);
   int index = 0;
   for (const Line& line : kLines) {

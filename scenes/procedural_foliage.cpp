@@ -132,14 +132,14 @@ void add_bush(MeshBuilder& leaves, glm::vec3 foot, float radius, float height, i
 }
 
 void add_cypress(MeshBuilder& leaves, glm::vec3 foot, float height, Random& random) {
-  constexpr int kCards = 300;
+  constexpr int kCards = 220;
   for (int i = 0; i < kCards; ++i) {
     const float t = random.unit();
     const float angle = random.range(0, kTau);
     const float radius = 0.115f * height * std::pow(1 - t, 0.7f) * std::min(1.0f, 6 * t + 0.35f);
     const glm::vec3 out(std::cos(angle), 0.35f, std::sin(angle));
     leaves.pen.colour = glm::vec4(glm::vec3(random.range(0.30f, 0.60f)) * glm::vec3(0.80f, 1.0f, 0.95f), 1);
-    leaf_card(leaves, foot + glm::vec3(out.x * radius, t * height, out.z * radius), out, 0.034f * height,
+    leaf_card(leaves, foot + glm::vec3(out.x * radius, t * height, out.z * radius), out, 0.04f * height,
               glm::normalize(out), random);
   }
 }
