@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // resolve_quincunx: blend this frame with the previous one on the five-of-a-die pattern, in the seed's form.
 //   c0, c1 = this and the previous frame, bilinear, each offset by the inverse of its jitter
-//   f      = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in pixels a frame;   out = (c0 + f c1) / (1 + f)
+//   f      = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
 //
 //   params             in   extents, layouts, velocity scales with sqrt(K) in them, camera motion
 //   axes0, axes1       in   AxisTap of each output column, then row, for each frame's viewport and jitter

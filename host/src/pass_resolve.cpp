@@ -24,13 +24,13 @@ SourceFrame source_of(const FrameInputs& frame, VelocitySource velocity) {
   return source;
 }
 
-// From the velocity of one frame to sqrt(K) output pixels.
-Vec2 speed_scale(const FrameInputs& frame, VelocitySource velocity, Extent output, float weight) {
+// From the velocity of one frame to sqrt(K) of its render pixels.
+Vec2 speed_scale(const FrameInputs& frame, VelocitySource velocity, float weight) {
   Vec2 to_uv = {1, 1};
   if (velocity == VelocitySource::kTarget && frame.velocity_scale != Vec2{}) to_uv = frame.velocity_scale;
   const double root = std::sqrt(static_cast<double>(weight));
-  return {static_cast<float>(root * output.width * to_uv.x),
-          static_cast<float>(root * output.height * to_uv.y)};
+  return {static_cast<float>(root * frame.render.width * to_uv.x),
+          static_cast<float>(root * frame.render.height * to_uv.y)};
 }
 
 CameraVelocity camera_of(const FrameInputs& frame) {
@@ -71,8 +71,8 @@ void ResolvePass::warm_up(const cl::CommandQueue& queue) {
 
 ResolveParams ResolvePass::params_for(Extent output, const FrameInputs& current,
                                       const FrameInputs& previous) const {
-  const Vec2 scale0 = speed_scale(current, velocity_, output, settings_.velocity_weight);
-  const Vec2 scale1 = speed_scale(previous, velocity_, output, settings_.velocity_weight);
+  const Vec2 scale0 = speed_scale(current, velocity_, settings_.velocity_weight);
+  const Vec2 scale1 = speed_scale(previous, velocity_, settings_.velocity_weight);
   ResolveParams params{};
   params.output_width = output.width;
   params.output_height = output.height;

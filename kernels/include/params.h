@@ -70,7 +70,7 @@ typedef struct ResolveParams {
   int row_axis;          // index of the first row in the axis tables
   int counter;           // index into non_finite
   int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
-  // From the units of the velocity source to sqrt(K) * pixels, per frame.
+  // From the units of the velocity source to sqrt(K) render pixels, per frame.
   float velocity0_scale_x, velocity0_scale_y;
   float velocity1_scale_x, velocity1_scale_y;
   CameraVelocity camera0;

@@ -117,8 +117,10 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     const Run actual = resolve(rig, current, previous, output);
     const reference::Picture picture = expected(current, previous, output);
     const double relative =
-        kResolveError +
-        (plan_.reads_depth ? kCameraErrorPerPixel * std::max(output.width, output.height) : 0);
+        kResolveError + (plan_.reads_depth
+                             ? kCameraErrorPerPixel * std::max({now.render.width, now.render.height,
+                                                                before.render.width, before.render.height})
+                             : 0);
     const auto bound = [&](std::size_t i) {
       return relative * picture.largest[i] + kDenormal +
              testing::output_rounding(plan_.settings.resolved, picture.largest[i]);
@@ -316,33 +318,35 @@ INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](
                      name_of(v.velocity_format), name_of(v.resolved));
 });
 
-// v is counted in pixels of the output: at the same uv velocity a larger picture trusts the previous frame
-// less.
-TEST(ResolveWeight, CountsOutputPixels) {
+// v is counted in pixels of its frame's viewport, whatever the output: at the same uv velocity a larger
+// viewport trusts the previous frame less.
+TEST(ResolveWeight, CountsRenderPixels) {
   ResolvePlan plan;
   plan.velocity = VelocitySource::kTarget;
   plan.settings.velocity_weight = 2;
   ResolvePass pass(testing::impl(), plan);
   const FrameFormats formats{.with_velocity = true};
-  for (const Extent output : {Extent{100, 50}, Extent{200, 100}}) {
+  const Extent output{50, 30};
+  for (const Extent render : {Extent{40, 20}, Extent{80, 40}}) {
     Rig rig;
-    const Extent render{40, 20};
-    TestFrame current =
-        make_frame(rig, formats, {.render = render}, std::vector<Pixel>(800, Pixel{0, 0, 0, 0}));
-    TestFrame previous =
-        make_frame(rig, formats, {.render = render}, std::vector<Pixel>(800, Pixel{1, 1, 1, 1}));
-    const Pixel uv = {.015625, -.0625, 0, 0};
-    current.inputs.velocity =
-        rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, std::vector<Pixel>(800, uv), 0);
+    const Extent before{60, 33};
+    const auto plain = [&](Extent extent, Pixel pixel) {
+      return std::vector<Pixel>(static_cast<std::size_t>(extent.area()), pixel);
+    };
+    TestFrame current = make_frame(rig, formats, {.render = render}, plain(render, {0, 0, 0, 0}));
+    TestFrame previous = make_frame(rig, formats, {.render = before}, plain(before, {1, 1, 1, 1}));
+    const Pixel uv0 = {.015625, -.0625, 0, 0};
+    const Pixel uv1 = {-.03125, .0078125, 0, 0};
+    current.inputs.velocity = rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, plain(render, uv0), 0);
     previous.inputs.velocity =
-        rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, std::vector<Pixel>(800, Pixel{}), 0);
+        rig.image(PixelFormat::kRG16F, Storage::kBuffer, before, plain(before, uv1), 0);
     AxisTables tables(testing::impl(), output);
     const ImageView view = rig.output(PixelFormat::kRGBA32F, output);
     pass.enqueue(testing::impl().queue, tables, current.inputs, previous.inputs, view, rig.counter(),
                  nullptr);
-    const double x = uv[0] * output.width;
-    const double y = uv[1] * output.height;
-    const double f = 1 / (1 + 2 * (x * x + y * y));
+    const double v0 = std::hypot(uv0[0] * render.width, uv0[1] * render.height);
+    const double v1 = std::hypot(uv1[0] * before.width, uv1[1] * before.height);
+    const double f = 1 / (1 + 2 * (v0 * v0 + v1 * v1));
     EXPECT_NEAR(rig.pixels(view, output).front()[0], f / (1 + f), kResolveError);
   }
 }

@@ -15,8 +15,12 @@ double sanitised(double value) {
 
 int nearest_texel(int x, int output, int render, double jitter) {
   const double position = (x + 0.5) * render / output;
-  int best = 0;
-  for (int i = 1; i < render; ++i) {
+  // Texels within two of the position are all that can be nearest.
+  const int around = static_cast<int>(std::floor(position - jitter));
+  const int first = std::clamp(around - 2, 0, render - 1);
+  const int last = std::clamp(around + 2, 0, render - 1);
+  int best = first;
+  for (int i = first; i <= last; ++i) {
     const double distance = std::abs(i + 0.5 + jitter - position);
     const double best_distance = std::abs(best + 0.5 + jitter - position);
     if (distance < best_distance) best = i;

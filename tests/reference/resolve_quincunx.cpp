@@ -9,7 +9,7 @@ namespace quincunx::reference {
 namespace {
 
 struct Speed {
-  double squared = 0;  // K |v|^2 in output pixels
+  double squared = 0;  // K |v|^2 in render pixels
   bool non_finite = false;
 };
 
@@ -47,8 +47,8 @@ Speed speed_at(const Frame& frame, Weight weight, double k, int x, int y, int ou
     speed.non_finite = !std::isfinite(frame.depth[texel]);
     velocity = camera_velocity(frame, u, v, frame.depth[texel]);
   }
-  const double pixels_x = velocity[0] * output_width;
-  const double pixels_y = velocity[1] * output_height;
+  const double pixels_x = velocity[0] * frame.width;
+  const double pixels_y = velocity[1] * frame.height;
   speed.squared = k * (pixels_x * pixels_x + pixels_y * pixels_y);
   return speed;
 }

@@ -45,7 +45,7 @@ struct ResolveSettings {
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;         // of the present pass: +- half a code value, fixed pattern
-  float velocity_weight = 1;  // K of f = 1/(1 + K(|v0|^2 + |v1|^2)), v in output pixels a frame; >= 0
+  float velocity_weight = 1;  // K of f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame; >= 0
 };
 
 // Where the resolve finds velocity.
