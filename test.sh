@@ -3,7 +3,7 @@
 # On a fresh Debian: installs what is missing, builds with g++ and with clang++, and runs all checks and tests.
 #
 #   ./test.sh                everything
-#   ./test.sh -R Viewport    anything else is handed to ctest; the format check and the clang build are then left out
+#   ./test.sh -R service     anything else is handed to ctest; the format check and the clang build are then left out
 set -euo pipefail
 cd "$(dirname "$0")"
 source scripts/packages.sh
