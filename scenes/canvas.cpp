@@ -113,7 +113,7 @@ Texture Canvas::texture() const {
   texture.rgba.reserve(pixels_.size() * 4);
   for (const glm::vec4& pixel : pixels_) {
     for (int i = 0; i < 4; ++i) {
-      texture.rgba.push_back(static_cast<std::uint8_t>(std::clamp(pixel[i], 0.0f, 1.0f) * 255 + 0.5f));
+      texture.rgba.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(pixel[i], 0.0f, 1.0f) * 255)));
     }
   }
   return texture;

@@ -182,11 +182,11 @@ void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   constexpr float kWidth = 0.87f;
   constexpr float kHeight = 1.16f;
   wood.pen.placement = board;
-  wood.box({-kWidth / 2 - 0.06f, -0.06f, -0.06f}, {kWidth / 2 + 0.06f, 0, 0.05f});
-  wood.box({-kWidth / 2 - 0.06f, kHeight, -0.06f}, {kWidth / 2 + 0.06f, kHeight + 0.06f, 0.05f});
+  wood.box({-kWidth / 2 - 0.06f, -0.06f, -0.06f}, {kWidth / 2 + 0.06f, 0, 0.02f});
+  wood.box({-kWidth / 2 - 0.06f, kHeight, -0.06f}, {kWidth / 2 + 0.06f, kHeight + 0.06f, 0.02f});
   for (const float side : {-1.0f, 1.0f}) {
     const float x = side > 0 ? kWidth / 2 : -kWidth / 2 - 0.06f;
-    wood.box({x, 0, -0.06f}, {x + 0.06f, kHeight, 0.05f});
+    wood.box({x, 0, -0.06f}, {x + 0.06f, kHeight, 0.02f});
     wood.rod({side * 0.42f, kHeight + 0.2f, -0.09f}, {side * 0.56f, -0.64f, 0.02f}, 0.028f, 8);
   }
   wood.rod({0, kHeight + 0.1f, -0.1f}, {0, -0.55f, -0.62f}, 0.026f, 8);
@@ -197,7 +197,7 @@ void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   sheet.picture({-kWidth / 2, 0, -0.015f}, {kWidth, 0, 0}, {0, kHeight, 0});
   MeshBuilder& glass = assembly.still(m.glass, kProps);
   glass.pen.placement = board;
-  glass.picture({-kWidth / 2, 0, 0.02f}, {kWidth, 0, 0}, {0, kHeight, 0});
+  glass.picture({-kWidth / 2, 0, 0.0f}, {kWidth, 0, 0}, {0, kHeight, 0});
   // Notices on the arcade's back wall.
   for (const float z : {5.2f, -0.1f, -5.2f}) {
     MeshBuilder& poster = assembly.still(z > 0 ? m.poster_figures : m.poster_title, kArcade);

@@ -12,7 +12,7 @@ namespace quincunx::scenes {
 namespace {
 
 std::uint8_t to_byte(float value) {
-  return static_cast<std::uint8_t>(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255));
 }
 
 float hash_unit(int x, int y, std::uint64_t seed) {
@@ -122,7 +122,8 @@ float FractalNoise::operator()(glm::vec2 at) const {
     const int x1 = x0 + 1 < octave.cells.x ? x0 + 1 : 0;
     const int y1 = y0 + 1 < octave.cells.y ? y0 + 1 : 0;
     const auto value = [&](int x, int y) {
-      return octave.values[static_cast<std::size_t>(y * octave.cells.x + x)];
+      return octave.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(octave.cells.x) +
+                           static_cast<std::size_t>(x)];
     };
     sum += octave.weight * glm::mix(glm::mix(value(x0, y0), value(x1, y0), w.x),
                                     glm::mix(value(x0, y1), value(x1, y1), w.x), w.y);
@@ -262,7 +263,8 @@ Texture normal_texture(const Surface& surface, float strength) {
   Texture texture = blank_texture(surface.size, surface.size, false);
   const int size = surface.size;
   const auto height = [&](int x, int y) {
-    return surface.height[static_cast<std::size_t>(wrapped(y, size) * size + wrapped(x, size))];
+    return surface.height[static_cast<std::size_t>(wrapped(y, size)) * static_cast<std::size_t>(size) +
+                          static_cast<std::size_t>(wrapped(x, size))];
   };
   for (int y = 0; y < size; ++y) {
     for (int x = 0; x < size; ++x) {
