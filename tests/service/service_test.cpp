@@ -107,7 +107,10 @@ TEST(Service, VelocityWeighsThePreviousFrame) {
                                           return Pixel{4, 0, 0, 1};
                                         },
                                     .velocity = [v0](int, int) { return v0; }});
-  const double f = 1 / (1 + 1.5 * 1.5 + 0.5 * 0.5 + 2.0 * 2.0);
+  const double x0 = 1.5 * 30 / 40;
+  const double y0 = 0.5 * 14 / 20;
+  const double y1 = 2.0 * 10 / 20;
+  const double f = 1 / (1 + x0 * x0 + y0 * y0 + y1 * y1);
   for (const Pixel& pixel : picture) {
     EXPECT_NEAR(pixel[0], 4 / (1 + f), 1e-5);
     EXPECT_NEAR(pixel[1], f * 8 / (1 + f), 1e-5);
@@ -138,7 +141,9 @@ TEST(Service, CameraVelocityComesFromDepth) {
   rig.resolve(frame);
   frame.colour = [](int, int) { return Pixel{1, 1, 1, 1}; };
   const auto picture = rig.resolve(frame);
-  const double f = 1 / (1 + 2 * (2.0 * 2.0 + 1.0));
+  const double x = 2.0 * 30 / 50;
+  const double y = 1.0 * 30 / 50;
+  const double f = 1 / (1 + 2 * (x * x + y * y));
   for (const Pixel& pixel : picture)
     ASSERT_NEAR(pixel[0], 1 / (1 + f), 1e-5);
 }
