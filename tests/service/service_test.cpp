@@ -88,8 +88,8 @@ TEST(Service, ResetShowsNothingOfThePast) {
   EXPECT_FALSE(same_bits(control.resolve(blue), fresh.resolved())) << "without reset the past must show";
 }
 
-// The seed's formula by hand: constant frames, K = 1, velocity in uv, f = 1/(1 + |v0|^2 + |v1|^2) in output
-// pixels.
+// The seed's formula by hand: constant frames, K = 1, velocity in uv, f = 1/(1 + |v0|^2 + |v1|^2), each v in
+// render pixels of its own frame.
 TEST(Service, VelocityWeighsThePreviousFrame) {
   const Extent output = {40, 20};
   ServiceRig rig({}, Method::kQuincunx, output, output);
