@@ -32,7 +32,7 @@
 #if OUTPUT_STORAGE == IMAGE
 #define PRESENTED_TEXELS write_only image2d_t
 #elif OUTPUT_STORAGE == BUFFER
-#define PRESENTED_TEXELS __global uint* restrict
+#define PRESENTED_TEXELS __global uint*
 #else
 #error "OUTPUT_STORAGE must be BUFFER or IMAGE"
 #endif
@@ -87,7 +87,7 @@ static inline float4 load_careful(RESOLVED_TEXELS source, TexelLayout layout, in
 }
 
 __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESENTED_TEXELS output,
-                      __global uint* restrict non_finite) {
+                      __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;

@@ -41,7 +41,7 @@
 #define load_motion4 load_velocity4
 #endif
 
-static inline int4 nearest_of(__global const AxisTap* restrict columns) {
+static inline int4 nearest_of(__global const AxisTap* columns) {
   return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
 }
 
@@ -89,8 +89,8 @@ static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
 // Pixels first to end of row y. The fast way (`careful` false) returns the largest magnitudes it met; the plain one
 // is right for NaN and Inf as well and adds the pixels that met them to *met.
 __attribute__((always_inline)) static inline int4 resolve_row(
-    bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* restrict axes0,
-    __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, MOTION_TEXELS motion0,
+    bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* axes0,
+    __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, MOTION_TEXELS motion0,
     MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output, uint* met) {
   const SourceFrame frame0 = params->frame0;
   const SourceFrame frame1 = params->frame1;
@@ -100,10 +100,10 @@ __attribute__((always_inline)) static inline int4 resolve_row(
   for (int x = first; x < end; x += kBlock) {
     uint bits0;
     uint bits1;
-    const FourPixels c0 =
-        sample_four(careful, colour0, frame0.colour, frame0.width, frame0.height, axes0 + x, row0, &bits0);
-    const FourPixels c1 =
-        sample_four(careful, colour1, frame1.colour, frame1.width, frame1.height, axes1 + x, row1, &bits1);
+    FourPixels c0;
+    FourPixels c1;
+    sample_four(careful, colour0, frame0.colour, frame0.width, frame0.height, axes0 + x, row0, &c0, &bits0);
+    sample_four(careful, colour1, frame1.colour, frame1.width, frame1.height, axes1 + x, row1, &c1, &bits1);
 
     float4 trust = 1.0f;
     float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)
@@ -140,10 +140,10 @@ __attribute__((always_inline)) static inline int4 resolve_row(
   return largest;
 }
 
-__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* restrict axes0,
-                               __global const AxisTap* restrict axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
+__kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* axes0,
+                               __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
                                MOTION_TEXELS motion0, MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0,
-                               OUTPUT_TEXELS output, __global uint* restrict non_finite) {
+                               OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;

@@ -10,8 +10,8 @@
 // Reference: tests/reference/scale_bilinear.cpp
 #include "bilinear.h"
 
-__kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* restrict axes, COLOUR_TEXELS source,
-                             OUTPUT_TEXELS output, __global uint* restrict non_finite) {
+__kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
+                             OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -22,8 +22,8 @@ __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* r
   int4 largest = params.source_width > 1 ? 0 : NON_FINITE_BITS;
   if (params.source_width > 1) {
     for (int x = first; x < end; x += kBlock) {
-      const FourPixels colour = sample_four(false, source, params.source, params.source_width, params.source_height,
-                                            axes + x, row, &bits);
+      FourPixels colour;
+      sample_four(false, source, params.source, params.source_width, params.source_height, axes + x, row, &colour, &bits);
       largest = largest_of(largest, colour);
       store_four(output, params.output, x, y, end, colour);
     }
@@ -33,8 +33,8 @@ __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* r
   // Rare: once more, the plain way.
   uint met = 0;
   for (int x = first; x < end; x += kBlock) {
-    const FourPixels colour = sample_four(true, source, params.source, params.source_width, params.source_height,
-                                          axes + x, row, &bits);
+    FourPixels colour;
+    sample_four(true, source, params.source, params.source_width, params.source_height, axes + x, row, &colour, &bits);
     met += count_bits(bits, end - x);
     store_four(output, params.output, x, y, end, colour);
   }

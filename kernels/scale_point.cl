@@ -10,8 +10,8 @@
 #include "sanitise.h"
 #include "texel.h"
 
-__kernel void scale_point(const ScaleParams params, __global const AxisTap* restrict axes, COLOUR_TEXELS source,
-                          OUTPUT_TEXELS output, __global uint* restrict non_finite) {
+__kernel void scale_point(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
+                          OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;

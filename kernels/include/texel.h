@@ -49,17 +49,17 @@
 #define REACTIVE_TEXELS read_only image2d_t
 #else
 #if SOURCE_FORMAT == HALF
-#define COLOUR_TEXELS __global const half* restrict
+#define COLOUR_TEXELS __global const half*
 #else
-#define COLOUR_TEXELS __global const float* restrict
+#define COLOUR_TEXELS __global const float*
 #endif
 #if VELOCITY_FORMAT == HALF
-#define VELOCITY_TEXELS __global const half* restrict
+#define VELOCITY_TEXELS __global const half*
 #else
-#define VELOCITY_TEXELS __global const float* restrict
+#define VELOCITY_TEXELS __global const float*
 #endif
-#define DEPTH_TEXELS __global const float* restrict
-#define REACTIVE_TEXELS __global const uchar* restrict
+#define DEPTH_TEXELS __global const float*
+#define REACTIVE_TEXELS __global const uchar*
 #endif
 
 // Of texel (0, y).
@@ -151,9 +151,9 @@ static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, 
 }
 
 #if OUTPUT_FORMAT == HALF
-#define OUTPUT_TEXELS __global half* restrict
+#define OUTPUT_TEXELS __global half*
 #else
-#define OUTPUT_TEXELS __global float* restrict
+#define OUTPUT_TEXELS __global float*
 #endif
 
 // Finite values only; half saturates instead of becoming infinite.
@@ -185,9 +185,9 @@ static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, i
 
 // A resolved picture being read back: always a buffer, in SOURCE_FORMAT.
 #if SOURCE_FORMAT == HALF
-#define RESOLVED_TEXELS __global const half* restrict
+#define RESOLVED_TEXELS __global const half*
 #else
-#define RESOLVED_TEXELS __global const float* restrict
+#define RESOLVED_TEXELS __global const float*
 #endif
 
 static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {

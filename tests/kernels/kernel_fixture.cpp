@@ -41,15 +41,16 @@ constexpr std::size_t kOffset = 48;
 }  // namespace
 
 const Device& device() {
-  static const Device opened = [] {
+  // Never destroyed: some OpenCL layers are gone before static objects are.
+  static const Device* const opened = [] {
     Result<Device> result = Device::open();
     if (!result.ok()) {
       std::fprintf(stderr, "%s\n", result.status().message().c_str());
       std::exit(1);
     }
-    return result.value();
+    return new Device(result.value());
   }();
-  return opened;
+  return *opened;
 }
 
 const Device::Impl& impl() {

@@ -1,0 +1,31 @@
+# Runs a few kernel tests on small frames under oclgrind, which checks every memory access and data races.
+# Run as: cmake -D OCLGRIND=oclgrind -D TESTS=kernel_tests -P run_oclgrind.cmake
+if(NOT OCLGRIND)
+  if("$ENV{QUINCUNX_NO_SKIP}" STREQUAL "1")
+    message(FATAL_ERROR "a skip is forbidden here (QUINCUNX_NO_SKIP=1): oclgrind is not installed; install the package oclgrind")
+  endif()
+  message("SKIPPED: oclgrind is not installed")
+  return()
+endif()
+
+# Footprints and poison reach every edge of the viewport; one variant of each kernel, both storages.
+string(JOIN ":" filter
+  "AxisTables.*" "Clear*"
+  "*Present.CountsNonFinite*/aces_dither_RGBA32F_to_*"
+  "*Present.CountsNonFinite*/clamp_RGBA16F_to_buffer"
+  "*Scale.Poison*_buffer_RGBA16F_to_RGBA32F" "*Scale.ANon*bilinear_*_RGBA32F_to_RGBA16F"
+  "*Resolve.Poison*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
+  "*Resolve.ANon*/camera_*_RGBA16F_RG16F_to_RGBA32F")
+# The program cache would hold binaries of another device.
+execute_process(
+  COMMAND ${CMAKE_COMMAND} -E env QUINCUNX_CACHE_DIR= ${OCLGRIND} --check-api --data-races ${TESTS} --gtest_brief=1
+          --gtest_filter=${filter}
+  RESULT_VARIABLE result OUTPUT_VARIABLE log ERROR_VARIABLE log)
+string(LENGTH "${log}" length)
+if(length GREATER 8000)
+  string(SUBSTRING "${log}" 0 8000 log)
+endif()
+message("${log}")
+if(NOT result EQUAL 0 OR log MATCHES "Invalid (read|write)|data race|Oclgrind - |OCLGRIND|Uninitialized")
+  message(FATAL_ERROR "oclgrind found an error (exit status ${result})")
+endif()
