@@ -94,27 +94,28 @@ void plan_passes(ResolvePlan& plan) {
   }
 }
 
-void add_buffer(ResolvePlan& plan, std::string name, Extent extent, PixelFormat format, bool owned) {
+void add_buffer(ResolvePlan& plan, std::string name, PixelFormat format, Scaling scaling,
+                bool owned = false) {
+  const Extent extent = scaling == Scaling::kFixed ? plan.settings.output : plan.settings.target;
   const std::uint64_t bytes = static_cast<std::uint64_t>(extent.area()) * bytes_per_pixel(format);
-  plan.buffers.push_back({std::move(name), extent, format, bytes, owned});
+  plan.buffers.push_back({std::move(name), extent, format, scaling, bytes, owned});
 }
 
 void plan_buffers(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
-  const int frames = plan.keeps_previous_frame() ? 2 : 1;
-  for (int age = 0; age < frames; ++age) {
-    const char* which = age == 0 ? "" : " of the previous frame";
-    add_buffer(plan, fmt::format("colour{}", which), settings.target, settings.colour, false);
+  for (const Scaling scaling : {Scaling::kScales, Scaling::kHistory}) {
+    const bool history = scaling == Scaling::kHistory;
+    if (history && !plan.keeps_previous_frame()) break;
+    const char* which = history ? " of the previous frame" : "";
+    add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
     if (plan.velocity == VelocitySource::kTarget) {
-      add_buffer(plan, fmt::format("velocity{}", which), settings.target, settings.velocity, false);
+      add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling);
     }
-    if (plan.reads_depth)
-      add_buffer(plan, fmt::format("depth{}", which), settings.target, PixelFormat::kR32F, false);
-    if (plan.reads_reactive && age == 0)
-      add_buffer(plan, "reactive", settings.target, PixelFormat::kR8, false);
+    if (plan.reads_depth) add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
+    if (plan.reads_reactive && !history) add_buffer(plan, "reactive", PixelFormat::kR8, scaling);
   }
-  add_buffer(plan, "resolved", settings.output, settings.resolved, true);
-  if (settings.present) add_buffer(plan, "presented", settings.output, PixelFormat::kRGBA8, false);
+  add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
+  if (settings.present) add_buffer(plan, "presented", PixelFormat::kRGBA8, Scaling::kFixed);
 }
 
 void note_left_out(ResolvePlan& plan) {
@@ -184,6 +185,18 @@ const char* name_of(VelocitySource source) {
   return "unknown";
 }
 
+const char* name_of(Scaling scaling) {
+  switch (scaling) {
+    case Scaling::kScales:
+      return "scales";
+    case Scaling::kHistory:
+      return "last frame's";
+    case Scaling::kFixed:
+      return "fixed";
+  }
+  return "unknown";
+}
+
 Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings) {
   if (Status status = check(settings); !status.ok()) return status;
   ResolvePlan plan;
@@ -234,8 +247,9 @@ std::string ResolvePlan::explain() const {
   }
   text += "\nBuffers\n";
   for (const PlannedBuffer& buffer : buffers) {
-    fmt::format_to(out, "  {:<31} {:>5}x{:<5} {:<8} {:>11}  {}\n", buffer.name, buffer.extent.width,
-                   buffer.extent.height, name_of(buffer.format), size_text(buffer.bytes),
+    fmt::format_to(out, "  {:<31} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
+                   buffer.extent.height, name_of(buffer.format), name_of(buffer.scaling),
+                   size_text(buffer.bytes),
                    buffer.owned ? "owned unless the caller gives it" : "the caller's");
   }
   text += "\nLeft out\n";

@@ -95,6 +95,20 @@ TEST(ResolvePlan, PresentIsThereOnlyWhenWanted) {
   EXPECT_FALSE(has_buffer(plan({}, wanted), "presented"));
 }
 
+TEST(ResolvePlan, EachBufferSaysHowItFollowsTheResolution) {
+  ResolveSettings wanted = settings(Method::kQuincunx);
+  wanted.target = {2560, 1440};
+  for (const PlannedBuffer& buffer : plan({}, wanted).buffers) {
+    const bool history = buffer.name.ends_with("of the previous frame");
+    const bool output = buffer.name == "resolved" || buffer.name == "presented";
+    EXPECT_EQ(buffer.scaling, output    ? Scaling::kFixed
+                              : history ? Scaling::kHistory
+                                        : Scaling::kScales)
+        << buffer.name;
+    EXPECT_EQ(buffer.extent, output ? wanted.output : wanted.target) << buffer.name;
+  }
+}
+
 // Counted by hand at 1280x720: two frames of 8-byte colour and 4-byte velocity, one of 1-byte reactive, 16
 // bytes out.
 TEST(ResolvePlan, BytesFollowFromTheFormats) {

@@ -64,10 +64,20 @@ struct PlannedPass {
   std::uint64_t bytes = 0;  // read and written at the largest viewport, each texel once
 };
 
+// How the part of a buffer that is in use follows the resolution.
+enum class Scaling : std::uint8_t {
+  kScales,   // this frame's viewport, within `extent`
+  kHistory,  // the viewport of the previous frame, which may be another
+  kFixed,    // always the whole extent
+};
+
+const char* name_of(Scaling scaling);
+
 struct PlannedBuffer {
   std::string name;
   Extent extent = {};
   PixelFormat format = PixelFormat::kNone;
+  Scaling scaling = Scaling::kScales;
   std::uint64_t bytes = 0;
   bool owned = false;  // by the service; else the caller brings it
 };
