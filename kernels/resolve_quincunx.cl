@@ -46,6 +46,12 @@ static inline int4 nearest_of(__global const AxisTap* columns) {
 }
 
 #if WEIGHT == 1
+// Zero where it is not finite.
+static inline float8 settled_motion(float8 velocity) {
+  const int8 bits = as_int8(velocity);
+  return as_float8(select(bits, (int8)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
+}
+
 static inline int4 non_finite_motion(float8 velocity) {
   return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
 }
@@ -58,6 +64,11 @@ static inline float4 speed_of(float8 velocity, int4 column, int row, const Camer
   return squared.even + squared.odd;
 }
 #elif WEIGHT == 2
+static inline float4 settled_motion(float4 depth) {
+  const int4 bits = as_int4(depth);
+  return as_float4(select(bits, (int4)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
+}
+
 static inline int4 non_finite_motion(float4 depth) {
   return non_finite_lanes(depth);
 }
@@ -115,8 +126,14 @@ __attribute__((always_inline)) static inline int4 resolve_row(
 #endif
 #if WEIGHT != 0
     const int4 nearest1 = nearest_of(axes1 + x);
-    const MOTION_VALUES input0 = load_motion4(motion0, frame0.velocity, nearest0, row0.nearest);
-    const MOTION_VALUES input1 = load_motion4(motion1, frame1.velocity, nearest1, row1.nearest);
+    MOTION_VALUES input0 = load_motion4(motion0, frame0.velocity, nearest0, row0.nearest);
+    MOTION_VALUES input1 = load_motion4(motion1, frame1.velocity, nearest1, row1.nearest);
+    const int4 lost = non_finite_motion(input0) | non_finite_motion(input1);
+    if (careful) {
+      // Before any arithmetic: what -cl-finite-math-only makes of NaN cannot be told by its bits (seen with PoCL 6).
+      input0 = settled_motion(input0);
+      input1 = settled_motion(input1);
+    }
     speed = speed_of(input0, nearest0, row0.nearest, &params->camera0, params->velocity0_scale_x,
                      params->velocity0_scale_y) +
             speed_of(input1, nearest1, row1.nearest, &params->camera1, params->velocity1_scale_x,
@@ -127,8 +144,8 @@ __attribute__((always_inline)) static inline int4 resolve_row(
     if (careful) {
 #if WEIGHT != 0
       // Too fast for a float, or not finite to begin with: either way the previous frame has no weight.
-      share = select(share, 0.0f, non_finite_lanes(speed));
-      bits0 |= lane_bits(non_finite_motion(input0) | non_finite_motion(input1));
+      share = select(share, 0.0f, lost | non_finite_lanes(speed));
+      bits0 |= lane_bits(lost);
 #endif
       share = select(share, 0.0f, (int4)((int)bits1) << (int4)(31, 30, 29, 28));
       *met += count_bits(bits0 | bits1, end - x);
