@@ -121,8 +121,8 @@ std::vector<Pixel> decode(PixelFormat format, const std::vector<unsigned char>& 
 }
 
 ImageView Rig::image(PixelFormat format, Storage storage, Extent used, const std::vector<Pixel>& pixels,
-                     double outside) {
-  const Extent target{used.width + kMarginX, used.height + kMarginY};
+                     double outside, bool tight) {
+  const Extent target = tight ? used : Extent{used.width + kMarginX, used.height + kMarginY};
   std::vector<Pixel> all(area(target), Pixel{outside, outside, outside, outside});
   for (int y = 0; y < used.height; ++y) {
     std::copy_n(pixels.begin() + static_cast<std::ptrdiff_t>(y) * used.width, used.width,
@@ -254,7 +254,7 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
   frame.reference.jitter_x = static_cast<double>(spec.jitter.x);
   frame.reference.jitter_y = static_cast<double>(spec.jitter.y);
   const auto put = [&](PixelFormat format, std::vector<Pixel> pixels, ImageView& view) {
-    view = rig.image(format, formats.storage, spec.render, pixels, spec.outside);
+    view = rig.image(format, formats.storage, spec.render, pixels, spec.outside, spec.tight);
     for (Pixel& pixel : pixels) {
       for (double& value : pixel)
         value = stored_value(format, value);

@@ -30,11 +30,12 @@ std::vector<unsigned char> encode(PixelFormat format, const std::vector<Pixel>& 
 std::vector<Pixel> decode(PixelFormat format, const std::vector<unsigned char>& bytes);
 
 // Owns the images of a test. Buffers have an offset, a pitch and rows beyond what is used; `outside` fills
-// what lies around the rectangle.
+// what lies around the rectangle. A tight image ends with its rectangle, so that a memory checker sees a read
+// beyond it.
 class Rig {
  public:
   ImageView image(PixelFormat format, Storage storage, Extent used, const std::vector<Pixel>& pixels,
-                  double outside);
+                  double outside, bool tight = false);
   ImageView output(PixelFormat format, Extent extent, Storage storage = Storage::kBuffer);  // filled with -7
   std::vector<unsigned char> bytes(const ImageView& view, Extent extent) const;
   std::vector<Pixel> pixels(const ImageView& view, Extent extent) const;
@@ -68,6 +69,7 @@ struct FrameSpec {
   Pattern velocity = Pattern::kNoise;
   unsigned seed = 1;
   double outside = 0;
+  bool tight = false;
 };
 
 // A frame for a pass and the same frame for its reference.

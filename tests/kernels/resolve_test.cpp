@@ -180,6 +180,18 @@ TEST_P(Resolve, PoisonOutsideTheViewportChangesNoBit) {
   }
 }
 
+// Under a memory checker this also shows that nothing beyond the viewport is read.
+TEST_P(Resolve, ATightImageGivesTheSameBits) {
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{13, 7}}) {
+    Rig rig;
+    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
+    FrameSpec before{.render = {render.height, render.width}, .jitter = {.5f, .5f}, .seed = 4};
+    const Run roomy = resolve(rig, frame(rig, now), frame(rig, before), {16, 9});
+    now.tight = before.tight = true;
+    EXPECT_EQ(roomy.bytes, resolve(rig, frame(rig, now), frame(rig, before), {16, 9}).bytes);
+  }
+}
+
 TEST_P(Resolve, TwoRunsAgreeBitForBit) {
   Rig rig;
   const TestFrame current =

@@ -13,6 +13,7 @@ string(JOIN ":" filter
   "AxisTables.*" "Clear*"
   "*Present.CountsNonFinite*/aces_dither_RGBA32F_to_*"
   "*Present.CountsNonFinite*/clamp_RGBA16F_to_buffer"
+  "*Scale.ATight*_buffer_*_to_RGBA32F" "*Resolve.ATight*_reactive_buffer_*_to_RGBA32F"
   "*Scale.Poison*_buffer_RGBA16F_to_RGBA32F" "*Scale.ANon*bilinear_*_RGBA32F_to_RGBA16F"
   "*Resolve.Poison*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Resolve.ANon*/camera_*_RGBA16F_RG16F_to_RGBA32F")

@@ -137,6 +137,17 @@ TEST_P(Scale, PoisonOutsideTheViewportChangesNoBit) {
   }
 }
 
+// Under a memory checker this also shows that nothing beyond the viewport is read.
+TEST_P(Scale, ATightImageGivesTheSameBits) {
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{13, 7}}) {
+    Rig rig;
+    FrameSpec spec{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
+    const Run roomy = run(rig, make_frame(rig, formats_, spec), {16, 9});
+    spec.tight = true;
+    EXPECT_EQ(roomy.bytes, run(rig, make_frame(rig, formats_, spec), {16, 9}).bytes);
+  }
+}
+
 TEST_P(Scale, ANonFiniteTexelChangesItsFootprintOnly) {
   const Extent output{90, 40};
   const Extent render = testing::scaled(output, .71, .71);
