@@ -14,7 +14,8 @@ Picture scale_bilinear(const Frame& frame, int output_width, int output_height);
 
 enum class Weight { kPlain, kVelocity, kCamera };
 
-// out = (c0 + f c1) / (1 + f), f = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels of its own frame.
+// out = (c0 + f c1) / (1 + f), f = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels of its own
+// frame.
 Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool reactive, double k,
                          int output_width, int output_height);
 

@@ -144,7 +144,8 @@ void run_steady_frames(const SceneNeeds& needs, Method method) {
     while (rig.service().next_completed())
       ++taken;
     if (i % 4 == 3) {
-      // A renderer waits for its pictures; so as not to run far ahead of the device, this loop stands still here.
+      // A renderer waits for its pictures; so as not to run far ahead of the device, this loop stands still
+      // here.
       g_counting = false;
       ASSERT_TRUE(rig.service().finish().ok());
       g_counting = true;

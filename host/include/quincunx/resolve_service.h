@@ -7,9 +7,9 @@
 //   FrameReport report = service.value().dispatch({.colour = ..., .render = ...}, {.presented = ...});
 //
 // create() compiles (or loads from the program cache), allocates and warms up; after it a frame allocates
-// nothing, compiles nothing and does not wait for the device; only a caller who runs more than six frames ahead
-// of it is held. Calls on one service come from one thread at a time; several services may share a device only
-// from one thread.
+// nothing, compiles nothing and does not wait for the device; only a caller who runs more than six frames
+// ahead of it is held. Calls on one service come from one thread at a time; several services may share a
+// device only from one thread.
 #pragma once
 
 #include <memory>
