@@ -130,7 +130,7 @@ __attribute__((always_inline)) static inline int4 resolve_row(
     MOTION_VALUES input1 = load_motion4(motion1, frame1.velocity, nearest1, row1.nearest);
     const int4 lost = non_finite_motion(input0) | non_finite_motion(input1);
     if (careful) {
-      // Before any arithmetic: what -cl-finite-math-only makes of NaN cannot be told by its bits (seen with PoCL 6).
+      // Before any arithmetic: the bits of the input decide, not what a compiler makes of NaN.
       input0 = settled_motion(input0);
       input1 = settled_motion(input1);
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Non-finite values, told by their bits: kernels are built with -cl-finite-math-only, under which a compiler may
-// drop isnan() and isinf().
+// Non-finite values, told by their bits: right even where a user's build options let a compiler drop isnan() and isinf().
 #pragma once
 
 // The magnitude from which a value may count as infinite, as bits: 2^127. Half the largest float, so that a weighted
