@@ -265,8 +265,8 @@ void print(const Bench& bench, const Options& options) {
   fmt::print("{} | {} {}\noutput {}x{}, {} rounds; ratio = median / median of a float4 copy\n\n",
              bench.info().name, bench.info().platform, bench.info().driver, options.output[0],
              options.output[1], options.rounds);
-  fmt::print("{:<40} {:>9} {:>9} {:>9} {:>7} {:>8}\n", "pass", "median ms", "p95 ms", "min ms", "ratio",
-             "GB/s");
+  fmt::print("{:<38} {:>9} {:>9} {:>9} {:>7} {:>9} {:>7} {:>7}\n", "pass", "median ms", "p95 ms", "min ms",
+             "ratio", "cpu ms", "ratio", "GB/s");
   for (const Case& one : bench.cases()) {
     const Summary s = summarise(one.ms);
     const Summary cpu = summarise(one.cpu_ms);
