@@ -32,16 +32,17 @@ Function next(const char* name) {
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+// Not inlined: GCC would see one half of a pair only and warn of a mismatch.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   count(g_heap);
   void* memory = std::malloc(size != 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
   std::free(memory);
 }
 
