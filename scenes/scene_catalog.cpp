@@ -67,8 +67,9 @@ std::vector<SceneEntry> list_scenes() {
 
 Result<Scene> open_scene(const std::string& name, std::uint64_t seed) {
   if (is_gltf_path(name)) return load_gltf(name);
-  const auto entry = std::find_if(kBuiltIns.begin(), kBuiltIns.end(),
-                                  [&](const BuiltIn& candidate) { return name == candidate.name; });
+  const auto entry = std::find_if(kBuiltIns.begin(), kBuiltIns.end(), [&](const BuiltIn& candidate) {
+    return name.empty() || name == candidate.name;
+  });
   if (entry == kBuiltIns.end()) {
     return Status::invalid(
         fmt::format("there is no scene '{}': the built-in ones are {}; a file must end in .gltf or .glb",

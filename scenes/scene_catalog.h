@@ -19,9 +19,9 @@ struct SceneEntry {
 
 std::vector<SceneEntry> list_scenes();  // the first is the default
 
-// `name`: one of list_scenes(), or the path of a .gltf or .glb file. `seed` varies what is random in a
-// procedural scene; the same seed gives the same scene. Errors: kInvalidArgument for an unknown name (the
-// message lists them), kIoFailure for a bad file.
+// `name`: one of list_scenes(), the path of a .gltf or .glb file, or empty for the default scene. `seed`
+// varies what is random in a procedural scene; the same seed gives the same scene. Errors: kInvalidArgument
+// for an unknown name (the message lists them), kIoFailure for a bad file.
 Result<Scene> open_scene(const std::string& name, std::uint64_t seed = 0);
 
 }  // namespace quincunx::scenes

@@ -62,16 +62,15 @@ int print_devices(const RenderOptions& options) {
 }
 
 int explain(const RenderOptions& options) {
-  auto sequence = sequence_for(options);
+  auto source = source_settings_for(options);
+  if (!source.ok()) return fail(source.status());
+  auto sequence = FrameSequence::create(source->sequence);
   if (!sequence.ok()) return fail(sequence.status());
-  auto scene = open_scene(options.scene.empty() ? list_scenes().front().name : options.scene, options.seed);
+  auto scene = open_scene(options.scene, options.seed);
   if (!scene.ok()) return fail(scene.status());
-  ResolveSettings settings;
-  settings.method = options.method;
-  settings.output = options.output;
+  ResolveSettings settings = resolve_settings_for(options);
+  settings.output = sequence->output();
   settings.target = sequence->target();
-  settings.tone_map = options.tone_map;
-  settings.dither = options.dither;
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return fail(plan.status());
   fmt::print("Scene          {}: {}\n{}", scene->name, scene->summary, plan->explain());

@@ -176,10 +176,17 @@ Result<ScalePath> scale_path_for(const RenderOptions& options) {
   return ScalePath::fixed(scale);
 }
 
-Result<FrameSequence> sequence_for(const RenderOptions& options) {
+Result<FrameSourceSettings> source_settings_for(const RenderOptions& options) {
   auto path = scale_path_for(options);
   if (!path.ok()) return path.status();
-  SequenceSettings settings;
+  FrameSourceSettings source;
+  source.scene = options.scene;
+  source.seed = options.seed;
+  source.exposure = options.exposure;
+  source.device = options.device;
+  source.interop = options.interop;
+  source.platform = options.platform;
+  SequenceSettings& settings = source.sequence;
   settings.output = options.output;
   settings.scale_path = path.value();
   settings.jitter = jitter_for(options);
@@ -189,7 +196,15 @@ Result<FrameSequence> sequence_for(const RenderOptions& options) {
   // Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012).
   settings.lod_bias =
       options.method == Method::kQuincunx && jitter_for(options) != Jitter::kNone ? -0.5f : 0.0f;
-  return FrameSequence::create(settings);
+  return source;
+}
+
+ResolveSettings resolve_settings_for(const RenderOptions& options) {
+  ResolveSettings settings;
+  settings.method = options.method;
+  settings.tone_map = options.tone_map;
+  settings.dither = options.dither;
+  return settings;
 }
 
 }  // namespace quincunx::scenes

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "frame_sequence.h"
+#include "frame_source.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"
@@ -54,8 +54,11 @@ struct RenderOptions {
 // instead.
 std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& options);
 
-// The sequence of frames that the options describe. Errors: kInvalidArgument, naming the option.
-Result<FrameSequence> sequence_for(const RenderOptions& options);
+// The frames that the options describe. Errors: kInvalidArgument, naming the option.
+Result<FrameSourceSettings> source_settings_for(const RenderOptions& options);
+
+// What the options say of the resolve; sizes and storage are left to FrameSource::connect().
+ResolveSettings resolve_settings_for(const RenderOptions& options);
 
 // The scale path that the options describe. Errors: kInvalidArgument.
 Result<ScalePath> scale_path_for(const RenderOptions& options);

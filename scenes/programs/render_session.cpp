@@ -7,7 +7,6 @@
 #include <chrono>
 #include <filesystem>
 
-#include "scene_catalog.h"
 #include "target_file.h"
 #include "tools/image_io.h"
 #include "tools/progress.h"
@@ -25,19 +24,17 @@ constexpr int kContactSheetFrames = 24;
 
 }  // namespace
 
-struct RenderSession::DrawnFrame {
-  std::int64_t index = 0;
-  FrameView view;
-  gl::TargetPixels targets = {};  // only of --exr-frame
-};
-
 RenderSession::RenderSession(const RenderOptions& options) : options_(options) {}
 RenderSession::~RenderSession() = default;
 
 Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions& options) {
   auto session = std::unique_ptr<RenderSession>(new RenderSession(options));
   if (Status status = session->check_outputs(); !status.ok()) return status;
-  if (Status status = session->open_scene_and_context(); !status.ok()) return status;
+  auto settings = source_settings_for(options);
+  if (!settings.ok()) return settings.status();
+  auto source = FrameSource::create(settings.value());
+  if (!source.ok()) return source.status();
+  session->source_ = std::move(source).value();
   if (Status status = session->open_service(); !status.ok()) return status;
   return session;
 }
@@ -60,57 +57,14 @@ Status RenderSession::check_outputs() {
   return {};
 }
 
-Status RenderSession::open_scene_and_context() {
-  auto sequence = sequence_for(options_);
-  if (!sequence.ok()) return sequence.status();
-  sequence_ = sequence.value();
-  if (options_.scene.empty()) options_.scene = list_scenes().front().name;
-  auto scene = open_scene(options_.scene, options_.seed);
-  if (!scene.ok()) return scene.status();
-  scene_ = std::move(scene).value();
-
-  Device::list();  // some drivers want OpenCL enumerated before a GL context exists
-  auto context = gl::EglContext::create(options_.platform);
-  if (!context.ok()) return context.status();
-  context_ = std::move(context).value();
-  auto device = gl::open_device(*context_, options_.device, options_.interop);
-  if (!device.ok()) return device.status();
-  device_ = device.value();
-  auto renderer = Renderer::create(scene_);
-  if (!renderer.ok()) return renderer.status();
-  renderer_ = std::move(renderer).value();
-  return {};
-}
-
 Status RenderSession::open_service() {
-  ResolveSettings settings;
-  settings.method = options_.method;
-  settings.output = options_.output;
-  settings.target = sequence_->target();
-  settings.tone_map = options_.tone_map;
-  settings.dither = options_.dither;
-  auto plan = plan_for(needs_of(scene_), settings);
+  auto plan = source_->connect(resolve_settings_for(options_));
   if (!plan.ok()) return plan.status();
-
-  gl::BridgeSettings bridging;
-  bridging.interop = options_.interop;
-  bridging.target = settings.target;
-  bridging.output = settings.output;
-  bridging.depth = plan->reads_depth;
-  bridging.velocity = plan->velocity == VelocitySource::kTarget;
-  bridging.reactive = plan->reads_reactive;
-  auto bridge = gl::Bridge::create(*context_, *device_, bridging);
-  if (!bridge.ok()) return bridge.status();
-  bridge_ = std::move(bridge).value();
-
-  settings.storage = bridge_->storage();
-  plan = plan_for(needs_of(scene_), settings);
-  if (!plan.ok()) return plan.status();
-  auto service = ResolveService::create(*device_, plan.value());
+  auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
   service_.emplace(std::move(service).value());
   if (wants_resolved()) {
-    auto image = device_->allocate(options_.output, settings.resolved);
+    auto image = source_->device().allocate(options_.output, plan->settings.resolved);
     if (!image.ok()) return image.status();
     resolved_ = std::move(image).value();
   }
@@ -123,64 +77,46 @@ bool RenderSession::wants_resolved() const {
 
 Status RenderSession::draw(std::int64_t index) {
   const Clock::time_point start = Clock::now();
-  DrawnFrame frame = {.index = index, .view = sequence_->at(index)};
-  const int slot = static_cast<int>(index % bridge_->slots());
-  auto targets = bridge_->begin_draw(slot);
-  if (!targets.ok()) return targets.status();
-  if (Status status = renderer_->draw(*targets.value(), frame.view); !status.ok()) return status;
-  if (index == options_.exr_frame) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
-  if (Status status = bridge_->submit(slot, frame.view.render); !status.ok()) return status;
+  if (Status status = source_->draw(index, index == options_.exr_frame); !status.ok()) return status;
   draw_ms_.push_back(since(start));
-  drawn_.push_back(std::move(frame));
   return {};
 }
 
-Status RenderSession::dispatch(std::int64_t index) {
-  const FrameView& view = drawn_.front().view;
-  auto shared = bridge_->acquire(static_cast<int>(index % bridge_->slots()));
-  if (!shared.ok()) return shared.status();
-  auto presented = bridge_->begin_present();
+Status RenderSession::dispatch() {
+  auto inputs = source_->acquire();
+  if (!inputs.ok()) return inputs.status();
+  auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  FrameInputs inputs;
-  inputs.colour = shared->colour;
-  inputs.depth = shared->depth;
-  inputs.velocity = shared->velocity;
-  inputs.reactive = shared->reactive;
-  inputs.render = view.render;
-  inputs.jitter = view.jitter;
-  inputs.camera = renderer_->camera_motion(view);
-  inputs.exposure = options_.exposure > 0 ? options_.exposure : scene_.exposure;
-  inputs.frame_index = static_cast<std::uint64_t>(index);
-  const FrameReport report = service_->dispatch(inputs, {resolved_.view(), presented.value()});
-  acquire_ms_.push_back(bridge_->traffic().acquire_ms);
-  bytes_in_.push_back(bridge_->traffic().bytes_in);
+  const FrameReport report = service_->dispatch(inputs.value(), {resolved_.view(), presented.value()});
+  acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
+  bytes_in_.push_back(source_->bridge().traffic().bytes_in);
   return report.status;
 }
 
 Status RenderSession::deliver(std::int64_t index) {
-  if (Status status = bridge_->present(); !status.ok()) return status;
-  present_ms_.push_back(bridge_->traffic().present_ms);
-  bytes_out_.push_back(bridge_->traffic().bytes_out);
+  if (Status status = source_->bridge().present(); !status.ok()) return status;
+  present_ms_.push_back(source_->bridge().traffic().present_ms);
+  bytes_out_.push_back(source_->bridge().traffic().bytes_out);
   const Clock::time_point start = Clock::now();
   if (Status status = write_frame(index); !status.ok()) return status;
   if (index == options_.exr_frame) {
     if (Status status = write_exr_frame(index); !status.ok()) return status;
   }
   write_ms_.push_back(since(start));
-  const DrawnFrame& frame = drawn_.front();
+  const DrawnFrame& frame = source_->oldest();
   rows_.push_back({.index = index,
                    .seconds = frame.view.seconds,
                    .render = frame.view.render,
                    .jitter = frame.view.jitter,
                    .frame_ms = since(last_delivery_)});
   last_delivery_ = Clock::now();
-  drawn_.pop_front();
+  source_->release();
   return {};
 }
 
 Status RenderSession::write_frame(std::int64_t index) {
-  const std::uint8_t* pixels = bridge_->presented_pixels();
-  const FrameView& view = drawn_.front().view;
+  const std::uint8_t* pixels = source_->bridge().presented_pixels();
+  const FrameView& view = source_->oldest().view;
   if (sheet_ && std::binary_search(sheet_frames_.begin(), sheet_frames_.end(), static_cast<int>(index))) {
     const float ratio = static_cast<float>(view.render.width) / static_cast<float>(options_.output.width);
     const tools::ContactSheetCaption caption = {
@@ -204,11 +140,11 @@ Status RenderSession::write_frame(std::int64_t index) {
 }
 
 Status RenderSession::write_exr_frame(std::int64_t index) {
-  DrawnFrame& frame = drawn_.front();
+  DrawnFrame& frame = source_->oldest();
   const FrameView& view = frame.view;
   const TargetFile file = {.pixels = std::move(frame.targets),
                            .view = view,
-                           .camera = scene_.camera(view.seconds),
+                           .camera = source_->scene().camera(view.seconds),
                            .output = options_.output,
                            .index = index,
                            .reset = index == 0,
@@ -226,7 +162,8 @@ Status RenderSession::write_exr_frame(std::int64_t index) {
 
 Result<std::vector<float>> RenderSession::download_resolved() const {
   std::vector<float> rgba(static_cast<std::size_t>(options_.output.area()) * 4);
-  if (Status status = device_->download(resolved_.view(), options_.output, rgba.data()); !status.ok())
+  if (Status status = source_->device().download(resolved_.view(), options_.output, rgba.data());
+      !status.ok())
     return status;
   return rgba;
 }
@@ -239,16 +176,17 @@ void RenderSession::collect_reports() {
 void RenderSession::begin_contact_sheet() {
   if (options_.contact_sheet.empty()) return;
   sheet_.emplace(tools::ContactSheetSettings{
-      .title = fmt::format("Quincunx · {}", scene_.name),
+      .title = fmt::format("Quincunx · {}", source_->scene().name),
       .subtitle = fmt::format("{}×{} · {} · {} · {}", options_.output.width, options_.output.height,
-                              name_of(options_.method), context_->info().renderer, device_->info().name)});
+                              name_of(options_.method), source_->context().info().renderer,
+                              source_->device().info().name)});
   sheet_frames_ = tools::evenly_spaced(static_cast<int>(options_.frames), kContactSheetFrames);
 }
 
 // With overlap, GL draws the next frame while OpenCL works on this one.
 Status RenderSession::run_frame(std::int64_t index) {
   const bool draw_next = index + 1 < options_.frames;
-  if (Status status = dispatch(index); !status.ok()) return status;
+  if (Status status = dispatch(); !status.ok()) return status;
   if (draw_next && options_.overlap) {
     if (Status status = draw(index + 1); !status.ok()) return status;
   }

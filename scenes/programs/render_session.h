@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: MIT
-// RenderSession: one run of quincunx-render: scene, GL, bridge, service, and the loop that drives them.
+// RenderSession: one run of quincunx-render: frames, service, and the loop that drives them.
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "frame_source.h"
 #include "frame_writer.h"
 #include "quincunx/resolve_service.h"
-#include "quincunx_gl/bridge.h"
 #include "render_options.h"
-#include "renderer.h"
-#include "scene.h"
 #include "tools/contact_sheet.h"
 #include "tools/frame_pattern.h"
 #include "tools/run_report.h"
@@ -37,17 +34,14 @@ class RenderSession {
   tools::RunReport report() const;  // complete after run()
 
  private:
-  struct DrawnFrame;
-
   explicit RenderSession(const RenderOptions& options);
-  Status open_scene_and_context();
   Status open_service();
   Status check_outputs();
 
   void begin_contact_sheet();
   Status run_frame(std::int64_t index);
   Status draw(std::int64_t index);
-  Status dispatch(std::int64_t index);
+  Status dispatch();
   Status deliver(std::int64_t index);
   Status write_frame(std::int64_t index);
   Status write_exr_frame(std::int64_t index);
@@ -56,12 +50,7 @@ class RenderSession {
   bool wants_resolved() const;
 
   RenderOptions options_;
-  Scene scene_;
-  std::optional<gl::EglContext> context_;
-  std::optional<Device> device_;
-  std::optional<FrameSequence> sequence_;
-  std::optional<Renderer> renderer_;
-  std::unique_ptr<gl::Bridge> bridge_;
+  std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
   Image resolved_;  // only where an EXR is wanted
   std::optional<tools::FramePattern> pattern_;
@@ -69,7 +58,6 @@ class RenderSession {
   std::vector<int> sheet_frames_;
   FrameWriter writer_;
 
-  std::deque<DrawnFrame> drawn_;  // drawn, not yet delivered
   std::chrono::steady_clock::time_point last_delivery_;
   std::vector<FrameReport> reports_;
   std::vector<tools::FrameRow> rows_;

@@ -55,11 +55,11 @@ tools::RunReport RenderSession::report() const {
   report.program = "quincunx-render";
   report.version = QUINCUNX_VERSION;
   report.command_line = options_.command_line;
-  report.scene = scene_.name;
-  report.scene_summary = scene_.summary;
+  report.scene = source_->scene().name;
+  report.scene_summary = source_->scene().summary;
   report.seed = options_.seed;
   report.output = options_.output;
-  report.target = sequence_->target();
+  report.target = source_->sequence().target();
   report.method = name_of(options_.method);
   report.settings = {
       {"scale", options_.scale_path.empty() ? options_.scale : options_.scale_path},
@@ -71,12 +71,12 @@ tools::RunReport RenderSession::report() const {
       {"overlap",
        options_.overlap ? "GL draws the next frame while OpenCL works: pass times include that load" : "off"},
   };
-  const gl::EglInfo& gl = context_->info();
+  const gl::EglInfo& gl = source_->context().info();
   report.gl = {name_of_platform(gl.platform), gl.vendor, gl.renderer, gl.version};
-  const DeviceInfo& cl = device_->info();
+  const DeviceInfo& cl = source_->device().info();
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
-  report.interop = gl::name_of(bridge_->kind());
-  report.interop_reason = bridge_->reason();
+  report.interop = gl::name_of(source_->bridge().kind());
+  report.interop_reason = source_->bridge().reason();
   report.passes = pass_statistics(reports_);
   report.steps = {
       tools::statistics_of("draw and submit", "host clock", draw_ms_),

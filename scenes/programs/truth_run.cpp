@@ -86,9 +86,11 @@ Status run_truth(const RenderOptions& options) {
   auto pattern = tools::FramePattern::parse(options.out);
   if (!pattern.ok()) return pattern.status();
   if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
-  auto scene = open_scene(options.scene.empty() ? list_scenes().front().name : options.scene, options.seed);
+  auto scene = open_scene(options.scene, options.seed);
   if (!scene.ok()) return scene.status();
-  auto sequence = sequence_for(options);
+  auto source = source_settings_for(options);
+  if (!source.ok()) return source.status();
+  auto sequence = FrameSequence::create(source->sequence);
   if (!sequence.ok()) return sequence.status();
   auto context = gl::EglContext::create(options.platform);
   if (!context.ok()) return context.status();
