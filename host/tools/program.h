@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// What every command line program does alike: exit codes, log, reading of sizes, its own command line.
+#pragma once
+
+#include <string>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx::tools {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+// The log goes to stderr: stdout is for what was asked for. `verbosity` 1: say more, 2: everything. Once a
+// program.
+void set_up_log(bool quiet, int verbosity);
+
+// Logs the message; kUsage where the caller asked for what can never work, else kFailed.
+int fail(const Status& status);
+
+// "1280x720" into `extent`. What is wrong with the text, in one sentence; empty when nothing is.
+std::string parse_extent(const std::string& text, Extent& extent);
+
+// As it was typed, quoted for a shell where need be.
+std::string command_line_text(const std::string& program, int argc, const char* const* argv);
+
+}  // namespace quincunx::tools

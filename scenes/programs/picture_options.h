@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// PictureOptions: what the command lines of all programs that draw have in common: scene, size, scale,
+// method, frames, devices.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "frame_source.h"
+#include "quincunx/resolve_plan.h"
+#include "quincunx/status.h"
+#include "quincunx_gl/bridge.h"
+
+namespace quincunx::scenes {
+
+struct PictureOptions {
+  std::string scene;  // name or file; empty: the default scene
+  std::uint64_t seed = 0;
+  Extent output = {1280, 720};
+  std::string scale = "1";  // "S" or "SX,SY"
+  std::string scale_path;   // empty: `scale` in every frame
+  Method method = Method::kQuincunx;
+  std::optional<Jitter> jitter;  // absent: quincunx for that method, else none
+  std::int64_t frames = 1;
+  double fps = 60;
+  double start = 0;
+
+  std::string device;
+  gl::Interop interop = gl::Interop::kAuto;
+  gl::Platform platform = gl::Platform::kAuto;
+  ToneMap tone_map = ToneMap::kAces;
+  float exposure = 0;  // 0: the scene's own
+  bool dither = true;
+
+  bool list_scenes = false;
+  bool list_devices = false;
+  bool quiet = false;
+  int verbosity = 0;
+};
+
+// Scene, size, scale, method, jitter, tone map, frames and their times.
+void add_picture_options(CLI::App& app, PictureOptions& options);
+
+// Devices, lists and how much is said.
+void add_machine_options(CLI::App& app, PictureOptions& options);
+
+// Prints what --list-scenes or --list-devices ask for.
+void print_scenes();
+void print_devices(const PictureOptions& options);
+
+Jitter jitter_for(const PictureOptions& options);
+
+// The frames that the options describe. Errors: kInvalidArgument, naming the option.
+Result<FrameSourceSettings> source_settings_for(const PictureOptions& options);
+
+// What the options say of the resolve; sizes and storage are left to FrameSource::connect().
+ResolveSettings resolve_settings_for(const PictureOptions& options);
+
+}  // namespace quincunx::scenes
