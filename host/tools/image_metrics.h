@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// Image metrics: how far a picture is from the truth, in the terms of the field.
+//
+// Pictures are linear light, scene referred. Each is prepared once as a MeasuredPicture and then compared as
+// often as needed, so that one truth serves every method of a benchmark. Functions of two pictures expect one
+// extent for both. All are pure and thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "quincunx/image.h"
+
+namespace quincunx::tools {
+
+// One picture in the three forms that the metrics look at. Owns its values. NaN counts as 0, infinities as
+// +-65504, as everywhere in Quincunx.
+class MeasuredPicture {
+ public:
+  // `rgba`: extent.area() * 4 values, rows top-down, linear light; alpha is ignored. Extent at least 11x11.
+  MeasuredPicture(Extent extent, std::span<const float> rgba);
+
+  Extent extent() const { return extent_; }
+  std::span<const float> linear() const { return linear_; }  // R G B
+  std::span<const float> tone_mapped() const {
+    return tone_mapped_;
+  }                                                        // R G B, sRGB encoded max(c, 0)/(1 + c)
+  std::span<const float> luma() const { return luma_; }    // Rec. 709 luma of tone_mapped()
+  std::int64_t non_finite() const { return non_finite_; }  // pixels with a NaN or infinite colour
+
+ private:
+  Extent extent_;
+  std::vector<float> linear_;
+  std::vector<float> tone_mapped_;
+  std::vector<float> luma_;
+  std::int64_t non_finite_ = 0;
+};
+
+// Peak signal-to-noise ratio, dB, of all colour values: linear ones clipped to [0, 1], or tone-mapped ones.
+// Infinite for equal pictures.
+double psnr_linear(const MeasuredPicture& picture, const MeasuredPicture& truth);
+double psnr_tone_mapped(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// Mean structural similarity of luma, 1 for equal pictures: Gaussian windows of 11x11, sigma 1.5, that lie
+// wholly inside.
+// Source: Wang, Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
+// Similarity", 2004.
+double ssim(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// The 99th percentile of |picture - truth| over all tone-mapped colour values.
+double error_p99(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// Relative mean squared error of linear colour: the mean of (c - t)^2 / (t^2 + 0.01). Bright and dark parts
+// count alike, whatever the exposure.
+// Source: Rousselle, Knaus, Zwicker, "Adaptive Sampling and Reconstruction using Greedy Error Minimization",
+// 2011.
+double relative_error(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// The 16x16 pixels with the largest error: root mean square of their tone-mapped colour values. The upper
+// left one is (x, y).
+struct WorstWindow {
+  int x = 0;
+  int y = 0;
+  double error = 0;
+};
+inline constexpr int kWindowSide = 16;  // less where the picture is smaller
+WorstWindow worst_window(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// Mean |(picture - previous) - (truth - previous_truth)| of luma: change over time that the truth does not
+// have.
+double flicker(const MeasuredPicture& picture, const MeasuredPicture& previous, const MeasuredPicture& truth,
+               const MeasuredPicture& previous_truth);
+
+// All of the above that need one frame, with the mean of flip.h at its usual viewing distance.
+struct PictureScores {
+  double psnr_linear = 0;       // dB, infinite for equal pictures
+  double psnr_tone_mapped = 0;  // dB
+  double ssim = 0;
+  double flip = 0;
+  double error_p99 = 0;
+  double relative_error = 0;
+  WorstWindow worst_window;
+  std::int64_t non_finite = 0;  // of the picture
+};
+PictureScores measure(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+}  // namespace quincunx::tools
