@@ -19,7 +19,7 @@ if(TARGET quincunx_gl)
   install(EXPORT quincunx_gl_interopTargets NAMESPACE quincunx:: DESTINATION ${quincunx_package_dir})
 endif()
 if(TARGET quincunx-render)
-  install(TARGETS quincunx-render RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS quincunx-render quincunx-dump RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
 configure_package_config_file(cmake/quincunxConfig.cmake.in quincunxConfig.cmake

@@ -32,7 +32,7 @@ Status FrameSource::open() {
   return {};
 }
 
-Result<ResolvePlan> FrameSource::connect(ResolveSettings resolve) {
+Result<ResolvePlan> FrameSource::connect(ResolveSettings resolve, HandOver hand_over) {
   resolve.output = sequence_->output();
   resolve.target = sequence_->target();
   const auto plan = plan_for(needs_of(scene_), resolve);
@@ -42,9 +42,10 @@ Result<ResolvePlan> FrameSource::connect(ResolveSettings resolve) {
   bridging.interop = settings_.interop;
   bridging.target = resolve.target;
   bridging.output = resolve.output;
-  bridging.depth = plan->reads_depth;
-  bridging.velocity = plan->velocity == VelocitySource::kTarget;
-  bridging.reactive = plan->reads_reactive;
+  const bool every = hand_over == HandOver::kEvery;
+  bridging.depth = every || plan->reads_depth;
+  bridging.velocity = every || plan->velocity == VelocitySource::kTarget;
+  bridging.reactive = every || plan->reads_reactive;
   auto bridge = gl::Bridge::create(*context_, *device_, bridging);
   if (!bridge.ok()) return bridge.status();
   bridge_ = std::move(bridge).value();

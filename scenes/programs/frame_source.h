@@ -31,6 +31,11 @@ struct FrameSourceSettings {
   gl::Platform platform = gl::Platform::kAuto;
 };
 
+enum class HandOver : std::uint8_t {
+  kPlanned,  // the targets that the plan reads; no others are drawn
+  kEvery,    // colour, depth, velocity and reactive values
+};
+
 // A frame that was drawn and is not released yet.
 struct DrawnFrame {
   std::int64_t index = 0;
@@ -47,7 +52,7 @@ class FrameSource {
 
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
   // have. Before the first draw(). `resolve.output` and `target` are taken from the sequence.
-  Result<ResolvePlan> connect(ResolveSettings resolve);
+  Result<ResolvePlan> connect(ResolveSettings resolve, HandOver hand_over = HandOver::kPlanned);
 
   const Scene& scene() const { return scene_; }
   const Device& device() const { return *device_; }

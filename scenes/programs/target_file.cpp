@@ -26,7 +26,39 @@ tools::Matrix to_attribute(const glm::mat4& matrix) {
   return values;
 }
 
-std::vector<float> linear_depth(const TargetFile& file) {
+std::vector<Attribute> attributes_of(const TargetFile& file) {
+  const ViewMatrices matrices = view_of(file.camera, file.view.aspect);
+  const auto extent = [](Extent e) {
+    return Vec2{static_cast<float>(e.width), static_cast<float>(e.height)};
+  };
+  return {
+      {"quincunx:version", 1},
+      {"quincunx:jitter", file.view.jitter},
+      {"quincunx:renderSize", extent(file.view.render)},
+      {"quincunx:outputSize", extent(file.output)},
+      {"quincunx:frameIndex", static_cast<int>(file.index)},
+      {"quincunx:reset", file.reset ? 1 : 0},
+      {"quincunx:near", file.camera.near_plane},
+      {"quincunx:depthKind", std::string(file.linear_depth ? "linear" : "device-reversed")},
+      {"quincunx:dt", static_cast<float>(file.view.seconds - file.view.previous_seconds)},
+      {"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))},
+      {"worldToNDC", to_attribute(matrices.clip_from_world())},
+      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}},
+  };
+}
+
+}  // namespace
+
+std::vector<float> colour_of(const gl::TargetPixels& pixels) {
+  std::vector<float> rgba;
+  rgba.reserve(pixels.colour.size());
+  for (const std::uint16_t value : pixels.colour)
+    rgba.push_back(glm::unpackHalf1x16(value));
+  return rgba;
+}
+
+std::vector<float> depth_of(const TargetFile& file) {
+  if (!file.linear_depth) return file.pixels.depth;
   std::vector<float> z;
   z.reserve(file.pixels.depth.size());
   for (const float depth : file.pixels.depth)
@@ -53,36 +85,13 @@ std::vector<float> reactive_mask(const TargetFile& file) {
   return mask;
 }
 
-std::vector<Attribute> attributes_of(const TargetFile& file) {
-  const ViewMatrices matrices = view_of(file.camera, file.view.aspect);
-  const auto extent = [](Extent e) {
-    return Vec2{static_cast<float>(e.width), static_cast<float>(e.height)};
-  };
-  return {
-      {"quincunx:version", 1},
-      {"quincunx:jitter", file.view.jitter},
-      {"quincunx:renderSize", extent(file.view.render)},
-      {"quincunx:outputSize", extent(file.output)},
-      {"quincunx:frameIndex", static_cast<int>(file.index)},
-      {"quincunx:reset", file.reset ? 1 : 0},
-      {"quincunx:near", file.camera.near_plane},
-      {"quincunx:depthKind", std::string("linear")},
-      {"quincunx:dt", static_cast<float>(file.view.seconds - file.view.previous_seconds)},
-      {"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))},
-      {"worldToNDC", to_attribute(matrices.clip_from_world())},
-      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}},
-  };
-}
-
-}  // namespace
-
 Status write_targets(const std::string& path, const TargetFile& file) {
   std::vector<Channel> channels;
   const auto* colour = file.pixels.colour.data();
   for (int i = 0; i < 4; ++i) {
     channels.push_back({.name = kColourNames[i], .data = colour + i, .pixel_stride = 4 * sizeof(*colour)});
   }
-  const std::vector<float> z = linear_depth(file);
+  const std::vector<float> z = depth_of(file);
   channels.push_back(
       {.name = "Z", .type = ChannelType::kFloat, .data = z.data(), .stored = ChannelType::kFloat});
   const std::vector<Vec2> motion = backward_motion(file);

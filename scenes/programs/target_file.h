@@ -19,7 +19,15 @@ struct TargetFile {
   std::int64_t index = 0;
   bool reset = false;
   double fps = 60;
+  bool linear_depth =
+      true;  // Z holds the distance along the view axis; else the reversed device depth, untouched
 };
+
+// One value a pixel of the viewport, as the file has them; empty for targets that were not drawn.
+std::vector<float> colour_of(const gl::TargetPixels& pixels);  // RGBA
+std::vector<float> depth_of(const TargetFile& file);           // Z
+std::vector<Vec2> backward_motion(const TargetFile& file);
+std::vector<float> reactive_mask(const TargetFile& file);
 
 // R G B A and reactive.mask half, Z and backward.u/.v float, render extent. Errors: kIoFailure.
 Status write_targets(const std::string& path, const TargetFile& file);

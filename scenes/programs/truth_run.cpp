@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "quincunx/resolve_service.h"
+#include "presenter.h"
 #include "scene_catalog.h"
 #include "target_file.h"
 #include "tools/frame_pattern.h"
@@ -15,60 +15,6 @@
 
 namespace quincunx::scenes {
 namespace {
-
-// Brings a linear picture to 8 bits with the same present pass as every other frame: at scale 1 point
-// sampling is the identity.
-class Presenter {
- public:
-  static Result<Presenter> create(const RenderOptions& options, float exposure) {
-    auto device = Device::open(options.device);
-    if (!device.ok()) return device.status();
-    ResolveSettings settings;
-    settings.method = Method::kPoint;
-    settings.output = settings.target = options.output;
-    settings.colour = PixelFormat::kRGBA32F;
-    settings.tone_map = options.tone_map;
-    settings.dither = options.dither;
-    auto plan = plan_for({}, settings);
-    if (!plan.ok()) return plan.status();
-    auto service = ResolveService::create(device.value(), plan.value());
-    if (!service.ok()) return service.status();
-    auto linear = device->allocate(options.output, PixelFormat::kRGBA32F);
-    if (!linear.ok()) return linear.status();
-    auto encoded = device->allocate(options.output, PixelFormat::kRGBA8);
-    if (!encoded.ok()) return encoded.status();
-    return Presenter(device.value(), std::move(service).value(), std::move(linear).value(),
-                     std::move(encoded).value(), exposure);
-  }
-
-  Result<std::vector<std::uint8_t>> present(const std::vector<float>& rgba) {
-    const Extent extent = linear_.view().extent;
-    if (Status status = device_.upload(linear_.view(), extent, rgba.data()); !status.ok()) return status;
-    FrameInputs inputs;
-    inputs.colour = linear_.view();
-    inputs.render = extent;
-    inputs.exposure = exposure_;
-    const FrameReport report = service_.dispatch(inputs, {.presented = encoded_.view()});
-    if (!report.ok()) return report.status;
-    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(extent.area()) * 4);
-    if (Status status = device_.download(encoded_.view(), extent, pixels.data()); !status.ok()) return status;
-    return pixels;
-  }
-
- private:
-  Presenter(Device device, ResolveService service, Image linear, Image encoded, float exposure)
-      : device_(std::move(device)),
-        service_(std::move(service)),
-        linear_(std::move(linear)),
-        encoded_(std::move(encoded)),
-        exposure_(exposure) {}
-
-  Device device_;
-  ResolveService service_;
-  Image linear_;
-  Image encoded_;
-  float exposure_;
-};
 
 Status write_truth(Presenter& presenter, const tools::FramePattern& pattern, std::int64_t index,
                    Extent extent, const std::vector<float>& rgba) {
@@ -96,7 +42,10 @@ Status run_truth(const RenderOptions& options) {
   if (!context.ok()) return context.status();
   auto renderer = Renderer::create(scene.value());
   if (!renderer.ok()) return renderer.status();
-  auto presenter = Presenter::create(options, options.exposure > 0 ? options.exposure : scene->exposure);
+  auto device = Device::open(options.device);
+  if (!device.ok()) return device.status();
+  auto presenter = Presenter::create(device.value(), options.output, options.tone_map, options.dither,
+                                     options.exposure > 0 ? options.exposure : scene->exposure);
   if (!presenter.ok()) return presenter.status();
 
   const TruthSettings settings = {options.output, options.truth, options.shutter / options.fps};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs quincunx-render and gives back what a user would see.
+// Runs a program and gives back what a user would see.
 #pragma once
 
 #include <fmt/format.h>
@@ -26,14 +26,14 @@ inline std::string read_file(const std::string& path) {
 }
 
 // `arguments` go through a shell; "{}/" in them is the folder.
-inline ProgramResult run_program(const TemporaryFolder& folder, std::string arguments) {
+inline ProgramResult run_program(const TemporaryFolder& folder, std::string arguments,
+                                 const char* program = QUINCUNX_RENDER) {
   for (std::size_t at; (at = arguments.find("{}/")) != std::string::npos;) {
     arguments.replace(at, 3, folder.file(""));
   }
   const std::string out = folder.file("stdout");
   const std::string err = folder.file("stderr");
-  const int status =
-      std::system(fmt::format("{} {} >'{}' 2>'{}'", QUINCUNX_RENDER, arguments, out, err).c_str());
+  const int status = std::system(fmt::format("{} {} >'{}' 2>'{}'", program, arguments, out, err).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(out), read_file(err)};
 }
 

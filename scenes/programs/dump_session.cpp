@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: MIT
+#include "dump_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "presenter.h"
+#include "target_file.h"
+#include "tools/flip.h"
+#include "tools/image_io.h"
+#include "tools/image_metrics.h"
+#include "truth.h"
+
+namespace quincunx::scenes {
+namespace {
+
+constexpr int kDefaultTruth = 8;
+
+// The channels that carry the numbers of a stage in a file that holds several.
+std::vector<tools::Channel> channels_of(const StagePlanes& planes, const std::string& layer) {
+  std::vector<tools::Channel> channels;
+  for (std::size_t i = 0; i < planes.planes.size(); ++i) {
+    channels.push_back({.name = layer.empty() ? planes.channels[i] : layer + "." + planes.channels[i],
+                        .type = tools::ChannelType::kFloat,
+                        .data = planes.planes[i].data(),
+                        .stored = planes.stored});
+  }
+  return channels;
+}
+
+bool is_colour(Stage stage) {
+  switch (stage) {
+    case Stage::kColour:
+    case Stage::kHistory:
+    case Stage::kResolved:
+    case Stage::kBlurred:
+    case Stage::kTruth:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<float> interleaved(const StagePlanes& planes) {
+  std::vector<float> rgba(planes.planes[0].size() * 4);
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (std::size_t i = 0; i < planes.planes[c].size(); ++i)
+      rgba[4 * i + c] = planes.planes[c][i];
+  }
+  return rgba;
+}
+
+// Mean of the three colour values, a pixel.
+std::vector<float> error_of(const tools::MeasuredPicture& picture, const tools::MeasuredPicture& truth) {
+  std::vector<float> error(picture.tone_mapped().size() / 3);
+  for (std::size_t i = 0; i < error.size(); ++i) {
+    for (std::size_t c = 3 * i; c < 3 * i + 3; ++c)
+      error[i] += std::abs(picture.tone_mapped()[c] - truth.tone_mapped()[c]) / 3;
+  }
+  return error;
+}
+
+Status write_canvas(const std::string& path, const tools::Canvas& canvas) {
+  std::vector<std::uint8_t> rgba;
+  rgba.reserve(canvas.rgb.size() / 3 * 4);
+  for (std::size_t i = 0; i < canvas.rgb.size(); i += 3)
+    rgba.insert(rgba.end(), {canvas.rgb[i], canvas.rgb[i + 1], canvas.rgb[i + 2], 255});
+  return tools::write_png(path, canvas.extent, rgba.data());
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DumpSession>> DumpSession::create(const DumpOptions& options) {
+  auto session = std::unique_ptr<DumpSession>(new DumpSession(options));
+  if (Status status = session->open(); !status.ok()) return status;
+  if (Status status = session->choose_stages(); !status.ok()) return status;
+  return session;
+}
+
+Status DumpSession::open() {
+  options_.frames = std::max(options_.frames, options_.frame + 1);
+  auto settings = source_settings_for(options_);
+  if (!settings.ok()) return settings.status();
+  auto source = FrameSource::create(settings.value());
+  if (!source.ok()) return source.status();
+  source_ = std::move(source).value();
+  exposure_ = options_.exposure > 0 ? options_.exposure : source_->scene().exposure;
+  auto plan = source_->connect(resolve_settings_for(options_), HandOver::kEvery);
+  if (!plan.ok()) return plan.status();
+  auto service = ResolveService::create(source_->device(), plan.value());
+  if (!service.ok()) return service.status();
+  service_.emplace(std::move(service).value());
+  auto resolved = source_->device().allocate(options_.output, plan->settings.resolved);
+  if (!resolved.ok()) return resolved.status();
+  resolved_ = std::move(resolved).value();
+  return {};
+}
+
+std::string DumpSession::why_missing(Stage stage) const {
+  const ResolvePlan& plan = service_->plan();
+  if (stage == Stage::kHistory && !plan.keeps_previous_frame()) {
+    return fmt::format("the method '{}' uses one frame only", name_of(plan.settings.method));
+  }
+  if (stage == Stage::kHistory && (options_.frame == 0 || options_.warm_up == 0)) {
+    return "no frame comes before the one that is shown; give a later --frame and --warm-up";
+  }
+  if (stage == Stage::kTiles || stage == Stage::kBlurred) return "there is no motion blur in this run";
+  return {};
+}
+
+Status DumpSession::choose_stages() {
+  const bool all = options_.stages.empty();
+  std::vector<Stage> asked = options_.stages;
+  for (int i = 0; all && i < kStageCount; ++i) {
+    const auto stage = static_cast<Stage>(i);
+    if (!needs_truth(stage) || options_.truth > 0) asked.push_back(stage);
+  }
+  options_.stages.clear();
+  for (const Stage stage : asked) {
+    const std::string missing = why_missing(stage);
+    if (missing.empty()) options_.stages.push_back(stage);
+    if (!missing.empty() && !all)
+      return Status::invalid(fmt::format("there is no stage '{}': {}", name_of(stage), missing));
+  }
+  if (options_.truth == 0 && std::any_of(asked.begin(), asked.end(), needs_truth))
+    options_.truth = kDefaultTruth;
+  return {};
+}
+
+bool DumpSession::wants(Stage stage) const {
+  return std::find(options_.stages.begin(), options_.stages.end(), stage) != options_.stages.end();
+}
+
+Status DumpSession::resolve_up_to_the_frame() {
+  const std::int64_t first = std::max<std::int64_t>(0, options_.frame - options_.warm_up);
+  for (std::int64_t index = first; index <= options_.frame; ++index) {
+    if (Status status = source_->draw(index, true); !status.ok()) return status;
+    if (Status status = resolve_next(); !status.ok()) return status;
+    previous_ = std::move(current_);
+    current_ = std::move(source_->oldest());
+    source_->release();
+  }
+  return {};
+}
+
+Status DumpSession::resolve_next() {
+  auto inputs = source_->acquire();
+  if (!inputs.ok()) return inputs.status();
+  auto presented = source_->bridge().begin_present();
+  if (!presented.ok()) return presented.status();
+  const FrameReport report = service_->dispatch(inputs.value(), {resolved_.view(), presented.value()});
+  if (!report.ok()) return report.status;
+  return source_->bridge().present();
+}
+
+Result<std::vector<float>> DumpSession::download(const ImageView& image) const {
+  std::vector<float> rgba(static_cast<std::size_t>(image.extent.area()) * 4);
+  if (Status status = source_->device().download(image, image.extent, rgba.data()); !status.ok())
+    return status;
+  return rgba;
+}
+
+Status DumpSession::collect_targets() {
+  const TargetFile file = {.pixels = current_->targets,
+                           .view = current_->view,
+                           .camera = source_->scene().camera(current_->view.seconds),
+                           .output = options_.output,
+                           .index = options_.frame,
+                           .reset = options_.frame == 0,
+                           .fps = options_.fps};
+  const Extent render = current_->view.render;
+  planes_[Stage::kColour] = colour_planes(render, colour_of(current_->targets), tools::ChannelType::kHalf);
+  planes_[Stage::kDepth] = {render, {"Z"}, {depth_of(file)}};
+  StagePlanes motion{render, {"backward.u", "backward.v"}, {{}, {}}};
+  for (const Vec2 vector : backward_motion(file)) {
+    motion.planes[0].push_back(vector.x);
+    motion.planes[1].push_back(vector.y);
+  }
+  planes_[Stage::kVelocity] = std::move(motion);
+  planes_[Stage::kReactive] = {render, {"mask"}, {reactive_mask(file)}, tools::ChannelType::kHalf};
+
+  const Extent target = source_->sequence().target();
+  std::vector<float> cleared(static_cast<std::size_t>(target.area()));
+  for (int y = 0; y < render.height; ++y) {
+    const auto row = cleared.begin() + static_cast<std::ptrdiff_t>(y) * target.width;
+    std::fill(row, row + render.width, 1.0f);
+  }
+  planes_[Stage::kClear] = {target, {"mask"}, {std::move(cleared)}, tools::ChannelType::kHalf};
+  if (wants(Stage::kHistory)) {
+    planes_[Stage::kHistory] =
+        colour_planes(previous_->view.render, colour_of(previous_->targets), tools::ChannelType::kHalf);
+  }
+  if (!options_.exr) return {};
+  files_.push_back(path_of("render.exr"));
+  return write_targets(files_.back(), file);
+}
+
+Status DumpSession::collect_output() {
+  const Extent output = options_.output;
+  auto resolved = download(resolved_.view());
+  if (!resolved.ok()) return resolved.status();
+  planes_[Stage::kResolved] = colour_planes(output, resolved.value(), tools::ChannelType::kFloat);
+  const std::uint8_t* codes = source_->bridge().presented_pixels();
+  presented_.assign(codes, codes + output.area() * 4);
+  std::vector<float> presented(presented_.size());
+  std::transform(presented_.begin(), presented_.end(), presented.begin(),
+                 [](std::uint8_t code) { return static_cast<float>(code) / 255.0f; });
+  planes_[Stage::kPresented] = colour_planes(output, presented, tools::ChannelType::kFloat);
+  if (options_.truth == 0) return {};
+  auto truth = render_truth(source_->renderer(), {.output = output, .samples = options_.truth},
+                            current_->view.seconds);
+  if (!truth.ok()) return truth.status();
+  planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
+  const tools::MeasuredPicture picture(output, resolved.value());
+  const tools::MeasuredPicture target(output, truth.value());
+  planes_[Stage::kError] = {output, {"absolute"}, {error_of(picture, target)}};
+  planes_[Stage::kFlip] = {
+      output, {"map"}, {tools::flip_map(output, picture.tone_mapped(), target.tone_mapped())}};
+  return {};
+}
+
+std::string DumpSession::path_of(const std::string& ending) const {
+  return (std::filesystem::path(options_.out) / fmt::format("frame.{:04}.{}", options_.frame, ending))
+      .string();
+}
+
+// One file for each extent: EXR has one size a part.
+Status DumpSession::write_exr_files() {
+  const std::vector<std::pair<std::string, std::vector<Stage>>> groups = {
+      {"history.exr", {Stage::kHistory}},
+      {"target.exr", {Stage::kClear}},
+      {"tiles.exr", {Stage::kTiles}},
+      {"output.exr",
+       {Stage::kResolved, Stage::kBlurred, Stage::kPresented, Stage::kTruth, Stage::kError, Stage::kFlip}},
+  };
+  for (const auto& [ending, stages] : groups) {
+    std::vector<tools::Channel> channels;
+    Extent extent;
+    for (const Stage stage : stages) {
+      if (!wants(stage)) continue;
+      extent = planes_[stage].extent;
+      // The resolved picture is what a viewer shows first.
+      const std::string layer = stage == Stage::kResolved || stage == Stage::kHistory ? "" : name_of(stage);
+      for (tools::Channel& channel : channels_of(planes_[stage], layer))
+        channels.push_back(std::move(channel));
+    }
+    if (channels.empty()) continue;
+    files_.push_back(path_of(ending));
+    if (Status status = tools::write_exr(files_.back(), extent, channels); !status.ok()) return status;
+  }
+  return {};
+}
+
+Status DumpSession::write_pictures() {
+  for (const Stage stage : options_.stages) {
+    const StagePlanes& planes = planes_[stage];
+    files_.push_back(path_of(std::string(name_of(stage)) + ".png"));
+    Status status;
+    if (stage == Stage::kPresented) {
+      status = tools::write_png(files_.back(), planes.extent, presented_.data());
+    } else if (is_colour(stage)) {
+      auto presenter =
+          Presenter::create(source_->device(), planes.extent, options_.tone_map, options_.dither, exposure_);
+      if (!presenter.ok()) return presenter.status();
+      auto codes = presenter->present(interleaved(planes));
+      if (!codes.ok()) return codes.status();
+      status = tools::write_png(files_.back(), planes.extent, codes.value().data());
+    } else {
+      status = write_canvas(files_.back(), false_colour_of(stage, planes));
+    }
+    if (!status.ok()) return status;
+  }
+  return {};
+}
+
+Status DumpSession::run() {
+  if (Status status = resolve_up_to_the_frame(); !status.ok()) return status;
+  if (Status status = collect_targets(); !status.ok()) return status;
+  if (Status status = collect_output(); !status.ok()) return status;
+  if (options_.exr) {
+    if (Status status = write_exr_files(); !status.ok()) return status;
+  }
+  return options_.png ? write_pictures() : Status();
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "sequence_dump.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "frame_source.h"
+#include "frame_writer.h"
+#include "target_file.h"
+#include "tools/atomic_file.h"
+#include "tools/frame_pattern.h"
+#include "tools/progress.h"
+#include "truth.h"
+
+namespace quincunx::scenes {
+namespace {
+
+std::filesystem::path folder_of(const std::string& pattern) {
+  return std::filesystem::path(pattern).parent_path();
+}
+
+nlohmann::ordered_json pair_of(Extent extent) {
+  return {extent.width, extent.height};
+}
+
+std::string description(const PictureOptions& options, const SequenceDump& dump, const FrameSource& source) {
+  nlohmann::ordered_json json;
+  json["format"] = "quincunx sequence 1";
+  json["scene"] = source.scene().name;
+  json["seed"] = options.seed;
+  json["frames"] = options.frames;
+  json["first_frame"] = 0;
+  json["fps"] = options.fps;
+  json["start_seconds"] = options.start;
+  json["output_size"] = pair_of(options.output);
+  json["largest_render_size"] = pair_of(source.sequence().target());
+  json["jitter_kind"] = name_of(jitter_for(options));
+  json["near"] = source.scene().camera(options.start).near_plane;
+  json["depth_kind"] = dump.linear_depth ? "linear" : "device-reversed";
+  json["exposure"] = options.exposure > 0 ? options.exposure : source.scene().exposure;
+  if (dump.truth > 0) json["truth_samples"] = dump.truth * dump.truth;
+  json["conventions"] = {
+      {"pixels",
+       "rows top-down; pixel (x, y) covers [x, x + 1] x [y, y + 1]; data and display window are the "
+       "viewport"},
+      {"colour", "R G B A: linear, premultiplied, half; one sample a pixel at its centre + quincunx:jitter"},
+      {"jitter", "quincunx:jitter of each frame, pixels of that frame, +x right, +y down"},
+      {"Z", dump.linear_depth ? "distance along the view axis, 1e10 where nothing was seen"
+                              : "near / distance, 0 where nothing was seen"},
+      {"motion",
+       "backward.u, backward.v: previous - current position, pixels of that frame, +u right, +v up, jitter "
+       "excluded"},
+      {"reactive",
+       "reactive.mask: 0 trust history, 1 ignore it; of transparents, which have no motion of their own"},
+  };
+  return json.dump(1) + "\n";
+}
+
+Status write_truth_of(FrameSource& source, const SequenceDump& dump, const FrameView& view,
+                      std::int64_t index, Extent output, FrameWriter& writer) {
+  const auto pattern = tools::FramePattern::parse((folder_of(dump.pattern) / "truth.%04d.exr").string());
+  if (!pattern.ok()) return pattern.status();
+  auto rgba = render_truth(source.renderer(), {.output = output, .samples = dump.truth}, view.seconds);
+  if (!rgba.ok()) return rgba.status();
+  return writer.push([path = pattern->expand(index), output, pixels = std::move(rgba).value()] {
+    return write_rgba(path, output, pixels);
+  });
+}
+
+}  // namespace
+
+Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
+  auto pattern = tools::FramePattern::parse(dump.pattern);
+  if (!pattern.ok()) return pattern.status();
+  if (pattern->format() != tools::FileFormat::kExr) {
+    return Status::invalid("--sequence '" + dump.pattern +
+                           "' must end in .exr: only EXR holds depth and motion");
+  }
+  if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
+  auto settings = source_settings_for(options);
+  if (!settings.ok()) return settings.status();
+  auto source = FrameSource::create(settings.value());
+  if (!source.ok()) return source.status();
+  FrameSource& frames = *source.value();
+  auto plan = frames.connect(resolve_settings_for(options), HandOver::kEvery);
+  if (!plan.ok()) return plan.status();
+
+  using Show = tools::Progress::Show;
+  tools::Progress progress("sequence", options.frames, options.quiet ? Show::kNever : Show::kOnTerminal);
+  FrameWriter writer;
+  for (std::int64_t index = 0; index < options.frames; ++index) {
+    if (Status status = frames.draw(index, true); !status.ok()) return status;
+    DrawnFrame& frame = frames.oldest();
+    TargetFile file = {.pixels = std::move(frame.targets),
+                       .view = frame.view,
+                       .camera = frames.scene().camera(frame.view.seconds),
+                       .output = options.output,
+                       .index = index,
+                       .reset = index == 0,
+                       .fps = options.fps,
+                       .linear_depth = dump.linear_depth};
+    const Status status = writer.push(
+        [path = pattern->expand(index), file = std::move(file)] { return write_targets(path, file); });
+    if (!status.ok()) return status;
+    if (dump.truth > 0) {
+      if (Status truth = write_truth_of(frames, dump, frame.view, index, options.output, writer); !truth.ok())
+        return truth;
+    }
+    frames.release();
+    progress.update(index + 1);
+  }
+  if (Status status = writer.finish(); !status.ok()) return status;
+  return tools::write_text((folder_of(dump.pattern) / "sequence.json").string(),
+                           description(options, dump, frames));
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// quincunx-dump: its numbers are those of quincunx-render, its files whole, its refusals clear.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "program_run.h"
+#include "tools/image_io.h"
+
+namespace quincunx {
+namespace {
+
+using testing::ProgramResult;
+using testing::read_file;
+using testing::run_program;
+
+class Dump : public ::testing::Test {
+ protected:
+  ProgramResult dump(const std::string& arguments) { return run_program(folder_, arguments, QUINCUNX_DUMP); }
+
+  void expect_done(const ProgramResult& result) { ASSERT_EQ(result.exit_code, 0) << result.err; }
+
+  void expect_refused(const std::string& arguments, const std::string& part) {
+    const ProgramResult result = dump(arguments);
+    EXPECT_EQ(result.exit_code, 2) << arguments << "\n" << result.err;
+    EXPECT_NE(result.err.find(part), std::string::npos) << arguments << "\n" << result.err;
+    EXPECT_EQ(folder_.entries(), 2) << arguments;
+  }
+
+  tools::LoadedImage image(const std::string& name) const {
+    auto loaded = tools::read_image(folder_.file(name));
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded.value();
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(Dump, ItsStagesAreThoseOfTheRenderer) {
+  const std::string run = "-q --scene particles --output 160x90 --scale 0.71,0.6 --seed 3 ";
+  expect_done(run_program(folder_, run + "--frames 6 --exr-frame 5 --out '{}/f.%04d.png'"));
+  expect_done(dump(run + "--frame 5 --out '{}/d'"));
+
+  const auto drawn = image("frame_0005_targets.exr");
+  const auto render = image("d/frame.0005.render.exr");
+  EXPECT_EQ(render.channels, drawn.channels);
+  EXPECT_EQ(render.pixels, drawn.pixels);
+  EXPECT_EQ(image("d/frame.0005.presented.png").pixels, image("f.0005.png").pixels);
+
+  const auto resolved = image("frame_0005_resolved.exr");
+  const auto output = image("d/frame.0005.output.exr");
+  ASSERT_EQ(output.extent, resolved.extent);
+  for (const char* name : {"R", "G", "B", "A"}) {
+    const int here = output.channel(name);
+    const int there = resolved.channel(name);
+    ASSERT_GE(here, 0);
+    for (int y = 0; y < output.extent.height; ++y) {
+      for (int x = 0; x < output.extent.width; ++x) {
+        // The renderer stores halves, the dump floats.
+        ASSERT_NEAR(output.at(x, y, here), resolved.at(x, y, there),
+                    0x1p-11 * output.at(x, y, here) + 0x1p-25);
+      }
+    }
+  }
+}
+
+TEST_F(Dump, EveryStageHasAPictureAndTheFilesAreNamed) {
+  const ProgramResult result =
+      dump("--scene wheel --output 96x54 --scale 0.5 --frame 3 --truth 2 --out '{}/d'");
+  expect_done(result);
+  for (const char* stage : {"colour", "depth", "velocity", "reactive", "clear", "history", "resolved",
+                            "presented", "truth", "error", "flip"}) {
+    const std::string file = "d/frame.0003." + std::string(stage) + ".png";
+    EXPECT_TRUE(std::filesystem::exists(folder_.file(file))) << file;
+    EXPECT_NE(result.out.find(file), std::string::npos) << file;
+  }
+  const auto target = image("d/frame.0003.target.exr");
+  double cleared = 0;
+  for (const float value : target.pixels)
+    cleared += value;
+  const Extent viewport = image("d/frame.0003.render.exr").extent;
+  EXPECT_LT(viewport.area(), target.extent.area());
+  EXPECT_EQ(cleared, viewport.area());
+  EXPECT_EQ(target.extent, (Extent{96, 54}));
+  EXPECT_GE(image("d/frame.0003.output.exr").channel("truth.G"), 0);
+}
+
+TEST_F(Dump, FormatsAndStagesAreTheOnesAskedFor) {
+  expect_done(dump("-q --scene chart --output 64x36 --stages resolved,depth --format png --out '{}/d'"));
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.file("d")))
+    ++files;
+  EXPECT_EQ(files, 2);
+}
+
+TEST_F(Dump, ASequenceHoldsEveryFrameItsTruthAndWhatIsConstant) {
+  expect_done(
+      dump("-q --scene pan --output 64x36 --scale 0.5 --frames 3 --truth 2 --sequence '{}/s/f.%04d.exr'"));
+  for (int index = 0; index < 3; ++index) {
+    const auto frame = image("s/f.000" + std::to_string(index) + ".exr");
+    EXPECT_EQ(frame.extent, (Extent{32, 18}));
+    for (const char* name : {"R", "A", "Z", "backward.u", "backward.v", "reactive.mask"})
+      EXPECT_GE(frame.channel(name), 0) << name;
+    EXPECT_EQ(image("s/truth.000" + std::to_string(index) + ".exr").extent, (Extent{64, 36}));
+  }
+  const auto json = nlohmann::json::parse(read_file(folder_.file("s/sequence.json")));
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_EQ(json["output_size"], nlohmann::json({64, 36}));
+  EXPECT_EQ(json["jitter_kind"], "quincunx");
+}
+
+TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {
+  const std::string run = "-q --scene wheel --output 32x18 --frames 1 ";
+  expect_done(dump(run + "--sequence '{}/a/f.%04d.exr'"));
+  expect_done(dump(run + "--device-depth --sequence '{}/b/f.%04d.exr'"));
+  const auto linear = image("a/f.0000.exr");
+  const auto device = image("b/f.0000.exr");
+  const auto* near_plane = linear.attribute("quincunx:near");
+  ASSERT_NE(near_plane, nullptr);
+  const float near_distance = std::get<float>(near_plane->value);
+  for (int x = 0; x < 32; ++x) {
+    const float z = linear.at(x, 9, linear.channel("Z"));
+    const float depth = device.at(x, 9, device.channel("Z"));
+    EXPECT_NEAR(depth * z, near_distance, 0x1p-22 * near_distance) << x;
+  }
+}
+
+TEST_F(Dump, MistakesAreAnswered) {
+  expect_refused("--scene chart", "--out");
+  expect_refused("--scene chart --stages colour,colours --out '{}/d'", "'colours' is none of colour, depth");
+  expect_refused("--scene chart --format jpg --out '{}/d'", "'jpg' is none of png, exr, both");
+  expect_refused("-q --scene chart --method bilinear --frame 2 --stages history --out '{}/d'",
+                 "there is no stage 'history': the method 'bilinear' uses one frame only");
+  expect_refused("-q --scene chart --stages history --out '{}/d'", "no frame comes before");
+  expect_refused("-q --scene chart --frames 2 --sequence '{}/f.%04d.png'", "must end in .exr");
+  expect_refused("-q --scene chart --frames 2 --sequence '{}/f.exr'", "f.exr");
+  expect_refused("-q --scene nowhere --out '{}/d'", "there is no scene 'nowhere'");
+}
+
+}  // namespace
+}  // namespace quincunx
