@@ -2,8 +2,8 @@
 #
 #   quincunx_embed(TARGET HEADER embedded_shaders.h FUNCTION ns::embedded_shader_files FILES a.glsl b.glsl)
 #
-# adds a generated source to TARGET that defines `std::span<const EmbeddedFile> FUNCTION()`, declared in HEADER beside
-# a struct EmbeddedFile of two std::string_view: name (without the folder) and text.
+# adds a generated source to TARGET that defines `std::span<const EmbeddedFile> FUNCTION()`, declared in HEADER. The
+# struct is that of kernels/embedded_file.h.
 #
 # As a script (-P) this file writes that source. Each file becomes an array of bytes, not a string literal: ISO C++
 # promises only 65536 characters in a literal.

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The shader sources, embedded at build time. Static storage: valid for the whole life of the program, from
-// any thread.
+// The shader sources, embedded at build time.
 #pragma once
 
 #include <span>
-#include <string_view>
+
+#include "embedded_file.h"
 
 namespace quincunx::scenes {
-
-struct EmbeddedFile {
-  std::string_view name;  // "surface.frag.glsl": without the folder
-  std::string_view text;
-};
 
 // Every scenes/shaders/*.glsl.
 std::span<const EmbeddedFile> embedded_shader_files();

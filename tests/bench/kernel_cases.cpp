@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "kernel_cases.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "frame_traffic.h"
+#include "pass_clear.h"
+#include "pass_present.h"
+#include "pass_resolve.h"
+#include "pass_scale.h"
+
+namespace quincunx::bench {
+namespace {
+
+// Two frames at one scale, and the plan for them.
+struct Scene {
+  std::string suffix;  // " 0.71 half"
+  double scale = 1;
+  ResolvePlan plan;
+  FrameInputs current, previous;
+};
+
+Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
+  const Extent render = scaled(stage.output(), scale);
+  Scene scene;
+  scene.suffix = fmt::format(" {:.2f} {}", scale, colour == PixelFormat::kRGBA16F ? "half" : "float");
+  scene.scale = scale;
+  scene.plan.settings = {.output = stage.output(), .target = render, .colour = colour};
+  scene.plan.velocity = VelocitySource::kTarget;
+  scene.current = stage.frame(render, colour, .25f, 0);
+  scene.previous = stage.frame(render, colour, -.25f, 1);
+  return scene;
+}
+
+void add_scale(std::vector<Case>& cases, Stage& stage, const Scene& scene, Method method, double wanted,
+               const std::string& suffix = {}) {
+  const ResolveSettings& settings = scene.plan.settings;
+  auto pass = std::make_shared<ScalePass>(stage.impl(), method, settings);
+  Stage::add(cases,
+             {.name = pass->kernel_name() + scene.suffix + suffix,
+              .scale = scene.scale,
+              .wanted = wanted,
+              .bytes = scale_bytes(settings, scene.current.render)},
+             [pass, &stage, inputs = scene.current,
+              resolved = stage.noise(stage.output(), settings.resolved)](cl::Event* event) {
+               pass->enqueue(stage.impl().queue, stage.tables(), inputs, resolved, stage.counter(), event);
+             });
+}
+
+void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+                 const std::string& suffix = {}) {
+  const ResolvePlan& plan = scene.plan;
+  auto pass = std::make_shared<ResolvePass>(stage.impl(), plan);
+  Stage::add(cases,
+             {.name = "resolve_quincunx" + scene.suffix + suffix,
+              .scale = scene.scale,
+              .wanted = wanted,
+              .bytes = quincunx_bytes(plan, scene.current.render, scene.previous.render)},
+             [pass, &stage, current = scene.current, previous = scene.previous,
+              resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* event) {
+               pass->enqueue(stage.impl().queue, stage.tables(), current, previous, resolved, stage.counter(),
+                             event);
+             });
+}
+
+void add_presents(std::vector<Case>& cases, Stage& stage) {
+  for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
+    for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
+      const ResolveSettings settings{.output = stage.output(), .resolved = resolved, .tone_map = tone_map};
+      auto pass = std::make_shared<PresentPass>(stage.impl(), settings);
+      Stage::add(cases,
+                 {.name = fmt::format("present {} {}", name_of(tone_map),
+                                      resolved == PixelFormat::kRGBA32F ? "float" : "half"),
+                  .wanted = 1.2,
+                  .bytes = present_bytes(settings)},
+                 [pass, &stage, source = stage.noise(stage.output(), resolved),
+                  presented = stage.noise(stage.output(), PixelFormat::kRGBA8)](cl::Event* event) {
+                   pass->enqueue(stage.impl().queue, source, 1.0f, presented, stage.counter(), event);
+                 });
+    }
+  }
+}
+
+void add_clears(std::vector<Case>& cases, Stage& stage) {
+  for (const PixelFormat format : {PixelFormat::kRGBA16F, PixelFormat::kRG16F}) {
+    auto pass = std::make_shared<ClearPass>(stage.impl(), Storage::kBuffer, format);
+    Stage::add(cases,
+               {.name = fmt::format("clear_region {}", name_of(format)),
+                .wanted = 0.4,
+                .bytes = bytes_of(stage.output(), format)},
+               [pass, &stage, image = stage.noise(stage.output(), format)](cl::Event* event) {
+                 const float value[4] = {0, 0, 0, 1};
+                 pass->enqueue(stage.impl().queue, image, stage.output(), value, event);
+               });
+  }
+}
+
+}  // namespace
+
+void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
+  for (const PixelFormat colour : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
+    Scene scene = scene_of(stage, scale, colour);
+    add_scale(cases, stage, scene, Method::kPoint, 1.0);
+    add_scale(cases, stage, scene, Method::kBilinear, 1.1);
+    add_resolve(cases, stage, scene, 5);
+    if (colour != PixelFormat::kRGBA16F) continue;
+    scene.plan.reads_reactive = true;
+    add_resolve(cases, stage, scene, 5, " reactive");
+    scene.plan.reads_reactive = false;
+    scene.plan.velocity = VelocitySource::kNone;
+    add_resolve(cases, stage, scene, 5, " still");
+    scene.plan.velocity = VelocitySource::kCamera;
+    add_resolve(cases, stage, scene, 5, " camera");
+    scene.plan.velocity = VelocitySource::kTarget;
+    scene.plan.settings.resolved = PixelFormat::kRGBA16F;
+    add_scale(cases, stage, scene, Method::kBilinear, 1.1, " to half");
+    add_resolve(cases, stage, scene, 5, " to half");
+  }
+}
+
+void add_output_cases(std::vector<Case>& cases, Stage& stage) {
+  add_presents(cases, stage);
+  add_clears(cases, stage);
+}
+
+}  // namespace quincunx::bench
