@@ -3,15 +3,14 @@
 //   c0, c1 = this and the previous frame, bilinear, each offset by the inverse of its jitter
 //   f      = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
 //
-//   params             in   extents, layouts, velocity scales with sqrt(K) in them, camera motion
+//   params             in   extents, layouts, velocity scales with sqrt(K) in them
 //   axes0, axes1       in   AxisTap of each output column, then row, for each frame's viewport and jitter
 //   colour0, colour1   in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
-//   motion0, motion1   in   WEIGHT 1: RG16F or RG32F velocity; WEIGHT 2: R32F depth; same viewports; the nearest sample
-//                           WEIGHT 0: not read
+//   velocity0, 1       in   RG16F or RG32F, the same viewports; the nearest sample; not read where WEIGHT is 0
 //   reactive0          in   REACTIVE 1: R8 of frame n, the nearest sample; 0 trusts the previous frame, 1 ignores it
 //   output             out  RGBA32F or RGBA16F, output extent
 //   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
-// Options: WEIGHT    1 velocity target (default) | 2 velocity from depth and camera | 0 plain mean: nothing moves
+// Options: WEIGHT    1 by the speed of both frames (default) | 0 plain mean
 //          REACTIVE  0 (default) | 1
 //          SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT, OUTPUT_FORMAT as in texel.h
 // Where the previous frame or a velocity is not finite, f is 0: nothing survives into the next frame.
@@ -24,21 +23,11 @@
 #ifndef REACTIVE
 #define REACTIVE 0
 #endif
-#if WEIGHT < 0 || WEIGHT > 2
-#error "WEIGHT must be 0, 1 or 2"
+#if WEIGHT < 0 || WEIGHT > 1
+#error "WEIGHT must be 0 or 1"
 #endif
 #if REACTIVE < 0 || REACTIVE > 1
 #error "REACTIVE must be 0 or 1"
-#endif
-
-#if WEIGHT == 2
-#define MOTION_TEXELS DEPTH_TEXELS
-#define MOTION_VALUES float4
-#define load_motion4 load_depth4
-#else
-#define MOTION_TEXELS VELOCITY_TEXELS
-#define MOTION_VALUES float8
-#define load_motion4 load_velocity4
 #endif
 
 static inline int4 nearest_of(__global const AxisTap* columns) {
@@ -47,44 +36,20 @@ static inline int4 nearest_of(__global const AxisTap* columns) {
 
 #if WEIGHT == 1
 // Zero where it is not finite.
-static inline float8 settled_motion(float8 velocity) {
+static inline float8 settled_velocity(float8 velocity) {
   const int8 bits = as_int8(velocity);
   return as_float8(select(bits, (int8)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
 }
 
-static inline int4 non_finite_motion(float8 velocity) {
+static inline int4 non_finite_velocity(float8 velocity) {
   return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
 }
 
 // K |v|^2 of four pixels from their velocities.
-static inline float4 speed_of(float8 velocity, int4 column, int row, const CameraVelocity* camera, float scale_x,
-                              float scale_y) {
+static inline float4 speed_of(float8 velocity, float scale_x, float scale_y) {
   const float8 scaled = velocity * (float8)(scale_x, scale_y, scale_x, scale_y, scale_x, scale_y, scale_x, scale_y);
   const float8 squared = scaled * scaled;
   return squared.even + squared.odd;
-}
-#elif WEIGHT == 2
-static inline float4 settled_motion(float4 depth) {
-  const int4 bits = as_int4(depth);
-  return as_float4(select(bits, (int4)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
-}
-
-static inline int4 non_finite_motion(float4 depth) {
-  return non_finite_lanes(depth);
-}
-
-// K |v|^2 of four pixels from the depth at their texels: where the surface was, seen by the previous camera.
-static inline float4 speed_of(float4 depth, int4 column, int row, const CameraVelocity* camera, float scale_x,
-                              float scale_y) {
-  __private const float* m = camera->to_previous;
-  const float4 ndc_x = convert_float4(column) * camera->step_x + camera->start_x;
-  const float ndc_y = (float)row * camera->step_y + camera->start_y;
-  const float4 x = m[0] * ndc_x + m[8] * depth + (m[4] * ndc_y + m[12]);
-  const float4 y = m[1] * ndc_x + m[9] * depth + (m[5] * ndc_y + m[13]);
-  const float4 w = m[3] * ndc_x + m[11] * depth + (m[7] * ndc_y + m[15]);
-  const float4 velocity_x = (ndc_x - x / w) * (0.5f * scale_x);
-  const float4 velocity_y = (ndc_y - y / w) * (0.5f * scale_y);
-  return velocity_x * velocity_x + velocity_y * velocity_y;
 }
 #endif
 
@@ -101,8 +66,8 @@ static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
 // is right for NaN and Inf as well and adds the pixels that met them to *met.
 __attribute__((always_inline)) static inline int4 resolve_row(
     bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* axes0,
-    __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, MOTION_TEXELS motion0,
-    MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output, uint* met) {
+    __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, VELOCITY_TEXELS velocity0,
+    VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output, uint* met) {
   const SourceFrame frame0 = params->frame0;
   const SourceFrame frame1 = params->frame1;
   const AxisTap row0 = axes0[params->row_axis + y];
@@ -126,18 +91,16 @@ __attribute__((always_inline)) static inline int4 resolve_row(
 #endif
 #if WEIGHT != 0
     const int4 nearest1 = nearest_of(axes1 + x);
-    MOTION_VALUES input0 = load_motion4(motion0, frame0.velocity, nearest0, row0.nearest);
-    MOTION_VALUES input1 = load_motion4(motion1, frame1.velocity, nearest1, row1.nearest);
-    const int4 lost = non_finite_motion(input0) | non_finite_motion(input1);
+    float8 input0 = load_velocity4(velocity0, frame0.velocity, nearest0, row0.nearest);
+    float8 input1 = load_velocity4(velocity1, frame1.velocity, nearest1, row1.nearest);
+    const int4 lost = non_finite_velocity(input0) | non_finite_velocity(input1);
     if (careful) {
       // Before any arithmetic: the bits of the input decide, not what a compiler makes of NaN.
-      input0 = settled_motion(input0);
-      input1 = settled_motion(input1);
+      input0 = settled_velocity(input0);
+      input1 = settled_velocity(input1);
     }
-    speed = speed_of(input0, nearest0, row0.nearest, &params->camera0, params->velocity0_scale_x,
-                     params->velocity0_scale_y) +
-            speed_of(input1, nearest1, row1.nearest, &params->camera1, params->velocity1_scale_x,
-                     params->velocity1_scale_y);
+    speed = speed_of(input0, params->velocity0_scale_x, params->velocity0_scale_y) +
+            speed_of(input1, params->velocity1_scale_x, params->velocity1_scale_y);
 #endif
     // share = f / (1 + f), and so 1 - share = 1 / (1 + f).
     float4 share = trust / (1.0f + trust + speed);
@@ -159,7 +122,7 @@ __attribute__((always_inline)) static inline int4 resolve_row(
 
 __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* axes0,
                                __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
-                               MOTION_TEXELS motion0, MOTION_TEXELS motion1, REACTIVE_TEXELS reactive0,
+                               VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0,
                                OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
@@ -168,10 +131,10 @@ __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTa
   const int end = min(first + params.columns_per_item, params.output_width);
   uint met = 0;
   if (min(params.frame0.width, params.frame1.width) > 1) {
-    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, motion0, motion1,
+    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1,
                                      reactive0, output, &met);
     if (!any_reached_infinity(largest)) return;
   }
-  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, motion0, motion1, reactive0, output, &met);
+  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, output, &met);
   if (met) atomic_add(non_finite + params.counter, met);
 }

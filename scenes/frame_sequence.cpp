@@ -44,6 +44,8 @@ const char* name_of(Jitter jitter) {
       return "none";
     case Jitter::kQuincunx:
       return "quincunx";
+    case Jitter::kQuincunxHalf:
+      return "quincunx-half";
     case Jitter::kHalton:
       return "halton";
   }
@@ -56,6 +58,8 @@ Vec2 jitter_of(Jitter jitter, std::int64_t index, Vec2 ratio) {
       return {};
     case Jitter::kQuincunx:
       return index % 2 == 0 ? Vec2{-0.25f, -0.25f} : Vec2{0.25f, 0.25f};
+    case Jitter::kQuincunxHalf:
+      return index % 2 == 0 ? Vec2{} : Vec2{0.5f, 0.5f};
     case Jitter::kHalton:
       return halton(index, ratio);
   }

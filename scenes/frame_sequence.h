@@ -14,8 +14,9 @@ namespace quincunx::scenes {
 
 enum class Jitter : std::uint8_t {
   kNone,
-  kQuincunx,  // (-1/4, -1/4) in even frames, (1/4, 1/4) in odd ones
-  kHalton,    // Halton (2, 3) about its mean, as many phases as the scale needs
+  kQuincunx,      // (-1/4, -1/4) in even frames, (1/4, 1/4) in odd ones
+  kQuincunxHalf,  // (0, 0) in even frames, (1/2, 1/2) in odd ones
+  kHalton,        // Halton (2, 3) about its mean, as many phases as the scale needs
 };
 
 const char* name_of(Jitter jitter);

@@ -10,8 +10,7 @@ std::uint64_t bytes_of(Extent extent, PixelFormat format) {
 
 std::uint64_t read_of_frame(const ResolvePlan& plan, Extent render) {
   std::uint64_t bytes = bytes_of(render, plan.settings.colour);
-  if (plan.velocity == VelocitySource::kTarget) bytes += bytes_of(render, plan.settings.velocity);
-  if (plan.reads_depth) bytes += bytes_of(render, PixelFormat::kR32F);
+  if (plan.velocity != VelocitySource::kNone) bytes += bytes_of(render, plan.settings.velocity);
   return bytes;
 }
 
@@ -19,6 +18,10 @@ std::uint64_t read_of_frame(const ResolvePlan& plan, Extent render) {
 
 std::uint64_t scale_bytes(const ResolveSettings& settings, Extent render) {
   return bytes_of(render, settings.colour) + bytes_of(settings.output, settings.resolved);
+}
+
+std::uint64_t velocity_bytes(const ResolveSettings& settings, Extent render) {
+  return bytes_of(render, PixelFormat::kR32F) + bytes_of(render, settings.velocity);
 }
 
 std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {

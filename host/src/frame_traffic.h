@@ -8,8 +8,8 @@
 
 namespace quincunx {
 
-// One rendered frame read by the resolve: colour and, as planned, velocity, depth and reactive.
 std::uint64_t scale_bytes(const ResolveSettings& settings, Extent render);
+std::uint64_t velocity_bytes(const ResolveSettings& settings, Extent render);
 std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent previous_render);
 std::uint64_t present_bytes(const ResolveSettings& settings);
 

@@ -17,20 +17,12 @@ const char* resolved(const ResolveSettings& settings) {
   return settings.resolved == PixelFormat::kRGBA16F ? "HALF" : "FLOAT";
 }
 
-const char* storage_name(Storage storage) {
-  return storage == Storage::kImage ? "IMAGE" : "BUFFER";
+const char* velocity(const ResolveSettings& settings) {
+  return settings.velocity == PixelFormat::kRG16F ? "HALF" : "FLOAT";
 }
 
-int weight(VelocitySource velocity) {
-  switch (velocity) {
-    case VelocitySource::kNone:
-      return 0;
-    case VelocitySource::kTarget:
-      return 1;
-    case VelocitySource::kCamera:
-      return 2;
-  }
-  return 0;
+const char* storage_name(Storage storage) {
+  return storage == Storage::kImage ? "IMAGE" : "BUFFER";
 }
 
 const char* curve(ToneMap tone_map) {
@@ -51,15 +43,19 @@ std::string scale_options(const ResolveSettings& settings) {
   return fmt::format("{} -D OUTPUT_FORMAT={}", source(settings), resolved(settings));
 }
 
+std::string velocity_options(const ResolveSettings& settings) {
+  if (settings.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
+  return fmt::format("-D SOURCE_STORAGE=BUFFER -D VELOCITY_FORMAT={}", velocity(settings));
+}
+
 std::string quincunx_options(const ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
-  std::string velocity;
-  if (plan.velocity == VelocitySource::kTarget && settings.storage == Storage::kBuffer) {
-    velocity =
-        fmt::format(" -D VELOCITY_FORMAT={}", settings.velocity == PixelFormat::kRG16F ? "HALF" : "FLOAT");
-  }
-  return fmt::format("-D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}", weight(plan.velocity),
-                     plan.reads_reactive ? 1 : 0, source(settings), velocity, resolved(settings));
+  const bool weighs = plan.velocity != VelocitySource::kNone;
+  std::string format;
+  if (weighs && settings.storage == Storage::kBuffer)
+    format = fmt::format(" -D VELOCITY_FORMAT={}", velocity(settings));
+  return fmt::format("-D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}", weighs ? 1 : 0,
+                     plan.reads_reactive ? 1 : 0, source(settings), format, resolved(settings));
 }
 
 std::string present_options(const ResolveSettings& settings) {

@@ -17,8 +17,8 @@ class ResolvePass {
 
   void warm_up(const cl::CommandQueue& queue);  // blocks
 
-  // Reads of `current`: colour, what the plan names of velocity, depth and reactive, render, jitter,
-  // velocity_scale, camera; of `previous` the same but reactive. Writes the whole output extent of `output`.
+  // Reads of `current`: colour, velocity and reactive as planned, render, jitter, velocity_scale; of
+  // `previous` the same but reactive. Writes the whole output extent of `output`.
   void enqueue(const cl::CommandQueue& queue, AxisTables& tables, const FrameInputs& current,
                const FrameInputs& previous, const ImageView& output, Counter counter, cl::Event* event);
 
@@ -27,7 +27,7 @@ class ResolvePass {
 
   const Device::Impl& device_;
   ResolveSettings settings_;
-  VelocitySource velocity_;
+  bool reads_velocity_;
   bool reads_reactive_;
   cl::Kernel kernel_;
 };

@@ -49,21 +49,27 @@ Status check(const ResolveSettings& settings) {
   check_format(complaints, "colour", settings.colour, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
-  if (!(settings.velocity_weight >= 0 && std::isfinite(settings.velocity_weight))) {
-    complaints.add(fmt::format("settings.velocity_weight is {}; it must be finite and at least 0",
-                               settings.velocity_weight));
+  const float weight = settings.quincunx.velocity_weight;
+  if (!(weight >= 0 && std::isfinite(weight))) {
+    complaints.add(
+        fmt::format("settings.quincunx.velocity_weight is {}; it must be finite and at least 0", weight));
   }
   return complaints.status();
 }
 
-VelocitySource velocity_source(const SceneNeeds& needs, Method method) {
-  if (method != Method::kQuincunx) return VelocitySource::kNone;
+VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
+  if (settings.method != Method::kQuincunx || settings.quincunx.form == TwoFrameForm::kMean)
+    return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
 
 void plan_passes(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
+  if (plan.velocity == VelocitySource::kCamera) {
+    plan.passes.push_back({"velocity_from_depth", velocity_options(settings), "nothing but the camera moves",
+                           velocity_bytes(settings, settings.target)});
+  }
   switch (settings.method) {
     case Method::kPoint:
       plan.passes.push_back({"scale_point", scale_options(settings), "the method: the nearest sample",
@@ -108,10 +114,11 @@ void plan_buffers(ResolvePlan& plan) {
     if (history && !plan.keeps_previous_frame()) break;
     const char* which = history ? " of the previous frame" : "";
     add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
-    if (plan.velocity == VelocitySource::kTarget) {
-      add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling);
+    if (plan.velocity != VelocitySource::kNone) {
+      const bool owned = plan.velocity == VelocitySource::kCamera;
+      add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling, owned);
     }
-    if (plan.reads_depth) add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
+    if (plan.reads_depth && !history) add_buffer(plan, "depth", PixelFormat::kR32F, scaling);
     if (plan.reads_reactive && !history) add_buffer(plan, "reactive", PixelFormat::kR8, scaling);
   }
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
@@ -131,9 +138,11 @@ void note_left_out(ResolvePlan& plan) {
     note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
   }
   if (quincunx && plan.velocity == VelocitySource::kNone) {
-    note("velocity", "nothing moves: both frames count alike");
+    note("velocity", plan.settings.quincunx.form == TwoFrameForm::kMean
+                         ? "the form is the plain mean"
+                         : "nothing moves: both frames count alike");
   }
-  if (!plan.reads_depth) note("depth in the resolve", "no pass reads it");
+  if (!plan.reads_depth) note("depth", "no pass reads it");
   if (quincunx && !needs.transparents) note("reactive values", "the scene has no transparents");
   if (!plan.settings.present) note("present", "no 8-bit picture is wanted");
   if (needs.background) {
@@ -157,6 +166,16 @@ const char* name_of(Method method) {
       return "bilinear";
     case Method::kQuincunx:
       return "quincunx";
+  }
+  return "unknown";
+}
+
+const char* name_of(TwoFrameForm form) {
+  switch (form) {
+    case TwoFrameForm::kMean:
+      return "mean";
+    case TwoFrameForm::kVelocity:
+      return "velocity";
   }
   return "unknown";
 }
@@ -202,7 +221,7 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
   ResolvePlan plan;
   plan.needs = needs;
   plan.settings = settings;
-  plan.velocity = velocity_source(needs, settings.method);
+  plan.velocity = velocity_source(needs, settings);
   plan.reads_depth = plan.velocity == VelocitySource::kCamera;
   plan.reads_reactive = settings.method == Method::kQuincunx && needs.transparents;
   plan_passes(plan);
@@ -234,23 +253,24 @@ std::string ResolvePlan::explain() const {
   fmt::format_to(
       out, "Scene needs    moving objects {}, camera motion {}, transparents {}, covering background {}\n",
       yes(needs.moving_objects), yes(needs.camera_motion), yes(needs.transparents), yes(needs.background));
-  fmt::format_to(out, "Settings       {}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
-                 name_of(settings.method), settings.output.width, settings.output.height,
+  const std::string form =
+      settings.method == Method::kQuincunx ? fmt::format(":{}", name_of(settings.quincunx.form)) : "";
+  fmt::format_to(out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
+                 name_of(settings.method), form, settings.output.width, settings.output.height,
                  settings.target.width, settings.target.height,
                  settings.storage == Storage::kImage ? "image" : "buffer", name_of(settings.tone_map),
                  yes(settings.dither));
   fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
                  name_of(velocity));
   for (const PlannedPass& pass : passes) {
-    fmt::format_to(out, "  {:<17} {:>11}  {}\n  {:<17} {:>11}  {}\n", pass.kernel, size_text(pass.bytes),
+    fmt::format_to(out, "  {:<19} {:>11}  {}\n  {:<19} {:>11}  {}\n", pass.kernel, size_text(pass.bytes),
                    pass.reason, "", "", pass.options);
   }
   text += "\nBuffers\n";
   for (const PlannedBuffer& buffer : buffers) {
     fmt::format_to(out, "  {:<31} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
                    buffer.extent.height, name_of(buffer.format), name_of(buffer.scaling),
-                   size_text(buffer.bytes),
-                   buffer.owned ? "owned unless the caller gives it" : "the caller's");
+                   size_text(buffer.bytes), buffer.owned ? "the service's" : "the caller's");
   }
   text += "\nLeft out\n";
   for (const LeftOut& left : left_out)

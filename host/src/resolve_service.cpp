@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <vector>
 
 #include "frame_ring.h"
@@ -12,6 +13,7 @@
 #include "pass_present.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_velocity.h"
 #include "program_cache.h"
 
 namespace quincunx {
@@ -19,10 +21,12 @@ namespace quincunx {
 struct ResolveService::Impl {
   Impl(const Device& on, const ResolvePlan& to_do);
 
+  Status allocate();
   void warm_up();
   void enqueue(const FrameInputs& inputs, const FrameOutputs& outputs, FrameRing::Slot& slot);
   void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
   Status check_history(const FrameInputs& inputs) const;
+  FrameInputs with_velocity(FrameInputs inputs) const;
   ClearPass* clear_pass(const ImageView& image);
   bool uses_previous(const FrameInputs& inputs) const {
     return plan.keeps_previous_frame() && has_previous && !inputs.reset;
@@ -31,12 +35,15 @@ struct ResolveService::Impl {
   Device device;
   ResolvePlan plan;
   AxisTables tables;
+  std::optional<VelocityPass> velocity;
   ScalePass scale;
   std::optional<ResolvePass> resolve;
   std::optional<PresentPass> present;
   std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
   Image resolved;                                         // where the caller gives none
-  cl::Buffer counter;                                     // of non-finite pixels, one uint a slot of the ring
+  std::array<Image, 2> velocities;  // of VelocityPass: this frame's and the previous one's
+  std::size_t next_velocity = 0;
+  cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
   FrameInputs previous;
   bool has_previous = false;
   FrameRing ring;
@@ -49,6 +56,7 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
       scale(*on.impl(), to_do.settings.method, to_do.settings),
       counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {
   const Device::Impl& impl = *device.impl();
+  if (plan.velocity == VelocitySource::kCamera) velocity.emplace(impl, plan.settings);
   if (plan.keeps_previous_frame()) resolve.emplace(impl, plan);
   if (plan.settings.present) present.emplace(impl, plan.settings);
   for (const PixelFormat format : plan.clears()) {
@@ -56,8 +64,26 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
   }
 }
 
+Status ResolveService::Impl::allocate() {
+  const ResolveSettings& settings = plan.settings;
+  const auto make = [&](Image& image, Extent extent, PixelFormat format, Storage storage) -> Status {
+    auto made = device.allocate(extent, format, storage);
+    if (made.ok()) image = std::move(made).value();
+    return made.status();
+  };
+  if (Status status = make(resolved, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
+    return status;
+  for (Image& image : velocities) {
+    if (!velocity) break;
+    if (Status status = make(image, settings.target, settings.velocity, settings.storage); !status.ok())
+      return status;
+  }
+  return {};
+}
+
 void ResolveService::Impl::warm_up() {
   const cl::CommandQueue& queue = device.impl()->queue;
+  if (velocity) velocity->warm_up(queue);
   scale.warm_up(queue);
   if (resolve) resolve->warm_up(queue);
   if (present) present->warm_up(queue);
@@ -88,6 +114,14 @@ Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
       "different memory, or set reset");
 }
 
+// The frame as the passes see it: where velocity comes from the camera it has the service's own target.
+FrameInputs ResolveService::Impl::with_velocity(FrameInputs inputs) const {
+  if (!velocity) return inputs;
+  inputs.velocity = velocities[next_velocity].view();
+  inputs.velocity_scale = {};
+  return inputs;
+}
+
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
                                    FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
@@ -99,6 +133,10 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
 
   const ImageView& target = outputs.resolved ? outputs.resolved : resolved.view();
   cl::Event* event = slot.passes.data();
+  if (velocity) {
+    velocity->enqueue(queue, inputs, inputs.velocity, event++);
+    add_pass(slot, VelocityPass::kernel_name(), velocity_bytes(settings, inputs.render));
+  }
   if (uses_previous(inputs)) {
     resolve->enqueue(queue, tables, inputs, previous, target, count, event++);
     add_pass(slot, ResolvePass::kernel_name(), quincunx_bytes(plan, inputs.render, previous.render));
@@ -142,9 +180,7 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
   }
   try {
     auto impl = std::make_unique<Impl>(device, plan);
-    auto resolved = device.allocate(plan.settings.output, plan.settings.resolved);
-    if (!resolved.ok()) return resolved.status();
-    impl->resolved = std::move(resolved).value();
+    if (Status status = impl->allocate(); !status.ok()) return status;
     impl->warm_up();
     return ResolveService(std::move(impl));
   } catch (const cl::Error& error) {
@@ -168,10 +204,12 @@ FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutpu
     const Extent output = impl_->plan.settings.output;
     slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
                          static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
-    impl_->enqueue(inputs, outputs, slot);
+    const FrameInputs frame = impl_->with_velocity(inputs);
+    impl_->enqueue(frame, outputs, slot);
     impl_->ring.commit();
-    impl_->previous = inputs;
+    impl_->previous = frame;
     impl_->has_previous = true;
+    impl_->next_velocity = 1 - impl_->next_velocity;
     return slot.report;
   } catch (const cl::Error& error) {
     // Part of the frame may be queued; what it left behind is not to be trusted as history.

@@ -9,7 +9,7 @@ namespace quincunx {
 #define QUINCUNX_CHECK_SIZE(type, bytes)
 #endif
 
-// scale_bilinear, resolve_quincunx and present make this many neighbouring pixels of a row at once.
+// Most kernels make this many neighbouring pixels of a row at once.
 enum { kBlock = 4 };
 
 // Where the texels of a buffer lie: texel (x, y) has the index offset + y * pitch + x. Both in texels; both zero for
@@ -31,12 +31,12 @@ typedef struct AxisTap {
 } AxisTap;
 QUINCUNX_CHECK_SIZE(AxisTap, 16);
 
-// A colour, depth, velocity or reactive source of one frame: the viewport and its layouts.
+// The sources of one frame: the viewport and their layouts.
 typedef struct SourceFrame {
   int width;  // the viewport, in texels
   int height;
   TexelLayout colour;
-  TexelLayout velocity;  // of the velocity target, or of depth where velocity is derived from it
+  TexelLayout velocity;
   TexelLayout reactive;
 } SourceFrame;
 QUINCUNX_CHECK_SIZE(SourceFrame, 32);
@@ -61,6 +61,16 @@ typedef struct CameraVelocity {
 } CameraVelocity;
 QUINCUNX_CHECK_SIZE(CameraVelocity, 80);
 
+typedef struct VelocityParams {
+  int width;  // the viewport, in texels
+  int height;
+  TexelLayout depth;
+  TexelLayout velocity;
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  CameraVelocity camera;
+} VelocityParams;
+QUINCUNX_CHECK_SIZE(VelocityParams, 28 + 80);
+
 typedef struct ResolveParams {
   int output_width;
   int output_height;
@@ -73,10 +83,8 @@ typedef struct ResolveParams {
   // From the units of the velocity source to sqrt(K) render pixels, per frame.
   float velocity0_scale_x, velocity0_scale_y;
   float velocity1_scale_x, velocity1_scale_y;
-  CameraVelocity camera0;
-  CameraVelocity camera1;
 } ResolveParams;
-QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 12 + 16 + 2 * 80);
+QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 12 + 16);
 
 typedef struct PresentParams {
   int width;

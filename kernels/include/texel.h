@@ -47,6 +47,7 @@
 #define VELOCITY_TEXELS read_only image2d_t
 #define DEPTH_TEXELS read_only image2d_t
 #define REACTIVE_TEXELS read_only image2d_t
+#define STORED_VELOCITY write_only image2d_t
 #else
 #if SOURCE_FORMAT == HALF
 #define COLOUR_TEXELS __global const half*
@@ -55,8 +56,10 @@
 #endif
 #if VELOCITY_FORMAT == HALF
 #define VELOCITY_TEXELS __global const half*
+#define STORED_VELOCITY __global half*
 #else
 #define VELOCITY_TEXELS __global const float*
+#define STORED_VELOCITY __global float*
 #endif
 #define DEPTH_TEXELS __global const float*
 #define REACTIVE_TEXELS __global const uchar*
@@ -130,6 +133,32 @@ static inline float8 load_velocity4(VELOCITY_TEXELS texels, TexelLayout layout, 
 #endif
 }
 
+// The velocities of those of four texels, from x on, that lie before `end`; x and y in turn.
+static inline void store_velocity4(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end, float8 velocity) {
+#if SOURCE_STORAGE == IMAGE
+  write_imagef(texels, (int2)(x, y), (float4)(velocity.s01, 0.0f, 1.0f));
+  if (x + 1 < end) write_imagef(texels, (int2)(x + 1, y), (float4)(velocity.s23, 0.0f, 1.0f));
+  if (x + 2 < end) write_imagef(texels, (int2)(x + 2, y), (float4)(velocity.s45, 0.0f, 1.0f));
+  if (x + 3 < end) write_imagef(texels, (int2)(x + 3, y), (float4)(velocity.s67, 0.0f, 1.0f));
+#else
+#if VELOCITY_FORMAT == HALF
+  __global uint* pairs = (__global uint*)texels + texel_index(layout, x, y);
+  uint4 bits;
+  vstore_half8(velocity, 0, (__private half*)&bits);
+#else
+  __global ulong* pairs = (__global ulong*)texels + texel_index(layout, x, y);
+  const ulong4 bits = as_ulong4(velocity);
+#endif
+  if (x + 3 < end) {
+    vstore4(bits, 0, pairs);
+    return;
+  }
+  pairs[0] = bits.s0;
+  if (x + 1 < end) pairs[1] = bits.s1;
+  if (x + 2 < end) pairs[2] = bits.s2;
+#endif
+}
+
 static inline float4 load_depth4(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
   return (float4)(read_imagef(texels, (int2)(x.s0, y)).x, read_imagef(texels, (int2)(x.s1, y)).x,
@@ -138,6 +167,14 @@ static inline float4 load_depth4(DEPTH_TEXELS texels, TexelLayout layout, int4 x
   __global const float* row = texels + row_index(layout, y);
   return (float4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3]);
 #endif
+}
+
+// The depths of four neighbours of a row, from x on; beyond `width` the last texel once more.
+static inline float4 load_depth_block(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if SOURCE_STORAGE == BUFFER
+  if (x + 3 < width) return vload4(0, texels + texel_index(layout, x, y));
+#endif
+  return load_depth4(texels, layout, min(x + (int4)(0, 1, 2, 3), (int4)(width - 1)), y);
 }
 
 static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, int4 x, int y) {

@@ -31,11 +31,11 @@ Result<ScalePath> scale_path_for(const PictureOptions& options) {
   return ScalePath::fixed(scale);
 }
 
-// An option that takes one of a few names.
-template <typename Target, typename Value>
-void add_choice(CLI::App& app, const std::string& option, Target& target,
-                const std::map<std::string, Value>& names, const std::string& description) {
-  const auto choose = [option, &target, &names](const std::string& name) {
+// An option that takes one of a few names; set() gets the value.
+template <typename Value, typename Set>
+void add_choice(CLI::App& app, const std::string& option, const std::map<std::string, Value>& names,
+                const std::string& description, Set set) {
+  const auto choose = [option, set, &names](const std::string& name) {
     const auto found = names.find(CLI::detail::to_lower(name));
     if (found == names.end()) {
       std::string choices;
@@ -43,18 +43,49 @@ void add_choice(CLI::App& app, const std::string& option, Target& target,
         choices += (choices.empty() ? "" : ", ") + choice;
       throw CLI::ValidationError(option, fmt::format("'{}' is none of {}", name, choices));
     }
-    target = found->second;
+    set(found->second);
   };
   app.add_option_function<std::string>(option, choose, description)->type_name("NAME");
+}
+
+template <typename Target, typename Value>
+void add_choice(CLI::App& app, const std::string& option, Target& target,
+                const std::map<std::string, Value>& names, const std::string& description) {
+  add_choice(app, option, names, description, [&target](const Value& value) { target = value; });
+}
+
+// What a name of --method stands for.
+struct MethodChoice {
+  Method method;
+  TwoFrameForm form = QuincunxSettings{}.form;
+};
+
+void add_method_options(CLI::App& app, PictureOptions& options) {
+  static const std::map<std::string, MethodChoice> kMethods = {
+      {"point", {Method::kPoint}},
+      {"bilinear", {Method::kBilinear}},
+      {"quincunx", {Method::kQuincunx}},
+      {"quincunx:mean", {Method::kQuincunx, TwoFrameForm::kMean}},
+      {"quincunx:velocity", {Method::kQuincunx, TwoFrameForm::kVelocity}}};
+  add_choice(app, "--method", kMethods, "point, bilinear or quincunx[:mean|:velocity] (default: quincunx)",
+             [&options](const MethodChoice& choice) {
+               options.method = choice.method;
+               options.quincunx.form = choice.form;
+             });
+  app.add_option("--velocity-weight", options.quincunx.velocity_weight,
+                 "K of quincunx:velocity: how fast motion takes the previous frame away")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("K");
 }
 
 }  // namespace
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
-  static const std::map<std::string, Method> kMethods = {
-      {"point", Method::kPoint}, {"bilinear", Method::kBilinear}, {"quincunx", Method::kQuincunx}};
-  static const std::map<std::string, Jitter> kJitters = {
-      {"none", Jitter::kNone}, {"quincunx", Jitter::kQuincunx}, {"halton", Jitter::kHalton}};
+  static const std::map<std::string, Jitter> kJitters = {{"none", Jitter::kNone},
+                                                         {"quincunx", Jitter::kQuincunx},
+                                                         {"quincunx-half", Jitter::kQuincunxHalf},
+                                                         {"halton", Jitter::kHalton}};
   static const std::map<std::string, ToneMap> kToneMaps = {
       {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
@@ -77,9 +108,9 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                  "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
       ->type_name("PATH")
       ->excludes(scale);
-  add_choice(app, "--method", options.method, kMethods, "point, bilinear or quincunx (default: quincunx)");
+  add_method_options(app, options);
   add_choice(app, "--jitter", options.jitter, kJitters,
-             "none, quincunx or halton (default: quincunx for that method, else none)");
+             "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
   add_choice(app, "--tone-map", options.tone_map, kToneMaps, "clamp, reinhard or aces (default: aces)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       ->check(CLI::PositiveNumber);
@@ -164,6 +195,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
 ResolveSettings resolve_settings_for(const PictureOptions& options) {
   ResolveSettings settings;
   settings.method = options.method;
+  settings.quincunx = options.quincunx;
   settings.tone_map = options.tone_map;
   settings.dither = options.dither;
   return settings;

@@ -22,6 +22,7 @@ struct PictureOptions {
   std::string scale = "1";  // "S" or "SX,SY"
   std::string scale_path;   // empty: `scale` in every frame
   Method method = Method::kQuincunx;
+  QuincunxSettings quincunx = {};
   std::optional<Jitter> jitter;  // absent: quincunx for that method, else none
   std::int64_t frames = 1;
   double fps = 60;

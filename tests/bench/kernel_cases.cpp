@@ -10,6 +10,7 @@
 #include "pass_present.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_velocity.h"
 
 namespace quincunx::bench {
 namespace {
@@ -65,6 +66,18 @@ void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, dou
              });
 }
 
+void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
+  const ResolveSettings& settings = scene.plan.settings;
+  auto pass = std::make_shared<VelocityPass>(stage.impl(), settings);
+  Stage::add(
+      cases,
+      {.name = pass->kernel_name() + scene.suffix,
+       .scale = scene.scale,
+       .bytes = velocity_bytes(settings, scene.current.render)},
+      [pass, &stage, inputs = scene.current, velocity = stage.noise(scene.current.render, settings.velocity)](
+          cl::Event* event) { pass->enqueue(stage.impl().queue, inputs, velocity, event); });
+}
+
 void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
@@ -106,13 +119,12 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_scale(cases, stage, scene, Method::kBilinear, 1.1);
     add_resolve(cases, stage, scene, 5);
     if (colour != PixelFormat::kRGBA16F) continue;
+    add_velocity(cases, stage, scene);
     scene.plan.reads_reactive = true;
     add_resolve(cases, stage, scene, 5, " reactive");
     scene.plan.reads_reactive = false;
     scene.plan.velocity = VelocitySource::kNone;
     add_resolve(cases, stage, scene, 5, " still");
-    scene.plan.velocity = VelocitySource::kCamera;
-    add_resolve(cases, stage, scene, 5, " camera");
     scene.plan.velocity = VelocitySource::kTarget;
     scene.plan.settings.resolved = PixelFormat::kRGBA16F;
     add_scale(cases, stage, scene, Method::kBilinear, 1.1, " to half");

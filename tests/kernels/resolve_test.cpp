@@ -24,10 +24,6 @@ using testing::TestFrame;
 // five operations and a division of 2.5 ulp leave within 16 * 2^-24, which weighs a difference of at most
 // twice the largest tap, and three operations more.
 constexpr double kResolveError = (8 + 2 * 16 + 4) * 0x1p-24;
-// Velocity from depth is a difference of two ndc of about 1, each off by some 8 * 2^-24, times half the
-// output's width; f changes by at most .65 of the change of |v| in pixels, on a difference of at most twice
-// the largest tap.
-constexpr double kCameraErrorPerPixel = 2 * 8 * 0x1p-24 / 2 * .65 * 2;
 constexpr double kDenormal = 0x1p-126;
 
 struct Variant {
@@ -39,10 +35,6 @@ struct Variant {
   PixelFormat resolved;
 };
 
-// A turn and a step forward: uv change over the picture and with depth.
-constexpr std::array<float, 16> kCameraStep = {1.0f,  0.01f,  0, 0.02f, -0.01f, 1.0f,   0, 0.005f,
-                                               0.03f, -0.02f, 1, 0.01f, 0.004f, 0.006f, 0, 1.0f};
-
 class Resolve : public ::testing::TestWithParam<Variant> {
  protected:
   Resolve() {
@@ -50,13 +42,11 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     plan_.settings = {
         .colour = v.colour, .velocity = v.velocity_format, .resolved = v.resolved, .storage = v.storage};
     plan_.velocity = v.velocity;
-    plan_.reads_depth = v.velocity == VelocitySource::kCamera;
     plan_.reads_reactive = v.reactive;
     formats_ = {.storage = v.storage,
                 .colour = v.colour,
                 .velocity = v.velocity_format,
                 .with_velocity = v.velocity == VelocitySource::kTarget,
-                .with_depth = v.velocity == VelocitySource::kCamera,
                 .with_reactive = v.reactive};
     pass_ = std::make_unique<ResolvePass>(testing::impl(), plan_);
   }
@@ -95,17 +85,14 @@ class Resolve : public ::testing::TestWithParam<Variant> {
   TestFrame frame(Rig& rig, const FrameSpec& spec) { return with_motion(make_frame(rig, formats_, spec)); }
 
   TestFrame with_motion(TestFrame made) const {
-    made.inputs.camera.clip_to_previous_clip = kCameraStep;
-    std::copy(kCameraStep.begin(), kCameraStep.end(), made.reference.clip_to_previous_clip.begin());
     made.inputs.velocity_scale = {-.5f, .75f};
     made.reference.velocity_scale = {-.5, .75};
     return made;
   }
 
   reference::Picture expected(const TestFrame& current, const TestFrame& previous, Extent output) const {
-    const auto weight = plan_.velocity == VelocitySource::kNone     ? reference::Weight::kPlain
-                        : plan_.velocity == VelocitySource::kTarget ? reference::Weight::kVelocity
-                                                                    : reference::Weight::kCamera;
+    const auto weight =
+        plan_.velocity == VelocitySource::kNone ? reference::Weight::kMean : reference::Weight::kVelocity;
     return reference::resolve_quincunx(current.reference, previous.reference, weight, plan_.reads_reactive, 1,
                                        output.width, output.height);
   }
@@ -116,13 +103,8 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     const TestFrame previous = frame(rig, before);
     const Run actual = resolve(rig, current, previous, output);
     const reference::Picture picture = expected(current, previous, output);
-    const double relative =
-        kResolveError + (plan_.reads_depth
-                             ? kCameraErrorPerPixel * std::max({now.render.width, now.render.height,
-                                                                before.render.width, before.render.height})
-                             : 0);
     const auto bound = [&](std::size_t i) {
-      return relative * picture.largest[i] + kDenormal +
+      return kResolveError * picture.largest[i] + kDenormal +
              testing::output_rounding(plan_.settings.resolved, picture.largest[i]);
     };
     const std::string what =
@@ -303,8 +285,7 @@ TEST_P(Resolve, JitterIsTakenBackInBothFrames) {
 std::vector<Variant> variants() {
   using enum PixelFormat;
   std::vector<Variant> all;
-  for (const VelocitySource velocity :
-       {VelocitySource::kNone, VelocitySource::kTarget, VelocitySource::kCamera}) {
+  for (const VelocitySource velocity : {VelocitySource::kNone, VelocitySource::kTarget}) {
     for (const bool reactive : {false, true}) {
       for (const PixelFormat resolved : {kRGBA32F, kRGBA16F}) {
         for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
@@ -322,9 +303,7 @@ std::vector<Variant> variants() {
 
 INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](const auto& instance) {
   const Variant& v = instance.param;
-  const char* weight = v.velocity == VelocitySource::kNone     ? "plain"
-                       : v.velocity == VelocitySource::kTarget ? "velocity"
-                                                               : "camera";
+  const char* weight = v.velocity == VelocitySource::kNone ? "mean" : "velocity";
   return fmt::format("{}{}_{}_{}_{}_to_{}", weight, v.reactive ? "_reactive" : "",
                      v.storage == Storage::kImage ? "image" : "buffer", name_of(v.colour),
                      name_of(v.velocity_format), name_of(v.resolved));
@@ -335,7 +314,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](
 TEST(ResolveWeight, CountsRenderPixels) {
   ResolvePlan plan;
   plan.velocity = VelocitySource::kTarget;
-  plan.settings.velocity_weight = 2;
+  plan.settings.quincunx.velocity_weight = 2;
   ResolvePass pass(testing::impl(), plan);
   const FrameFormats formats{.with_velocity = true};
   const Extent output{50, 30};

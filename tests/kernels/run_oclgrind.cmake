@@ -16,7 +16,8 @@ string(JOIN ":" filter
   "*Scale.ATight*_buffer_*_to_RGBA32F" "*Resolve.ATight*_reactive_buffer_*_to_RGBA32F"
   "*Scale.Poison*_buffer_RGBA16F_to_RGBA32F" "*Scale.ANon*bilinear_*_RGBA32F_to_RGBA16F"
   "*Resolve.Poison*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
-  "*Resolve.ANon*/camera_*_RGBA16F_RG16F_to_RGBA32F")
+  "*Resolve.ANon*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
+  "*Velocity.ATight*" "*Velocity.Poison*")
 # The program cache would hold binaries of another device.
 execute_process(
   COMMAND ${CMAKE_COMMAND} -E env QUINCUNX_CACHE_DIR= ${OCLGRIND} --check-api --data-races ${TESTS} --gtest_brief=1

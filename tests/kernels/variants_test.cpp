@@ -51,7 +51,7 @@ TEST_P(KernelVariants, EveryRowBuilds) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                          ::testing::Values("clear_region", "scale_point", "scale_bilinear",
-                                           "resolve_quincunx", "present"),
+                                           "resolve_quincunx", "present", "velocity_from_depth"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -74,6 +74,8 @@ TEST(Variants, EveryOptionStringOfTheHostIsARow) {
     for (const PixelFormat format : {kR8, kR32F, kRG16F, kRG32F, kRGBA8, kRGBA16F, kRGBA32F}) {
       expect_row("clear_region", clear_options(storage, format));
     }
+    for (const PixelFormat velocity : {kRG16F, kRG32F})
+      expect_row("velocity_from_depth", velocity_options({.velocity = velocity, .storage = storage}));
     for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
       for (const PixelFormat resolved : {kRGBA16F, kRGBA32F}) {
         ResolvePlan plan;

@@ -55,10 +55,12 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_EQ(moving.exit_code, 0) << moving.err;
   EXPECT_NE(moving.out.find("WEIGHT=1"), std::string::npos) << moving.out;
   const ProgramResult camera = run("--explain --scene pan");
-  EXPECT_NE(camera.out.find("WEIGHT=2"), std::string::npos) << camera.out;
+  EXPECT_NE(camera.out.find("velocity_from_depth"), std::string::npos) << camera.out;
   EXPECT_NE(camera.out.find("velocity target"), std::string::npos);
   const ProgramResult still = run("--explain --scene chart");
   EXPECT_NE(still.out.find("WEIGHT=0"), std::string::npos) << still.out;
+  const ProgramResult mean = run("--explain --scene wheel --method quincunx:mean");
+  EXPECT_NE(mean.out.find("WEIGHT=0"), std::string::npos) << mean.out;
 }
 
 TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
@@ -71,6 +73,8 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--scale-path zigzag --out '{}/a.png'", 2, "zigzag");
   expect_refused("--scale 0.5 --scale-path sweep", 2, "--scale");
   expect_refused("--method magic", 2, "magic");
+  expect_refused("--method quincunx:median", 2, "quincunx:mean");
+  expect_refused("--velocity-weight -1", 2, "--velocity-weight");
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");

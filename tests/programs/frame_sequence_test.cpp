@@ -44,6 +44,11 @@ TEST(FrameSequence, QuincunxJitterIsSymmetricAndAlternates) {
   }
 }
 
+TEST(FrameSequence, QuincunxHalfIsHalfAPixelApart) {
+  EXPECT_EQ(jitter_of(Jitter::kQuincunxHalf, 6, {1, 1}), (Vec2{0, 0}));
+  EXPECT_EQ(jitter_of(Jitter::kQuincunxHalf, 7, {1, 1}), (Vec2{0.5f, 0.5f}));
+}
+
 TEST(FrameSequence, HaltonHasZeroMeanAndEnoughPhases) {
   for (const float scale : {1.0f, 0.71f, 0.5f, 0.33f}) {
     const int phases = static_cast<int>(std::ceil(8 / (static_cast<double>(scale) * scale)));

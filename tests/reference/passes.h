@@ -12,7 +12,16 @@ namespace quincunx::reference {
 Picture scale_point(const Frame& frame, int output_width, int output_height);
 Picture scale_bilinear(const Frame& frame, int output_width, int output_height);
 
-enum class Weight { kPlain, kVelocity, kCamera };
+struct CameraVelocity {
+  std::array<double, 2> velocity;  // uv; NaN where depth is not finite, +-65504 at most
+  double condition;  // for error bounds: the sums of magnitudes behind the previous position, over w
+  double w_part;     // w of the previous position by its sum of magnitudes: small where terms cancel
+};
+
+// At each texel of the viewport. What was not before the previous camera (w <= 0) has 65504 twice.
+std::vector<CameraVelocity> velocity_from_depth(const Frame& frame);
+
+enum class Weight { kMean, kVelocity };
 
 // out = (c0 + f c1) / (1 + f), f = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels of its own
 // frame.

@@ -21,8 +21,8 @@ struct Frame {
   double jitter_x = 0;
   double jitter_y = 0;
   std::vector<Pixel> colour;
-  std::vector<std::array<double, 2>> velocity;  // of WEIGHT 1
-  std::vector<double> depth;                    // of WEIGHT 2
+  std::vector<std::array<double, 2>> velocity;
+  std::vector<double> depth;
   std::vector<double> reactive;
   std::array<double, 2> velocity_scale = {1, 1};
   std::array<double, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};

@@ -13,40 +13,18 @@ struct Speed {
   bool non_finite = false;
 };
 
-// Where the surface at depth `depth` and texture coordinate (u, v) was in the previous frame, and so its
-// velocity.
-std::array<double, 2> camera_velocity(const Frame& frame, double u, double v, double depth) {
-  const std::array<double, 4> clip = {2 * u - 1, 1 - 2 * v, depth, 1};
-  std::array<double, 4> previous = {};
-  for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      previous[row] += frame.clip_to_previous_clip[column * 4 + row] * clip[column];
-    }
-  }
-  const double previous_u = (previous[0] / previous[3] + 1) / 2;
-  const double previous_v = (1 - previous[1] / previous[3]) / 2;
-  return {u - previous_u, v - previous_v};
-}
-
 Speed speed_at(const Frame& frame, Weight weight, double k, int x, int y, int output_width,
                int output_height) {
-  if (weight == Weight::kPlain) return {};
+  if (weight == Weight::kMean) return {};
   const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
   const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
   const auto texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
                      static_cast<std::size_t>(column);
-  std::array<double, 2> velocity = {};
+  const std::array<double, 2> stored = frame.velocity[texel];
+  const std::array<double, 2> velocity = {stored[0] * frame.velocity_scale[0],
+                                          stored[1] * frame.velocity_scale[1]};
   Speed speed;
-  if (weight == Weight::kVelocity) {
-    const std::array<double, 2> stored = frame.velocity[texel];
-    speed.non_finite = !std::isfinite(stored[0]) || !std::isfinite(stored[1]);
-    velocity = {stored[0] * frame.velocity_scale[0], stored[1] * frame.velocity_scale[1]};
-  } else {
-    const double u = (column + 0.5 + frame.jitter_x) / frame.width;
-    const double v = (row + 0.5 + frame.jitter_y) / frame.height;
-    speed.non_finite = !std::isfinite(frame.depth[texel]);
-    velocity = camera_velocity(frame, u, v, frame.depth[texel]);
-  }
+  speed.non_finite = !std::isfinite(stored[0]) || !std::isfinite(stored[1]);
   const double pixels_x = velocity[0] * frame.width;
   const double pixels_y = velocity[1] * frame.height;
   speed.squared = k * (pixels_x * pixels_x + pixels_y * pixels_y);

@@ -20,10 +20,17 @@ enum class Method {
   kQuincunx,  // this frame and the previous one on the five-of-a-die pattern
 };
 
+// How kQuincunx weighs the previous frame.
+enum class TwoFrameForm : std::uint8_t {
+  kMean,      // the plain mean of both frames
+  kVelocity,  // f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame (Binks 2012)
+};
+
 enum class ToneMap { kClamp, kReinhard, kAces };
 
-const char* name_of(Method method);     // "quincunx"
-const char* name_of(ToneMap tone_map);  // "aces"
+const char* name_of(Method method);      // "quincunx"
+const char* name_of(TwoFrameForm form);  // "velocity"
+const char* name_of(ToneMap tone_map);   // "aces"
 
 // What the scene will ever do while this plan is used.
 struct SceneNeeds {
@@ -31,6 +38,11 @@ struct SceneNeeds {
   bool camera_motion = true;
   bool transparents = true;  // drawn without velocity, with reactive values
   bool background = true;    // something (a sky, a room) covers every pixel: colour needs no clear
+};
+
+struct QuincunxSettings {
+  TwoFrameForm form = TwoFrameForm::kVelocity;
+  float velocity_weight = 1;  // K of kVelocity; >= 0
 };
 
 struct ResolveSettings {
@@ -44,15 +56,15 @@ struct ResolveSettings {
   bool present = true;                           // run the present pass
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
-  bool dither = true;         // of the present pass: +- half a code value, fixed pattern
-  float velocity_weight = 1;  // K of f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame; >= 0
+  bool dither = true;  // of the present pass: +- half a code value, fixed pattern
+  QuincunxSettings quincunx = {};
 };
 
 // Where the resolve finds velocity.
 enum class VelocitySource {
   kNone,    // nothing moves, or the method does not ask
   kTarget,  // a velocity target
-  kCamera,  // depth and the camera's motion: only the camera moves
+  kCamera,  // a target that the service makes from depth and the camera's motion: only the camera moves
 };
 
 const char* name_of(VelocitySource source);

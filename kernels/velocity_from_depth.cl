@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// velocity_from_depth: the velocity that a moving camera gives a still scene, from depth.
+//   params    in   viewport, layouts, camera motion
+//   depth     in   R32F, viewport, reversed and infinite: 1 at the near plane, 0 at infinity
+//   velocity  out  RG16F or RG32F, viewport: this position - the previous one, uv, jitter excluded
+// What was not before the previous camera, or moved further than that, has +-65504. Depth that is not finite gives NaN:
+// the passes that read it count it and trust no history there.
+// Options: SOURCE_STORAGE (of both), VELOCITY_FORMAT as in texel.h
+// Reference: tests/reference/velocity_from_depth.cpp
+#include "sanitise.h"
+#include "texel.h"
+
+#define LARGEST_VELOCITY 65504.0f  // the largest half
+
+// Velocity of four pixels of one row.
+static inline float8 velocity_of(float4 column, float ndc_y, float4 depth, const CameraVelocity* camera) {
+  __private const float* m = camera->to_previous;
+  const float4 ndc_x = column * camera->step_x + camera->start_x;
+  const float4 x = m[0] * ndc_x + m[8] * depth + (m[4] * ndc_y + m[12]);
+  const float4 y = m[1] * ndc_x + m[9] * depth + (m[5] * ndc_y + m[13]);
+  const float4 w = m[3] * ndc_x + m[11] * depth + (m[7] * ndc_y + m[15]);
+  const int4 before_camera = w > 0.0f;
+  const float4 safe_w = select((float4)(1.0f), w, before_camera);
+  const float4 velocity_x = clamp((ndc_x - x / safe_w) * 0.5f, -LARGEST_VELOCITY, LARGEST_VELOCITY);
+  const float4 velocity_y = clamp((y / safe_w - ndc_y) * 0.5f, -LARGEST_VELOCITY, LARGEST_VELOCITY);
+  const float4 seen_x = select((float4)(LARGEST_VELOCITY), velocity_x, before_camera);
+  const float4 seen_y = select((float4)(LARGEST_VELOCITY), velocity_y, before_camera);
+  return (float8)(seen_x.s0, seen_y.s0, seen_x.s1, seen_y.s1, seen_x.s2, seen_y.s2, seen_x.s3, seen_y.s3);
+}
+
+__kernel void velocity_from_depth(const VelocityParams params, DEPTH_TEXELS depth, STORED_VELOCITY velocity) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  const float ndc_y = (float)y * params.camera.step_y + params.camera.start_y;
+  for (int x = first; x < end; x += kBlock) {
+    const int4 column = x + (int4)(0, 1, 2, 3);
+    const float4 input = load_depth_block(depth, params.depth, x, y, params.width);
+    const int4 lost = non_finite_lanes(input);
+    const float4 settled = as_float4(select(as_int4(input), (int4)(0), lost));
+    const float8 moved = velocity_of(convert_float4(column), ndc_y, settled, &params.camera);
+    const int8 lost_pairs = (int8)(lost.s0, lost.s0, lost.s1, lost.s1, lost.s2, lost.s2, lost.s3, lost.s3);
+    store_velocity4(velocity, params.velocity, x, y, end, as_float8(select(as_int8(moved), (int8)(0x7fc00000), lost_pairs)));
+  }
+}
