@@ -8,7 +8,7 @@
 //          DITHER          1 (default): colour rounds up or down by a fixed pattern of the position | 0: to nearest
 //          SOURCE_FORMAT   HALF (default) | FLOAT
 //          OUTPUT_STORAGE  BUFFER (default) | IMAGE
-// The code is exact to 0.003 before rounding. A colour that is a whole code keeps it under dither.
+// The code is exact to 0.004 before rounding. A colour that is a whole code keeps it under dither.
 // Source: dither pattern R2 after Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
 // Reference: tests/reference/present.cpp
 #ifndef TONE_MAP
@@ -37,46 +37,101 @@
 #error "OUTPUT_STORAGE must be BUFFER or IMAGE"
 #endif
 
+enum { kPrefetchDistance = 256 };  // pixels: one page of memory, which is where the processor itself stops
 
+// Four registers of four pixels become a register a channel, so that no work is spent on alpha. One channel of 16
+// pixels, in this order: the first of each four, then the second, third and fourth.
+#define PLANE_ORDER (uint16)(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15)
+typedef struct Planes {
+  float16 red, green, blue, alpha;
+} Planes;
 
-// What is added to four pixels before truncation, in [0, 1): 0.5 rounds to nearest, as alpha always does.
+// Of a and b the first, or last, two values of each four in turn: one instruction where four floats are a register's
+// lane.
+static inline float16 first_pairs(float16 a, float16 b) {
+  return (float16)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd);
+}
+static inline float16 last_pairs(float16 a, float16 b) {
+  return (float16)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf);
+}
+static inline float16 lower_halves(float16 a, float16 b) {
+  return (float16)(a.s0, a.s1, b.s0, b.s1, a.s4, a.s5, b.s4, b.s5, a.s8, a.s9, b.s8, b.s9, a.sc, a.sd, b.sc, b.sd);
+}
+static inline float16 upper_halves(float16 a, float16 b) {
+  return (float16)(a.s2, a.s3, b.s2, b.s3, a.s6, a.s7, b.s6, b.s7, a.sa, a.sb, b.sa, b.sb, a.se, a.sf, b.se, b.sf);
+}
+
+// From four times four pixels.
+static inline Planes planes_of(float16 a, float16 b, float16 c, float16 d) {
+  const float16 ab01 = first_pairs(a, b), cd01 = first_pairs(c, d);
+  const float16 ab23 = last_pairs(a, b), cd23 = last_pairs(c, d);
+  const Planes planes = {lower_halves(ab01, cd01), upper_halves(ab01, cd01), lower_halves(ab23, cd23),
+                         upper_halves(ab23, cd23)};
+  return planes;
+}
+
+// What is added to a code before truncation, in [0, 1): 0.5 rounds to nearest, as alpha always does.
 static inline float16 rounding(int x, int y) {
 #if DITHER
   // x / g + y / g^2 modulo 1, g the plastic number 1.3247..., in units of 2^-32.
-  const uint16 pixel = (uint16)(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3) * 3242174889u;
-  const uint16 phase = pixel + ((uint)x * 3242174889u + (uint)y * 2447445414u);
+  const uint16 phase = PLANE_ORDER * 3242174889u + ((uint)x * 3242174889u + (uint)y * 2447445414u);
   return convert_float16(as_int16(phase >> 8)) * 0x1p-24f;
 #else
   return 0.5f;
 #endif
 }
 
-static inline uchar16 encode(float16 colour, float exposure, float16 round) {
-  const int16 is_alpha = (int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1);
-  const float16 code = srgb_code(tone_map(colour * exposure)) + round;
-  const float16 alpha = clamp(colour, 0.0f, 1.0f) * 255.0f + 0.5f;
-  return convert_uchar16(convert_int16(fmin(select(code, alpha, is_alpha), 255.0f)));
+static inline uint16 encode_plane(float16 colour, float exposure, float16 round) {
+  return as_uint16(convert_int16(fmin(srgb_code(tone_map(colour * exposure), round), 255.0f)));
+}
+
+// The codes of the 16 pixels from x on. Inline, so that its constants stay in registers throughout a row.
+__attribute__((always_inline)) static inline uint16 encode(float16 a, float16 b, float16 c, float16 d, float exposure,
+                                                           int x, int y) {
+  const Planes planes = planes_of(a, b, c, d);
+  const float16 round = rounding(x, y);
+  const uint16 red = encode_plane(planes.red, exposure, round);
+  const uint16 green = encode_plane(planes.green, exposure, round);
+  const uint16 blue = encode_plane(planes.blue, exposure, round);
+  const uint16 alpha = as_uint16(convert_int16(clamp(planes.alpha, 0.0f, 1.0f) * 255.0f + 0.5f));
+  const uint16 codes = red | green << 8 | blue << 16 | alpha << 24;
+  return codes.s048c159d26ae37bf;
 }
 
 // Four pixels from x on, of which those before `end` exist.
-static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, int end, uchar16 codes) {
+static inline void store_four_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, int end, uint4 codes) {
 #if OUTPUT_STORAGE == IMAGE
-  const float16 values = convert_float16(codes) * (1.0f / 255.0f);
+  const float16 values = convert_float16(as_uchar16(codes)) * (1.0f / 255.0f);
   write_imagef(texels, (int2)(x, y), values.s0123);
   if (x + 1 < end) write_imagef(texels, (int2)(x + 1, y), values.s4567);
   if (x + 2 < end) write_imagef(texels, (int2)(x + 2, y), values.s89ab);
   if (x + 3 < end) write_imagef(texels, (int2)(x + 3, y), values.scdef);
 #else
   __global uint* pixels = texels + texel_index(layout, x, y);
-  const uint4 packed = as_uint4(codes);
   if (x + 3 < end) {
-    vstore4(packed, 0, pixels);
+    vstore4(codes, 0, pixels);
     return;
   }
-  pixels[0] = packed.s0;
-  if (x + 1 < end) pixels[1] = packed.s1;
-  if (x + 2 < end) pixels[2] = packed.s2;
+  pixels[0] = codes.s0;
+  if (x + 1 < end) pixels[1] = codes.s1;
+  if (x + 2 < end) pixels[2] = codes.s2;
 #endif
+}
+
+static inline void store_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, uint16 codes) {
+#if OUTPUT_STORAGE == IMAGE
+  const int end = x + kPresentBlock;
+  store_four_codes(texels, layout, x, y, end, codes.s0123);
+  store_four_codes(texels, layout, x + 4, y, end, codes.s4567);
+  store_four_codes(texels, layout, x + 8, y, end, codes.s89ab);
+  store_four_codes(texels, layout, x + 12, y, end, codes.scdef);
+#else
+  vstore16(codes, 0, texels + texel_index(layout, x, y));
+#endif
+}
+
+static inline int16 magnitude(float16 value) {
+  return as_int16(value) & 0x7fffffff;
 }
 
 // One pixel of any value; sets bit `bit` of *met where it is NaN or infinite.
@@ -95,15 +150,19 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
   const int end = min(first + params.columns_per_item, params.width);
   int16 largest = 0;
   int x = first;
-  for (; x + kBlock <= end; x += kBlock) {
-    const float16 colour = load_resolved4(source, params.source, x, y);
-    largest = max(largest, as_int16(colour) & 0x7fffffff);
-    store_codes(output, params.output, x, y, end, encode(colour, params.exposure, rounding(x, y)));
+  for (; x + kPresentBlock <= end; x += kPresentBlock) {
+    const float16 a = load_resolved4(source, params.source, x, y);
+    const float16 b = load_resolved4(source, params.source, x + 4, y);
+    const float16 c = load_resolved4(source, params.source, x + 8, y);
+    const float16 d = load_resolved4(source, params.source, x + 12, y);
+    prefetch_resolved16(source, params.source, x + kPrefetchDistance, y);
+    largest = max(max(largest, magnitude(a)), max(max(magnitude(b), magnitude(c)), magnitude(d)));
+    store_codes(output, params.output, x, y, encode(a, b, c, d, params.exposure, x, y));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
 
-  // What is left over of the row or, which is rare, all of it once more: pixel by pixel.
+  // What is left over of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register.
   uint met_count = 0;
   for (; x < end; x += kBlock) {
     uint met = 0;
@@ -114,7 +173,8 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
     const float4 p3 = load_careful(source, params.source, min(x + 3, last), y, 8, &met);
     met_count += count_bits(met, end - x);
     const float16 colour = (float16)(p0, p1, p2, p3);
-    store_codes(output, params.output, x, y, end, encode(colour, params.exposure, rounding(x, y)));
+    const uint16 codes = encode(colour, colour, colour, colour, params.exposure, x, y);
+    store_four_codes(output, params.output, x, y, end, codes.s0123);
   }
   if (met_count) atomic_add(non_finite + params.counter, met_count);
 }

@@ -24,8 +24,8 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
   kernel.setArg(index, sizeof(memory), &memory);
 }
 
-int columns_per_item(const Device::Impl& device, int width) {
-  return device.info.kind == DeviceKind::kCpu ? round_up(width, kBlock) : kBlock;
+int columns_per_item(const Device::Impl& device, int width, int block) {
+  return device.info.kind == DeviceKind::kCpu ? round_up(width, block) : block;
 }
 
 void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,

@@ -27,8 +27,8 @@ TexelLayout layout_of(const ImageView& view);
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
 // Pixels of a row that one work-item makes: a whole row on a CPU, where the row's own values are then loaded
-// once, and one block elsewhere. A multiple of kBlock.
-int columns_per_item(const Device::Impl& device, int width);
+// once, and one block elsewhere. A multiple of `block`.
+int columns_per_item(const Device::Impl& device, int width, int block = kBlock);
 
 // Enough work-items of `columns` x 1 pixels for the extent, in groups of one fixed size: a device compiles a
 // kernel anew for each size.

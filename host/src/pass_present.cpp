@@ -30,7 +30,7 @@ void PresentPass::launch(const cl::CommandQueue& queue, const ImageView& resolve
                              .source = layout_of(resolved),
                              .output = layout_of(presented),
                              .counter = counter.index,
-                             .columns_per_item = columns_per_item(device_, extent.width),
+                             .columns_per_item = columns_per_item(device_, extent.width, kPresentBlock),
                              .exposure = exposure == 0 ? 1 : exposure};
   kernel_.setArg(0, params);
   set_memory(kernel_, 1, resolved.memory);

@@ -9,8 +9,8 @@ namespace quincunx {
 #define QUINCUNX_CHECK_SIZE(type, bytes)
 #endif
 
-// Most kernels make this many neighbouring pixels of a row at once.
-enum { kBlock = 4 };
+// Most kernels make this many neighbouring pixels of a row at once; present, whose pixels are small, sixteen.
+enum { kBlock = 4, kPresentBlock = 16 };
 
 // Where the texels of a buffer lie: texel (x, y) has the index offset + y * pitch + x. Both in texels; both zero for
 // an image.
@@ -92,7 +92,7 @@ typedef struct PresentParams {
   TexelLayout source;
   TexelLayout output;
   int counter;           // index into non_finite
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kPresentBlock
   float exposure;
 } PresentParams;
 QUINCUNX_CHECK_SIZE(PresentParams, 36);

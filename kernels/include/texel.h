@@ -235,6 +235,19 @@ static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, i
 #endif
 }
 
+// A hint that the 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel
+// with too much to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache
+// instead of four, arrive in time without.
+static inline void prefetch_resolved16(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_FORMAT == FLOAT && (defined(__x86_64__) || defined(__aarch64__))  // PoCL's prefetch() does nothing
+  RESOLVED_TEXELS first = texels + 4 * texel_index(layout, x, y);
+  __builtin_prefetch(first);
+  __builtin_prefetch(first + 16);
+  __builtin_prefetch(first + 32);
+  __builtin_prefetch(first + 48);
+#endif
+}
+
 // The texels (x, y) to (x + 3, y).
 static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
   const int index = texel_index(layout, x, y);
