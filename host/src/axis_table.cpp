@@ -45,47 +45,17 @@ void fill_axis(int render, int output, double jitter, AxisTap* taps) {
   }
 }
 
-AxisTables::AxisTables(const Device::Impl& device, Extent output) : output_(output) {
-  const std::size_t count = static_cast<std::size_t>(row_axis()) + static_cast<std::size_t>(output.height);
-  for (Slot& slot : slots_) {
-    slot.taps.resize(count);
-    slot.buffer = cl::Buffer(device.context, CL_MEM_READ_ONLY, count * sizeof(AxisTap));
-  }
-}
-
-AxisTables::~AxisTables() {
-  for (Slot& slot : slots_) {
-    if (slot.written() != nullptr) clWaitForEvents(1, &slot.written());
-  }
-}
-
-AxisTables::Slot& AxisTables::find(Extent render, Vec2 jitter) {
-  Slot* oldest = &slots_[0];
-  for (Slot& slot : slots_) {
-    if (slot.last_use != 0 && slot.render == render && slot.jitter == jitter) return slot;
-    if (slot.last_use < oldest->last_use) oldest = &slot;
-  }
-  return *oldest;
-}
+AxisTables::AxisTables(const Device::Impl& device, Extent output)
+    : output_(output), ring_(device, count() * sizeof(AxisTap)) {}
 
 const cl::Buffer& AxisTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {
-  Slot& slot = find(render, jitter);
-  const bool known = slot.last_use != 0 && slot.render == render && slot.jitter == jitter;
-  slot.last_use = ++uses_;
-  if (known) return slot.buffer;
-  // Only a caller eight viewports ahead of the device ever waits here.
-  if (slot.written() != nullptr && slot.written.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
-    slot.written.wait();
-  }
-  slot.render = render;
-  slot.jitter = jitter;
-  fill_axis(render.width, output_.width, jitter.x, slot.taps.data());
-  std::fill(slot.taps.begin() + output_.width, slot.taps.begin() + row_axis(),
-            slot.taps[static_cast<std::size_t>(output_.width) - 1]);
-  fill_axis(render.height, output_.height, jitter.y, slot.taps.data() + row_axis());
-  queue.enqueueWriteBuffer(slot.buffer, CL_FALSE, 0, slot.taps.size() * sizeof(AxisTap), slot.taps.data(),
-                           nullptr, &slot.written);
-  return slot.buffer;
+  return ring_.get(queue, render, jitter, [&](std::byte* bytes) {
+    auto* taps = reinterpret_cast<AxisTap*>(bytes);
+    fill_axis(render.width, output_.width, jitter.x, taps);
+    std::fill(taps + output_.width, taps + row_axis(), taps[output_.width - 1]);
+    fill_axis(render.height, output_.height, jitter.y, taps + row_axis());
+    return count() * sizeof(AxisTap);
+  });
 }
 
 }  // namespace quincunx

@@ -6,13 +6,12 @@
 // .5 - jitter.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <vector>
+#include <cstddef>
 
 #include "device_impl.h"
 #include "params.h"
 #include "quincunx/image.h"
+#include "table_ring.h"
 
 namespace quincunx {
 
@@ -21,43 +20,31 @@ namespace quincunx {
 //   nearest:  the sample closest to p; of two equally close ones the upper/left
 void fill_axis(int render, int output, double jitter, AxisTap* taps);
 
-// A ring of tables on the device for one output extent. A viewport and jitter that were used lately cost
-// nothing, a new one is filled into the slot unused for longest and written without blocking: no allocation
-// after construction. Not thread-safe. Throws cl::Error.
+// Columns of an output in whole blocks.
+inline int padded_columns(Extent output) {
+  return (output.width + kBlock - 1) / kBlock * kBlock;
+}
+
+// The tables of one output extent on the device. Not thread-safe. Throws cl::Error.
 class AxisTables {
  public:
   AxisTables(const Device::Impl& device, Extent output);
-  ~AxisTables();  // waits for writes that still read host memory
-  AxisTables(const AxisTables&) = delete;
-  AxisTables& operator=(const AxisTables&) = delete;
 
-  // AxisTap of each output column, then, from row_axis() on, of each output row. Valid for kernels enqueued
-  // on the in-order `queue` before the eighth further call.
+  // AxisTap of each output column, then, from row_axis() on, of each output row; see TableRing::get().
   const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
 
   Extent output() const { return output_; }
 
   // The columns are padded to whole blocks, repeating the last.
-  int row_axis() const { return (output_.width + kBlock - 1) / kBlock * kBlock; }
+  int row_axis() const { return padded_columns(output_); }
 
  private:
-  // Enough that a slot's host memory is long since written when its turn comes again.
-  static constexpr int kSlots = 8;
-
-  struct Slot {
-    Extent render;
-    Vec2 jitter;
-    std::uint64_t last_use = 0;
-    std::vector<AxisTap> taps;
-    cl::Buffer buffer;
-    cl::Event written;
-  };
-
-  Slot& find(Extent render, Vec2 jitter);
+  std::size_t count() const {
+    return static_cast<std::size_t>(row_axis()) + static_cast<std::size_t>(output_.height);
+  }
 
   Extent output_;
-  std::uint64_t uses_ = 0;
-  std::array<Slot, kSlots> slots_;
+  TableRing ring_;
 };
 
 }  // namespace quincunx

@@ -48,6 +48,12 @@ std::string velocity_options(const ResolveSettings& settings) {
   return fmt::format("-D SOURCE_STORAGE=BUFFER -D VELOCITY_FORMAT={}", velocity(settings));
 }
 
+std::string filter_options(Filter filter, const ResolveSettings& settings, int taps) {
+  const bool rings = filter == Filter::kCatmullRom || filter == Filter::kLanczos2;
+  return fmt::format("-D TAPS={} -D CLAMP={} {}", taps, rings && settings.clamp_ringing ? 1 : 0,
+                     scale_options(settings));
+}
+
 std::string quincunx_options(const ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
   const bool weighs = plan.velocity != VelocitySource::kNone;

@@ -4,11 +4,14 @@
 
 #include <string>
 
+#include "filter_table.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {
 
-std::string scale_options(const ResolveSettings& settings);  // scale_point, scale_bilinear
+// scale_point, scale_bilinear, scale_noise, scale_noise_offset
+std::string scale_options(const ResolveSettings& settings);
+std::string filter_options(Filter filter, const ResolveSettings& settings, int taps);  // taps 4, or 0: any
 std::string velocity_options(const ResolveSettings& settings);
 std::string quincunx_options(const ResolvePlan& plan);
 std::string present_options(const ResolveSettings& settings);

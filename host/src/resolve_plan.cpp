@@ -5,9 +5,11 @@
 
 #include <cmath>
 #include <iterator>
+#include <string_view>
 
 #include "frame_traffic.h"
 #include "kernel_options.h"
+#include "pass_scale.h"
 
 namespace quincunx {
 namespace {
@@ -54,6 +56,9 @@ Status check(const ResolveSettings& settings) {
     complaints.add(
         fmt::format("settings.quincunx.velocity_weight is {}; it must be finite and at least 0", weight));
   }
+  if (!(settings.grain >= 0 && settings.grain <= 1)) {
+    complaints.add(fmt::format("settings.grain is {}; it must lie in [0, 1]", settings.grain));
+  }
   return complaints.status();
 }
 
@@ -64,31 +69,55 @@ VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& s
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
 
+const char* reason_of(Method method) {
+  switch (method) {
+    case Method::kPoint:
+      return "the method: the nearest sample";
+    case Method::kBilinear:
+      return "the method: four samples";
+    case Method::kBSpline:
+    case Method::kCatmullRom:
+    case Method::kLanczos2:
+      return "the method: 16 samples";
+    case Method::kNoise:
+      return "the method: the nearest sample, with grain";
+    case Method::kNoiseOffset:
+      return "the method: one of four samples, at random";
+    case Method::kQuincunx:
+      return "in place of resolve_quincunx on the first frame and after a reset";
+  }
+  return "";
+}
+
+// What makes the picture of one frame alone.
+void plan_scale(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  const Filter filter = filter_of(settings.method);
+  const std::uint64_t bytes = scale_bytes(settings, settings.target);
+  const char* small = scale_kernel(settings.method, settings.output, settings.output);
+  const char* large = scale_kernel(settings.method, settings.target, settings.output);
+  const std::string options =
+      filter == Filter::kTent ? scale_options(settings) : filter_options(filter, settings, 4);
+  plan.passes.push_back({small, options, reason_of(settings.method), bytes});
+  if (widens(settings.target, settings.output) && large == std::string_view(FilterPass::kernel_name())) {
+    plan.passes.push_back({large, filter_options(filter, settings, 0),
+                           "in its place where a viewport is larger than the output: the filter widens",
+                           bytes});
+  }
+}
+
 void plan_passes(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
   if (plan.velocity == VelocitySource::kCamera) {
     plan.passes.push_back({"velocity_from_depth", velocity_options(settings), "nothing but the camera moves",
                            velocity_bytes(settings, settings.target)});
   }
-  switch (settings.method) {
-    case Method::kPoint:
-      plan.passes.push_back({"scale_point", scale_options(settings), "the method: the nearest sample",
-                             scale_bytes(settings, settings.target)});
-      break;
-    case Method::kBilinear:
-      plan.passes.push_back({"scale_bilinear", scale_options(settings),
-                             "the method: four samples, jitter-aware",
-                             scale_bytes(settings, settings.target)});
-      break;
-    case Method::kQuincunx:
-      plan.passes.push_back({"resolve_quincunx", quincunx_options(plan),
-                             "the method: this frame and the previous one",
-                             quincunx_bytes(plan, settings.target, settings.target)});
-      plan.passes.push_back({"scale_bilinear", scale_options(settings),
-                             "in place of resolve_quincunx on the first frame and after a reset",
-                             scale_bytes(settings, settings.target)});
-      break;
+  if (settings.method == Method::kQuincunx) {
+    plan.passes.push_back({"resolve_quincunx", quincunx_options(plan),
+                           "the method: this frame and the previous one",
+                           quincunx_bytes(plan, settings.target, settings.target)});
   }
+  plan_scale(plan);
   if (settings.present) {
     plan.passes.push_back(
         {"present", present_options(settings), "an 8-bit sRGB picture is wanted", present_bytes(settings)});
@@ -164,6 +193,16 @@ const char* name_of(Method method) {
       return "point";
     case Method::kBilinear:
       return "bilinear";
+    case Method::kBSpline:
+      return "b-spline";
+    case Method::kCatmullRom:
+      return "catmull-rom";
+    case Method::kLanczos2:
+      return "lanczos2";
+    case Method::kNoise:
+      return "noise";
+    case Method::kNoiseOffset:
+      return "noise-offset";
     case Method::kQuincunx:
       return "quincunx";
   }

@@ -143,7 +143,7 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     slot.report.used_previous = true;
   } else {
     scale.enqueue(queue, tables, inputs, target, count, event++);
-    add_pass(slot, scale.kernel_name(), scale_bytes(settings, inputs.render));
+    add_pass(slot, scale.kernel_name(inputs.render), scale_bytes(settings, inputs.render));
   }
   if (outputs.presented) {
     present->enqueue(queue, target, inputs.exposure, outputs.presented, count, event++);

@@ -60,8 +60,3 @@ __attribute__((always_inline)) static inline void sample_four(bool careful, COLO
     mean->p3 = sample_finite(texels, upper, lower, columns[3], row);
   }
 }
-
-static inline int4 largest_of(int4 largest, FourPixels pixels) {
-  largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
-  return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
-}

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "params.h"
+#include "sanitise.h"
 
 // Not zero, so that a misspelt option is an error.
 #define BUFFER 1
@@ -115,6 +116,11 @@ static inline float8 load_colour_pair(COLOUR_TEXELS texels, COLOUR_ROW row, uint
 #endif
 }
 
+// The colour texels x to x + 3 of a row.
+static inline float16 load_colour4(COLOUR_TEXELS texels, COLOUR_ROW row, uint x) {
+  return (float16)(load_colour_pair(texels, row, x), load_colour_pair(texels, row, x + 2));
+}
+
 // The velocities of four texels of one row, x and y in turn.
 static inline float8 load_velocity4(VELOCITY_TEXELS texels, TexelLayout layout, int4 x, int y) {
 #if SOURCE_STORAGE == IMAGE
@@ -206,6 +212,23 @@ static inline void store_output(OUTPUT_TEXELS texels, TexelLayout layout, int x,
 typedef struct FourPixels {
   float4 p0, p1, p2, p3;
 } FourPixels;
+
+static inline int4 largest_of(int4 largest, FourPixels pixels) {
+  largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
+  return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
+}
+
+// Sanitises each; bit i of the result is set where pixel i was NaN or infinite.
+static inline uint sanitise_four(FourPixels* pixels) {
+  if (!any_reached_infinity(largest_of((int4)(0), *pixels))) return 0;
+  const uint bits = (uint)any_non_finite4(pixels->p0) | (uint)any_non_finite4(pixels->p1) << 1 |
+                    (uint)any_non_finite4(pixels->p2) << 2 | (uint)any_non_finite4(pixels->p3) << 3;
+  pixels->p0 = sanitise4(pixels->p0);
+  pixels->p1 = sanitise4(pixels->p1);
+  pixels->p2 = sanitise4(pixels->p2);
+  pixels->p3 = sanitise4(pixels->p3);
+  return bits;
+}
 
 // Those of four pixels, from x on, that lie before `end`.
 static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int end, FourPixels pixels) {

@@ -88,7 +88,7 @@ Status DumpSession::open() {
   if (!source.ok()) return source.status();
   source_ = std::move(source).value();
   exposure_ = options_.exposure > 0 ? options_.exposure : source_->scene().exposure;
-  auto plan = source_->connect(resolve_settings_for(options_), HandOver::kEvery);
+  auto plan = source_->connect(options_.resolve, HandOver::kEvery);
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
@@ -262,8 +262,8 @@ Status DumpSession::write_pictures() {
     if (stage == Stage::kPresented) {
       status = tools::write_png(files_.back(), planes.extent, presented_.data());
     } else if (is_colour(stage)) {
-      auto presenter =
-          Presenter::create(source_->device(), planes.extent, options_.tone_map, options_.dither, exposure_);
+      auto presenter = Presenter::create(source_->device(), planes.extent, options_.resolve.tone_map,
+                                         options_.resolve.dither, exposure_);
       if (!presenter.ok()) return presenter.status();
       auto codes = presenter->present(interleaved(planes));
       if (!codes.ok()) return codes.status();

@@ -64,19 +64,33 @@ void add_method_options(CLI::App& app, PictureOptions& options) {
   static const std::map<std::string, MethodChoice> kMethods = {
       {"point", {Method::kPoint}},
       {"bilinear", {Method::kBilinear}},
+      {"b-spline", {Method::kBSpline}},
+      {"catmull-rom", {Method::kCatmullRom}},
+      {"lanczos2", {Method::kLanczos2}},
+      {"noise", {Method::kNoise}},
+      {"noise-offset", {Method::kNoiseOffset}},
       {"quincunx", {Method::kQuincunx}},
       {"quincunx:mean", {Method::kQuincunx, TwoFrameForm::kMean}},
       {"quincunx:velocity", {Method::kQuincunx, TwoFrameForm::kVelocity}}};
-  add_choice(app, "--method", kMethods, "point, bilinear or quincunx[:mean|:velocity] (default: quincunx)",
+  add_choice(app, "--method", kMethods,
+             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset or "
+             "quincunx[:mean|:velocity] (default: quincunx)",
              [&options](const MethodChoice& choice) {
-               options.method = choice.method;
-               options.quincunx.form = choice.form;
+               options.resolve.method = choice.method;
+               options.resolve.quincunx.form = choice.form;
              });
-  app.add_option("--velocity-weight", options.quincunx.velocity_weight,
+  app.add_option("--velocity-weight", options.resolve.quincunx.velocity_weight,
                  "K of quincunx:velocity: how fast motion takes the previous frame away")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("K");
+  app.add_flag("!--no-clamp-ringing", options.resolve.clamp_ringing,
+               "Let catmull-rom and lanczos2 overshoot at edges");
+  app.add_option("--grain", options.resolve.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->type_name("A");
+  app.add_flag("!--still-noise", options.resolve.noise_moves, "The same noise in every frame");
 }
 
 }  // namespace
@@ -111,10 +125,11 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   add_method_options(app, options);
   add_choice(app, "--jitter", options.jitter, kJitters,
              "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
-  add_choice(app, "--tone-map", options.tone_map, kToneMaps, "clamp, reinhard or aces (default: aces)");
+  add_choice(app, "--tone-map", options.resolve.tone_map, kToneMaps,
+             "clamp, reinhard or aces (default: aces)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       ->check(CLI::PositiveNumber);
-  app.add_flag("!--no-dither", options.dither, "Round to 8 bits without dither");
+  app.add_flag("!--no-dither", options.resolve.dither, "Round to 8 bits without dither");
   app.add_option("--frames", options.frames, "Number of frames")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -166,7 +181,7 @@ void print_devices(const PictureOptions& options) {
 
 Jitter jitter_for(const PictureOptions& options) {
   if (options.jitter) return *options.jitter;
-  return options.method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
+  return options.resolve.method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
 }
 
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
@@ -188,17 +203,8 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   settings.start_seconds = options.start;
   // Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012).
   settings.lod_bias =
-      options.method == Method::kQuincunx && jitter_for(options) != Jitter::kNone ? -0.5f : 0.0f;
+      options.resolve.method == Method::kQuincunx && jitter_for(options) != Jitter::kNone ? -0.5f : 0.0f;
   return source;
-}
-
-ResolveSettings resolve_settings_for(const PictureOptions& options) {
-  ResolveSettings settings;
-  settings.method = options.method;
-  settings.quincunx = options.quincunx;
-  settings.tone_map = options.tone_map;
-  settings.dither = options.dither;
-  return settings;
 }
 
 }  // namespace quincunx::scenes

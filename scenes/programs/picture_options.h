@@ -19,10 +19,9 @@ struct PictureOptions {
   std::string scene;  // name or file; empty: the default scene
   std::uint64_t seed = 0;
   Extent output = {1280, 720};
-  std::string scale = "1";  // "S" or "SX,SY"
-  std::string scale_path;   // empty: `scale` in every frame
-  Method method = Method::kQuincunx;
-  QuincunxSettings quincunx = {};
+  std::string scale = "1";       // "S" or "SX,SY"
+  std::string scale_path;        // empty: `scale` in every frame
+  ResolveSettings resolve;       // sizes and storage are left to FrameSource::connect()
   std::optional<Jitter> jitter;  // absent: quincunx for that method, else none
   std::int64_t frames = 1;
   double fps = 60;
@@ -31,9 +30,7 @@ struct PictureOptions {
   std::string device;
   gl::Interop interop = gl::Interop::kAuto;
   gl::Platform platform = gl::Platform::kAuto;
-  ToneMap tone_map = ToneMap::kAces;
   float exposure = 0;  // 0: the scene's own
-  bool dither = true;
 
   bool list_scenes = false;
   bool list_devices = false;
@@ -55,8 +52,5 @@ Jitter jitter_for(const PictureOptions& options);
 
 // The frames that the options describe. Errors: kInvalidArgument, naming the option.
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options);
-
-// What the options say of the resolve; sizes and storage are left to FrameSource::connect().
-ResolveSettings resolve_settings_for(const PictureOptions& options);
 
 }  // namespace quincunx::scenes

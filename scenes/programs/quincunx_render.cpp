@@ -22,7 +22,7 @@ int explain(const RenderOptions& options) {
   if (!sequence.ok()) return tools::fail(sequence.status());
   auto scene = open_scene(options.scene, options.seed);
   if (!scene.ok()) return tools::fail(scene.status());
-  ResolveSettings settings = resolve_settings_for(options);
+  ResolveSettings settings = options.resolve;
   settings.output = sequence->output();
   settings.target = sequence->target();
   auto plan = plan_for(needs_of(scene.value()), settings);

@@ -58,7 +58,7 @@ Status RenderSession::check_outputs() {
 }
 
 Status RenderSession::open_service() {
-  auto plan = source_->connect(resolve_settings_for(options_));
+  auto plan = source_->connect(options_.resolve);
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
@@ -178,7 +178,7 @@ void RenderSession::begin_contact_sheet() {
   sheet_.emplace(tools::ContactSheetSettings{
       .title = fmt::format("Quincunx · {}", source_->scene().name),
       .subtitle = fmt::format("{}×{} · {} · {} · {}", options_.output.width, options_.output.height,
-                              name_of(options_.method), source_->context().info().renderer,
+                              name_of(options_.resolve.method), source_->context().info().renderer,
                               source_->device().info().name)});
   sheet_frames_ = tools::evenly_spaced(static_cast<int>(options_.frames), kContactSheetFrames);
 }

@@ -82,7 +82,7 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
   auto source = FrameSource::create(settings.value());
   if (!source.ok()) return source.status();
   FrameSource& frames = *source.value();
-  auto plan = frames.connect(resolve_settings_for(options), HandOver::kEvery);
+  auto plan = frames.connect(options.resolve, HandOver::kEvery);
   if (!plan.ok()) return plan.status();
 
   using Show = tools::Progress::Show;

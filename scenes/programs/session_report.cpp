@@ -60,13 +60,13 @@ tools::RunReport RenderSession::report() const {
   report.seed = options_.seed;
   report.output = options_.output;
   report.target = source_->sequence().target();
-  report.method = name_of(options_.method);
+  report.method = name_of(options_.resolve.method);
   report.settings = {
       {"scale", options_.scale_path.empty() ? options_.scale : options_.scale_path},
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
-      {"tone map", name_of(options_.tone_map)},
-      {"dither", options_.dither ? "on" : "off"},
+      {"tone map", name_of(options_.resolve.tone_map)},
+      {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap",
        options_.overlap ? "GL draws the next frame while OpenCL works: pass times include that load" : "off"},

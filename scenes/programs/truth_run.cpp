@@ -44,8 +44,9 @@ Status run_truth(const RenderOptions& options) {
   if (!renderer.ok()) return renderer.status();
   auto device = Device::open(options.device);
   if (!device.ok()) return device.status();
-  auto presenter = Presenter::create(device.value(), options.output, options.tone_map, options.dither,
-                                     options.exposure > 0 ? options.exposure : scene->exposure);
+  auto presenter =
+      Presenter::create(device.value(), options.output, options.resolve.tone_map, options.resolve.dither,
+                        options.exposure > 0 ? options.exposure : scene->exposure);
   if (!presenter.ok()) return presenter.status();
 
   const TruthSettings settings = {options.output, options.truth, options.shutter / options.fps};

@@ -35,12 +35,18 @@ Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
   return scene;
 }
 
+// A filter's kernel serves several methods, so both are named.
+std::string method_name(Method method, const ScalePass& pass, const Scene& scene) {
+  const std::string kernel = pass.kernel_name(scene.current.render);
+  return kernel == FilterPass::kernel_name() ? fmt::format("{} {}", kernel, name_of(method)) : kernel;
+}
+
 void add_scale(std::vector<Case>& cases, Stage& stage, const Scene& scene, Method method, double wanted,
                const std::string& suffix = {}) {
   const ResolveSettings& settings = scene.plan.settings;
   auto pass = std::make_shared<ScalePass>(stage.impl(), method, settings);
   Stage::add(cases,
-             {.name = pass->kernel_name() + scene.suffix + suffix,
+             {.name = method_name(method, *pass, scene) + scene.suffix + suffix,
               .scale = scene.scale,
               .wanted = wanted,
               .bytes = scale_bytes(settings, scene.current.render)},
@@ -117,9 +123,16 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     Scene scene = scene_of(stage, scale, colour);
     add_scale(cases, stage, scene, Method::kPoint, 1.0);
     add_scale(cases, stage, scene, Method::kBilinear, 1.1);
+    add_scale(cases, stage, scene, Method::kBSpline, 1.7);
+    add_scale(cases, stage, scene, Method::kCatmullRom, 1.7);
+    add_scale(cases, stage, scene, Method::kNoise, 1.3);
+    add_scale(cases, stage, scene, Method::kNoiseOffset, 1.6);
     add_resolve(cases, stage, scene, 5);
     if (colour != PixelFormat::kRGBA16F) continue;
     add_velocity(cases, stage, scene);
+    scene.plan.settings.clamp_ringing = false;
+    add_scale(cases, stage, scene, Method::kCatmullRom, 1.7, " unclamped");
+    scene.plan.settings.clamp_ringing = true;
     scene.plan.reads_reactive = true;
     add_resolve(cases, stage, scene, 5, " reactive");
     scene.plan.reads_reactive = false;

@@ -14,10 +14,18 @@
 
 namespace quincunx {
 
+// How the picture is made from the frames. All are aware of the jitter. Above scale 1 (more samples than
+// pixels) the filters widen with the ratio, so that nothing between output pixels is skipped; point and noise
+// skip.
 enum class Method {
-  kPoint,     // nearest sample
-  kBilinear,  // four samples, jitter-aware
-  kQuincunx,  // this frame and the previous one on the five-of-a-die pattern
+  kPoint,        // nearest sample
+  kBilinear,     // four samples
+  kBSpline,      // 16 samples, cubic B-spline: smooth, never rings (Sigg and Hadwiger 2005)
+  kCatmullRom,   // 16 samples, cubic: sharp
+  kLanczos2,     // 16 samples, windowed sinc, for comparison (Duchon 1979)
+  kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
+  kNoiseOffset,  // one of bilinear's four samples, chosen at random by their weights (Binks 2012)
+  kQuincunx,     // this frame and the previous one on the five-of-a-die pattern
 };
 
 // How kQuincunx weighs the previous frame.
@@ -57,6 +65,10 @@ struct ResolveSettings {
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;  // of the present pass: +- half a code value, fixed pattern
+  bool clamp_ringing =
+      true;             // kCatmullRom, kLanczos2: stay in the range of the 2x2 samples next to the centre
+  float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
+  bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
   QuincunxSettings quincunx = {};
 };
 

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "filter_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "axis_table.h"
+
+namespace quincunx {
+namespace {
+
+// A cubic of the family of Mitchell and Netravali, 1988.
+double cubic(double d, double b, double c) {
+  if (d >= 2) return 0;
+  if (d < 1) return (((12 - 9 * b - 6 * c) * d + (-18 + 12 * b + 6 * c)) * d * d + 6 - 2 * b) / 6;
+  return (((-b - 6 * c) * d + (6 * b + 30 * c)) * d + (-12 * b - 48 * c)) * d / 6 + (8 * b + 24 * c) / 6;
+}
+
+double sinc(double x) {
+  const double angle = std::numbers::pi * x;
+  return x == 0 ? 1 : std::sin(angle) / angle;
+}
+
+double filter_at(Filter filter, double d) {
+  switch (filter) {
+    case Filter::kTent:
+      return std::max(1 - d, 0.0);
+    case Filter::kBSpline:
+      return cubic(d, 1, 0);
+    case Filter::kCatmullRom:
+      return cubic(d, 0, 0.5);
+    case Filter::kLanczos2:
+      return d < 2 ? sinc(d) * sinc(d / 2) : 0;
+  }
+  return 0;
+}
+
+int radius(Filter filter) {
+  return filter == Filter::kTent ? 1 : 2;
+}
+
+double widening(int render, int output) {
+  return std::max(1.0, static_cast<double>(render) / output);
+}
+
+struct Axis {
+  Filter filter;
+  int render;
+  int taps;
+  int inner;
+  double widening;
+};
+
+// `u`: the texel coordinate of the pixel's centre, so that texel i is |i - u| away.
+void fill_pixel(const Axis& axis, double u, FilterSpan& span, float* weights) {
+  constexpr double kLeastWeight = 0x1p-25;
+  const int last = axis.render - 1;
+  const int left = static_cast<int>(std::floor(u));
+  const int ideal = left - axis.taps / 2 + 1;
+  // What one clamped texel collects from beyond the edge lands inside of the span as well.
+  span.base = std::clamp(ideal, 0, std::max(0, axis.render - axis.taps));
+  span.inner = std::clamp(left - axis.inner / 2 + 1, 0, std::max(0, axis.render - axis.inner));
+
+  double sum = 0;
+  for (int k = 0; k < axis.taps; ++k)
+    sum += filter_at(axis.filter, std::abs(ideal + k - u) / axis.widening);
+  std::fill_n(weights, axis.taps, 0.0f);
+  // The taps of one texel follow one another, so each weight is rounded once.
+  for (int k = 0; k < axis.taps;) {
+    const int texel = std::clamp(ideal + k, 0, last);
+    double weight = 0;
+    for (; k < axis.taps && std::clamp(ideal + k, 0, last) == texel; ++k)
+      weight += filter_at(axis.filter, std::abs(ideal + k - u) / axis.widening) / sum;
+    weights[texel - span.base] = std::abs(weight) < kLeastWeight ? 0 : static_cast<float>(weight);
+  }
+}
+
+}  // namespace
+
+Filter filter_of(Method method) {
+  switch (method) {
+    case Method::kBSpline:
+      return Filter::kBSpline;
+    case Method::kCatmullRom:
+      return Filter::kCatmullRom;
+    case Method::kLanczos2:
+      return Filter::kLanczos2;
+    default:
+      return Filter::kTent;
+  }
+}
+
+int filter_taps(Filter filter, int render, int output) {
+  return 2 * static_cast<int>(std::ceil(radius(filter) * widening(render, output)));
+}
+
+int filter_inner(int render, int output) {
+  return 2 * static_cast<int>(std::ceil(widening(render, output)));
+}
+
+void fill_filter(Filter filter, int render, int output, double jitter, FilterSpan* spans, float* weights) {
+  const Axis axis{filter, render, filter_taps(filter, render, output),
+                  filter_inner(render, output), widening(render, output)};
+  for (int x = 0; x < output; ++x) {
+    // (2x + 1) * render is an integer: one rounding, and none at all where the quotient is a double.
+    const double centre = (2.0 * x + 1) * render / (2.0 * output);
+    fill_pixel(axis, centre - .5 - jitter, spans[x], weights + static_cast<std::ptrdiff_t>(x) * axis.taps);
+  }
+}
+
+namespace {
+
+// In spans, weights counted with those of the columns that only pad a block.
+std::size_t spans_of(Extent output) {
+  return static_cast<std::size_t>(padded_columns(output)) + static_cast<std::size_t>(output.height);
+}
+
+std::size_t table_bytes(Filter filter, Extent render, Extent output) {
+  const auto weights =
+      static_cast<std::size_t>(padded_columns(output)) * filter_taps(filter, render.width, output.width) +
+      static_cast<std::size_t>(output.height) * filter_taps(filter, render.height, output.height);
+  return spans_of(output) * sizeof(FilterSpan) + weights * sizeof(float);
+}
+
+}  // namespace
+
+FilterTables::FilterTables(const Device::Impl& device, Filter filter, Extent target, Extent output)
+    : filter_(filter), output_(output), ring_(device, table_bytes(filter, target, output)) {}
+
+const cl::Buffer& FilterTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {
+  return ring_.get(queue, render, jitter, [&](std::byte* bytes) {
+    auto* columns = reinterpret_cast<FilterSpan*>(bytes);
+    FilterSpan* rows = columns + padded_columns(output_);
+    auto* column_weights = reinterpret_cast<float*>(columns + spans_of(output_));
+    float* row_weights = column_weights + static_cast<std::ptrdiff_t>(padded_columns(output_)) *
+                                              filter_taps(filter_, render.width, output_.width);
+    fill_filter(filter_, render.width, output_.width, jitter.x, columns, column_weights);
+    std::fill(columns + output_.width, rows, columns[output_.width - 1]);
+    fill_filter(filter_, render.height, output_.height, jitter.y, rows, row_weights);
+    return table_bytes(filter_, render, output_);
+  });
+}
+
+}  // namespace quincunx

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// TableRing: tables on the device that follow from a viewport and a jitter, made on the host when first asked
+// for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "device_impl.h"
+#include "quincunx/image.h"
+
+namespace quincunx {
+
+// A viewport and jitter that were used lately cost nothing, a new one is filled into the slot unused for
+// longest and written without blocking: no allocation after construction. Not thread-safe. Throws cl::Error.
+class TableRing {
+ public:
+  TableRing(const Device::Impl& device, std::size_t bytes);
+  ~TableRing();  // waits for writes that still read host memory
+  TableRing(const TableRing&) = delete;
+  TableRing& operator=(const TableRing&) = delete;
+
+  // `fill` makes the table in host memory, aligned for any type, and gives the bytes of it that are in use.
+  // Valid for kernels enqueued on the in-order `queue` before the eighth further call.
+  template <typename Fill>
+  const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter, const Fill& fill) {
+    Slot& slot = find(render, jitter);
+    const bool known = slot.holds(render, jitter);
+    slot.last_use = ++uses_;
+    if (!known) {
+      wait_for(slot);
+      slot.render = render;
+      slot.jitter = jitter;
+      write(queue, slot, fill(slot.bytes.data()));
+    }
+    return slot.buffer;
+  }
+
+ private:
+  // Enough that a slot's host memory is long since written when its turn comes again.
+  static constexpr int kSlots = 8;
+
+  struct Slot {
+    Extent render;
+    Vec2 jitter;
+    std::uint64_t last_use = 0;
+    std::vector<std::byte> bytes;
+    cl::Buffer buffer;
+    cl::Event written;
+
+    bool holds(Extent of_render, Vec2 of_jitter) const {
+      return last_use != 0 && render == of_render && jitter == of_jitter;
+    }
+  };
+
+  Slot& find(Extent render, Vec2 jitter);
+  static void wait_for(Slot& slot);
+  static void write(const cl::CommandQueue& queue, Slot& slot, std::size_t bytes);
+
+  std::uint64_t uses_ = 0;
+  std::array<Slot, kSlots> slots_;
+};
+
+}  // namespace quincunx
