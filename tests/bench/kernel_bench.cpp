@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "clear_cases.h"
 #include "kernel_cases.h"
 #include "opencl.h"
 #include "peers.h"
@@ -28,6 +29,7 @@ struct Options {
   int rounds = 40;
   int warm_rounds = 5;
   bool peers = true;
+  bool clears = false;
 };
 
 void keep_named(std::vector<Case>& cases, const std::vector<std::string>& filters) {
@@ -39,17 +41,25 @@ void keep_named(std::vector<Case>& cases, const std::vector<std::string>& filter
   std::erase_if(cases, [&](const Case& one) { return !kept(one); });
 }
 
-Run::Size run_size(const Device& device, bool opengl, Extent output, const Options& options) {
-  Stage stage(device, output);
-  std::vector<Case> cases;
+void add_passes(std::vector<Case>& cases, Stage& stage, bool opengl, const Options& options) {
   for (const double scale : options.scales)
     add_scaled_cases(cases, stage, scale);
   add_output_cases(cases, stage);
+  if (!options.peers) return;
   for (const double scale : options.scales) {
-    if (!options.peers) break;
-    add_cpp_peers(cases, output, scale);
-    add_oiio_peers(cases, output, scale);
-    if (opengl) add_gl_peers(cases, output, scale);
+    add_cpp_peers(cases, stage.output(), scale);
+    add_oiio_peers(cases, stage.output(), scale);
+    if (opengl) add_gl_peers(cases, stage.output(), scale);
+  }
+}
+
+Run::Size run_size(const Device& device, bool opengl, Extent output, const Options& options) {
+  Stage stage(device, output);
+  std::vector<Case> cases;
+  if (options.clears) {
+    add_clear_cases(cases, stage, opengl);
+  } else {
+    add_passes(cases, stage, opengl, options);
   }
   keep_named(cases, options.filters);
   if (cases.empty()) throw std::runtime_error("no case has a name that contains what --filter asks for");
@@ -68,7 +78,7 @@ int run(const Options& options, const std::string& command) {
     if (created.ok()) {
       context = std::move(created).value();
     } else {
-      fmt::print(stderr, "without the GLSL peers: {}\n", created.status().message());
+      fmt::print(stderr, "without the peers that need GL: {}\n", created.status().message());
     }
   }
   Run figures{.device = device.value().info(),
@@ -103,7 +113,8 @@ void declare(CLI::App& app, Options& options) {
   app.add_option("--scales", options.scales, "render scales")->check(CLI::Range(.01, 4.0));
   app.add_option("--rounds", options.rounds, "measured rounds")->check(CLI::Range(1, 100000));
   app.add_option("--filter", options.filters, "only cases whose name contains one of these");
-  app.add_flag("!--no-peers", options.peers, "leave out C++, OpenImageIO and GLSL");
+  app.add_flag("!--no-peers", options.peers, "leave out C++, OpenImageIO and GL");
+  app.add_flag("--clears", options.clears, "instead of the passes: full against partial clears");
   app.add_option("--json", options.json, "also write the figures to this file");
 }
 

@@ -44,7 +44,7 @@ std::string text_of(const Run::Size& size) {
                                  size.output.width, size.output.height, "case", "median", "p95", "min",
                                  "ratio", "cpu ms", "ratio", "wanted", "GB/s");
   for (const Figures& one : size.figures) {
-    const std::string wanted = one.what.wanted > 0 ? fmt::format("{:.1f}", one.what.wanted) : "";
+    const std::string wanted = one.what.wanted > 0 ? fmt::format("{:.2f}", one.what.wanted) : "";
     text += fmt::format(
         "{:<40} {:>8.3f} {:>8.3f} {:>8.3f} {:>6.2f} {:>8.3f} {:>6.2f} {:>6} {:>6.1f}\n", one.what.name,
         one.ms.median, one.ms.p95, one.ms.minimum, one.ms.median / copy.ms.median, one.processor_ms.median,

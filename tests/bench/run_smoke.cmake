@@ -51,3 +51,8 @@ execute_process(COMMAND ${BENCH} --output 64x36 --rounds 1 --filter no-such-case
 if(code EQUAL 0 OR NOT text MATCHES "--filter")
   message(FATAL_ERROR "a filter that keeps nothing ended with ${code}: ${text}")
 endif()
+
+execute_process(COMMAND ${BENCH} --clears --output 64x36 --rounds 1 OUTPUT_VARIABLE text RESULT_VARIABLE code)
+if(NOT code EQUAL 0 OR NOT text MATCHES "GL clear, whole")
+  message(FATAL_ERROR "--clears ended with ${code}: ${text}")
+endif()
