@@ -10,6 +10,7 @@
 #include <random>
 
 #include "../reference/number_formats.h"
+#include "error_table.h"
 
 namespace quincunx::testing {
 namespace {
@@ -297,16 +298,21 @@ Extent scaled(Extent output, double scale_x, double scale_y) {
 }
 
 void expect_close(const reference::Picture& expected, const std::vector<Pixel>& actual,
-                  const std::function<double(std::size_t)>& bound, const std::string& what) {
+                  const std::function<double(std::size_t)>& bound, const std::string& what,
+                  PixelFormat stored) {
   ASSERT_EQ(expected.pixels.size(), actual.size()) << what;
   for (std::size_t i = 0; i < actual.size(); ++i) {
+    const double allowed = bound(i);
+    double error = 0;
     for (std::size_t c = 0; c < 4; ++c) {
       ASSERT_TRUE(std::isfinite(actual[i][c]))
           << what << ": pixel " << i << " channel " << c << " is not finite";
-      ASSERT_NEAR(expected.pixels[i][c], actual[i][c], bound(i))
+      ASSERT_NEAR(expected.pixels[i][c], actual[i][c], allowed)
           << what << ": pixel (" << i % static_cast<std::size_t>(expected.width) << ", "
           << i / static_cast<std::size_t>(expected.width) << ") channel " << c;
+      error = std::max(error, std::abs(expected.pixels[i][c] - actual[i][c]));
     }
+    record_error({.error = error, .bound = allowed, .largest = expected.largest[i], .stored = stored});
   }
 }
 

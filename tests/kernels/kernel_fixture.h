@@ -85,9 +85,11 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
 // The rendered extent at a scale: at least one pixel.
 Extent scaled(Extent output, double scale_x, double scale_y);
 
-// Every channel within bound(pixel index) of the reference, and all finite.
+// Every channel within bound(pixel index) of the reference, and all finite. The errors go to the error table,
+// in last places of `stored`, the format of the result.
 void expect_close(const reference::Picture& expected, const std::vector<Pixel>& actual,
-                  const std::function<double(std::size_t)>& bound, const std::string& what);
+                  const std::function<double(std::size_t)>& bound, const std::string& what,
+                  PixelFormat stored = PixelFormat::kRGBA32F);
 
 // What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal.
 double output_rounding(PixelFormat format, double magnitude);

@@ -110,7 +110,7 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     const std::string what =
         fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
                     before.render.height, output.width, output.height, name_of(now.colour));
-    testing::expect_close(picture, actual.pixels, bound, what);
+    testing::expect_close(picture, actual.pixels, bound, what, plan_.settings.resolved);
     EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
   }
 

@@ -80,7 +80,7 @@ class Scale : public ::testing::TestWithParam<Variant> {
     const std::string what =
         fmt::format("{}x{} -> {}x{}, jitter {}, {}, {}", spec.render.width, spec.render.height, output.width,
                     output.height, spec.jitter.x, spec.jitter.y, name_of(spec.colour));
-    testing::expect_close(expected, actual.pixels, bound, what);
+    testing::expect_close(expected, actual.pixels, bound, what, settings_.resolved);
     EXPECT_EQ(actual.non_finite, expected.non_finite) << what;
   }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "error_table.h"
 #include "kernel_fixture.h"
 #include "pass_velocity.h"
 
@@ -89,7 +90,12 @@ class Velocity : public ::testing::TestWithParam<Variant> {
         const double magnitude = std::abs(wanted.velocity[c]);
         const double rounding =
             settings_.velocity == PixelFormat::kRG16F ? magnitude * 0x1p-11 + 0x1p-25 : magnitude * 0x1p-24;
-        ASSERT_NEAR(actual[i][c], wanted.velocity[c], kVelocityError * wanted.condition + rounding)
+        const double bound = kVelocityError * wanted.condition + rounding;
+        testing::record_error({.error = std::abs(actual[i][c] - wanted.velocity[c]),
+                               .bound = bound,
+                               .largest = wanted.condition,
+                               .stored = settings_.velocity});
+        ASSERT_NEAR(actual[i][c], wanted.velocity[c], bound)
             << spec.render.width << "x" << spec.render.height << ", texel " << i;
       }
     }
