@@ -9,21 +9,12 @@
 #include "quincunx/status.h"
 #include "renderer.h"
 #include "scale_path.h"
+#include "tools/jitter.h"
 
 namespace quincunx::scenes {
 
-enum class Jitter : std::uint8_t {
-  kNone,
-  kQuincunx,      // (-1/4, -1/4) in even frames, (1/4, 1/4) in odd ones
-  kQuincunxHalf,  // (0, 0) in even frames, (1/2, 1/2) in odd ones
-  kHalton,        // Halton (2, 3) about its mean, as many phases as the scale needs
-};
-
-const char* name_of(Jitter jitter);
-
-// Jitter of a frame in render pixels. `ratio`: render / output, decides the number of Halton phases, ceil(8 /
-// (x y)).
-Vec2 jitter_of(Jitter jitter, std::int64_t index, Vec2 ratio);
+using tools::Jitter;
+using tools::jitter_of;
 
 struct SequenceSettings {
   Extent output;

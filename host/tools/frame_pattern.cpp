@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -48,29 +49,40 @@ Field field_of_printf(std::string_view text) {
   return field;
 }
 
-Status bad(const std::string& pattern, const std::string& reason) {
-  return Status::invalid(fmt::format("output pattern '{}' {}", pattern, reason));
-}
-
-Result<FileFormat> format_of(const std::string& pattern, const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
+// Empty for anything but .png and .exr.
+std::optional<FileFormat> format_of(const std::string& extension) {
+  std::string lower = extension;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".png") return FileFormat::kPng;
-  if (extension == ".exr") return FileFormat::kExr;
-  if (extension.empty()) return bad(pattern, "has no extension; it must end in .png or .exr");
-  return bad(pattern, fmt::format("ends in '{}'; it must end in .png or .exr", extension));
+  if (lower == ".png") return FileFormat::kPng;
+  if (lower == ".exr") return FileFormat::kExr;
+  return std::nullopt;
 }
 
 }  // namespace
 
-Result<FramePattern> FramePattern::parse(const std::string& pattern) {
-  if (pattern.empty()) return Status::invalid("the output pattern is empty; try 'out/frame.%04d.png'");
+Status FramePattern::bad(const std::string& reason) const {
+  return Status::invalid(fmt::format("{} '{}' {}", what_, pattern_, reason));
+}
+
+Result<FramePattern> FramePattern::parse(const std::string& pattern, const std::string& what) {
+  if (pattern.empty()) return Status::invalid(fmt::format("the {} is empty; try 'out/frame.%04d.png'", what));
   FramePattern result;
+  result.what_ = what;
   result.pattern_ = pattern;
+  if (Status status = result.parse_fields(); !status.ok()) return status;
+  const std::string extension = std::filesystem::path(result.expand(0)).extension().string();
+  if (extension.empty()) return result.bad("has no extension; it must end in .png or .exr");
+  const std::optional<FileFormat> format = format_of(extension);
+  if (!format) return result.bad(fmt::format("ends in '{}'; it must end in .png or .exr", extension));
+  result.format_ = *format;
+  return result;
+}
+
+Status FramePattern::parse_fields() {
   std::string literal;  // since the start or the number
-  for (std::size_t at = 0; at < pattern.size();) {
-    const std::string_view rest = std::string_view(pattern).substr(at);
+  for (std::size_t at = 0; at < pattern_.size();) {
+    const std::string_view rest = std::string_view(pattern_).substr(at);
     Field field;
     if (is_mark(rest[0])) {
       field = field_of_marks(rest);
@@ -81,28 +93,23 @@ Result<FramePattern> FramePattern::parse(const std::string& pattern) {
     } else if (rest[0] == '%') {
       field = field_of_printf(rest);
       if (field.length == 0) {
-        return bad(pattern, "has a '%' that starts no frame number; write %04d, or %% for a percent sign");
+        return bad("has a '%' that starts no frame number; write %04d, or %% for a percent sign");
       }
     } else {
       literal += rest[0];
       ++at;
       continue;
     }
-    if (result.has_number_) return bad(pattern, "has two frame numbers; only one can be filled in");
-    if (field.digits > kMaxDigits) {
-      return bad(pattern, fmt::format("asks for more than {} digits", kMaxDigits));
-    }
-    result.has_number_ = true;
-    result.digits_ = field.digits;
-    result.zero_padded_ = field.zero_padded;
-    result.prefix_ = std::exchange(literal, std::string());
+    if (has_number_) return bad("has two frame numbers; only one can be filled in");
+    if (field.digits > kMaxDigits) return bad(fmt::format("asks for more than {} digits", kMaxDigits));
+    has_number_ = true;
+    digits_ = field.digits;
+    zero_padded_ = field.zero_padded;
+    prefix_ = std::exchange(literal, std::string());
     at += field.length;
   }
-  result.suffix_ = literal;
-  Result<FileFormat> format = format_of(pattern, result.expand(0));
-  if (!format.ok()) return format.status();
-  result.format_ = format.value();
-  return result;
+  suffix_ = literal;
+  return {};
 }
 
 std::string FramePattern::expand(std::int64_t frame) const {
@@ -111,11 +118,39 @@ std::string FramePattern::expand(std::int64_t frame) const {
                       : fmt::format("{}{:{}d}{}", prefix_, frame, digits_, suffix_);
 }
 
+std::optional<std::int64_t> FramePattern::number_in(std::string_view path) const {
+  if (!has_number_ || path.size() <= prefix_.size() + suffix_.size()) return std::nullopt;
+  if (path.substr(0, prefix_.size()) != prefix_ || path.substr(path.size() - suffix_.size()) != suffix_) {
+    return std::nullopt;
+  }
+  std::string_view digits = path.substr(prefix_.size(), path.size() - prefix_.size() - suffix_.size());
+  digits.remove_prefix(std::min(digits.find_first_not_of(' '), digits.size()));
+  std::int64_t number = -1;
+  const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (parsed.ec != std::errc() || number < 0 || expand(number) != path) return std::nullopt;
+  return number;
+}
+
+Result<std::vector<std::int64_t>> FramePattern::frames_on_disk() const {
+  const std::string any = expand(0);
+  const std::string folder = any.substr(0, any.rfind('/') + 1);
+  if (!has_number_ || prefix_.size() < folder.size()) {
+    return bad("has no frame number in the file's name; put %04d, # or @ there");
+  }
+  std::vector<std::int64_t> frames;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (const auto number = number_in(folder + entry->path().filename().string())) frames.push_back(*number);
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
 Status FramePattern::check_count(std::int64_t frames) const {
   if (has_number_ || frames <= 1) return {};
-  return bad(pattern_, fmt::format("has no frame number, so {} frames would overwrite one another; put %04d "
-                                   "into it",
-                                   frames));
+  return bad(
+      fmt::format("has no frame number, so {} frames would overwrite one another; put %04d into it", frames));
 }
 
 }  // namespace quincunx::tools

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// FramePattern: "out/frame.%04d.png" and its relatives, expanded with a frame number.
+// FramePattern: "out/frame.%04d.png" and its relatives: a path for each frame number, and back.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "quincunx/status.h"
 
@@ -16,14 +19,23 @@ enum class FileFormat : std::uint8_t { kPng, kExr };
 // and "%%" is a percent sign. Numbers wider than the field are written whole. A value; thread-safe.
 class FramePattern {
  public:
-  // Errors: kInvalidArgument for an empty path, two numbers, a conversion other than %d, or an extension that
-  // is neither .png nor .exr (in any case of letters).
-  static Result<FramePattern> parse(const std::string& pattern);
+  // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two
+  // numbers, a conversion other than %d, or an extension that is neither .png nor .exr (in any case of
+  // letters).
+  static Result<FramePattern> parse(const std::string& pattern, const std::string& what = "output pattern");
 
   bool has_number() const { return has_number_; }
   FileFormat format() const { return format_; }
+  const std::string& text() const { return pattern_; }
 
   std::string expand(std::int64_t frame) const;  // the pattern itself where it has no number
+
+  // The number that expand() makes this path of; nothing for any other path, negative numbers included.
+  std::optional<std::int64_t> number_in(std::string_view path) const;
+
+  // The frames of which there are files, in ascending order; none where the folder cannot be read. The
+  // number must stand in the file's name: errors: kInvalidArgument where it stands in a folder's, or nowhere.
+  Result<std::vector<std::int64_t>> frames_on_disk() const;
 
   // Errors: kInvalidArgument when there is no number but more than one frame: they would overwrite one
   // another.
@@ -32,6 +44,10 @@ class FramePattern {
  private:
   FramePattern() = default;
 
+  Status bad(const std::string& reason) const;
+  Status parse_fields();
+
+  std::string what_;
   std::string pattern_;
   std::string prefix_;
   std::string suffix_;

@@ -4,7 +4,6 @@
 #include <OpenImageIO/imageio.h>
 
 #include <algorithm>
-#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "tools/atomic_file.h"
+#include "tools/image_attributes.h"
 
 namespace quincunx::tools {
 
@@ -104,47 +104,6 @@ Result<std::vector<std::byte>> interleave(const std::string& path, Extent extent
   return native;
 }
 
-struct AttributeWriter {
-  OIIO::ImageSpec& spec;
-  const std::string& name;
-
-  void operator()(const std::string& value) const { spec.attribute(name, value); }
-  void operator()(int value) const { spec.attribute(name, value); }
-  void operator()(float value) const { spec.attribute(name, value); }
-  void operator()(const Vec2& value) const {
-    spec.attribute(name, OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC2), &value);
-  }
-  void operator()(const Rational& value) const { spec.attribute(name, OIIO::TypeRational, &value); }
-  void operator()(const Matrix& value) const { spec.attribute(name, OIIO::TypeMatrix44, value.data()); }
-};
-
-// False for a type that AttributeValue does not hold.
-bool read_value(const OIIO::ParamValue& param, AttributeValue& value) {
-  const OIIO::TypeDesc type = param.type();
-  if (type == OIIO::TypeString) {
-    value = param.get_string();
-  } else if (type == OIIO::TypeInt) {
-    value = param.get_int();
-  } else if (type == OIIO::TypeFloat) {
-    value = param.get_float();
-  } else if (type == OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, OIIO::TypeDesc::VEC2)) {
-    Vec2 vector;
-    std::memcpy(&vector, param.data(), sizeof vector);
-    value = vector;
-  } else if (type == OIIO::TypeRational) {
-    Rational rational;
-    std::memcpy(&rational, param.data(), sizeof rational);
-    value = rational;
-  } else if (type == OIIO::TypeMatrix44) {
-    Matrix matrix;
-    std::memcpy(matrix.data(), param.data(), sizeof matrix);
-    value = matrix;
-  } else {
-    return false;
-  }
-  return true;
-}
-
 LoadedImage describe(const OIIO::ImageSpec& spec) {
   LoadedImage image;
   image.extent = {spec.width, spec.height};
@@ -153,10 +112,7 @@ LoadedImage describe(const OIIO::ImageSpec& spec) {
     image.stored.push_back(spec.channelformat(i) == OIIO::TypeHalf ? ChannelType::kHalf
                                                                    : ChannelType::kFloat);
   }
-  for (const OIIO::ParamValue& param : spec.extra_attribs) {
-    AttributeValue value;
-    if (read_value(param, value)) image.attributes.push_back({param.name().string(), std::move(value)});
-  }
+  image.attributes = attributes_of(spec);
   return image;
 }
 
@@ -203,8 +159,7 @@ Status write_exr(const std::string& path, Extent extent, std::span<const Channel
     pixel_bytes += size_of(channels[i].stored);
   }
   spec.attribute("compression", fmt::format("zip:{}", kZipCompressionLevel));
-  for (const Attribute& attribute : attributes)
-    std::visit(AttributeWriter{spec, attribute.name}, attribute.value);
+  set_attributes(spec, attributes);
   const Result<std::vector<std::byte>> native = interleave(path, extent, channels, pixel_bytes);
   if (!native.ok()) return native.status();
   return write_whole(path, "openexr", spec, OIIO::TypeUnknown, native->data(), OIIO::AutoStride,

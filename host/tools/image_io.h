@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Image files: the only door to OpenImageIO for pictures.
+// Image files: the only door to OpenImageIO for pictures, together with image_reader.h.
 //
 // Files are written under a temporary name and renamed, so nothing half-written stays; missing folders are
 // made. Rows run top-down, as everywhere in Quincunx. All functions are thread-safe for different paths.
@@ -54,7 +54,9 @@ struct Rational {
 // A matrix holds 16 floats in memory order of both glm (column vectors, column-major) and OpenEXR (row
 // vectors, row-major), which is the same order.
 using Matrix = std::array<float, 16>;
-using AttributeValue = std::variant<std::string, int, float, Vec2, Rational, Matrix>;
+// x and y of red, green, blue and white: the standard attribute `chromaticities`.
+using Chromaticities = std::array<float, 8>;
+using AttributeValue = std::variant<std::string, int, float, Vec2, Rational, Matrix, Chromaticities>;
 
 struct Attribute {
   std::string name;  // "quincunx:jitter", "worldToCamera", "FramesPerSecond"

@@ -53,7 +53,7 @@ void add_run(std::string& text, const RunReport& report) {
   add_line(text, "method", report.method);
   add_line(text, "output",
            fmt::format("{}, inside targets of {}", size_text(report.output), size_text(report.target)));
-  add_line(text, "seed", fmt::format("{}", report.seed));
+  if (report.seed) add_line(text, "seed", fmt::format("{}", *report.seed));
   for (const auto& [name, value] : report.settings)
     add_line(text, name, value);
   add_line(text, "command", report.command_line);
@@ -108,7 +108,60 @@ void add_frames(std::string& text, const std::vector<FrameRow>& frames) {
   }
 }
 
+void add_busy(std::string& text, const RunReport& report) {
+  if (report.busy.empty() || report.wall_seconds < 0) return;
+  double sum = 0;
+  std::string parts;
+  for (const BusyTime& time : report.busy) {
+    parts += fmt::format("{}{} {:.2f} s", parts.empty() ? "" : ", ", time.what, time.seconds);
+    sum += time.seconds;
+  }
+  add_heading(text, "Overlap");
+  add_line(text, "busy", parts);
+  add_line(text, "together", fmt::format("{:.2f} s of work in {:.2f} s", sum, report.wall_seconds));
+}
+
+void add_score(std::string& text, const std::string& label, const ScoreRow& row) {
+  text += fmt::format("  {:>6} {:>9.2f} {:>9.2f} {:>7.4f} {:>7.4f} {:>8} {:>7.3f}\n", label, row.psnr_linear,
+                      row.psnr_tone_mapped, row.ssim, row.flip,
+                      row.flicker >= 0 ? fmt::format("{:.4f}", row.flicker) : "-", row.error_p99);
+}
+
+void add_scores(std::string& text, const std::vector<ScoreRow>& rows) {
+  if (rows.empty()) return;
+  add_heading(text, fmt::format("Against the truth ({} frames)", rows.size()));
+  text += fmt::format("  {:>6} {:>9} {:>9} {:>7} {:>7} {:>8} {:>7}\n", "frame", "PSNR-lin", "PSNR-tm", "SSIM",
+                      "FLIP", "flicker", "p99-tm");
+  const std::size_t shown = std::min<std::size_t>(rows.size(), kRowsShown);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const ScoreRow& row = rows[shown == 1 ? 0 : i * (rows.size() - 1) / (shown - 1)];
+    add_score(text, fmt::format("{}", row.index), row);
+  }
+  add_score(text, "mean", mean_of(rows));
+}
+
 }  // namespace
+
+ScoreRow mean_of(std::span<const ScoreRow> rows) {
+  ScoreRow mean;
+  double flicker = 0;
+  int with_flicker = 0;
+  for (const ScoreRow& row : rows) {
+    mean.psnr_linear += row.psnr_linear;
+    mean.psnr_tone_mapped += row.psnr_tone_mapped;
+    mean.ssim += row.ssim;
+    mean.flip += row.flip;
+    mean.error_p99 += row.error_p99;
+    flicker += std::max(row.flicker, 0.0);
+    with_flicker += row.flicker >= 0 ? 1 : 0;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(rows.size(), 1));
+  for (double* value : {&mean.psnr_linear, &mean.psnr_tone_mapped, &mean.ssim, &mean.flip, &mean.error_p99}) {
+    *value /= count;
+  }
+  if (with_flicker > 0) mean.flicker = flicker / with_flicker;
+  return mean;
+}
 
 PassStatistics statistics_of(std::string name, std::string clock, std::span<const double> samples_ms,
                              std::span<const std::uint64_t> bytes) {
@@ -140,7 +193,9 @@ std::string to_text(const RunReport& report) {
   add_devices(text, report);
   add_statistics(text, "OpenCL passes", report.passes);
   add_statistics(text, "Around them", report.steps);
+  add_busy(text, report);
   add_frames(text, report.frames);
+  add_scores(text, report.scores);
   if (!report.left_out.empty()) {
     add_heading(text, "Left out, because this scene does not need it");
     for (const LeftOut& item : report.left_out)

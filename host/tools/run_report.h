@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,13 +46,33 @@ struct FrameRow {
   std::int64_t non_finite_pixels = -1;
 };
 
+// A frame against its truth; the terms of image_metrics.h.
+struct ScoreRow {
+  std::int64_t index = 0;
+  double psnr_linear = 0;  // dB, infinite for equal pictures
+  double psnr_tone_mapped = 0;
+  double ssim = 0;
+  double flip = 0;
+  double error_p99 = 0;
+  double flicker = -1;  // against the frame before; -1: that one has no truth
+};
+
+// The mean of each column over the rows that know it; -1 for a flicker that none knows.
+ScoreRow mean_of(std::span<const ScoreRow> rows);
+
+// How long the threads of one kind of work were at it, summed over them.
+struct BusyTime {
+  std::string what;  // "reading"
+  double seconds = 0;
+};
+
 struct RunReport {
   std::string program;  // "quincunx-render"
   std::string version;  // "0.1.0"
   std::string command_line;
   std::string scene;
   std::string scene_summary;
-  std::uint64_t seed = 0;
+  std::optional<std::uint64_t> seed;
   Extent output;
   Extent target;
   std::string method;
@@ -76,9 +97,12 @@ struct RunReport {
   std::vector<PassStatistics> passes;  // on the OpenCL device
   std::vector<PassStatistics> steps;   // around them: GL draw, hand over, present, file writing
   std::vector<FrameRow> frames;
+  std::vector<BusyTime> busy;      // kinds of work that overlap
+  std::vector<ScoreRow> scores;    // where there is a truth
   std::vector<LeftOut> left_out;   // of the plan
   std::vector<std::string> files;  // what was written, for the reader
   double wall_seconds = -1;
+  std::int64_t peak_memory_bytes = -1;  // of the process
 };
 
 // About 60 lines of at most 100 columns, whatever the number of frames: a graph of the ratio and at most 12

@@ -56,12 +56,34 @@ Json frames_json(const std::vector<FrameRow>& frames) {
   return list;
 }
 
+Json score_json(const ScoreRow& row) {
+  return {{"psnr_linear", row.psnr_linear},
+          {"psnr_tone_mapped", row.psnr_tone_mapped},
+          {"ssim", row.ssim},
+          {"flip", row.flip},
+          {"error_p99", row.error_p99},
+          {"flicker", known(row.flicker)}};
+}
+
+Json scores_json(const std::vector<ScoreRow>& rows) {
+  Json frames = Json::array();
+  for (const ScoreRow& row : rows) {
+    Json json = {{"index", row.index}};
+    json.update(score_json(row));
+    frames.push_back(std::move(json));
+  }
+  return {{"mean", rows.empty() ? Json(nullptr) : score_json(mean_of(rows))}, {"frames", frames}};
+}
+
 }  // namespace
 
 std::string to_json(const RunReport& report) {
   Json settings = Json::object();
   for (const auto& [name, value] : report.settings)
     settings[name] = value;
+  Json busy = Json::object();
+  for (const BusyTime& time : report.busy)
+    busy[time.what] = time.seconds;
   Json left_out = Json::array();
   for (const LeftOut& item : report.left_out)
     left_out.push_back({{"what", item.what}, {"why", item.why}});
@@ -69,9 +91,9 @@ std::string to_json(const RunReport& report) {
       {"program", report.program},
       {"version", report.version},
       {"command_line", known(report.command_line)},
-      {"scene", report.scene},
+      {"scene", known(report.scene)},
       {"scene_summary", known(report.scene_summary)},
-      {"seed", report.seed},
+      {"seed", report.seed ? Json(*report.seed) : Json(nullptr)},
       {"output", size_json(report.output)},
       {"target", size_json(report.target)},
       {"method", report.method},
@@ -92,9 +114,12 @@ std::string to_json(const RunReport& report) {
       {"passes", statistics_json(report.passes)},
       {"steps", statistics_json(report.steps)},
       {"frames", frames_json(report.frames)},
+      {"busy_seconds", busy},
+      {"scores", scores_json(report.scores)},
       {"left_out", left_out},
       {"files", report.files},
       {"wall_seconds", known(report.wall_seconds)},
+      {"peak_memory_bytes", known(report.peak_memory_bytes)},
   };
   // Text that is not UTF-8 (a file name, say) must not stop a report.
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

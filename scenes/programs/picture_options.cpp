@@ -8,7 +8,9 @@
 
 #include "quincunx/device.h"
 #include "scene_catalog.h"
+#include "tools/option_choice.h"
 #include "tools/program.h"
+#include "tools/resolve_settings_options.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -31,68 +33,6 @@ Result<ScalePath> scale_path_for(const PictureOptions& options) {
   return ScalePath::fixed(scale);
 }
 
-// An option that takes one of a few names; set() gets the value.
-template <typename Value, typename Set>
-void add_choice(CLI::App& app, const std::string& option, const std::map<std::string, Value>& names,
-                const std::string& description, Set set) {
-  const auto choose = [option, set, &names](const std::string& name) {
-    const auto found = names.find(CLI::detail::to_lower(name));
-    if (found == names.end()) {
-      std::string choices;
-      for (const auto& [choice, value] : names)
-        choices += (choices.empty() ? "" : ", ") + choice;
-      throw CLI::ValidationError(option, fmt::format("'{}' is none of {}", name, choices));
-    }
-    set(found->second);
-  };
-  app.add_option_function<std::string>(option, choose, description)->type_name("NAME");
-}
-
-template <typename Target, typename Value>
-void add_choice(CLI::App& app, const std::string& option, Target& target,
-                const std::map<std::string, Value>& names, const std::string& description) {
-  add_choice(app, option, names, description, [&target](const Value& value) { target = value; });
-}
-
-// What a name of --method stands for.
-struct MethodChoice {
-  Method method;
-  TwoFrameForm form = QuincunxSettings{}.form;
-};
-
-void add_method_options(CLI::App& app, PictureOptions& options) {
-  static const std::map<std::string, MethodChoice> kMethods = {
-      {"point", {Method::kPoint}},
-      {"bilinear", {Method::kBilinear}},
-      {"b-spline", {Method::kBSpline}},
-      {"catmull-rom", {Method::kCatmullRom}},
-      {"lanczos2", {Method::kLanczos2}},
-      {"noise", {Method::kNoise}},
-      {"noise-offset", {Method::kNoiseOffset}},
-      {"quincunx", {Method::kQuincunx}},
-      {"quincunx:mean", {Method::kQuincunx, TwoFrameForm::kMean}},
-      {"quincunx:velocity", {Method::kQuincunx, TwoFrameForm::kVelocity}}};
-  add_choice(app, "--method", kMethods,
-             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset or "
-             "quincunx[:mean|:velocity] (default: quincunx)",
-             [&options](const MethodChoice& choice) {
-               options.resolve.method = choice.method;
-               options.resolve.quincunx.form = choice.form;
-             });
-  app.add_option("--velocity-weight", options.resolve.quincunx.velocity_weight,
-                 "K of quincunx:velocity: how fast motion takes the previous frame away")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str()
-      ->type_name("K");
-  app.add_flag("!--no-clamp-ringing", options.resolve.clamp_ringing,
-               "Let catmull-rom and lanczos2 overshoot at edges");
-  app.add_option("--grain", options.resolve.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str()
-      ->type_name("A");
-  app.add_flag("!--still-noise", options.resolve.noise_moves, "The same noise in every frame");
-}
-
 }  // namespace
 
 void add_picture_options(CLI::App& app, PictureOptions& options) {
@@ -100,8 +40,6 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                                                          {"quincunx", Jitter::kQuincunx},
                                                          {"quincunx-half", Jitter::kQuincunxHalf},
                                                          {"halton", Jitter::kHalton}};
-  static const std::map<std::string, ToneMap> kToneMaps = {
-      {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
   app.add_option("--scene", options.scene,
                  "Built-in scene, or a .gltf or .glb file (default: the first of the list)");
@@ -122,14 +60,11 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                  "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
       ->type_name("PATH")
       ->excludes(scale);
-  add_method_options(app, options);
-  add_choice(app, "--jitter", options.jitter, kJitters,
-             "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
-  add_choice(app, "--tone-map", options.resolve.tone_map, kToneMaps,
-             "clamp, reinhard or aces (default: aces)");
+  tools::add_resolve_options(app, options.resolve);
+  tools::add_choice(app, "--jitter", options.jitter, kJitters,
+                    "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       ->check(CLI::PositiveNumber);
-  app.add_flag("!--no-dither", options.resolve.dither, "Round to 8 bits without dither");
   app.add_option("--frames", options.frames, "Number of frames")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -147,9 +82,9 @@ void add_machine_options(CLI::App& app, PictureOptions& options) {
                                                                  {"device", gl::Platform::kDevice}};
   app.add_option("--device", options.device,
                  "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
-  add_choice(app, "--interop", options.interop, kInterops,
-             "How frames pass from OpenGL to OpenCL: auto, gl or copy");
-  add_choice(app, "--egl-platform", options.platform, kPlatforms, "auto, surfaceless or device");
+  tools::add_choice(app, "--interop", options.interop, kInterops,
+                    "How frames pass from OpenGL to OpenCL: auto, gl or copy");
+  tools::add_choice(app, "--egl-platform", options.platform, kPlatforms, "auto, surfaceless or device");
   app.add_flag("--list-scenes", options.list_scenes, "List the built-in scenes and why they are there");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices and the OpenGL renderer");
   app.add_flag("-q,--quiet", options.quiet, "Say nothing but errors");

@@ -9,6 +9,7 @@
 
 #include "target_file.h"
 #include "tools/image_io.h"
+#include "tools/method_names.h"
 #include "tools/progress.h"
 
 namespace quincunx::scenes {
@@ -178,7 +179,7 @@ void RenderSession::begin_contact_sheet() {
   sheet_.emplace(tools::ContactSheetSettings{
       .title = fmt::format("Quincunx · {}", source_->scene().name),
       .subtitle = fmt::format("{}×{} · {} · {} · {}", options_.output.width, options_.output.height,
-                              name_of(options_.resolve.method), source_->context().info().renderer,
+                              tools::method_name(options_.resolve), source_->context().info().renderer,
                               source_->device().info().name)});
   sheet_frames_ = tools::evenly_spaced(static_cast<int>(options_.frames), kContactSheetFrames);
 }

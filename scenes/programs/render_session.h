@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "frame_source.h"
-#include "frame_writer.h"
 #include "quincunx/resolve_service.h"
 #include "render_options.h"
 #include "tools/contact_sheet.h"
 #include "tools/frame_pattern.h"
 #include "tools/run_report.h"
+#include "tools/work_queue.h"
 
 namespace quincunx::scenes {
 
@@ -56,7 +56,7 @@ class RenderSession {
   std::optional<tools::FramePattern> pattern_;
   std::optional<tools::ContactSheet> sheet_;
   std::vector<int> sheet_frames_;
-  FrameWriter writer_;
+  tools::WorkQueue writer_;
 
   std::chrono::steady_clock::time_point last_delivery_;
   std::vector<FrameReport> reports_;

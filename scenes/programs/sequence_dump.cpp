@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "frame_source.h"
-#include "frame_writer.h"
 #include "target_file.h"
 #include "tools/atomic_file.h"
 #include "tools/frame_pattern.h"
 #include "tools/progress.h"
+#include "tools/work_queue.h"
 #include "truth.h"
 
 namespace quincunx::scenes {
@@ -57,7 +57,7 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
 }
 
 Status write_truth_of(FrameSource& source, const SequenceDump& dump, const FrameView& view,
-                      std::int64_t index, Extent output, FrameWriter& writer) {
+                      std::int64_t index, Extent output, tools::WorkQueue& writer) {
   const auto pattern = tools::FramePattern::parse((folder_of(dump.pattern) / "truth.%04d.exr").string());
   if (!pattern.ok()) return pattern.status();
   auto rgba = render_truth(source.renderer(), {.output = output, .samples = dump.truth}, view.seconds);
@@ -87,7 +87,7 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
 
   using Show = tools::Progress::Show;
   tools::Progress progress("sequence", options.frames, options.quiet ? Show::kNever : Show::kOnTerminal);
-  FrameWriter writer;
+  tools::WorkQueue writer;
   for (std::int64_t index = 0; index < options.frames; ++index) {
     if (Status status = frames.draw(index, true); !status.ok()) return status;
     DrawnFrame& frame = frames.oldest();

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
+#include "temporary_folder.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -61,6 +65,37 @@ TEST(FramePattern, OneNameIsNotForManyFrames) {
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(status.message().find("240"), std::string::npos);
   EXPECT_NE(status.message().find("%04d"), std::string::npos);
+}
+
+TEST(FramePattern, MessagesNameWhatItIsFor) {
+  const Result<FramePattern> parsed = FramePattern::parse("a.jpg", "input pattern");
+  EXPECT_EQ(parsed.status().message().rfind("input pattern 'a.jpg'", 0), 0u) << parsed.status().message();
+}
+
+TEST(FramePattern, FindsTheNumberInAPath) {
+  const FramePattern padded = FramePattern::parse("a/f.%04d.exr").value();
+  EXPECT_EQ(padded.number_in("a/f.0007.exr"), 7);
+  EXPECT_EQ(padded.number_in("a/f.12345.exr"), 12345);
+  for (const char* other : {"a/f.7.exr", "a/f.00007.exr", "a/f.exr", "a/f..exr", "a/f.-001.exr",
+                            "b/f.0007.exr", "a/f.0007.exr.tmp", "a/f.00x7.exr", "a/f.0007_.exr", ""}) {
+    EXPECT_FALSE(padded.number_in(other)) << other;
+  }
+  EXPECT_EQ(FramePattern::parse("f%3d.exr")->number_in("f  7.exr"), 7);
+  EXPECT_EQ(FramePattern::parse("f%d.exr")->number_in("f120.exr"), 120);
+  EXPECT_FALSE(FramePattern::parse("f.exr")->number_in("f.exr"));
+}
+
+TEST(FramePattern, ListsWhatIsOnDisk) {
+  testing::TemporaryFolder folder;
+  for (const char* name : {"f.0003.exr", "f.0001.exr", "f.12345.exr", "f.2.exr", "g.0002.exr", "f.0002.png"})
+    std::ofstream(folder.file(name)) << name;
+  using Frames = std::vector<std::int64_t>;
+  EXPECT_EQ(FramePattern::parse(folder.file("f.%04d.exr"))->frames_on_disk().value(), (Frames{1, 3, 12345}));
+  EXPECT_EQ(FramePattern::parse(folder.file("") + "//f.#.exr")->frames_on_disk().value(),
+            (Frames{1, 3, 12345}));
+  EXPECT_EQ(FramePattern::parse(folder.file("none/f.#.exr"))->frames_on_disk().value(), Frames{});
+  EXPECT_FALSE(FramePattern::parse(folder.file("f.exr"))->frames_on_disk().ok());
+  EXPECT_FALSE(FramePattern::parse(folder.file("#/f.exr"))->frames_on_disk().ok());
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Method names: how command lines and reports name a method with its form: "bilinear", "quincunx:mean".
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx::tools {
+
+// What a name stands for.
+struct MethodChoice {
+  Method method = Method::kQuincunx;
+  TwoFrameForm form = QuincunxSettings{}.form;
+
+  friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
+};
+
+// Every name. A method alone has its usual form.
+const std::map<std::string, MethodChoice>& method_choices();
+
+void choose(ResolveSettings& settings, const MethodChoice& choice);
+
+// The longest name for what the settings say: "quincunx:velocity".
+std::string method_name(const ResolveSettings& settings);
+
+}  // namespace quincunx::tools

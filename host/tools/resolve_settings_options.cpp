@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "tools/resolve_settings_options.h"
+
+#include "tools/method_names.h"
+#include "tools/option_choice.h"
+
+namespace quincunx::tools {
+
+void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
+  static const std::map<std::string, ToneMap> kToneMaps = {
+      {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
+
+  add_choice(app, "--method", method_choices(),
+             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset or "
+             "quincunx[:mean|:velocity] (default: quincunx)",
+             [&settings](const MethodChoice& choice) { choose(settings, choice); });
+  app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
+                 "K of quincunx:velocity: how fast motion takes the previous frame away")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("K");
+  app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
+               "Let catmull-rom and lanczos2 overshoot at edges");
+  app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->type_name("A");
+  app.add_flag("!--still-noise", settings.noise_moves, "The same noise in every frame");
+  add_choice(app, "--tone-map", settings.tone_map, kToneMaps, "clamp, reinhard or aces (default: aces)");
+  app.add_flag("!--no-dither", settings.dither, "Round to 8 bits without dither");
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "tools/image_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "exr_files.h"
+#include "temporary_folder.h"
+
+namespace quincunx::tools {
+namespace {
+
+using testing::ExrPart;
+using testing::simple_part;
+using testing::write_exr_parts;
+
+constexpr float kUntouched = -7;
+
+// Values that every half and float holds: distinct for each pixel and channel.
+std::vector<float> ramp(std::int64_t count, float first) {
+  std::vector<float> values;
+  for (std::int64_t i = 0; i < count; ++i)
+    values.push_back(first + static_cast<float>(i % 1500));
+  return values;
+}
+
+// Channel `name` of the display window as floats.
+std::vector<float> channel(ImageReader& reader, const std::string& name) {
+  const auto place = reader.header().find(name);
+  EXPECT_TRUE(place) << name;
+  if (!place) return {};
+  const Extent extent = reader.header().parts[place->part].display.extent;
+  std::vector<float> values(extent.area(), kUntouched);
+  const ChannelTarget target = {*place, ChannelType::kFloat, values.data(), sizeof(float),
+                                sizeof(float) * extent.width};
+  const Status status = reader.read({&target, 1});
+  EXPECT_TRUE(status.ok()) << status.message();
+  return values;
+}
+
+std::vector<float> every(std::size_t step, std::size_t first, const std::vector<float>& values) {
+  std::vector<float> result;
+  for (std::size_t i = first; i < values.size(); i += step)
+    result.push_back(values[i]);
+  return result;
+}
+
+class Reading : public ::testing::Test {
+ protected:
+  ImageReader open(const std::vector<ExrPart>& parts) {
+    write_exr_parts(folder_.file("a.exr"), parts);
+    auto reader = ImageReader::open(folder_.file("a.exr"));
+    EXPECT_TRUE(reader.ok()) << reader.status().message();
+    return std::move(reader).value();
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+// More rows than a band, and a block of 256 lines, which bands cut through.
+TEST_F(Reading, EveryChannelOfLongFilesInAnyCompression) {
+  const Extent extent{7, 300};
+  for (const char* compression : {"none", "rle", "zips", "zip", "piz", "dwab"}) {
+    ExrPart part = simple_part(extent, {"R", "G", "B", "Z"}, ramp(extent.area() * 4, 0));
+    part.types[3] = OIIO::TypeFloat;
+    part.compression = compression;
+    ImageReader reader = open({part});
+    for (std::size_t c = 0; c < 4; ++c) {
+      const bool lossy = std::string(compression) == "dwab" && c < 3;
+      const std::vector<float> values = channel(reader, part.channels[c]);
+      EXPECT_TRUE(lossy || values == every(4, c, part.pixels)) << compression << " " << c;
+    }
+  }
+}
+
+TEST_F(Reading, SeveralChannelsAtOnceKeepTheirTypes) {
+  const Extent extent{5, 70};
+  ExrPart part = simple_part(extent, {"R", "G", "B", "A", "u", "v"}, ramp(extent.area() * 6, 1));
+  part.types[4] = part.types[5] = OIIO::TypeFloat;
+  ImageReader reader = open({part});
+  const auto pixels = static_cast<std::size_t>(extent.area());
+  std::vector<std::uint16_t> colour(pixels * 4);
+  std::vector<float> motion(pixels * 2);
+  std::vector<ChannelTarget> targets;
+  for (std::size_t c = 0; c < 4; ++c)
+    targets.push_back(
+        {*reader.header().find(part.channels[c]), ChannelType::kHalf, colour.data() + c, 8, 40});
+  for (std::size_t c = 0; c < 2; ++c)
+    targets.push_back(
+        {*reader.header().find(part.channels[4 + c]), ChannelType::kFloat, motion.data() + c, 8, 40});
+  ASSERT_TRUE(reader.read(targets).ok());
+  for (std::size_t i = 0; i < pixels; ++i) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      // The ramp holds small integers: a half's exponent and mantissa by frexp.
+      const float value = part.pixels[i * 6 + c];
+      int exponent = 0;
+      const float mantissa = std::frexp(value, &exponent);
+      const auto bits =
+          value == 0 ? 0 : ((exponent + 14) << 10) + static_cast<int>((mantissa * 2 - 1) * 1024);
+      ASSERT_EQ(colour[i * 4 + c], bits) << value;
+    }
+    ASSERT_EQ(motion[i * 2], part.pixels[i * 6 + 4]);
+    ASSERT_EQ(motion[i * 2 + 1], part.pixels[i * 6 + 5]);
+  }
+}
+
+TEST_F(Reading, Tiles) {
+  const Extent extent{37, 150};
+  ExrPart part = simple_part(extent, {"R", "G", "B"}, ramp(extent.area() * 3, 0));
+  part.tile = 16;
+  ImageReader reader = open({part});
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_EQ(channel(reader, part.channels[c]), every(3, c, part.pixels));
+}
+
+TEST_F(Reading, PartsAreFoundByChannelAndByPartAndChannel) {
+  ExrPart beauty = simple_part({4, 3}, {"R", "G", "B"}, ramp(36, 0));
+  beauty.name = "beauty";
+  ExrPart motion = simple_part({4, 3}, {"X", "Y"}, ramp(24, 100));
+  motion.name = "motion";
+  ImageReader reader = open({beauty, motion});
+  EXPECT_EQ(channel(reader, "G"), every(3, 1, beauty.pixels));
+  EXPECT_EQ(channel(reader, "Y"), every(2, 1, motion.pixels));
+  EXPECT_EQ(channel(reader, "motion.X"), every(2, 0, motion.pixels));
+  EXPECT_FALSE(reader.header().find("beauty.X"));
+  EXPECT_FALSE(reader.header().find("motion"));
+  EXPECT_EQ(reader.header().channel_names(), "beauty.R, beauty.G, beauty.B, motion.X, motion.Y");
+}
+
+// Cropped on two sides and reaching over the other two.
+TEST_F(Reading, ADataWindowThatIsNotTheDisplayWindow) {
+  for (const int tile : {0, 16}) {
+    ExrPart part = simple_part({6, 90}, {"R"}, ramp(540, 0));
+    part.data = {12, 23, {6, 90}};
+    part.display = {10, 20, {5, 100}};
+    part.tile = tile;
+    ImageReader reader = open({part});
+    const std::vector<float> values = channel(reader, "R");
+    ASSERT_EQ(values.size(), 500u);
+    for (int y = 0; y < 100; ++y) {
+      for (int x = 0; x < 5; ++x) {
+        const bool covered = x >= 2 && y >= 3 && y < 93;
+        const float wanted = covered ? part.pixels[(y - 3) * 6 + x - 2] : kUntouched;
+        ASSERT_EQ(values[y * 5 + x], wanted) << x << " " << y;
+      }
+    }
+  }
+}
+
+TEST_F(Reading, WhatCannotBeUsedIsSaidInTheHeader) {
+  ExrPart part = simple_part({2, 2}, {"R", "id"}, ramp(8, 0));
+  part.types[1] = OIIO::TypeUInt32;
+  const ImageReader reader = open({part});
+  EXPECT_FALSE(reader.header().parts[0].channels[0].integer);
+  EXPECT_TRUE(reader.header().parts[0].channels[1].integer);
+  testing::write_deep_exr(folder_.file("deep.exr"), {3, 2});
+  const auto deep = ImageReader::open(folder_.file("deep.exr"));
+  ASSERT_TRUE(deep.ok()) << deep.status().message();
+  EXPECT_TRUE(deep->header().parts[0].deep);
+}
+
+TEST_F(Reading, AttributesOfSeveralTypesReturn) {
+  const float red = 1;
+  const Channel channels[] = {{.name = "R", .type = ChannelType::kFloat, .data = &red}};
+  const Chromaticities primaries = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+  const Attribute attributes[] = {
+      {"jitter", Vec2{0.25f, -0.5f}}, {"chromaticities", primaries}, {"note", std::string("x y")}};
+  ASSERT_TRUE(write_exr(folder_.file("a.exr"), {1, 1}, channels, attributes).ok());
+  const auto reader = ImageReader::open(folder_.file("a.exr"));
+  ASSERT_TRUE(reader.ok());
+  for (const Attribute& attribute : attributes) {
+    const Attribute* found = reader->header().attribute(attribute.name);
+    ASSERT_NE(found, nullptr) << attribute.name;
+    EXPECT_TRUE(found->value == attribute.value) << attribute.name;
+  }
+  EXPECT_EQ(reader->header().attribute("none"), nullptr);
+}
+
+TEST_F(Reading, BadFilesAreOneSentence) {
+  const auto expect_bad = [&](const std::string& name, const std::string& reason) {
+    const auto reader = ImageReader::open(folder_.file(name));
+    ASSERT_FALSE(reader.ok()) << name;
+    EXPECT_EQ(reader.status().code(), StatusCode::kIoFailure);
+    const std::string message = reader.status().message();
+    EXPECT_NE(message.find(name), std::string::npos) << message;
+    EXPECT_NE(message.find(reason), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  };
+  expect_bad("none.exr", "no such file");
+  std::filesystem::create_directory(folder_.file("folder.exr"));
+  expect_bad("folder.exr", "folder");
+  std::ofstream(folder_.file("text.exr")) << "this is no picture";
+  expect_bad("text.exr", "cannot be read");
+  std::ofstream(folder_.file("empty.exr"));
+  expect_bad("empty.exr", "cannot be read");
+}
+
+// Cut off at every length: opening or reading fails with a sentence, and nothing worse happens.
+TEST_F(Reading, TruncatedFilesAreRefused) {
+  const Extent extent{16, 80};
+  open({simple_part(extent, {"R", "G"}, ramp(extent.area() * 2, 0))});
+  std::ifstream file(folder_.file("a.exr"), std::ios::binary);
+  const std::string whole{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  for (std::size_t length = 0; length < whole.size(); length += 1 + length / 20) {
+    std::ofstream(folder_.file("cut.exr"), std::ios::binary | std::ios::trunc) << whole.substr(0, length);
+    auto reader = ImageReader::open(folder_.file("cut.exr"));
+    if (!reader.ok()) continue;
+    std::vector<float> values(extent.area());
+    const auto place = reader->header().find("G");
+    ASSERT_TRUE(place);
+    const ChannelTarget target = {*place, ChannelType::kFloat, values.data(), 4, 64};
+    const Status status = reader->read({&target, 1});
+    EXPECT_FALSE(status.ok()) << length << " of " << whole.size();
+    EXPECT_NE(status.message().find("cut.exr"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace quincunx::tools
