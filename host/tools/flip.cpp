@@ -57,10 +57,10 @@ Matrix to_white() {
 
 Matrix from_white() {
   const auto& m = kWhite;
-  const auto minor = [&m](std::size_t row, std::size_t column) {
+  const auto minor = [](std::size_t row, std::size_t column) {
     const std::size_t r0 = (row + 1) % 3, r1 = (row + 2) % 3;
     const std::size_t c0 = (column + 1) % 3, c1 = (column + 2) % 3;
-    return m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0];
+    return kWhite[r0][c0] * kWhite[r1][c1] - kWhite[r0][c1] * kWhite[r1][c0];
   };
   const double determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
   Matrix matrix{};
