@@ -155,7 +155,7 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
     const float16 b = load_resolved4(source, params.source, x + 4, y);
     const float16 c = load_resolved4(source, params.source, x + 8, y);
     const float16 d = load_resolved4(source, params.source, x + 12, y);
-    prefetch_resolved16(source, params.source, x + kPrefetchDistance, y);
+    will_read_resolved16(source, params.source, x + kPrefetchDistance, y);
     largest = max(max(largest, magnitude(a)), max(max(magnitude(b), magnitude(c)), magnitude(d)));
     store_codes(output, params.output, x, y, encode(a, b, c, d, params.exposure, x, y));
   }

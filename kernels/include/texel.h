@@ -66,6 +66,16 @@
 #define REACTIVE_TEXELS __global const uchar*
 #endif
 
+// Hints for a CPU that memory is used soon; any address will do. The processor itself stops at the end of a page of
+// memory. PoCL's prefetch() does nothing, and a GPU hides latency by other means.
+#if defined(__x86_64__) || defined(__aarch64__)
+#define WILL_READ(address) __builtin_prefetch(address)
+#define WILL_WRITE(address) __builtin_prefetch(address, 1)
+#else
+#define WILL_READ(address) ((void)(address))
+#define WILL_WRITE(address) ((void)(address))
+#endif
+
 // Of texel (0, y).
 static inline int row_index(TexelLayout layout, int y) {
   return layout.offset + y * layout.pitch;
@@ -230,8 +240,11 @@ static inline uint sanitise_four(FourPixels* pixels) {
   return bits;
 }
 
+enum { kOutputAhead = 512 };  // pixels: two pages of memory
+
 // Those of four pixels, from x on, that lie before `end`.
 static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int end, FourPixels pixels) {
+  WILL_WRITE(texels + 4 * (texel_index(layout, x, y) + kOutputAhead));
   store_output(texels, layout, x, y, pixels.p0);
   if (x + 3 < end) {
     store_output(texels, layout, x + 1, y, pixels.p1);
@@ -258,16 +271,16 @@ static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, i
 #endif
 }
 
-// A hint that the 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel
-// with too much to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache
-// instead of four, arrive in time without.
-static inline void prefetch_resolved16(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
-#if SOURCE_FORMAT == FLOAT && (defined(__x86_64__) || defined(__aarch64__))  // PoCL's prefetch() does nothing
+// The 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel with too much
+// to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache instead of four,
+// arrive in time without.
+static inline void will_read_resolved16(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_FORMAT == FLOAT
   RESOLVED_TEXELS first = texels + 4 * texel_index(layout, x, y);
-  __builtin_prefetch(first);
-  __builtin_prefetch(first + 16);
-  __builtin_prefetch(first + 32);
-  __builtin_prefetch(first + 48);
+  WILL_READ(first);
+  WILL_READ(first + 16);
+  WILL_READ(first + 32);
+  WILL_READ(first + 48);
 #endif
 }
 
