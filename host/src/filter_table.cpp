@@ -100,8 +100,8 @@ int filter_inner(int render, int output) {
 }
 
 void fill_filter(Filter filter, int render, int output, double jitter, FilterSpan* spans, float* weights) {
-  const Axis axis{filter, render, filter_taps(filter, render, output),
-                  filter_inner(render, output), widening(render, output)};
+  const Axis axis{filter, render, filter_taps(filter, render, output), filter_inner(render, output),
+                  widening(render, output)};
   for (int x = 0; x < output; ++x) {
     // (2x + 1) * render is an integer: one rounding, and none at all where the quotient is a double.
     const double centre = (2.0 * x + 1) * render / (2.0 * output);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "frame_traffic.h"
 
+#include "params.h"
+
 namespace quincunx {
 namespace {
 
@@ -12,6 +14,13 @@ std::uint64_t read_of_frame(const ResolvePlan& plan, Extent render) {
   std::uint64_t bytes = bytes_of(render, plan.settings.colour);
   if (plan.velocity != VelocitySource::kNone) bytes += bytes_of(render, plan.settings.velocity);
   return bytes;
+}
+
+std::uint64_t tiles_of(Extent output) {
+  const auto side = [](int pixels) {
+    return static_cast<std::uint64_t>((pixels + kTileSide - 1) / kTileSide);
+  };
+  return side(output.width) * side(output.height);
 }
 
 }  // namespace
@@ -28,6 +37,19 @@ std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent prev
   const std::uint64_t reactive = plan.reads_reactive ? bytes_of(render, PixelFormat::kR8) : 0;
   return read_of_frame(plan, render) + read_of_frame(plan, previous_render) + reactive +
          bytes_of(plan.settings.output, plan.settings.resolved);
+}
+
+std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render) {
+  return bytes_of(render, settings.velocity) + tiles_of(settings.output) * sizeof(TileStreaks);
+}
+
+std::uint64_t motion_neighbours_bytes(const ResolveSettings& settings) {
+  return tiles_of(settings.output) * (sizeof(TileStreaks) + sizeof(TileBlur));
+}
+
+std::uint64_t motion_blur_bytes(const ResolveSettings& settings, Extent render) {
+  return 2 * bytes_of(settings.output, settings.resolved) + bytes_of(render, settings.velocity) +
+         bytes_of(render, PixelFormat::kR32F) + tiles_of(settings.output) * sizeof(TileBlur);
 }
 
 std::uint64_t present_bytes(const ResolveSettings& settings) {

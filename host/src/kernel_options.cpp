@@ -54,9 +54,14 @@ std::string filter_options(Filter filter, const ResolveSettings& settings, int t
                      scale_options(settings));
 }
 
+std::string blur_options(const ResolveSettings& settings) {
+  return fmt::format("{} -D SOURCE_FORMAT={} -D OUTPUT_FORMAT={}", velocity_options(settings),
+                     resolved(settings), resolved(settings));
+}
+
 std::string quincunx_options(const ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
-  const bool weighs = plan.velocity != VelocitySource::kNone;
+  const bool weighs = plan.weighs_velocity();
   std::string format;
   if (weighs && settings.storage == Storage::kBuffer)
     format = fmt::format(" -D VELOCITY_FORMAT={}", velocity(settings));

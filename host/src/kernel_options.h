@@ -13,6 +13,7 @@ namespace quincunx {
 std::string scale_options(const ResolveSettings& settings);
 std::string filter_options(Filter filter, const ResolveSettings& settings, int taps);  // taps 4, or 0: any
 std::string velocity_options(const ResolveSettings& settings);
+std::string blur_options(const ResolveSettings& settings);  // motion_blur
 std::string quincunx_options(const ResolvePlan& plan);
 std::string present_options(const ResolveSettings& settings);
 std::string clear_options(Storage storage, PixelFormat format);

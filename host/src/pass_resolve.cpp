@@ -31,7 +31,7 @@ Vec2 speed_scale(const FrameInputs& frame, float weight) {
 ResolvePass::ResolvePass(const Device::Impl& device, const ResolvePlan& plan)
     : device_(device),
       settings_(plan.settings),
-      reads_velocity_(plan.velocity != VelocitySource::kNone),
+      reads_velocity_(plan.weighs_velocity()),
       reads_reactive_(plan.reads_reactive),
       kernel_(build_kernel(device, kernel_name(), quincunx_options(plan))) {}
 

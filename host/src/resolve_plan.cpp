@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <string_view>
 
 #include "frame_traffic.h"
 #include "kernel_options.h"
+#include "pass_motion_blur.h"
 #include "pass_scale.h"
 
 namespace quincunx {
@@ -59,12 +61,22 @@ Status check(const ResolveSettings& settings) {
   if (!(settings.grain >= 0 && settings.grain <= 1)) {
     complaints.add(fmt::format("settings.grain is {}; it must lie in [0, 1]", settings.grain));
   }
+  if (!(settings.blur.shutter >= 0 && settings.blur.shutter <= 2)) {
+    complaints.add(fmt::format("settings.blur.shutter is {}; it must lie in [0, 2]", settings.blur.shutter));
+  }
+  const int samples = settings.blur.samples;
+  if (samples < 4 || samples > 64 || !std::has_single_bit(static_cast<unsigned>(samples))) {
+    complaints.add(fmt::format("settings.blur.samples is {}; it must be 4, 8, 16, 32 or 64", samples));
+  }
   return complaints.status();
 }
 
+bool form_weighs_velocity(const ResolveSettings& settings) {
+  return settings.method == Method::kQuincunx && settings.quincunx.form != TwoFrameForm::kMean;
+}
+
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
-  if (settings.method != Method::kQuincunx || settings.quincunx.form == TwoFrameForm::kMean)
-    return VelocitySource::kNone;
+  if (!form_weighs_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
@@ -106,6 +118,18 @@ void plan_scale(ResolvePlan& plan) {
   }
 }
 
+void plan_blur(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  const auto& kernels = MotionBlurPass::kKernels;
+  plan.passes.push_back({kernels[0], velocity_options(settings),
+                         "motion blur: how far the surfaces of a tile move",
+                         motion_tiles_bytes(settings, settings.target)});
+  plan.passes.push_back(
+      {kernels[1], "", "motion blur: what reaches a tile", motion_neighbours_bytes(settings)});
+  plan.passes.push_back({kernels[2], blur_options(settings), "motion blur: the mean over the shutter's time",
+                         motion_blur_bytes(settings, settings.target)});
+}
+
 void plan_passes(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
   if (plan.velocity == VelocitySource::kCamera) {
@@ -118,6 +142,7 @@ void plan_passes(ResolvePlan& plan) {
                            quincunx_bytes(plan, settings.target, settings.target)});
   }
   plan_scale(plan);
+  if (plan.blurs()) plan_blur(plan);
   if (settings.present) {
     plan.passes.push_back(
         {"present", present_options(settings), "an 8-bit sRGB picture is wanted", present_bytes(settings)});
@@ -143,7 +168,7 @@ void plan_buffers(ResolvePlan& plan) {
     if (history && !plan.keeps_previous_frame()) break;
     const char* which = history ? " of the previous frame" : "";
     add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
-    if (plan.velocity != VelocitySource::kNone) {
+    if (plan.velocity != VelocitySource::kNone && (!history || plan.weighs_velocity())) {
       const bool owned = plan.velocity == VelocitySource::kCamera;
       add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling, owned);
     }
@@ -151,6 +176,7 @@ void plan_buffers(ResolvePlan& plan) {
     if (plan.reads_reactive && !history) add_buffer(plan, "reactive", PixelFormat::kR8, scaling);
   }
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
+  if (plan.blurs()) add_buffer(plan, "blurred", settings.resolved, Scaling::kFixed, true);
   if (settings.present) add_buffer(plan, "presented", PixelFormat::kRGBA8, Scaling::kFixed);
 }
 
@@ -160,7 +186,7 @@ void note_left_out(ResolvePlan& plan) {
   const bool quincunx = plan.settings.method == Method::kQuincunx;
   if (!quincunx) {
     note("the previous frame", "the method uses one frame only");
-    note("velocity", "the method uses one frame only");
+    if (plan.velocity == VelocitySource::kNone) note("velocity", "the method uses one frame only");
     note("reactive values", "the method uses one frame only");
   }
   if (quincunx && plan.velocity == VelocitySource::kCamera) {
@@ -173,6 +199,9 @@ void note_left_out(ResolvePlan& plan) {
   }
   if (!plan.reads_depth) note("depth", "no pass reads it");
   if (quincunx && !needs.transparents) note("reactive values", "the scene has no transparents");
+  if (!plan.blurs()) {
+    note("motion blur", plan.settings.blur.shutter > 0 ? "nothing moves" : "the shutter opens for no time");
+  }
   if (!plan.settings.present) note("present", "no 8-bit picture is wanted");
   if (needs.background) {
     note("clear_region", "the background covers every pixel of the viewport");
@@ -261,12 +290,20 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
   plan.needs = needs;
   plan.settings = settings;
   plan.velocity = velocity_source(needs, settings);
-  plan.reads_depth = plan.velocity == VelocitySource::kCamera;
+  plan.reads_depth = plan.velocity == VelocitySource::kCamera || plan.blurs();
   plan.reads_reactive = settings.method == Method::kQuincunx && needs.transparents;
   plan_passes(plan);
   plan_buffers(plan);
   note_left_out(plan);
   return plan;
+}
+
+bool ResolvePlan::weighs_velocity() const {
+  return velocity != VelocitySource::kNone && form_weighs_velocity(settings);
+}
+
+bool ResolvePlan::blurs() const {
+  return settings.blur.shutter > 0 && velocity != VelocitySource::kNone;
 }
 
 std::vector<PixelFormat> ResolvePlan::clears() const {

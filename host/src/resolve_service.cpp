@@ -10,6 +10,7 @@
 #include "frame_ring.h"
 #include "frame_traffic.h"
 #include "pass_clear.h"
+#include "pass_motion_blur.h"
 #include "pass_present.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
@@ -38,9 +39,11 @@ struct ResolveService::Impl {
   std::optional<VelocityPass> velocity;
   ScalePass scale;
   std::optional<ResolvePass> resolve;
+  std::optional<MotionBlurPass> blur;
   std::optional<PresentPass> present;
   std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
   Image resolved;                                         // where the caller gives none
+  Image blurred;                                          // the same
   std::array<Image, 2> velocities;  // of VelocityPass: this frame's and the previous one's
   std::size_t next_velocity = 0;
   cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
@@ -58,6 +61,7 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
   const Device::Impl& impl = *device.impl();
   if (plan.velocity == VelocitySource::kCamera) velocity.emplace(impl, plan.settings);
   if (plan.keeps_previous_frame()) resolve.emplace(impl, plan);
+  if (plan.blurs()) blur.emplace(impl, plan.settings);
   if (plan.settings.present) present.emplace(impl, plan.settings);
   for (const PixelFormat format : plan.clears()) {
     clears.emplace_back(format, ClearPass(impl, plan.settings.storage, format));
@@ -73,6 +77,10 @@ Status ResolveService::Impl::allocate() {
   };
   if (Status status = make(resolved, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
     return status;
+  if (blur) {
+    if (Status status = make(blurred, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
+      return status;
+  }
   for (Image& image : velocities) {
     if (!velocity) break;
     if (Status status = make(image, settings.target, settings.velocity, settings.storage); !status.ok())
@@ -86,6 +94,7 @@ void ResolveService::Impl::warm_up() {
   if (velocity) velocity->warm_up(queue);
   scale.warm_up(queue);
   if (resolve) resolve->warm_up(queue);
+  if (blur) blur->warm_up(queue);
   if (present) present->warm_up(queue);
   for (auto& [format, pass] : clears)
     pass.warm_up(queue);
@@ -145,8 +154,17 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     scale.enqueue(queue, tables, inputs, target, count, event++);
     add_pass(slot, scale.kernel_name(inputs.render), scale_bytes(settings, inputs.render));
   }
+  const ImageView* picture = &target;
+  if (blur && (outputs.blurred || outputs.presented)) {
+    picture = outputs.blurred ? &outputs.blurred : &blurred.view();
+    blur->enqueue(queue, tables, inputs, target, *picture, event);
+    event += MotionBlurPass::kKernels.size();
+    add_pass(slot, MotionBlurPass::kKernels[0], motion_tiles_bytes(settings, inputs.render));
+    add_pass(slot, MotionBlurPass::kKernels[1], motion_neighbours_bytes(settings));
+    add_pass(slot, MotionBlurPass::kKernels[2], motion_blur_bytes(settings, inputs.render));
+  }
   if (outputs.presented) {
-    present->enqueue(queue, target, inputs.exposure, outputs.presented, count, event++);
+    present->enqueue(queue, *picture, inputs.exposure, outputs.presented, count, event++);
     add_pass(slot, PresentPass::kernel_name(), present_bytes(settings));
   }
   queue.enqueueReadBuffer(counter, CL_FALSE, index * sizeof(zero), sizeof(slot.non_finite), &slot.non_finite,
@@ -252,6 +270,16 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
 
 Status ResolveService::finish() {
   return impl_->device.finish();
+}
+
+Result<TileKinds> ResolveService::tile_kinds() const {
+  if (!impl_->blur)
+    return Status::invalid("the plan has no motion blur and so no tiles; set settings.blur.shutter");
+  try {
+    return TileKinds{impl_->blur->tiles(), impl_->blur->tile_kinds(impl_->device.impl()->queue)};
+  } catch (const cl::Error& error) {
+    return describe(error, "reading the tiles of the motion blur", impl_->device.info().name);
+  }
 }
 
 const ResolvePlan& ResolveService::plan() const {

@@ -110,10 +110,18 @@ Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameO
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);
-  if (!outputs.resolved && !outputs.presented) {
-    check.complain("outputs are both missing; give resolved, presented or both");
+  if (!outputs.resolved && !outputs.blurred && !outputs.presented) {
+    check.complain("outputs are all missing; give resolved, blurred, presented or several");
   }
   if (outputs.resolved) check.output("resolved", outputs.resolved, settings.resolved, Storage::kBuffer);
+  if (outputs.blurred && !plan.blurs()) {
+    check.complain("blurred is given, but the plan has no motion blur; set settings.blur.shutter");
+  } else if (outputs.blurred) {
+    check.output("blurred", outputs.blurred, settings.resolved, Storage::kBuffer);
+    if (outputs.blurred.memory == outputs.resolved.memory &&
+        outputs.blurred.offset == outputs.resolved.offset)
+      check.complain("blurred is the memory of resolved; give it other memory");
+  }
   if (outputs.presented && !settings.present) {
     check.complain("presented is given, but the plan has no present pass; set settings.present");
   } else if (outputs.presented) {

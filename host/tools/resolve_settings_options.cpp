@@ -19,6 +19,14 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("K");
+  app.add_option("--blur", settings.blur.shutter,
+                 "Motion blur: part of a frame's time that the shutter is open, to 2")
+      ->check(CLI::Range(0.0, 2.0))
+      ->type_name("SHUTTER");
+  app.add_option("--blur-samples", settings.blur.samples, "Samples a pixel at most: 4, 8, 16, 32 or 64")
+      ->check(CLI::IsMember({4, 8, 16, 32, 64}).description(""))
+      ->capture_default_str()
+      ->type_name("N");
   app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
                "Let catmull-rom and lanczos2 overshoot at edges");
   app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")

@@ -96,6 +96,10 @@ Status DumpSession::open() {
   auto resolved = source_->device().allocate(options_.output, plan->settings.resolved);
   if (!resolved.ok()) return resolved.status();
   resolved_ = std::move(resolved).value();
+  if (!plan->blurs()) return {};
+  auto blurred = source_->device().allocate(options_.output, plan->settings.resolved);
+  if (!blurred.ok()) return blurred.status();
+  blurred_ = std::move(blurred).value();
   return {};
 }
 
@@ -107,7 +111,10 @@ std::string DumpSession::why_missing(Stage stage) const {
   if (stage == Stage::kHistory && (options_.frame == 0 || options_.warm_up == 0)) {
     return "no frame comes before the one that is shown; give a later --frame and --warm-up";
   }
-  if (stage == Stage::kTiles || stage == Stage::kBlurred) return "there is no motion blur in this run";
+  if ((stage == Stage::kTiles || stage == Stage::kBlurred) && !plan.blurs()) {
+    return plan.settings.blur.shutter > 0 ? "nothing moves in this scene"
+                                          : "there is no motion blur; give --blur";
+  }
   return {};
 }
 
@@ -151,7 +158,8 @@ Status DumpSession::resolve_next() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report = service_->dispatch(inputs.value(), {resolved_.view(), presented.value()});
+  const FrameReport report =
+      service_->dispatch(inputs.value(), {resolved_.view(), presented.value(), blurred_.view()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
 }
@@ -203,6 +211,14 @@ Status DumpSession::collect_output() {
   auto resolved = download(resolved_.view());
   if (!resolved.ok()) return resolved.status();
   planes_[Stage::kResolved] = colour_planes(output, resolved.value(), tools::ChannelType::kFloat);
+  if (blurred_) {
+    auto blurred = download(blurred_.view());
+    if (!blurred.ok()) return blurred.status();
+    planes_[Stage::kBlurred] = colour_planes(output, blurred.value(), tools::ChannelType::kFloat);
+    auto tiles = service_->tile_kinds();
+    if (!tiles.ok()) return tiles.status();
+    planes_[Stage::kTiles] = {tiles->tiles, {"kind"}, {{tiles->kinds.begin(), tiles->kinds.end()}}};
+  }
   const std::uint8_t* codes = source_->bridge().presented_pixels();
   presented_.assign(codes, codes + output.area() * 4);
   std::vector<float> presented(presented_.size());
@@ -210,11 +226,15 @@ Status DumpSession::collect_output() {
                  [](std::uint8_t code) { return static_cast<float>(code) / 255.0f; });
   planes_[Stage::kPresented] = colour_planes(output, presented, tools::ChannelType::kFloat);
   if (options_.truth == 0) return {};
-  auto truth = render_truth(source_->renderer(), {.output = output, .samples = options_.truth},
+  auto truth = render_truth(source_->renderer(),
+                            {.output = output,
+                             .samples = options_.truth,
+                             .shutter_seconds = options_.resolve.blur.shutter / options_.fps},
                             current_->view.seconds);
   if (!truth.ok()) return truth.status();
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
-  const tools::MeasuredPicture picture(output, resolved.value());
+  const tools::MeasuredPicture picture(output,
+                                       blurred_ ? interleaved(planes_[Stage::kBlurred]) : resolved.value());
   const tools::MeasuredPicture target(output, truth.value());
   planes_[Stage::kError] = {output, {"absolute"}, {error_of(picture, target)}};
   planes_[Stage::kFlip] = {

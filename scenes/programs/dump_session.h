@@ -43,6 +43,7 @@ class DumpSession {
   std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
   Image resolved_;
+  Image blurred_;  // empty without motion blur
   float exposure_ = 1;
   std::optional<DrawnFrame> previous_;
   std::optional<DrawnFrame> current_;

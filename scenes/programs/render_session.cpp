@@ -88,7 +88,10 @@ Status RenderSession::dispatch() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report = service_->dispatch(inputs.value(), {resolved_.view(), presented.value()});
+  FrameOutputs outputs{.presented = presented.value()};
+  // The files hold the picture as it is before the tone map.
+  (plan().blurs() ? outputs.blurred : outputs.resolved) = resolved_.view();
+  const FrameReport report = service_->dispatch(inputs.value(), outputs);
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bridge().traffic().bytes_in);
   return report.status;

@@ -7,6 +7,7 @@
 
 #include "frame_traffic.h"
 #include "pass_clear.h"
+#include "pass_motion_blur.h"
 #include "pass_present.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
@@ -84,6 +85,35 @@ void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
           cl::Event* event) { pass->enqueue(stage.impl().queue, inputs, velocity, event); });
 }
 
+// All three kernels of the blur. `pixels`: how far a sample moves over the output while the shutter is open.
+void add_blur(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+              const std::string& suffix, const std::function<double(int x, int y)>& pixels) {
+  ResolveSettings settings = scene.plan.settings;
+  settings.blur.shutter = 1;
+  settings.velocity = PixelFormat::kRG32F;
+  auto pass = std::make_shared<MotionBlurPass>(stage.impl(), settings);
+  FrameInputs inputs = scene.current;
+  inputs.velocity = stage.velocity(
+      inputs.render, [&](int x, int y) { return static_cast<float>(pixels(x, y) / stage.output().width); });
+  const std::uint64_t bytes = motion_tiles_bytes(settings, inputs.render) +
+                              motion_neighbours_bytes(settings) + motion_blur_bytes(settings, inputs.render);
+  Stage::add(
+      cases,
+      {.name = "motion_blur" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted, .bytes = bytes},
+      [pass, &stage, inputs, resolved = stage.noise(stage.output(), settings.resolved, 0),
+       blurred = stage.noise(stage.output(), settings.resolved, 1)](cl::Event* events) {
+        pass->enqueue(stage.impl().queue, stage.tables(), inputs, resolved, blurred, events);
+      },
+      static_cast<int>(MotionBlurPass::kKernels.size()));
+}
+
+void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
+  add_blur(cases, stage, scene, 1.2, " still", [](int, int) { return 0; });
+  add_blur(cases, stage, scene, 11, " all moving", [](int, int) { return 24; });
+  // Bars that move against each other, so that every tile needs depth.
+  add_blur(cases, stage, scene, 0, " mixed", [](int x, int) { return x / 24 % 2 == 0 ? 24 : -8; });
+}
+
 void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
@@ -130,6 +160,7 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_resolve(cases, stage, scene, 5);
     if (colour != PixelFormat::kRGBA16F) continue;
     add_velocity(cases, stage, scene);
+    add_blurs(cases, stage, scene);
     scene.plan.settings.clamp_ringing = false;
     add_scale(cases, stage, scene, Method::kCatmullRom, 1.7, " unclamped");
     scene.plan.settings.clamp_ringing = true;

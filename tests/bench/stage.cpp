@@ -71,6 +71,20 @@ ImageView Stage::noise(Extent extent, PixelFormat format, int index) {
   return images_.back().image.view();
 }
 
+ImageView Stage::velocity(Extent extent, const std::function<float(int x, int y)>& value) {
+  Result<Image> image = device_.allocate(extent, PixelFormat::kRG32F);
+  if (!image.ok()) throw std::runtime_error(image.status().message());
+  std::vector<Vec2> texels;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x)
+      texels.push_back({value(x, y), 0});
+  }
+  const Status status = device_.upload(image->view(), extent, texels.data());
+  if (!status.ok()) throw std::runtime_error(status.message());
+  velocities_.push_back(std::move(image).value());
+  return velocities_.back().view();
+}
+
 FrameInputs Stage::frame(Extent render, PixelFormat colour, float jitter, int index) {
   FrameInputs inputs;
   inputs.colour = noise(render, colour, index);
@@ -82,11 +96,14 @@ FrameInputs Stage::frame(Extent render, PixelFormat colour, float jitter, int in
   return inputs;
 }
 
-void Stage::add(std::vector<Case>& cases, Case what, Enqueue enqueue) {
-  what.run = [enqueue = std::move(enqueue)] {
-    cl::Event event;
-    enqueue(&event);
-    return milliseconds(event);
+void Stage::add(std::vector<Case>& cases, Case what, Enqueue enqueue, int kernels) {
+  what.run = [enqueue = std::move(enqueue), kernels] {
+    std::vector<cl::Event> events(static_cast<std::size_t>(kernels));
+    enqueue(events.data());
+    double ms = 0;
+    for (const cl::Event& event : events)
+      ms += milliseconds(event);
+    return ms;
   };
   cases.push_back(std::move(what));
 }

@@ -31,12 +31,15 @@ class Stage {
   // down. One image for each extent, format and `index`, shared by all who ask for it.
   ImageView noise(Extent extent, PixelFormat format, int index = 0);
 
+  // A velocity target whose texel (x, y) holds (value(x, y), 0).
+  ImageView velocity(Extent extent, const std::function<float(int x, int y)>& value);
+
   // Colour, velocity, depth and reactive values of one frame at `render`.
   FrameInputs frame(Extent render, PixelFormat colour, float jitter, int index);
 
-  // Adds to `cases` a case that times `enqueue` by its event.
+  // Adds to `cases` a case that times `enqueue` by the events of its `kernels` kernels.
   using Enqueue = std::function<void(cl::Event*)>;
-  static void add(std::vector<Case>& cases, Case what, Enqueue enqueue);
+  static void add(std::vector<Case>& cases, Case what, Enqueue enqueue, int kernels = 1);
 
   // The float4 copy of the output, the unit of speed.
   void add_copy(std::vector<Case>& cases);
@@ -54,6 +57,7 @@ class Stage {
   AxisTables tables_;
   cl::Buffer counter_;
   std::vector<Noise> images_;
+  std::vector<Image> velocities_;
 };
 
 }  // namespace quincunx::bench

@@ -44,6 +44,7 @@ struct FrameInputs {
 struct FrameOutputs {
   ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
+  ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
 };
 
 struct PassReport {

@@ -53,6 +53,13 @@ struct QuincunxSettings {
   float velocity_weight = 1;  // K of kVelocity; >= 0
 };
 
+// Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
+// moment.
+struct MotionBlurSettings {
+  float shutter = 0;  // part of a frame's time that the shutter is open, in [0, 2]; 0: no blur
+  int samples = 8;    // at most, of a pixel: 4, 8, 16, 32 or 64; slow motion takes fewer
+};
+
 struct ResolveSettings {
   Method method = Method::kQuincunx;
   Extent output = {};                            // the picture's size
@@ -70,6 +77,7 @@ struct ResolveSettings {
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
   QuincunxSettings quincunx = {};
+  MotionBlurSettings blur = {};
 };
 
 // Where the resolve finds velocity.
@@ -122,6 +130,8 @@ struct ResolvePlan {
   std::vector<LeftOut> left_out;
 
   bool keeps_previous_frame() const { return settings.method == Method::kQuincunx; }
+  bool weighs_velocity() const;             // the two-frame resolve reads velocity
+  bool blurs() const;                       // motion blur is wanted, and something moves
   std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ
   std::string explain() const;              // a page of plain text
 };

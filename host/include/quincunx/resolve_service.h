@@ -12,9 +12,11 @@
 // device only from one thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
@@ -26,6 +28,13 @@ namespace quincunx {
 // Checks every field of a frame against a plan without a device. The message names every bad field, what it
 // holds and what would be right. Pure; thread-safe.
 Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs);
+
+// How each tile of the output, of 32 x 32 pixels, was blurred: 0 copied (nothing moves there), 1 colour alone
+// (everything moves alike), 2 with depth and velocity of each sample.
+struct TileKinds {
+  Extent tiles;
+  std::vector<std::uint8_t> kinds;  // row by row
+};
 
 class ResolveService {
  public:
@@ -49,6 +58,9 @@ class ResolveService {
   // Fills the top left `render` of an image with one value (unused channels ignored): the partial clear.
   // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
   Status clear(const ImageView& image, Extent render, const float value[4]);
+
+  // Of the last frame, for inspection: waits for it. Errors: kInvalidArgument where the plan does not blur.
+  Result<TileKinds> tile_kinds() const;
 
   Status finish();  // waits until every dispatched frame is done
 
