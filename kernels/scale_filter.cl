@@ -14,6 +14,7 @@
 // Source: Sigg and Hadwiger, "Fast Third-Order Texture Filtering", 2005; Keys, "Cubic Convolution Interpolation for Digital
 // Image Processing", 1981; Duchon, "Lanczos Filtering in One and Two Dimensions", 1979.
 // Reference: tests/reference/scale.cpp
+#include "multiply_add.h"
 #include "sanitise.h"
 #include "texel.h"
 
@@ -61,14 +62,14 @@ static inline void filter_four_columns(const FilterParams* params, COLOUR_TEXELS
   const TexelLayout layout = params->source;
 #if TAPS == 4
   // Written out: PoCL does not unroll.
-  const float16 mean = four_texels(source, layout, x, row.base) * weights[0] +
-                       four_texels(source, layout, x, row.base + 1) * weights[1] +
-                       four_texels(source, layout, x, row.base + 2) * weights[2] +
-                       four_texels(source, layout, x, row.base + 3) * weights[3];
+  float16 mean = four_texels(source, layout, x, row.base) * weights[0];
+  mean = MULTIPLY_ADD(four_texels(source, layout, x, row.base + 1), (float16)(weights[1]), mean);
+  mean = MULTIPLY_ADD(four_texels(source, layout, x, row.base + 2), (float16)(weights[2]), mean);
+  mean = MULTIPLY_ADD(four_texels(source, layout, x, row.base + 3), (float16)(weights[3]), mean);
 #else
   float16 mean = 0.0f;
   for (int k = 0; k < TAPS_Y; ++k)
-    mean += four_texels(source, layout, x, row.base + k) * weights[k];
+    mean = MULTIPLY_ADD(four_texels(source, layout, x, row.base + k), (float16)(weights[k]), mean);
 #endif
   vstore16(mean, 0, (__private float*)(columns->mean + i));
 #if CLAMP
@@ -112,11 +113,14 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
                                     __global const float* weights, int4* largest) {
   const float4* taps = columns->mean + (span.base - base);
 #if TAPS == 4
-  float4 mean = taps[0] * weights[0] + taps[1] * weights[1] + (taps[2] * weights[2] + taps[3] * weights[3]);
+  float4 mean = taps[0] * weights[0];
+  mean = MULTIPLY_ADD(taps[1], (float4)(weights[1]), mean);
+  mean = MULTIPLY_ADD(taps[2], (float4)(weights[2]), mean);
+  mean = MULTIPLY_ADD(taps[3], (float4)(weights[3]), mean);
 #else
   float4 mean = 0.0f;
   for (int k = 0; k < TAPS_X; ++k)
-    mean += taps[k] * weights[k];
+    mean = MULTIPLY_ADD(taps[k], (float4)(weights[k]), mean);
 #endif
   *largest = larger_magnitude(*largest, mean);
 #if CLAMP
@@ -125,20 +129,22 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
   return mean;
 }
 
-// The plain way for one pixel of any viewport and any values: NaN counts as 0, +-Inf as +-65504.
+// The plain way for one pixel of any viewport and any values: NaN counts as 0, +-Inf as +-65504. Sums in the order of the
+// functions above, so that a pixel comes out the same to the last bit whichever way it went.
 static inline float4 filter_careful(const FilterParams* params, COLOUR_TEXELS source, FilterSpan column, FilterSpan row,
                                     __global const float* column_weights, __global const float* row_weights, bool* met) {
   const int right = params->source_width - 1;
   const int below = params->source_height - 1;
   float4 mean = 0.0f;
-  for (int j = 0; j < TAPS_Y; ++j) {
-    for (int i = 0; i < TAPS_X; ++i) {
-      const float weight = row_weights[j] * column_weights[i];
-      if (weight == 0.0f) continue;
+  for (int i = 0; i < TAPS_X; ++i) {
+    float4 column_mean = 0.0f;
+    for (int j = 0; j < TAPS_Y; ++j) {
+      if (column_weights[i] == 0.0f || row_weights[j] == 0.0f) continue;
       const float4 texel = load_colour(source, params->source, min(column.base + i, right), min(row.base + j, below));
       *met = *met || any_non_finite4(texel);
-      mean += sanitise4(texel) * weight;
+      column_mean = MULTIPLY_ADD(sanitise4(texel), (float4)(row_weights[j]), column_mean);
     }
+    mean = MULTIPLY_ADD(column_mean, (float4)(column_weights[i]), mean);
   }
 #if CLAMP
   float4 low = FLT_MAX;

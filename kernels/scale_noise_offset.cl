@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// scale_noise_offset: each output pixel takes one of the four samples around its centre, at random with the weights that
-// bilinear would give them: bilinear in the mean of many pixels or frames, and no blur in any one.
-//   params      in   extents and layouts; seed: another seed gives another pattern. Not read: amplitude
+// scale_noise_offset: each output pixel takes one sample, that which a place drawn evenly from a square around the pixel's
+// centre falls into. The square is a texel wide, which gives the four samples around the centre bilinear's weights as
+// probabilities: bilinear in the mean of many pixels or frames, and no blur in any one. Above scale 1 the square is as wide as
+// the output pixel.
+//   params      in   extents and layouts; seed: another seed gives another pattern; reach: the square. Not read: amplitude
 //   axes        in   AxisTap of each output column, then of each output row; jitter is in them
 //   source      in   RGBA16F or RGBA32F, viewport of params.scale.source_width x source_height, linear, premultiplied
 //   output      out  RGBA32F or RGBA16F, output extent
@@ -12,6 +14,13 @@
 #include "hash.h"
 #include "sanitise.h"
 #include "texel.h"
+
+// The texel of each of four places: `weight` texels right of the centre of `base`, moved by random * reach, random in 0 to
+// 65535. In 2^-24 texels, so that no rounding moves a place.
+static inline int4 texels_at(int4 base, float4 weight, int4 random, int reach, int last) {
+  const int4 place = convert_int4(weight * 0x1p24f) + (random - 0x8000) * reach + 0x800000;
+  return clamp(base + (place >> 24), (int4)(0), (int4)(last));
+}
 
 __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
                                  OUTPUT_TEXELS output, __global uint* non_finite) {
@@ -30,12 +39,11 @@ __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTa
     const AxisTap t2 = axes[x + 2];
     const AxisTap t3 = axes[x + 3];
     const uint4 hash = hash_of4((uint4)(0, 1, 2, 3) + ((uint)x + row_hash));
-    const float4 random_x = convert_float4(as_int4(hash >> 16)) * 0x1p-16f;
-    const float4 random_y = convert_float4(as_int4(hash & 0xffffu)) * 0x1p-16f;
-    // A comparison of vectors gives -1 where it holds.
-    const int4 column = (int4)(t0.base, t1.base, t2.base, t3.base) -
-                        (random_x < (float4)(t0.weight1, t1.weight1, t2.weight1, t3.weight1));
-    const int4 line = row.base - (random_y < row.weight1);
+    const int4 column = texels_at((int4)(t0.base, t1.base, t2.base, t3.base),
+                                  (float4)(t0.weight1, t1.weight1, t2.weight1, t3.weight1), as_int4(hash >> 16),
+                                  params.reach_x, scale.source_width - 1);
+    const int4 line = texels_at((int4)(row.base), (float4)(row.weight1), as_int4(hash & 0xffffu), params.reach_y,
+                                scale.source_height - 1);
     FourPixels colour;
     colour.p0 = load_colour(source, scale.source, column.s0, line.s0);
     colour.p1 = load_colour(source, scale.source, column.s1, line.s1);

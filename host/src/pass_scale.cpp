@@ -49,6 +49,12 @@ float grain_amplitude(float grain, Extent render, Extent output) {
   return static_cast<float>(grain * std::max(0.0, 1 - scale));
 }
 
+// Of an output pixel, in 1/256 texels; a texel at least, and what the kernel's integers hold.
+int random_reach(int render, int output) {
+  const double ratio = static_cast<double>(render) / output;
+  return static_cast<int>(std::nearbyint(std::clamp(ratio, 1.0, 250.0) * 256));
+}
+
 }  // namespace
 
 const char* scale_kernel(Method method, Extent render, Extent output) {
@@ -99,7 +105,9 @@ void ScalePass::launch(const cl::CommandQueue& queue, AxisTables& tables, const 
                            .columns_per_item = columns_per_item(device_, extent.width)};
   if (is_noise(method_)) {
     const auto seed = static_cast<unsigned>(settings_.noise_moves ? inputs.frame_index : 0);
-    kernel_->setArg(0, NoiseParams{params, seed, grain_amplitude(settings_.grain, inputs.render, extent)});
+    kernel_->setArg(0, NoiseParams{params, seed, grain_amplitude(settings_.grain, inputs.render, extent),
+                                   random_reach(inputs.render.width, extent.width),
+                                   random_reach(inputs.render.height, extent.height)});
   } else {
     kernel_->setArg(0, params);
   }

@@ -58,8 +58,10 @@ typedef struct NoiseParams {
   ScaleParams scale;
   unsigned seed;
   float amplitude;  // of scale_noise, in [0, 1]
+  int reach_x;      // of scale_noise_offset, in 1/256 texels, [256, 250 * 256]: how far apart the places lie that a pixel
+  int reach_y;      // may look at
 } NoiseParams;
-QUINCUNX_CHECK_SIZE(NoiseParams, 52);
+QUINCUNX_CHECK_SIZE(NoiseParams, 60);
 
 // What one output column (or row) reads of its axis through a filter of N taps: texels base to base + N - 1, which lie
 // inside the viewport; in one of fewer than N, those beyond it have weight 0 and must not be read. Texels inner to inner

@@ -76,7 +76,10 @@ class Resolve : public ::testing::TestWithParam<Variant> {
   }
 
   Run bilinear(Rig& rig, const TestFrame& current, Extent output) {
-    ScalePass scale(testing::impl(), Method::kBilinear, plan_.settings);
+    ResolveSettings settings = plan_.settings;
+    settings.target = current.inputs.render;
+    settings.output = output;
+    ScalePass scale(testing::impl(), Method::kBilinear, settings);
     return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
       scale.enqueue(testing::impl().queue, tables, current.inputs, view, counter, nullptr);
     });

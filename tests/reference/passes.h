@@ -5,12 +5,9 @@
 #include <array>
 #include <cstdint>
 
-#include "picture.h"
+#include "scale.h"
 
 namespace quincunx::reference {
-
-Picture scale_point(const Frame& frame, int output_width, int output_height);
-Picture scale_bilinear(const Frame& frame, int output_width, int output_height);
 
 struct CameraVelocity {
   std::array<double, 2> velocity;  // uv; NaN where depth is not finite, +-65504 at most

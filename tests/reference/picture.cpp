@@ -39,10 +39,9 @@ std::array<Tap, 2> bilinear_taps(int x, int output, int render, double jitter) {
           Tap{std::clamp(left + 1, 0, render - 1), right_weight}};
 }
 
-namespace {
-
-std::size_t index(const Frame& frame, int x, int y) {
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
+const Pixel& texel_at(const Frame& frame, int x, int y) {
+  return frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(x)];
 }
 
 void add(Sample& sample, const Pixel& texel, double weight) {
@@ -55,13 +54,11 @@ void add(Sample& sample, const Pixel& texel, double weight) {
   }
 }
 
-}  // namespace
-
 Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int output_height) {
   const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
   const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
   Sample sample;
-  add(sample, frame.colour[index(frame, column, row)], 1);
+  add(sample, texel_at(frame, column, row), 1);
   return sample;
 }
 
@@ -69,7 +66,7 @@ Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int o
   Sample sample;
   for (const Tap& row : bilinear_taps(y, output_height, frame.height, frame.jitter_y)) {
     for (const Tap& column : bilinear_taps(x, output_width, frame.width, frame.jitter_x)) {
-      add(sample, frame.colour[index(frame, column.texel, row.texel)], row.weight * column.weight);
+      add(sample, texel_at(frame, column.texel, row.texel), row.weight * column.weight);
     }
   }
   return sample;

@@ -28,6 +28,8 @@ struct Frame {
   std::array<double, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
+const Pixel& texel_at(const Frame& frame, int x, int y);
+
 struct Picture {
   int width = 0;
   int height = 0;
@@ -56,6 +58,9 @@ struct Sample {
   double largest = 0;
   bool non_finite = false;
 };
+
+// The texel's sanitised colour, weighed; a weight of 0 leaves the sample as it is.
+void add(Sample& sample, const Pixel& texel, double weight);
 
 Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int output_height);
 Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height);

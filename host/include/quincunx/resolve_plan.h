@@ -24,7 +24,7 @@ enum class Method {
   kCatmullRom,   // 16 samples, cubic: sharp
   kLanczos2,     // 16 samples, windowed sinc, for comparison (Duchon 1979)
   kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
-  kNoiseOffset,  // one of bilinear's four samples, chosen at random by their weights (Binks 2012)
+  kNoiseOffset,  // one of bilinear's four samples, at random by their weights (Binks 2012)
   kQuincunx,     // this frame and the previous one on the five-of-a-die pattern
 };
 

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// a * b + c rounded the same way wherever it stands: once where the device fuses fast, twice elsewhere. Without it a compiler
+// may fuse one copy of a sum and not another, and two ways to the same pixel differ in the last bit.
+#pragma once
+
+#ifdef FP_FAST_FMAF
+#define MULTIPLY_ADD(a, b, c) fma(a, b, c)
+#else
+#pragma OPENCL FP_CONTRACT OFF
+#define MULTIPLY_ADD(a, b, c) ((a) * (b) + (c))
+#endif

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "scale_fixture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx::testing {
+namespace {
+
+constexpr double kLargestHalf = 65504;
+
+reference::Filter filter_for(Method method) {
+  switch (method) {
+    case Method::kBSpline:
+      return reference::Filter::kBSpline;
+    case Method::kCatmullRom:
+      return reference::Filter::kCatmullRom;
+    case Method::kLanczos2:
+      return reference::Filter::kLanczos2;
+    default:
+      return reference::Filter::kTent;
+  }
+}
+
+bool larger(Extent render, Extent output) {
+  return render.width > output.width || render.height > output.height;
+}
+
+}  // namespace
+
+std::string name_of(const ScaleVariant& variant) {
+  std::string method = quincunx::name_of(variant.method);
+  std::replace(method.begin(), method.end(), '-', '_');
+  return fmt::format("{}{}_{}_{}_to_{}", method, variant.clamp_ringing ? "" : "_unclamped",
+                     variant.storage == Storage::kImage ? "image" : "buffer",
+                     quincunx::name_of(variant.colour), quincunx::name_of(variant.resolved));
+}
+
+bool takes_one_sample(Method method) {
+  return method == Method::kPoint || method == Method::kNoise || method == Method::kNoiseOffset;
+}
+
+bool rings(Method method) {
+  return method == Method::kCatmullRom || method == Method::kLanczos2;
+}
+
+ScaleRig::ScaleRig(const ScaleVariant& variant)
+    : variant_(variant), formats_{.storage = variant.storage, .colour = variant.colour} {
+  settings_.storage = variant.storage;
+  settings_.colour = variant.colour;
+  settings_.resolved = variant.resolved;
+  settings_.clamp_ringing = variant.clamp_ringing;
+  settings_.grain = 0.75f;
+}
+
+// Each pass serves one output, and viewports up to twice as wide and high or up to `render`.
+ScalePass& ScaleRig::pass_for(Extent output, Extent render) {
+  const bool serves = pass_ && settings_.output == output && render.width <= settings_.target.width &&
+                      render.height <= settings_.target.height;
+  if (!serves) {
+    settings_.output = output;
+    settings_.target = {std::max(2 * output.width, render.width), std::max(2 * output.height, render.height)};
+    pass_ = std::make_unique<ScalePass>(impl(), variant_.method, settings_);
+  }
+  return *pass_;
+}
+
+ScaleRig::Run ScaleRig::run(Rig& rig, const TestFrame& frame, Extent output) {
+  AxisTables tables(impl(), output);
+  const ImageView view = rig.output(settings_.resolved, output);
+  const Counter counter = rig.counter();
+  pass_for(output, frame.inputs.render).enqueue(impl().queue, tables, frame.inputs, view, counter, nullptr);
+  Run result{rig.bytes(view, output), {}, 0};
+  result.pixels = decode(settings_.resolved, result.bytes);
+  result.non_finite = rig.count(counter);
+  const std::vector<Pixel> all = rig.pixels(view, view.extent);
+  for (int y = 0; y < view.extent.height; ++y) {
+    for (int x = 0; x < view.extent.width; ++x) {
+      if (x < output.width && y < output.height) continue;
+      EXPECT_EQ(all[static_cast<std::size_t>(y * view.extent.width + x)][0], -7) << x << ", " << y;
+    }
+  }
+  return result;
+}
+
+reference::Sampler ScaleRig::sampler(const TestFrame& frame, Extent output) const {
+  const reference::Frame& source = frame.reference;
+  const auto seed = static_cast<std::uint32_t>(frame.inputs.frame_index);
+  const Extent render = frame.inputs.render;
+  const double scale = std::sqrt(static_cast<double>(render.area()) / static_cast<double>(output.area()));
+  const double amplitude = static_cast<double>(settings_.grain) * std::max(0.0, 1 - scale);
+  switch (variant_.method) {
+    case Method::kPoint:
+      return reference::point_sampler(source, output.width, output.height);
+    case Method::kNoise:
+      return reference::grain_sampler(source, amplitude, seed, output.width, output.height);
+    case Method::kNoiseOffset:
+      return reference::offset_sampler(source, seed, output.width, output.height);
+    case Method::kBilinear:
+      if (!larger(render, output)) return reference::bilinear_sampler(source, output.width, output.height);
+      [[fallthrough]];
+    default:
+      return reference::filter_sampler(source, filter_for(variant_.method),
+                                       settings_.clamp_ringing && rings(variant_.method), output.width,
+                                       output.height);
+  }
+}
+
+double ScaleRig::relative_error(Extent render, Extent output) const {
+  if (variant_.method == Method::kNoise) return kGrainError;
+  if (takes_one_sample(variant_.method)) return 0;
+  if (variant_.method == Method::kBilinear && !larger(render, output)) return kBilinearError;
+  const Filter filter = filter_of(variant_.method);
+  return filter_error(filter_taps(filter, render.width, output.width),
+                      filter_taps(filter, render.height, output.height));
+}
+
+void ScaleRig::compare(const FrameSpec& spec, Extent output, const std::vector<Pixel>& colour) {
+  Rig rig;
+  TestFrame source = frame(rig, spec, colour);
+  source.inputs.frame_index = spec.seed;
+  const Run actual = run(rig, source, output);
+  reference::Picture expected = reference::scale(output.width, output.height, sampler(source, output));
+  if (settings_.resolved == PixelFormat::kRGBA16F) {
+    for (Pixel& pixel : expected.pixels) {
+      for (double& value : pixel)
+        value = std::clamp(value, -kLargestHalf, kLargestHalf);
+    }
+  }
+  const double error = relative_error(spec.render, output);
+  const auto bound = [&](std::size_t i) {
+    double magnitude = expected.largest[i];
+    for (const double value : expected.pixels[i])
+      magnitude = std::max(magnitude, std::abs(value));
+    return error * expected.largest[i] + kDenormal * (1 + error / kRounding) +
+           output_rounding(settings_.resolved, magnitude);
+  };
+  const std::string what =
+      fmt::format("{}x{} -> {}x{}, jitter {}, {}, {}", spec.render.width, spec.render.height, output.width,
+                  output.height, spec.jitter.x, spec.jitter.y, name_of(spec.colour));
+  expect_close(expected, actual.pixels, bound, what, settings_.resolved);
+  EXPECT_EQ(actual.non_finite, expected.non_finite) << what;
+}
+
+}  // namespace quincunx::testing
