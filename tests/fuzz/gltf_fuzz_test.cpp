@@ -5,7 +5,6 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "../tools/temporary_folder.h"
 #include "gltf_loader.h"
 #include "random.h"
+#include "rounds.h"
 #include "scene_check.h"
 
 namespace quincunx::testing {
@@ -20,12 +20,6 @@ namespace {
 
 using scenes::Random;
 using scenes::Scene;
-
-int rounds() {
-  constexpr int kRounds = 3000;  // a few seconds each, under the sanitizers too
-  const char* value = std::getenv("QUINCUNX_FUZZ_ROUNDS");
-  return value != nullptr ? std::max(1, std::atoi(value)) : kRounds;
-}
 
 // A file in which everything that is read occurs.
 GltfFile everything() {

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+// ResolutionController: from the times of past frames to the render extent of the next one.
+//
+// What all controllers share: the ladder they choose from, the target, and the checks of what they are told.
+// A controller is pure: it has no clock, no device and no random numbers, so that the same calls in the same
+// order give the same extents on every machine. Not thread safe: one thread at a time calls an object.
+//
+//   Result<std::unique_ptr<ResolutionController>> controller = make_predictive_controller(settings);
+//   each frame:  viewport.set_render(controller->next()), draw;
+//                for every timer that has come back, oldest first: controller->observe(timing)
+//
+// Times may come back late, several at once, or not at all. Each is paired with the extent of its own frame.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "quincunx/image.h"
+#include "quincunx/resolution_ladder.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+// What is known of one past frame. Zero, or kUnknownQueue, means not known unless a comment says otherwise.
+struct FrameTiming {
+  static constexpr int kUnknownQueue = -1;
+
+  std::uint64_t frame = 0;     // its number; rises from call to call, gaps are allowed
+  Extent render = {};          // the extent it was drawn at; both sides at least 1
+  double gpu_ms = 0;           // busy time of its critical path, without bubbles and without waiting for the
+                               // display; must be above 0
+  double cpu_ms = 0;           // time the processor needed to prepare it
+  double interval_ms = 0;      // from the previous frame's start to its own: the whole frame, waits included
+  int queued = kUnknownQueue;  // finished frames that wait for the display now, as this timing is handed in
+  int missed_vsyncs = 0;       // refreshes without a new frame since the previous timing; 0 means none
+  double blur_px = 0;          // mean length of its motion blur streaks in output pixels; 0 means none
+};
+
+class ResolutionController {
+ public:
+  static constexpr double kLongestMs = 60000;  // no time and no target is longer
+
+  virtual ~ResolutionController() = default;
+
+  virtual const char* name() const = 0;  // "predictive"
+
+  // Learns from one frame and chooses next(). Errors: kInvalidArgument for a frame number that is not above
+  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kLongestMs],
+  // another field that is negative (queued: below -1), too long or not finite. After an error nothing has
+  // changed, so that a caller may ignore it.
+  Status observe(const FrameTiming& timing);
+
+  // The extent to draw the next frame at: a rung of the ladder. Before the first observe() the highest one.
+  Extent next() const { return ladder_[rung_]; }
+  int rung() const { return rung_; }
+
+  // The time a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
+  // kInvalidArgument for one outside (0, kLongestMs]; the old one then stays.
+  Status set_target_ms(double target_ms);
+  double target_ms() const { return target_ms_; }
+
+  const ResolutionLadder& ladder() const { return ladder_; }
+
+ protected:
+  // Both must have been checked: see check_target().
+  ResolutionController(ResolutionLadder ladder, double target_ms);
+  ResolutionController(const ResolutionController&) = default;
+  ResolutionController& operator=(const ResolutionController&) = default;
+
+  static Status check_target(double target_ms);
+
+  // Called with a valid timing: returns the next rung, or one outside the ladder, which is clamped.
+  virtual int choose(const FrameTiming& timing) = 0;
+
+ private:
+  Status check(const FrameTiming& timing) const;
+
+  ResolutionLadder ladder_;
+  double target_ms_;
+  int rung_;
+  std::uint64_t last_frame_ = 0;
+  bool observed_ = false;
+};
+
+// The seed's proportional controller (Binks, "Dynamic Resolution Rendering", 2012, "Resolution Control"):
+//   s <- s (1 + k (1 - t / T)),  t = mean of gpu_ms and interval_ms; gpu_ms alone where the interval is
+//   unknown or
+// significantly longer, which is a spike of the processor or a wait for the display. s scales both axes.
+struct ProportionalSettings {
+  LadderSettings ladder = {};
+  double target_ms = 1000.0 / 60;
+  double rate = 0.05;        // k, in (0, 1]; the paper gives none
+  double spike_ratio = 1.5;  // an interval longer than this times gpu_ms is ignored; at least 1
+};
+Result<std::unique_ptr<ResolutionController>> make_proportional_controller(
+    const ProportionalSettings& settings);
+
+// The minimum-of-N controller (the draw-time tutorial for MonoGame): with m the shortest of the last N times
+// and the target reduced by a margin,
+//   s <- s + factor s (T' - m) / T',  T' = target * margin.  s scales both axes.
+struct MinimumOfNSettings {
+  LadderSettings ladder = {};
+  double target_ms = 1000.0 / 60;
+  int count = 5;         // N, in [1, 1000]; the tutorial gives none
+  double factor = 0.2;   // ResolutionChangeFactor, in (0, 1]
+  double margin = 0.87;  // 29 ms of 33.3, in (0, 1]
+};
+Result<std::unique_ptr<ResolutionController>> make_minimum_of_n_controller(
+    const MinimumOfNSettings& settings);
+
+}  // namespace quincunx

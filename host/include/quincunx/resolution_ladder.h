@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// ResolutionLadder: the render extents that a resolution controller may choose, from smallest to largest.
+//
+// Pure arithmetic, immutable after creation; any thread may read it. Every rung is the output extent plus a
+// multiple of `step` pixels on each axis (the rungs of DynamicViewport), and differs from its neighbour by
+// one step on one axis. Areas therefore rise strictly from rung to rung, in steps as fine as the order of the
+// axes allows. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 3 (2 pixel
+// increments; horizontal only, or horizontal first).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+enum class AxisOrder : std::uint8_t {
+  kHorizontalFirst,  // the width, until it lies at .75 of the height's scale; from there on both in turns
+  kHorizontalOnly,   // the width; the height stays the output's
+  kBoth,             // both in turns, always at nearly the same scale
+};
+
+struct LadderSettings {
+  Extent output = {};      // both sides in [1, 32768]
+  double min_scale = 0.5;  // per axis, of the output; above 0
+  double max_scale = 1;    // in [min_scale, 2]
+  AxisOrder order = AxisOrder::kHorizontalFirst;
+  int step = 2;           // pixels, at least 1
+  Extent floor = {8, 8};  // no side is smaller (or than the output, where that is smaller)
+};
+
+class ResolutionLadder {
+ public:
+  // The output is a rung whenever [min_scale, max_scale] holds 1; a range narrower than a step holds one rung
+  // on that axis. Errors: kInvalidArgument for a field outside the bounds above or min_scale > max_scale.
+  static Result<ResolutionLadder> create(const LadderSettings& settings);
+
+  int size() const { return static_cast<int>(rungs_.size()); }  // at least 1
+  int top() const { return size() - 1; }
+  Extent operator[](int rung) const { return rungs_[static_cast<std::size_t>(rung)]; }
+  Extent output() const { return output_; }
+
+  // Pixels of an extent over pixels of the output.
+  double area_fraction(Extent extent) const;
+  double area_fraction(int rung) const { return area_fraction((*this)[rung]); }
+
+  // The largest rung of at most this area fraction; the lowest one where all are larger or it is NaN.
+  int highest_within(double area_fraction) const;
+  // The same for a scale of both axes: area fraction = scale squared.
+  int highest_within_scale(double scale) const { return highest_within(scale * scale); }
+
+ private:
+  ResolutionLadder(Extent output, std::vector<Extent> rungs);
+
+  Extent output_;
+  std::vector<Extent> rungs_;
+};
+
+}  // namespace quincunx

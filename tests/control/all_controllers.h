@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Every controller that the library makes, for tests of what they share.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "quincunx/resolution_controller.h"
+
+namespace quincunx::testing {
+
+using Controller = std::unique_ptr<ResolutionController>;
+
+struct ControllerKind {
+  std::string name;
+  std::function<Result<Controller>(const LadderSettings&, double target_ms)> make;
+};
+
+inline std::vector<ControllerKind> all_controllers() {
+  return {
+      {"proportional",
+       [](const LadderSettings& ladder, double target_ms) {
+         return make_proportional_controller({.ladder = ladder, .target_ms = target_ms});
+       }},
+      {"minimum_of_n",
+       [](const LadderSettings& ladder, double target_ms) {
+         return make_minimum_of_n_controller({.ladder = ladder, .target_ms = target_ms});
+       }},
+  };
+}
+
+}  // namespace quincunx::testing
