@@ -28,6 +28,10 @@ Status ResolutionController::check(const FrameTiming& timing) const {
     return Status::invalid(
         fmt::format("frame is {}, late or a duplicate; the last one was {}", timing.frame, last_frame_));
   }
+  if (timing.next_frame != 0 && timing.next_frame <= timing.frame) {
+    return Status::invalid(
+        fmt::format("next_frame is {}; it must be 0 or above frame, {}", timing.next_frame, timing.frame));
+  }
   if (timing.render.width < 1 || timing.render.height < 1) {
     return Status::invalid(fmt::format("render is {}x{}; both sides must be at least 1", timing.render.width,
                                        timing.render.height));

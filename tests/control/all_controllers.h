@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/predictive_controller.h"
 #include "quincunx/resolution_controller.h"
 
 namespace quincunx::testing {
@@ -29,6 +30,18 @@ inline std::vector<ControllerKind> all_controllers() {
       {"minimum_of_n",
        [](const LadderSettings& ladder, double target_ms) {
          return make_minimum_of_n_controller({.ladder = ladder, .target_ms = target_ms});
+       }},
+      {"predictive",
+       [](const LadderSettings& ladder, double target_ms) {
+         return make_predictive_controller({.ladder = ladder, .target_ms = target_ms});
+       }},
+      {"predictive_two_buffers",
+       [](const LadderSettings& ladder, double target_ms) {
+         return make_predictive_controller({.ladder = ladder,
+                                            .target_ms = target_ms,
+                                            .buffers = 2,
+                                            .cpu_bound = CpuBound::kFollow,
+                                            .blur_aware = {.enabled = true}});
        }},
   };
 }

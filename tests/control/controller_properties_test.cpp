@@ -158,6 +158,7 @@ TEST_P(EveryController, BadTimingsChangeNothing) {
     }
     refused(with([](FrameTiming& t) { t.render = {0, 100}; }), "render");
     refused(with([](FrameTiming& t) { t.render = {100, -2}; }), "render");
+    refused(with([](FrameTiming& t) { t.next_frame = t.frame; }), "next_frame");
     refused(with([](FrameTiming& t) { t.queued = -2; }), "queued");
     refused(with([](FrameTiming& t) { t.missed_vsyncs = -1; }), "missed_vsyncs");
     ASSERT_TRUE(twin->observe(good).ok());

@@ -82,6 +82,12 @@ TEST(MinimumOfNController, StepTakesTheShortestOfTheLastN) {
   EXPECT_EQ(after(*controller, {.gpu_ms = 60}).area(), 534360);
   // m = min(12.5, 60, 5) = 5: s = .731025 * 1.1 = .8041275; within 646621: 804 x 804 = 646416
   EXPECT_EQ(after(*controller, {.gpu_ms = 5}), (Extent{804, 804}));
+  // m = min(60, 5, 30) = 5: s = .8041275 * 1.1 = .88454025; m = min(5, 30, 30) = 5: s = .972994275
+  EXPECT_EQ(after(*controller, {.gpu_ms = 30}), (Extent{884, 884}));
+  EXPECT_EQ(after(*controller, {.gpu_ms = 30}), (Extent{972, 972}));
+  // 5 has left: m = 30: s = .972994275 (1 + .2 (10 - 30) / 10) = .583796565; within 340818.4: 582 x 584 =
+  // 339888
+  EXPECT_EQ(after(*controller, {.gpu_ms = 30}).area(), 339888);
 }
 
 TEST(MinimumOfNController, DefaultMarginIsTheTutorials) {

@@ -25,14 +25,15 @@ namespace quincunx {
 struct FrameTiming {
   static constexpr int kUnknownQueue = -1;
 
-  std::uint64_t frame = 0;     // its number; rises from call to call, gaps are allowed
-  Extent render = {};          // the extent it was drawn at; both sides at least 1
+  std::uint64_t frame = 0;       // its number; rises from call to call, gaps are allowed
+  std::uint64_t next_frame = 0;  // number of the frame that next() will be drawn as; 0: the one after `frame`
+  Extent render = {};            // the extent it was drawn at; both sides at least 1
   double gpu_ms = 0;           // busy time of its critical path, without bubbles and without waiting for the
                                // display; must be above 0
   double cpu_ms = 0;           // time the processor needed to prepare it
-  double interval_ms = 0;      // from the previous frame's start to its own: the whole frame, waits included
-  int queued = kUnknownQueue;  // finished frames that wait for the display now, as this timing is handed in
-  int missed_vsyncs = 0;       // refreshes without a new frame since the previous timing; 0 means none
+  double interval_ms = 0;      // from the previous frame's start on the device to its own: work and waits
+  int queued = kUnknownQueue;  // finished frames not yet shown when it was finished, itself included
+  int missed_vsyncs = 0;       // refreshes without a new frame before it was shown; 0 means none
   double blur_px = 0;          // mean length of its motion blur streaks in output pixels; 0 means none
 };
 

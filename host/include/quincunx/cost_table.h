@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// CostTable: measured frame times by resolution, each with a confidence that decays as it ages.
+//
+// Recorded at test points (each resolution in turn, the scene held still) or while a program runs, kept as
+// JSON text. A controller takes its first guess of what does not scale from it. A value without clock or
+// device; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 3:
+// weight past times with a confidence value by how long it is since that resolution was chosen, and use the
+// inverse to extrapolate from those chosen recently.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+class CostTable {
+ public:
+  static constexpr double kLargestArea = 4;  // scale 2 on both axes
+  static constexpr int kBinsPerArea = 64;    // resolutions of one 64th of the output's area count as the same
+
+  // An entry's confidence halves in half_life_frames. Errors: kInvalidArgument for one outside [1, 1e9].
+  static Result<CostTable> create(double half_life_frames = 3600);
+
+  // One frame of this area fraction (in (0, 4]) took `gpu_ms` (in (0, 60000]). Frame numbers may repeat but
+  // not fall. Errors: kInvalidArgument; nothing has changed then.
+  Status record(std::uint64_t frame, double area_fraction, double gpu_ms);
+
+  // In [0, 1]: 1 right after a resolution was recorded, 0 where it never was.
+  double confidence(double area_fraction) const;
+
+  // Expected time in ms: what was recorded, as far as its confidence goes, and for the rest what the other
+  // entries, by their own confidence, extrapolate to if fixed_part of the cost does not scale. Nothing while
+  // the table is empty or for an area fraction outside (0, 4].
+  std::optional<double> predict(double area_fraction, double fixed_part = 0.25) const;
+
+  // The part of the cost at the output resolution that does not scale: of the straight line through the
+  // entries, within [0, 0.9]. Nothing while they do not span a quarter of the output's area.
+  std::optional<double> fixed_part() const;
+
+  bool empty() const { return entries_.empty(); }
+
+  // JSON text and back. Ages are kept: an old table is trusted less. Errors of from_json(): kInvalidArgument,
+  // saying what is wrong, for text that to_json() would not write.
+  std::string to_json() const;
+  static Result<CostTable> from_json(const std::string& text);
+
+ private:
+  struct Entry {
+    int bin = 0;
+    double area = 0;    // mean of what was recorded
+    double gpu_ms = 0;  // the same
+    double weight = 0;  // confidence of what `area` and `gpu_ms` average, when last recorded
+    double age = 0;     // frames since then
+  };
+  explicit CostTable(double half_life_frames) : half_life_frames_(half_life_frames) {}
+  double decay(double frames) const;
+  const Entry* find(int bin) const;
+
+  double half_life_frames_;
+  std::uint64_t frame_ = 0;
+  bool started_ = false;
+  std::vector<Entry> entries_;  // sorted by bin
+};
+
+}  // namespace quincunx

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// The default resolution controller: it predicts the next frame's time and spends what the display's queue
+// allows.
+//
+// What it knows of the world is a level (the time a frame would take at the output resolution), how much of
+// that does not scale, and the backlog: how far the device is behind the display, from 0 (it waits for a free
+// buffer) to the slack that the buffers give (beyond it a refresh is missed). It aims just below the target
+// while the backlog is small, below it in proportion to the backlog, and never so high that one more frame
+// like the worst one seen would use up the slack. Single slow frames are ridden out while there is slack; two
+// in a row are a step and answered at once. docs/control.md has the whole algorithm and its measured table.
+//
+// What it makes use of, if told: interval_ms or queued (else the backlog is only computed), next_frame
+// (timers that come back late), missed_vsyncs (surprises make it careful until the queue is seen full again),
+// cpu_ms, blur_px.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "quincunx/cost_table.h"
+#include "quincunx/resolution_controller.h"
+
+namespace quincunx {
+
+enum class CpuBound : std::uint8_t {
+  kHold,    // while the processor needs longer than target and device, the resolution never rises
+  kFollow,  // then the median of its last five times, at most twice the target, is the target
+};
+
+// Motion blur hides detail: the longer its streaks, the lower the resolution may be. Off unless asked for.
+struct BlurAware {
+  bool enabled = false;
+  double start_px = 4;         // mean streak, output pixels, from which it counts
+  double full_px = 24;         // from which lowest_scale is the limit; above start_px
+  double lowest_scale = 0.71;  // per axis, in (0, 1]; the seed's figure 10
+};
+
+struct PredictiveSettings {
+  LadderSettings ladder = {};
+  double target_ms = 1000.0 / 60;
+  int buffers =
+      3;  // of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there
+          // is no slack: every frame has to fit, and recurring slow frames lower the resolution.
+  double fixed_part = 0.25;                             // first guess of what does not scale, in [0, 0.9]
+  std::optional<CostTable> calibration = std::nullopt;  // replaces that guess, if it spans enough resolutions
+  CpuBound cpu_bound = CpuBound::kHold;
+  BlurAware blur_aware = {};
+};
+
+// Errors: kInvalidArgument for a field outside its range.
+Result<std::unique_ptr<ResolutionController>> make_predictive_controller(const PredictiveSettings& settings);
+
+}  // namespace quincunx
