@@ -151,6 +151,47 @@ TEST_P(ControllerFuzz, RecoversFromAnyPast) {
   }
 }
 
+// Damaged text of a cost table: refused with a reason, or a table whose answers are finite or none.
+TEST(CostTableFuzz, DamagedText) {
+  CostTable table = CostTable::create(500).value();
+  for (std::uint64_t frame = 0; frame < 40; ++frame) {
+    ASSERT_TRUE(table
+                    .record(frame * 10, 0.25 + 0.03 * static_cast<double>(frame),
+                            5 + 0.3 * static_cast<double>(frame))
+                    .ok());
+  }
+  const std::string good = table.to_json();
+  Random random(13);
+  int loaded = 0;
+  for (int round = 0; round < rounds(); ++round) {
+    SCOPED_TRACE(round);
+    std::string text = good;
+    for (int hit = 0, hits = 1 + random.below(3); hit < hits; ++hit) {
+      text[static_cast<std::size_t>(random.below(static_cast<int>(text.size())))] =
+          random.below(2) == 0 ? static_cast<char>('0' + random.below(10))
+                               : static_cast<char>(random.below(256));
+    }
+    if (random.below(10) == 0)
+      text.resize(static_cast<std::size_t>(random.below(static_cast<int>(text.size()))));
+    const Result<CostTable> result = CostTable::from_json(text);
+    if (!result.ok()) {
+      EXPECT_EQ(result.status().message().rfind("cost table: ", 0), 0u);
+      continue;
+    }
+    ++loaded;
+    for (const double area : {0.01, 0.3, 0.5, 1.0, 4.0}) {
+      const double confidence = result.value().confidence(area);
+      EXPECT_TRUE(confidence >= 0 && confidence <= 1);
+      const double time = result.value().predict(area).value_or(1);
+      EXPECT_TRUE(std::isfinite(time) && time > 0);
+    }
+    const double fixed_part = result.value().fixed_part().value_or(0);
+    EXPECT_TRUE(fixed_part >= 0 && fixed_part <= 0.9);
+  }
+  EXPECT_GT(loaded, 0);
+  EXPECT_LT(loaded, rounds());
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ControllerFuzz, ::testing::ValuesIn(all_controllers()),
                          [](const auto& kind) { return kind.param.name; });
 

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// DetailFollower: detail settings that go along with the resolution that a controller chooses.
+//
+// Level of detail, blur samples, shading rate and the like change in a few levels; each change is seen and
+// may cost time, so a level is left only when the resolution has clearly moved on, and rests. dual_output()
+// does the same for the output resolution. Pure values; not thread safe. Source: "Dynamic Resolution Scaling
+// Implementation Best Practice", section 10 (scale settings as well as resolution; "dual" resolution
+// scaling).
+#pragma once
+
+#include "quincunx/image.h"
+#include "quincunx/resolution_ladder.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+struct DetailSettings {
+  int levels = 4;            // in [2, 64]; 0 is the full detail, levels - 1 the least
+  double full_area = 0.8;    // area fraction from which detail is full
+  double least_area = 0.3;   // area fraction to which it falls to the least; in (0, full_area)
+  double hysteresis = 0.25;  // of a level, that has to be passed before it is left; in [0, 1]
+  int rest_frames = 30;      // at least, between two changes; at least 0
+};
+
+class DetailFollower {
+ public:
+  // Errors: kInvalidArgument for a field outside its range.
+  static Result<DetailFollower> create(const DetailSettings& settings = {});
+
+  // Called once per frame with the area fraction it is drawn at; at most one level further per call. One that
+  // is not a positive finite number changes nothing. Returns level().
+  int observe(double area_fraction);
+  int level() const { return level_; }
+  // The level as a share: 1 full detail, 0 the least. Multiply sample counts or distances by a range of it.
+  double share() const { return 1 - static_cast<double>(level_) / (settings_.levels - 1); }
+
+ private:
+  explicit DetailFollower(const DetailSettings& settings)
+      : settings_(settings), since_(settings.rest_frames) {}
+
+  DetailSettings settings_;
+  int level_ = 0;
+  int since_;
+};
+
+// The output extent that goes with a render extent: the smallest rung of `outputs` whose area the render
+// extent fills to at most `most_filled` (in (0, 1]); the highest rung where all are filled more. With 0.64,
+// passes after upscaling run at the lowest output until the render extent reaches .8 of it on each axis, and
+// at more from there on. Errors: kInvalidArgument for an empty render extent or a most_filled outside its
+// range.
+Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double most_filled = 0.64);
+
+}  // namespace quincunx
