@@ -14,7 +14,7 @@ namespace quincunx::tools {
 
 namespace {
 
-constexpr int kDigitsOfHash = 4;
+constexpr int kDigitsOfSingleHash = 4;
 constexpr int kMaxDigits = 18;
 
 bool is_mark(char c) {
@@ -29,10 +29,11 @@ struct Field {
 
 Field field_of_marks(std::string_view text) {
   Field field;
-  while (field.length < text.size() && is_mark(text[field.length])) {
-    field.digits += text[field.length] == '#' ? kDigitsOfHash : 1;
+  while (field.length < text.size() && is_mark(text[field.length]))
     ++field.length;
-  }
+  const std::string_view marks = text.substr(0, field.length);
+  const bool single_hash = std::count(marks.begin(), marks.end(), '#') == 1;
+  field.digits = static_cast<int>(marks.size()) + (single_hash ? kDigitsOfSingleHash - 1 : 0);
   return field;
 }
 

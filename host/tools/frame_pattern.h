@@ -14,9 +14,10 @@ namespace quincunx::tools {
 
 enum class FileFormat : std::uint8_t { kPng, kExr };
 
-// A path with at most one number in it: '#' stands for four digits, '@' for one, and runs add up as
-// OpenImageIO and Nuke have it ("#@" is five digits, "@@@" three); printf's "%d", "%4d" and "%04d" work too,
-// and "%%" is a percent sign. Numbers wider than the field are written whole. A value; thread-safe.
+// A path with at most one number in it: a single '#' stands for four digits as OpenImageIO has it, each of
+// several for one as Nuke and Blender have it ("####" is four digits, too); '@' stands for one, and runs add
+// up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too, and "%%" is a percent
+// sign. Numbers wider than the field are written whole. A value; thread-safe.
 class FramePattern {
  public:
   // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two

@@ -159,6 +159,7 @@ Status write_exr(const std::string& path, Extent extent, std::span<const Channel
     pixel_bytes += size_of(channels[i].stored);
   }
   spec.attribute("compression", fmt::format("zip:{}", kZipCompressionLevel));
+  spec.attribute("DateTime", "");  // else the present moment: the same pixels make the same file
   set_attributes(spec, attributes);
   const Result<std::vector<std::byte>> native = interleave(path, extent, channels, pixel_bytes);
   if (!native.ok()) return native.status();

@@ -22,7 +22,8 @@ TEST(FramePattern, FillsInTheNumber) {
   EXPECT_EQ(expanded("a.#.png", 7), "a.0007.png");
   EXPECT_EQ(expanded("a.@.png", 7), "a.7.png");
   EXPECT_EQ(expanded("a.@@@.png", 7), "a.007.png");
-  EXPECT_EQ(expanded("a.##.png", 7), "a.00000007.png");
+  EXPECT_EQ(expanded("a.##.png", 7), "a.07.png");
+  EXPECT_EQ(expanded("a.####.png", 7), "a.0007.png");
   EXPECT_EQ(expanded("a.#@.exr", 7), "a.00007.exr");
   EXPECT_EQ(expanded("%04d.EXR", 12345), "12345.EXR");
   EXPECT_EQ(expanded("100%%/#.png", 1), "100%/0001.png");
