@@ -2,6 +2,7 @@
 #include "tools/atomic_file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <regex>
 #include <system_error>
 #include <utility>
 
@@ -85,6 +87,15 @@ Status AtomicFile::commit() {
 void AtomicFile::discard() noexcept {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
   temporary_.clear();
+}
+
+std::optional<std::string> abandoned_target(const std::string& name) {
+  // As temporary_name() makes it.
+  static const std::regex form(R"(\.(.+)\.(\d{1,9})-\d+\.part)");
+  std::smatch parts;
+  if (!std::regex_match(name, parts, form)) return std::nullopt;
+  const bool lives = ::kill(static_cast<pid_t>(std::stol(parts[2])), 0) == 0 || errno != ESRCH;
+  return lives ? std::nullopt : std::optional(parts[1].str());
 }
 
 Status write_text(const std::string& path, std::string_view text) {

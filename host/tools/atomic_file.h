@@ -2,6 +2,7 @@
 // AtomicFile: a file that appears under its name only when it is whole.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -32,6 +33,11 @@ class AtomicFile {
   std::string path_;
   std::string temporary_;  // empty: nothing to remove
 };
+
+// Of the name (without folder) of a temporary file that a process left behind which is no longer there: the
+// name that the file was meant to get. Nothing for any other name. Processes of other machines that share the
+// folder cannot be seen.
+std::optional<std::string> abandoned_target(const std::string& name);
 
 // Writes a text file whole or not at all. Errors: kIoFailure.
 Status write_text(const std::string& path, std::string_view text);

@@ -7,6 +7,8 @@
 
 #include <charconv>
 
+#include "quincunx/device.h"
+
 namespace quincunx::tools {
 
 void set_up_log(bool quiet, int verbosity) {
@@ -32,6 +34,17 @@ std::string parse_extent(const std::string& text, Extent& extent) {
     if (height.ec == std::errc() && height.ptr == end && extent.width > 0 && extent.height > 0) return {};
   }
   return fmt::format("'{}' is no size; write WIDTHxHEIGHT, for example 1280x720", text);
+}
+
+void print_opencl_devices() {
+  const std::vector<DeviceInfo> devices = Device::list();
+  for (const DeviceInfo& device : devices) {
+    fmt::print("OpenCL {}  {} ({}, {})\n          {} units, {:.1f} GiB{}{}\n", device.index, device.name,
+               device.platform, device.driver, device.compute_units,
+               static_cast<double>(device.global_memory_bytes) / (1 << 30), device.images ? ", images" : "",
+               device.gl_sharing ? ", GL sharing advertised" : "");
+  }
+  if (devices.empty()) fmt::print("OpenCL    no device\n");
 }
 
 std::string command_line_text(const std::string& program, int argc, const char* const* argv) {

@@ -23,6 +23,9 @@ int fail(const Status& status);
 // "1280x720" into `extent`. What is wrong with the text, in one sentence; empty when nothing is.
 std::string parse_extent(const std::string& text, Extent& extent);
 
+// The OpenCL devices on stdout, as --list-devices has them.
+void print_opencl_devices();
+
 // As it was typed, quoted for a shell where need be.
 std::string command_line_text(const std::string& program, int argc, const char* const* argv);
 

@@ -38,4 +38,11 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
   app.add_flag("!--no-dither", settings.dither, "Round to 8 bits without dither");
 }
 
+std::string resolve_settings_text(const ResolveSettings& settings) {
+  return fmt::format("{}, velocity weight {}, ringing {}, grain {}, noise {}, blur {} of {} samples",
+                     method_name(settings), settings.quincunx.velocity_weight,
+                     settings.clamp_ringing ? "clamped" : "free", settings.grain,
+                     settings.noise_moves ? "moves" : "still", settings.blur.shutter, settings.blur.samples);
+}
+
 }  // namespace quincunx::tools

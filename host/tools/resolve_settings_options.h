@@ -2,6 +2,8 @@
 // The options of every command line that say how frames are resolved and presented.
 #pragma once
 
+#include <string>
+
 #include "quincunx/resolve_plan.h"
 
 namespace CLI {
@@ -13,5 +15,8 @@ namespace quincunx::tools {
 // --method with its forms and settings, --tone-map, --no-dither. `settings` must outlive the parsing and
 // holds the defaults.
 void add_resolve_options(CLI::App& app, ResolveSettings& settings);
+
+// What these options come to, as far as linear pixels depend on it: "quincunx:velocity, velocity weight 1".
+std::string resolve_settings_text(const ResolveSettings& settings);
 
 }  // namespace quincunx::tools

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <map>
 
-#include "quincunx/device.h"
 #include "scene_catalog.h"
 #include "tools/option_choice.h"
 #include "tools/program.h"
@@ -98,14 +97,7 @@ void print_scenes() {
 }
 
 void print_devices(const PictureOptions& options) {
-  const std::vector<DeviceInfo> devices = Device::list();
-  for (const DeviceInfo& device : devices) {
-    fmt::print("OpenCL {}  {} ({}, {})\n          {} units, {:.1f} GiB{}{}\n", device.index, device.name,
-               device.platform, device.driver, device.compute_units,
-               static_cast<double>(device.global_memory_bytes) / (1 << 30), device.images ? ", images" : "",
-               device.gl_sharing ? ", GL sharing advertised" : "");
-  }
-  if (devices.empty()) fmt::print("OpenCL    no device\n");
+  tools::print_opencl_devices();
   auto context = gl::EglContext::create(options.platform);
   if (!context.ok()) {
     fmt::print("OpenGL    {}\n", context.status().message());

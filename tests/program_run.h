@@ -25,9 +25,10 @@ inline std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// `arguments` go through a shell; "{}/" in them is the folder.
+// `program`: that of the room, unless a test says otherwise. `arguments` go through a shell; "{}/" in them is
+// the folder.
 inline ProgramResult run_program(const TemporaryFolder& folder, std::string arguments,
-                                 const char* program = QUINCUNX_RENDER) {
+                                 const char* program = QUINCUNX_PROGRAM) {
   for (std::size_t at; (at = arguments.find("{}/")) != std::string::npos;) {
     arguments.replace(at, 3, folder.file(""));
   }

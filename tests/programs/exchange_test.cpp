@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// quincunx-dump writes a sequence, quincunx-resolve resolves it: the pixels are those that quincunx-render
+// makes of the same frames.
+#include <gtest/gtest.h>
+
+#include "program_run.h"
+#include "tools/image_io.h"
+
+namespace quincunx {
+namespace {
+
+using testing::ProgramResult;
+using testing::run_program;
+
+constexpr int kFrames = 5;
+
+class Exchange : public ::testing::Test {
+ protected:
+  void run(const char* program, const std::string& arguments) {
+    const ProgramResult result = run_program(folder_, "-q " + arguments, program);
+    ASSERT_EQ(result.exit_code, 0) << arguments << "\n" << result.err;
+  }
+
+  // Files dumped of `scene` go to s/, frames resolved of them to r/, both with `method`.
+  void dump_and_resolve(const std::string& scene, const std::string& method, const std::string& resolving) {
+    run(QUINCUNX_DUMP,
+        fmt::format("{} --frames {} --device-depth --sequence '{{}}/s/f.%04d.exr'", scene, kFrames));
+    run(QUINCUNX_RESOLVE, fmt::format("'{{}}/s/f.%04d.exr' {} {}", method, resolving));
+  }
+
+  tools::LoadedImage image(const std::string& name) const {
+    auto loaded = tools::read_image(folder_.file(name));
+    EXPECT_TRUE(loaded.ok()) << loaded.status().message();
+    return loaded.ok() ? loaded.value() : tools::LoadedImage{};
+  }
+
+  std::vector<float> channel(const tools::LoadedImage& image, const std::string& name) const {
+    const int index = image.channel(name);
+    EXPECT_GE(index, 0) << name;
+    std::vector<float> values;
+    for (std::size_t i = 0; index >= 0 && i < image.pixels.size(); i += image.channels.size())
+      values.push_back(image.pixels[i + static_cast<std::size_t>(index)]);
+    return values;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+// Two sizes in turn, motion, reactive values; the history of the last frame is of another size.
+const std::string kScene = "--scene particles --output 160x90 --scale-path ramp:0.5,0.8 --seed 3";
+
+TEST_F(Exchange, FloatsComeBackBitForBit) {
+  for (const std::string method : {"--method quincunx", "--method bilinear --jitter quincunx",
+                                   "--method catmull-rom --jitter quincunx"}) {
+    const std::string resolve_method = method.substr(0, method.find(" --jitter"));
+    dump_and_resolve(kScene + " " + method, resolve_method, "--out '{}/r/f.%04d.exr' --store float");
+    // The stages hold floats.
+    run(QUINCUNX_DUMP,
+        fmt::format("{} {} --frames {} --frame 4 --stages resolved --format exr --out '{{}}/d'", kScene,
+                    method, kFrames));
+    const auto drawn = image("d/frame.0004.output.exr");
+    const auto resolved = image("r/f.0004.exr");
+    ASSERT_EQ(drawn.extent, resolved.extent);
+    for (const char* name : {"R", "G", "B", "A"}) {
+      EXPECT_TRUE(channel(resolved, name) == channel(drawn, name)) << method << " " << name;
+    }
+    const auto green = channel(resolved, "G");
+    EXPECT_NE(green, std::vector<float>(green.size(), green[0])) << "a picture, not a constant";
+  }
+}
+
+TEST_F(Exchange, EveryFrameOfTheRendererComesBack) {
+  run(QUINCUNX_PROGRAM, fmt::format("{} --frames {} --out '{{}}/f.%04d.exr'", kScene, kFrames));
+  dump_and_resolve(kScene, "", "--out '{}/r/f.%04d.exr'");
+  for (int index = 0; index < kFrames; ++index) {
+    const auto drawn = image(fmt::format("f.{:04}.exr", index));
+    const auto resolved = image(fmt::format("r/f.{:04}.exr", index));
+    for (const char* name : {"R", "G", "B", "A"})
+      EXPECT_TRUE(channel(resolved, name) == channel(drawn, name)) << index << " " << name;
+  }
+}
+
+// Tone map, dither and motion blur included; blur reads the depth, too.
+TEST_F(Exchange, PresentedAndBlurredFramesComeBack) {
+  const std::string blur = "--blur 0.5 --exposure 1.5";
+  const std::string scene = "--scene wheel --output 160x90 --scale 0.7";
+  for (const char* ending : {"png", "exr"}) {
+    run(QUINCUNX_PROGRAM,
+        fmt::format("{} {} --frames {} --out '{{}}/f.%04d.{}'", scene, blur, kFrames, ending));
+    dump_and_resolve(scene, blur, fmt::format("--out '{{}}/r/f.%04d.{}'", ending));
+    for (int index = 0; index < kFrames; ++index) {
+      const auto drawn = image(fmt::format("f.{:04}.{}", index, ending));
+      const auto resolved = image(fmt::format("r/f.{:04}.{}", index, ending));
+      for (const char* name : {"R", "G", "B"})
+        EXPECT_TRUE(channel(resolved, name) == channel(drawn, name)) << ending << " " << index << " " << name;
+    }
+  }
+  // And the blur was there.
+  run(QUINCUNX_RESOLVE, "'{}/s/f.%04d.exr' --out '{}/sharp.%04d.exr'");
+  EXPECT_NE(channel(image("sharp.0004.exr"), "G"), channel(image("r/f.0004.exr"), "G"));
+}
+
+}  // namespace
+}  // namespace quincunx

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// Killed at any moment, a run leaves only whole files, and --resume makes the rest as if nothing had
+// happened.
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "sequence_fixture.h"
+
+extern char** environ;
+
+namespace quincunx {
+namespace {
+
+constexpr int kFrames = 14;
+
+class Resume : public testing::SequenceTest {
+ protected:
+  // Large enough that a file takes longer to write than to notice.
+  void write_large_frames() {
+    for (int number = 1; number <= kFrames; ++number) {
+      testing::FrameFile file = frame(number);
+      file.extent = {160, 90};
+      file.attributes[1] = {"quincunx:outputSize", Vec2{640, 360}};
+      write_frame(input(number), file);
+    }
+  }
+
+  std::filesystem::path results() const { return folder_.file("r"); }
+
+  // Files of the results by how their names end.
+  int count(const std::string& ending) const {
+    int found = 0;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(results(), error), end; !error && entry != end;
+         entry.increment(error)) {
+      found += entry->path().string().ends_with(ending) ? 1 : 0;
+    }
+    return found;
+  }
+
+  // Starts a run and kills it as soon as `now` says so. True: it was killed; false: it ended before.
+  bool run_and_kill(int signal, const std::function<bool()>& now) {
+    const std::string in = folder_.file("f.%04d.exr");
+    const std::string out = (results() / "u.%04d.exr").string();
+    const char* arguments[] = {QUINCUNX_PROGRAM, in.c_str(), "--out", out.c_str(), "--resume", "-q", nullptr};
+    pid_t process = 0;
+    EXPECT_EQ(
+        ::posix_spawn(&process, QUINCUNX_PROGRAM, nullptr, nullptr, const_cast<char**>(arguments), environ),
+        0);
+    int status = 0;
+    while (::waitpid(process, &status, WNOHANG) == 0) {
+      if (now()) {
+        ::kill(process, signal);
+        ::waitpid(process, &status, 0);
+        return WIFSIGNALED(status) || WEXITSTATUS(status) != 0;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return false;
+  }
+
+  void expect_whole_files() {
+    for (int number = 1; number <= kFrames; ++number) {
+      const std::string path = (results() / fmt::format("u.{:04}.exr", number)).string();
+      if (!std::filesystem::exists(path)) continue;
+      EXPECT_EQ(testing::read_file(path), testing::read_file(output(number))) << path;
+    }
+  }
+};
+
+TEST_F(Resume, KilledAnywhereItGoesOnAsIfNothingHadHappened) {
+  write_large_frames();
+  resolve_to("u", "");
+  for (const int done : {0, 1, 4, 8}) {
+    // In the middle of writing a file, once so many are there.
+    run_and_kill(SIGKILL, [&] { return count(".exr") >= done && count(".part") > 0; });
+    expect_whole_files();
+  }
+  const int there = count(".exr");
+  EXPECT_GT(there, 0);
+  EXPECT_LT(there, kFrames) << "the run was never killed";
+  const auto last = resolve("'{}/f.%04d.exr' --out '{}/r/u.%04d.exr' --resume --json");
+  ASSERT_EQ(last.exit_code, 0) << last.err;
+  EXPECT_EQ(count(".exr"), kFrames);
+  EXPECT_EQ(count(".part"), 0) << "what the killed runs left behind";
+  expect_whole_files();
+}
+
+TEST_F(Resume, StoppedBySignalItEndsCleanly) {
+  write_large_frames();
+  resolve_to("u", "");
+  ASSERT_TRUE(run_and_kill(SIGTERM, [&] { return count(".exr") >= 2; }));
+  EXPECT_EQ(count(".part"), 0);
+  EXPECT_LT(count(".exr"), kFrames);
+  expect_whole_files();
+}
+
+TEST_F(Resume, WhatIsThereIsLeftAlone) {
+  write_frames(1, 6);
+  resolve_to("u", "");
+  for (const int number : {2, 5})
+    std::filesystem::remove(output(number));
+  const auto before = std::filesystem::last_write_time(output(3));
+  const std::string third = testing::read_file(output(3));
+  resolve_to("again", "");
+  resolve_to("u", "--resume");
+  for (int number = 1; number <= 6; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "again"))) << number;
+  EXPECT_EQ(std::filesystem::last_write_time(output(3)), before);
+  const auto nothing = resolve("'{}/f.%04d.exr' --out '{}/u.%04d.exr' --resume");
+  EXPECT_EQ(nothing.exit_code, 0);
+  EXPECT_NE(nothing.err.find("nothing to do"), std::string::npos) << nothing.err;
+}
+
+// A run without history at its start is continued as such.
+TEST_F(Resume, ColdRunsStayCold) {
+  write_frames(1, 6);
+  resolve_to("u", "--frames 3-6 --warm-up 0");
+  resolve_to("part", "--frames 3-6 --warm-up 0");
+  for (const int number : {3, 5})
+    std::filesystem::remove(output(number, "part"));
+  resolve_to("part", "--frames 3-6 --warm-up 0 --resume");
+  for (int number = 3; number <= 6; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "part"))) << number;
+}
+
+TEST_F(Resume, WhatWasMadeOtherwiseIsMadeAgain) {
+  write_frames(1, 4);
+  resolve_to("u", "");
+  resolve_to("mixed", "--method bilinear --frames 1-2");
+  const auto result = resolve("'{}/f.%04d.exr' --out '{}/mixed.%04d.exr' --resume");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.err.find("2 frames are there, but made otherwise; they are made again: 1-2"),
+            std::string::npos)
+      << result.err;
+  for (int number = 1; number <= 4; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "mixed"))) << number;
+}
+
+TEST_F(Resume, LeftoversOfLivingProcessesStay) {
+  write_frames(1, 2);
+  const std::string mine = folder_.file(fmt::format(".u.0001.exr.{}-0.part", ::getpid()));
+  const std::string other = folder_.file(".u.0009.exr.999999999-0.part");  // not of this run
+  const std::string dead = folder_.file(".u.0002.exr.999999999-0.part");
+  for (const std::string& path : {mine, other, dead})
+    std::ofstream(path) << "part";
+  resolve_to("u", "");
+  EXPECT_TRUE(std::filesystem::exists(mine));
+  EXPECT_TRUE(std::filesystem::exists(other));
+  EXPECT_FALSE(std::filesystem::exists(dead));
+}
+
+}  // namespace
+}  // namespace quincunx
