@@ -54,6 +54,8 @@ void expand(std::string_view name, std::set<std::string>& seen, std::string& out
   }
 }
 
+}  // namespace
+
 std::optional<fs::path> cache_folder() {
   if (const char* own = std::getenv("QUINCUNX_CACHE_DIR")) {
     return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
@@ -66,6 +68,8 @@ std::optional<fs::path> cache_folder() {
   }
   return std::nullopt;
 }
+
+namespace {
 
 std::string cache_key(const Device::Impl& device, const std::string& source, const std::string& options) {
   const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", options, device.info.platform,

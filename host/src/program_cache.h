@@ -7,6 +7,8 @@
 // off.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -30,6 +32,9 @@ cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, con
 // The whole source of kernel `name` with its includes expanded, each once: what build_kernel compiles. Throws
 // std::out_of_range for a name that is not embedded.
 std::string kernel_source(const std::string& name);
+
+// The folder of everything that is worth keeping between runs; nothing where the user wants none.
+std::optional<std::filesystem::path> cache_folder();
 
 // Counts since the process started, for tests and reports. Thread-safe.
 struct CacheCounts {

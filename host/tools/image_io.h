@@ -31,6 +31,11 @@ enum class PngAlpha : std::uint8_t {
 Status write_png(const std::string& path, Extent extent, const std::uint8_t* rgba, std::size_t row_bytes = 0,
                  PngAlpha alpha = PngAlpha::kOpaque);
 
+// The bytes of a PNG with 1 (grey) or 3 (RGB) channels of 8 bits, as small as they get: slow. Errors:
+// kInvalidArgument for another number of channels or a wrong count of texels.
+Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
+                                             std::span<const std::uint8_t> texels);
+
 enum class ChannelType : std::uint8_t { kHalf, kFloat };
 
 // One channel of an image in memory. `pixel_stride` and `row_stride` are bytes; 0: that of a packed plane.

@@ -3,18 +3,27 @@
 
 namespace quincunx::tools {
 
+namespace {
+
+constexpr const char* kVelocitySummary = "both frames, the previous one less where anything moves";
+
+}  // namespace
+
 const std::map<std::string, MethodChoice>& method_choices() {
+  using Form = TwoFrameForm;
+  static const Form usual = QuincunxSettings{}.form;
   static const std::map<std::string, MethodChoice> choices = {
-      {"point", {Method::kPoint}},
-      {"bilinear", {Method::kBilinear}},
-      {"b-spline", {Method::kBSpline}},
-      {"catmull-rom", {Method::kCatmullRom}},
-      {"lanczos2", {Method::kLanczos2}},
-      {"noise", {Method::kNoise}},
-      {"noise-offset", {Method::kNoiseOffset}},
-      {"quincunx", {Method::kQuincunx}},
-      {"quincunx:mean", {Method::kQuincunx, TwoFrameForm::kMean}},
-      {"quincunx:velocity", {Method::kQuincunx, TwoFrameForm::kVelocity}},
+      {"point", {Method::kPoint, usual, "the nearest sample"}},
+      {"bilinear", {Method::kBilinear, usual, "four samples"}},
+      {"b-spline", {Method::kBSpline, usual, "16 samples, cubic: smooth, never rings"}},
+      {"catmull-rom", {Method::kCatmullRom, usual, "16 samples, cubic: sharp"}},
+      {"lanczos2", {Method::kLanczos2, usual, "16 samples, windowed sinc"}},
+      {"noise", {Method::kNoise, usual, "the nearest sample with film grain"}},
+      {"noise-offset", {Method::kNoiseOffset, usual, "one of bilinear's samples, by chance"}},
+      {"quincunx", {Method::kQuincunx, usual, kVelocitySummary}},
+      {"quincunx:mean",
+       {Method::kQuincunx, Form::kMean, "the plain mean of this frame and the previous one"}},
+      {"quincunx:velocity", {Method::kQuincunx, Form::kVelocity, kVelocitySummary}},
   };
   return choices;
 }

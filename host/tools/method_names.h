@@ -13,11 +13,13 @@ namespace quincunx::tools {
 struct MethodChoice {
   Method method = Method::kQuincunx;
   TwoFrameForm form = QuincunxSettings{}.form;
+  std::string summary = {};  // what it does, in a few words
 
   friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
 };
 
-// Every name. A method alone has its usual form.
+// Every name: the one table that command lines, reports and benchmarks go by. A method alone has its usual
+// form.
 const std::map<std::string, MethodChoice>& method_choices();
 
 void choose(ResolveSettings& settings, const MethodChoice& choice);

@@ -53,6 +53,24 @@ TEST(Png, SkipsTheEndOfLongRows) {
   EXPECT_EQ(std::lround(image->at(1, 1, 0) * 255.0f), 9);
 }
 
+TEST(Png, EncodesInMemoryWhatAFileGivesBack) {
+  testing::TemporaryFolder folder;
+  const std::vector<std::uint8_t> rgb = {0, 1, 2, 253, 254, 255, 7, 8, 9, 100, 50, 25};
+  const auto bytes = encode_png({2, 2}, 3, rgb);
+  ASSERT_TRUE(bytes.ok()) << bytes.status().message();
+  std::ofstream(folder.file("a.png"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
+  const auto image = read_image(folder.file("a.png"));
+  ASSERT_TRUE(image.ok()) << image.status().message();
+  ASSERT_EQ(image->extent, (Extent{2, 2}));
+  for (int i = 0; i < 12; ++i) {
+    EXPECT_EQ(std::lround(255 * image->at(i / 3 % 2, i / 6, i % 3)), rgb[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_TRUE(encode_png({4, 3}, 1, rgb).ok());
+  EXPECT_FALSE(encode_png({2, 2}, 4, rgb).ok());
+  EXPECT_FALSE(encode_png({3, 2}, 3, rgb).ok());
+}
+
 TEST(Exr, ReturnsChannelsTypesAndValues) {
   const testing::TemporaryFolder folder;
   const Extent extent{3, 2};

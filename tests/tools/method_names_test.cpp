@@ -16,6 +16,7 @@ TEST(MethodNames, EachNameSaysWhatItChooses) {
     ASSERT_TRUE(method_choices().contains(longest)) << longest;
     EXPECT_EQ(method_choices().at(longest), choice) << name << " is reported as " << longest;
     EXPECT_EQ(longest.rfind(quincunx::name_of(choice.method), 0), 0u);
+    EXPECT_FALSE(choice.summary.empty()) << name;
   }
 }
 
