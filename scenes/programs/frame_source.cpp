@@ -7,63 +7,100 @@ namespace quincunx::scenes {
 
 Result<std::unique_ptr<FrameSource>> FrameSource::create(const FrameSourceSettings& settings) {
   auto source = std::unique_ptr<FrameSource>(new FrameSource(settings));
-  if (Status status = source->open(); !status.ok()) return status;
+  if (Status status = source->open_sequence(); !status.ok()) return status;
+  if (Status status = source->open_stage(); !status.ok()) return status;
   return source;
 }
 
-Status FrameSource::open() {
+Result<std::unique_ptr<FrameSource>> FrameSource::another(const SequenceSettings& sequence) const {
+  auto source = std::unique_ptr<FrameSource>(new FrameSource(settings_));
+  source->settings_.sequence = sequence;
+  if (Status status = source->open_sequence(); !status.ok()) return status;
+  source->stage_ = stage_;
+  return source;
+}
+
+Status FrameSource::open_sequence() {
   auto sequence = FrameSequence::create(settings_.sequence);
   if (!sequence.ok()) return sequence.status();
   sequence_ = sequence.value();
+  return {};
+}
+
+Status FrameSource::open_stage() {
+  stage_ = std::make_shared<Stage>();
   auto scene = open_scene(settings_.scene, settings_.seed);
   if (!scene.ok()) return scene.status();
-  scene_ = std::move(scene).value();
+  stage_->scene = std::move(scene).value();
 
   Device::list();  // some drivers want OpenCL enumerated before a GL context exists
   auto context = gl::EglContext::create(settings_.platform);
   if (!context.ok()) return context.status();
-  context_ = std::move(context).value();
-  auto device = gl::open_device(*context_, settings_.device, settings_.interop);
+  stage_->context = std::move(context).value();
+  auto device = gl::open_device(*stage_->context, settings_.device, settings_.interop);
   if (!device.ok()) return device.status();
-  device_ = device.value();
-  auto renderer = Renderer::create(scene_);
+  stage_->device = device.value();
+  auto renderer = Renderer::create(stage_->scene);
   if (!renderer.ok()) return renderer.status();
-  renderer_ = std::move(renderer).value();
+  stage_->renderer = std::move(renderer).value();
   return {};
 }
 
-Result<ResolvePlan> FrameSource::connect(ResolveSettings resolve, HandOver hand_over) {
-  resolve.output = sequence_->output();
-  resolve.target = sequence_->target();
-  const auto plan = plan_for(needs_of(scene_), resolve);
-  if (!plan.ok()) return plan.status();
+Result<ResolvePlan> FrameSource::connect(const ResolveSettings& resolve, HandOver hand_over) {
+  auto plans = connect_all({resolve}, hand_over);
+  if (!plans.ok()) return plans.status();
+  return plans->front();
+}
 
+Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSettings> resolves,
+                                                          HandOver hand_over) {
+  const SceneNeeds needs = needs_of(scene());
   gl::BridgeSettings bridging;
   bridging.interop = settings_.interop;
-  bridging.target = resolve.target;
-  bridging.output = resolve.output;
-  const bool every = hand_over == HandOver::kEvery;
-  bridging.depth = every || plan->reads_depth;
-  bridging.velocity = every || plan->velocity == VelocitySource::kTarget;
-  bridging.reactive = every || plan->reads_reactive;
-  auto bridge = gl::Bridge::create(*context_, *device_, bridging);
+  bridging.target = sequence_->target();
+  bridging.output = sequence_->output();
+  bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
+  for (ResolveSettings& resolve : resolves) {
+    resolve.output = bridging.output;
+    resolve.target = bridging.target;
+    const auto plan = plan_for(needs, resolve);
+    if (!plan.ok()) return plan.status();
+    bridging.depth |= plan->reads_depth;
+    bridging.velocity |= plan->velocity == VelocitySource::kTarget;
+    bridging.reactive |= plan->reads_reactive;
+  }
+  auto bridge = gl::Bridge::create(context(), device(), bridging);
   if (!bridge.ok()) return bridge.status();
   bridge_ = std::move(bridge).value();
 
-  resolve.storage = bridge_->storage();
-  return plan_for(needs_of(scene_), resolve);
+  std::vector<ResolvePlan> plans;
+  for (ResolveSettings& resolve : resolves) {
+    resolve.storage = bridge_->storage();
+    const auto plan = plan_for(needs, resolve);
+    if (!plan.ok()) return plan.status();
+    plans.push_back(plan.value());
+  }
+  return plans;
 }
 
 Status FrameSource::draw(std::int64_t index, bool keep_targets) {
+  if (Status status = begin(index, keep_targets); !status.ok()) return status;
+  return submit();
+}
+
+Status FrameSource::begin(std::int64_t index, bool keep_targets) {
   DrawnFrame frame = {.index = index, .view = sequence_->at(index)};
-  const int slot = static_cast<int>(index % bridge_->slots());
-  auto targets = bridge_->begin_draw(slot);
+  auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()));
   if (!targets.ok()) return targets.status();
-  if (Status status = renderer_->draw(*targets.value(), frame.view); !status.ok()) return status;
+  if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
   if (keep_targets) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
-  if (Status status = bridge_->submit(slot, frame.view.render); !status.ok()) return status;
   drawn_.push_back(std::move(frame));
   return {};
+}
+
+Status FrameSource::submit() {
+  const DrawnFrame& frame = drawn_.back();
+  return bridge_->submit(static_cast<int>(frame.index % bridge_->slots()), frame.view.render);
 }
 
 Result<FrameInputs> FrameSource::acquire() {
@@ -77,8 +114,8 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.reactive = shared->reactive;
   inputs.render = frame.view.render;
   inputs.jitter = frame.view.jitter;
-  inputs.camera = renderer_->camera_motion(frame.view);
-  inputs.exposure = settings_.exposure > 0 ? settings_.exposure : scene_.exposure;
+  inputs.camera = stage_->renderer->camera_motion(frame.view);
+  inputs.exposure = settings_.exposure > 0 ? settings_.exposure : scene().exposure;
   inputs.frame_index = static_cast<std::uint64_t>(frame.index);
   return inputs;
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "frame_sequence.h"
 #include "quincunx/device.h"
@@ -50,19 +51,31 @@ class FrameSource {
   // Errors: of any part, as that part words them.
   static Result<std::unique_ptr<FrameSource>> create(const FrameSourceSettings& settings);
 
+  // Another sequence of frames from the same scene, context, device and renderer.
+  Result<std::unique_ptr<FrameSource>> another(const SequenceSettings& sequence) const;
+
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
   // have. Before the first draw(). `resolve.output` and `target` are taken from the sequence.
-  Result<ResolvePlan> connect(ResolveSettings resolve, HandOver hand_over = HandOver::kPlanned);
+  Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
-  const Scene& scene() const { return scene_; }
-  const Device& device() const { return *device_; }
-  const gl::EglContext& context() const { return *context_; }
+  // The same for several resolves of the same frames: the slots have what any of their plans reads. In their
+  // order; at least one.
+  Result<std::vector<ResolvePlan>> connect_all(std::vector<ResolveSettings> resolves,
+                                               HandOver hand_over = HandOver::kPlanned);
+
+  const Scene& scene() const { return stage_->scene; }
+  const Device& device() const { return *stage_->device; }
+  const gl::EglContext& context() const { return *stage_->context; }
   const FrameSequence& sequence() const { return *sequence_; }
-  Renderer& renderer() { return *renderer_; }
+  Renderer& renderer() { return *stage_->renderer; }
   gl::Bridge& bridge() { return *bridge_; }
   const gl::Bridge& bridge() const { return *bridge_; }
 
   Status draw(std::int64_t index, bool keep_targets = false);
+
+  // draw() in its two steps, for those who time them: into the slot; to OpenCL.
+  Status begin(std::int64_t index, bool keep_targets = false);
+  Status submit();
 
   // The oldest frame that is not released: waits until OpenCL can read it. Its memory stays as it is until
   // the frame after the next is drawn.
@@ -72,15 +85,20 @@ class FrameSource {
   void release() { drawn_.pop_front(); }
 
  private:
+  struct Stage {
+    Scene scene;
+    std::optional<gl::EglContext> context;
+    std::optional<Device> device;
+    std::optional<Renderer> renderer;
+  };
+
   explicit FrameSource(const FrameSourceSettings& settings) : settings_(settings) {}
-  Status open();
+  Status open_sequence();
+  Status open_stage();
 
   FrameSourceSettings settings_;
-  Scene scene_;
-  std::optional<gl::EglContext> context_;
-  std::optional<Device> device_;
+  std::shared_ptr<Stage> stage_;  // outlives what was made in its context
   std::optional<FrameSequence> sequence_;
-  std::optional<Renderer> renderer_;
   std::unique_ptr<gl::Bridge> bridge_;
   std::deque<DrawnFrame> drawn_;
 };

@@ -106,9 +106,17 @@ void print_devices(const PictureOptions& options) {
   fmt::print("OpenGL    {} ({})\n", context->info().renderer, context->info().version);
 }
 
+Jitter jitter_for(Method method) {
+  return method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
+}
+
+// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012).
+float lod_bias_for(Method method, Jitter jitter) {
+  return method == Method::kQuincunx && jitter != Jitter::kNone ? -0.5f : 0.0f;
+}
+
 Jitter jitter_for(const PictureOptions& options) {
-  if (options.jitter) return *options.jitter;
-  return options.resolve.method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
+  return options.jitter.value_or(jitter_for(options.resolve.method));
 }
 
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
@@ -128,9 +136,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   settings.frames = options.frames;
   settings.fps = options.fps;
   settings.start_seconds = options.start;
-  // Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012).
-  settings.lod_bias =
-      options.resolve.method == Method::kQuincunx && jitter_for(options) != Jitter::kNone ? -0.5f : 0.0f;
+  settings.lod_bias = lod_bias_for(options.resolve.method, settings.jitter);
   return source;
 }
 

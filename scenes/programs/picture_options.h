@@ -48,6 +48,10 @@ void add_machine_options(CLI::App& app, PictureOptions& options);
 void print_scenes();
 void print_devices(const PictureOptions& options);
 
+// The jitter that suits a method, and the bias of texture detail that suits both.
+Jitter jitter_for(Method method);
+float lod_bias_for(Method method, Jitter jitter);
+
 Jitter jitter_for(const PictureOptions& options);
 
 // The frames that the options describe. Errors: kInvalidArgument, naming the option.
