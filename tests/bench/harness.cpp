@@ -9,12 +9,6 @@
 namespace quincunx::bench {
 namespace {
 
-double processor_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
 Timing summarise(std::vector<double> ms) {
   std::sort(ms.begin(), ms.end());
   return {ms[ms.size() / 2], ms[ms.size() * 95 / 100], ms.front()};
@@ -42,6 +36,12 @@ std::vector<Figures> run_interleaved(const std::vector<Case>& cases, int warm_ro
     figures.push_back({cases[i], summarise(samples[i].ms), summarise(samples[i].processor)});
   }
   return figures;
+}
+
+double processor_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
 double wall_ms(const std::function<void()>& run) {

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// Tables that sort by any column.
+
+// columns: {title, value(row) to sort by, text(row) to show, number, best: -1 less is better, 1 more is better}
+// group(row): rows among which the best value is marked.
+function makeTable(columns, rows, group) {
+  const body = el("tbody");
+  const heads = columns.map((column, i) => {
+    const button = el("button", { type: "button", onclick: () => sortBy(i) }, column.title);
+    return el("th", { class: column.number ? "number" : "", scope: "col" }, button);
+  });
+  const best = bestValues(columns, rows, group);
+  const lines = rows.map((row) => ({ row, node: lineOf(columns, row, group, best) }));
+  let sorted = -1;
+  let direction = 1;
+
+  function sortBy(index) {
+    const column = columns[index];
+    direction = sorted === index ? -direction : column.best === 1 ? -1 : 1;
+    sorted = index;
+    heads.forEach((head, i) => {
+      if (i === index) head.setAttribute("aria-sort", direction > 0 ? "ascending" : "descending");
+      else head.removeAttribute("aria-sort");
+    });
+    const missing = (value) => value === null || value === undefined;
+    lines.sort((a, b) => {
+      const x = column.value(a.row);
+      const y = column.value(b.row);
+      if (missing(x) || missing(y)) return missing(x) - missing(y);
+      return direction * (typeof x === "string" ? x.localeCompare(y) : x - y);
+    });
+    body.replaceChildren(...lines.map((line) => line.node));
+  }
+
+  body.append(...lines.map((line) => line.node));
+  const table = el("table", {}, el("thead", {}, el("tr", {}, ...heads)), body);
+  return {
+    node: el("div", { class: "table", tabindex: 0, role: "region", "aria-label": "Table" }, table),
+    show: (wanted) => lines.forEach((line) => { line.node.hidden = !wanted(line.row); }),
+  };
+}
+
+function bestValues(columns, rows, group) {
+  const best = new Map();
+  if (!group) return best;
+  for (const row of rows) {
+    columns.forEach((column, i) => {
+      const value = column.value(row);
+      if (!column.best || value === null || value === undefined) return;
+      const key = `${group(row)}|${i}`;
+      if (!best.has(key) || column.best * (value - best.get(key)) > 0) best.set(key, value);
+    });
+  }
+  return best;
+}
+
+function lineOf(columns, row, group, best) {
+  return el("tr", {}, ...columns.map((column, i) => {
+    const kinds = [column.number ? "number" : column.long ? "text" : ""];
+    if (column.best && best.get(`${group && group(row)}|${i}`) === column.value(row)) kinds.push("best");
+    return el("td", { class: kinds.join(" ").trim() }, column.text ? column.text(row) : String(column.value(row)));
+  }));
+}
+
+const textColumn = (title, value, long = false) => ({ title, value, long });
+const numberColumn = (title, value, text, best = 0) => ({
+  title, value, number: true, best, text: text || ((row) => number(value(row))),
+});
+
+const kCaseColumns = [
+  textColumn("scene", (row) => row.scene),
+  numberColumn("scale", (row) => row.scale, (row) => String(row.scale)),
+];
+const renderColumn = numberColumn("render", (row) => row.render.width * row.render.height, (row) => `${row.render.width}×${row.render.height}`);
+const caseOf = (row) => `${row.scene}|${row.scale}`;
+
+function makeRowsTable() {
+  const errors = page.measures.map((measure) => numberColumn(
+    measure.label, (row) => errorOf(row, measure.name),
+    (row) => number(errorOf(row, measure.name), isDecibels(measure.name) ? 4 : 3), measure.higher ? 1 : -1));
+  const speed = (field) => (row) => row.speed[field].median;
+  return makeTable([
+    ...kCaseColumns, textColumn("method", (row) => row.method),
+    numberColumn("ms, median", speed("ms"), (row) => `${number(row.speed.ms.median)} ${plusMinus(row.speed.ms)}`, -1),
+    numberColumn("ms, p95", (row) => row.speed.ms.p95),
+    numberColumn("× copy", speed("ratio"), null, -1),
+    numberColumn("× copy, processor time", speed("processor_ratio"), (row) => `${number(row.speed.processor_ratio.median)} ${plusMinus(row.speed.processor_ratio)}`, -1),
+    ...errors,
+    numberColumn("non-finite pixels", (row) => row.quality.non_finite, (row) => String(row.quality.non_finite)),
+    numberColumn("MB", (row) => row.speed.bytes, (row) => number(row.speed.bytes / 1e6)),
+    numberColumn("GB/s", (row) => row.speed.gigabytes_per_second),
+    renderColumn, textColumn("kernels", (row) => row.speed.kernels),
+  ], result.rows, caseOf);
+}
+
+function makeFramesTable() {
+  const part = (title, field) => numberColumn(title, (row) => row[field].median, (row) => number(row[field].median));
+  return makeTable([
+    ...kCaseColumns, renderColumn, textColumn("method", (row) => row.method),
+    part("draw, ms", "draw_ms"), part("interop, ms", "interop_ms"), part("resolve, ms", "resolve_ms"),
+    numberColumn("frame, ms", (row) => row.frame_ms.median, (row) => `${number(row.frame_ms.median)} ${plusMinus(row.frame_ms)}`),
+    numberColumn("p95", (row) => row.frame_ms.p95),
+    part("processor: draw", "draw_processor_ms"), part("interop", "interop_processor_ms"), part("resolve", "resolve_processor_ms"),
+    numberColumn("processor, frame", (row) => row.frame_processor_ms.median, (row) => `${number(row.frame_processor_ms.median)} ${plusMinus(row.frame_processor_ms)}`),
+    numberColumn("moved, MB", (row) => row.interop_bytes, (row) => number(row.interop_bytes / 1e6)),
+  ], result.frames);
+}
+
+function makeCopiesTable() {
+  return makeTable([
+    ...kCaseColumns,
+    numberColumn("ms, median", (row) => row.ms.median, (row) => `${number(row.ms.median)} ${plusMinus(row.ms)}`),
+    numberColumn("ms, p95", (row) => row.ms.p95), numberColumn("processor ms", (row) => row.processor_ms.median),
+    numberColumn("GB/s", (row) => row.gigabytes_per_second),
+  ], result.copies);
+}
+
+function makeScenesTable() {
+  return makeTable([
+    textColumn("scene", (row) => row.name), textColumn("what is seen", (row) => row.summary, true),
+    textColumn("what it tests", (row) => row.reason, true),
+    numberColumn("flicker of truth", (row) => row.truth_flicker),
+    numberColumn("uncovered", (row) => row.uncovered, (row) => `${number(100 * row.uncovered)} %`),
+  ], result.scenes);
+}
+
+function makeMethodsTable() {
+  return makeTable([
+    textColumn("method", (row) => row.name), textColumn("what it does", (row) => row.summary, true),
+    textColumn("jitter of its frames", (row) => row.jitter),
+    numberColumn("bias of texture detail", (row) => row.lod_bias, (row) => String(row.lod_bias)),
+  ], result.methods);
+}

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <utility>
+
+#include "bench_plan.h"
+#include "tools/method_names.h"
+
+namespace quincunx::bench {
+
+// In the order of growing effort that Method and TwoFrameForm have; of the names of one form only the
+// longest.
+std::vector<BenchMethod> all_methods() {
+  const std::string usual = tools::method_name(ResolveSettings{});
+  std::vector<BenchMethod> methods;
+  for (const auto& [name, choice] : tools::method_choices()) {
+    BenchMethod method{.name = name, .summary = choice.summary, .resolve = {}};
+    tools::choose(method.resolve, choice);
+    if (tools::method_name(method.resolve) != name) continue;
+    method.jitter = scenes::jitter_for(choice.method);
+    method.lod_bias = scenes::lod_bias_for(choice.method, method.jitter);
+    method.is_default = name == usual;
+    methods.push_back(std::move(method));
+  }
+  std::stable_sort(methods.begin(), methods.end(), [](const BenchMethod& a, const BenchMethod& b) {
+    return std::pair(a.resolve.method, a.resolve.quincunx.form) <
+           std::pair(b.resolve.method, b.resolve.quincunx.form);
+  });
+  return methods;
+}
+
+}  // namespace quincunx::bench

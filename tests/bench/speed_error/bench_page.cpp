@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "bench_page.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+#include "bench_findings.h"
+#include "bench_statistics.h"
+
+namespace quincunx::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view file(std::string_view name) {
+  for (const EmbeddedFile& embedded : embedded_page_files()) {
+    if (embedded.name == name) return embedded.text;
+  }
+  throw std::out_of_range("page file " + std::string(name));
+}
+
+std::string base64(std::span<const std::uint8_t> bytes) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = i; j < i + 3; ++j)
+      group = group << 8 | (j < bytes.size() ? bytes[j] : 0u);
+    for (std::size_t j = 0; j < 4; ++j)
+      text += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+// JSON inside a script element: no "</script>" or "<!--" may end it, whatever a name holds.
+std::string safe_in_script(std::string json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+Json gallery_json(const Gallery& gallery) {
+  Json scenes = Json::array();
+  for (const GalleryScene& scene : gallery.scenes) {
+    Json sheets = Json::array();
+    for (const Sheet& sheet : scene.sheets) {
+      sheets.push_back(
+          {{"scale", sheet.scale}, {"pictures", base64(sheet.pictures)}, {"errors", base64(sheet.errors)}});
+    }
+    scenes.push_back({{"name", scene.name}, {"x", scene.x}, {"y", scene.y}, {"sheets", std::move(sheets)}});
+  }
+  return {{"width", gallery.crop.width},
+          {"height", gallery.crop.height},
+          {"frame", gallery.frame},
+          {"names", gallery.names},
+          {"scenes", std::move(scenes)}};
+}
+
+Json page_json(const BenchResult& result, const Gallery& gallery) {
+  Json findings = Json::array();
+  for (const Finding& finding : findings_of(result)) {
+    findings.push_back(
+        {{"figure", finding.figure}, {"heading", finding.heading}, {"sentence", finding.sentence}});
+  }
+  Json measures = Json::array();
+  for (const ErrorMeasure& measure : error_measures()) {
+    measures.push_back(
+        {{"name", measure.name}, {"label", measure.label}, {"higher", measure.higher_is_better}});
+  }
+  const TypicalNoise noise = typical_noise(result);
+  return {{"findings", std::move(findings)},          {"measures", std::move(measures)},
+          {"cost_clock", cost_clock(result.machine)}, {"noise", {{"ms", noise.ms}, {"cost", noise.cost}}},
+          {"result", Json::parse(to_json(result))},   {"gallery", gallery_json(gallery)}};
+}
+
+// Replaces the one place where `mark` stands.
+void put(std::string& page, std::string_view mark, std::string_view text) {
+  const std::size_t at = page.find(mark);
+  if (at == std::string::npos) throw std::out_of_range("page mark " + std::string(mark));
+  page.replace(at, mark.size(), text);
+}
+
+}  // namespace
+
+std::string page_of(const BenchResult& result, const Gallery& gallery) {
+  std::string page{file("bench.html")};
+  std::string script;
+  for (const char* name : {"data.js", "plots.js", "frames.js", "tables.js", "viewer.js", "page.js"})
+    script += file(name);
+  put(page, "/*style*/", file("bench.css"));
+  put(page, "/*script*/", script);
+  put(page, "/*data*/",
+      safe_in_script(page_json(result, gallery).dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return page;
+}
+
+}  // namespace quincunx::bench

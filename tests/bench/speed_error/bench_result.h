@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// BenchResult: everything that one run of quincunx-bench found out, as plain data, JSON and CSV.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx::bench {
+
+inline constexpr int kResultFormat = 1;  // of the JSON; a reader refuses another
+
+// Repeated measurements of one quantity. `low` to `high` holds the true median with 95 % confidence as far as
+// the spread between rounds tells.
+struct Spread {
+  double median = 0;
+  double p95 = 0;  // nearest rank
+  double low = 0;
+  double high = 0;
+
+  friend bool operator==(const Spread&, const Spread&) = default;
+};
+
+// Errors against supersampled truth over the measured frames. Colours are exposed as the scene asks; "tone
+// mapped" is max(c, 0) / (1 + c), sRGB encoded. docs/bench.md defines each.
+struct Quality {
+  double psnr = std::numeric_limits<double>::infinity();         // dB, tone mapped, of the mean squared error
+  double psnr_linear = std::numeric_limits<double>::infinity();  // dB, linear light clipped to [0, 1]
+  double ssim = 1;
+  double flip = 0;
+  double error_p99 = 0;
+  double relative_error = 0;
+  double worst_window = 0;  // largest RMS error of any 16x16 pixels of any frame, tone mapped
+  int worst_frame = 0;
+  int worst_x = 0;  // upper left pixel
+  int worst_y = 0;
+  std::optional<double> flicker;   // absent where one frame was measured
+  std::optional<double> ghosting;  // RMS error of what was uncovered; absent where nothing was
+  std::int64_t non_finite = 0;     // pixels, all frames
+
+  friend bool operator==(const Quality&, const Quality&) = default;
+};
+
+// What the resolve passes of one frame cost, the present pass not among them.
+struct Speed {
+  Spread ms;                        // OpenCL events
+  Spread processor_ms;              // of this process, all threads
+  Spread ratio;                     // ms / that of the float4 copy, by round; p95 is that of rounds
+  Spread processor_ratio;           // processor_ms / that of the copy
+  std::uint64_t bytes = 0;          // read and written in a frame, each texel once
+  double gigabytes_per_second = 0;  // bytes / ms
+  std::string kernels;              // in order, joined by " + "
+
+  friend bool operator==(const Speed&, const Speed&) = default;
+};
+
+struct Row {
+  std::string scene;
+  double scale = 1;
+  std::string method;
+  Extent render;
+  Quality quality;
+  Speed speed;
+  std::vector<std::string> front;  // errors by name for which no other method is both faster and better
+
+  friend bool operator==(const Row&, const Row&) = default;
+};
+
+// The float4 copy of the output's size, measured among the methods of each scene and scale.
+struct CopyRow {
+  std::string scene;
+  double scale = 1;
+  Spread ms;
+  Spread processor_ms;
+  double gigabytes_per_second = 0;
+
+  friend bool operator==(const CopyRow&, const CopyRow&) = default;
+};
+
+// A whole frame with one method, nothing overlapped.
+struct FrameRow {
+  std::string scene;
+  double scale = 1;
+  std::string method;
+  Extent render;
+  Spread draw_ms;     // host clock, until OpenGL has drawn
+  Spread interop_ms;  // to OpenCL and the picture back
+  Spread resolve_ms;  // all OpenCL passes, present among them
+  Spread frame_ms;    // the three together
+  Spread draw_processor_ms;
+  Spread interop_processor_ms;
+  Spread resolve_processor_ms;
+  Spread frame_processor_ms;
+  std::uint64_t interop_bytes = 0;
+
+  friend bool operator==(const FrameRow&, const FrameRow&) = default;
+};
+
+struct SceneRow {
+  std::string name;
+  std::string summary;
+  std::string reason;
+  std::optional<double> truth_flicker;  // mean change of the truth's own luma from frame to frame
+  double uncovered = 0;                 // part of the pixels that was uncovered in the last two frames
+
+  friend bool operator==(const SceneRow&, const SceneRow&) = default;
+};
+
+struct MethodRow {
+  std::string name;
+  std::string summary;
+  std::string jitter;
+  double lod_bias = 0;
+
+  friend bool operator==(const MethodRow&, const MethodRow&) = default;
+};
+
+struct Machine {
+  std::string processor;
+  int processors = 0;  // logical
+  double memory_gib = 0;
+  std::string system;
+  std::string cl_device;
+  std::string cl_platform;
+  std::string cl_driver;
+  std::string cl_version;
+  bool cl_on_processor = false;  // then processor time is the steadier clock
+  std::string gl_renderer;
+  std::string gl_version;
+  std::string interop;
+  double load_before = 0;  // of the last minute
+  double load_after = 0;
+
+  friend bool operator==(const Machine&, const Machine&) = default;
+};
+
+struct Conditions {
+  Extent output;
+  int frames = 0;   // measured in each round
+  int warm_up = 0;  // frames before them, in each round
+  int rounds = 0;
+  int truth_samples = 0;  // along each side of a pixel
+  std::uint64_t seed = 0;
+  double fps = 0;
+  double start = 0;  // scene time of the first frame, seconds
+
+  friend bool operator==(const Conditions&, const Conditions&) = default;
+};
+
+struct BenchResult {
+  std::string version;
+  std::string command;
+  std::string date;  // UTC, "2026-11-21 14:03"
+  double wall_seconds = 0;
+  Machine machine;
+  Conditions conditions;
+  std::vector<SceneRow> scenes;
+  std::vector<MethodRow> methods;
+  std::vector<CopyRow> copies;
+  std::vector<Row> rows;
+  std::vector<FrameRow> frames;
+
+  friend bool operator==(const BenchResult&, const BenchResult&) = default;
+};
+
+std::string to_json(const BenchResult& result);  // numbers to 6 significant digits
+
+// Errors: kInvalidArgument, naming `path`, for what is no result of this program.
+Result<BenchResult> from_json(const std::string& text, const std::string& path);
+Result<BenchResult> read_result(const std::string& path);  // errors also: kIoFailure
+
+// One line a row, the copy's figures and the conditions left out; the first line names the columns.
+std::string to_csv(const BenchResult& result);
+
+// The clock that holds on this device: processor time where OpenCL runs on the processor (a busy machine
+// stretches event times but not that), event time elsewhere.
+const Spread& cost_of(const Machine& machine, const Row& row);  // in copies
+const char* cost_clock(const Machine& machine);                 // "processor time"
+
+}  // namespace quincunx::bench

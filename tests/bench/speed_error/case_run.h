@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// CaseRun: one scene at one scale: every frame is drawn once for each jitter and resolved by every method
+// before the next is drawn.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bench_plan.h"
+#include "bench_quality.h"
+#include "contender.h"
+#include "stage.h"
+#include "truth_store.h"
+
+namespace quincunx::bench {
+
+// One thread, that of the GL context. `stage`, `plan` and `truth` outlive it.
+class CaseRun {
+ public:
+  static Result<std::unique_ptr<CaseRun>> create(const scenes::FrameSource& stage, const BenchPlan& plan,
+                                                 const SceneTruth& truth, double scale);
+
+  // The round that warms up everything and whose pictures are measured.
+  Status run_quality();
+
+  // A round whose times count.
+  Status run_timed();
+
+  // Results, after both.
+  std::vector<Row> rows(const std::string& scene) const;
+  CopyRow copy_row(const std::string& scene) const;
+  FrameRow frame_row(const std::string& scene) const;
+  std::string interop() const;  // how frames pass, and why so
+
+  // The last measured frame as method `index` made it.
+  const tools::MeasuredPicture& picture(std::size_t index) const { return entries_[index]->tally.latest(); }
+
+ private:
+  struct Entry {
+    std::size_t feed;
+    Contender contender;
+    QualityTally tally = {};
+  };
+  enum Step : std::size_t { kDraw, kInterop, kResolve, kWhole, kSteps };
+  // Of whole frames with the frame method.
+  struct FrameRounds {
+    Rounds ms[kSteps], processor_ms[kSteps];
+    std::uint64_t interop_bytes = 0;
+  };
+
+  CaseRun(const scenes::FrameSource& stage, const BenchPlan& plan, const SceneTruth& truth, double scale);
+  Status open(const scenes::FrameSource& stage);
+  Status open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods);
+
+  int frames_of_a_round() const { return plan_.conditions.warm_up + plan_.conditions.frames; }
+  Status draw(std::int64_t index);
+  void release();
+  Result<std::vector<float>> resolve_and_read(Entry& entry);
+  Status measure_frame(std::int64_t index);
+  Status time_frame(std::int64_t index);
+  void time_copy(bool keep);
+  Status time_whole_frame(bool keep);
+
+  const BenchPlan& plan_;
+  const SceneTruth& truth_;
+  double scale_;
+  Device device_;
+  Extent render_;
+  Image resolved_;
+  Stage copy_stage_;
+  std::vector<Case> copy_;  // the float4 copy alone
+  std::vector<FrameFeed> feeds_;
+  std::vector<FrameInputs> inputs_;              // of each feed, this frame
+  std::vector<std::unique_ptr<Entry>> entries_;  // in the order of the plan's methods
+  std::unique_ptr<Contender> presenter_;         // the frame method with its present pass
+  std::size_t presenter_feed_ = 0;
+  Rounds copy_ms_, copy_processor_ms_;
+  FrameRounds frame_;
+};
+
+}  // namespace quincunx::bench
