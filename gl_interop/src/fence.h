@@ -29,6 +29,14 @@ class Fence {
     glFlush();
   }
 
+  // Whether all of it is done; does not wait. Nothing to wait for is done.
+  bool done() const {
+    if (sync_ == nullptr) return true;
+    const GLenum result = glClientWaitSync(sync_, 0, 0);
+    if (result == GL_WAIT_FAILED) throw InteropError("glClientWaitSync failed; the GL context may be lost");
+    return result != GL_TIMEOUT_EXPIRED;
+  }
+
   // Throws InteropError when the GPU has hung.
   void wait() {
     if (sync_ == nullptr) return;

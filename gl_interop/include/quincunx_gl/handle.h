@@ -72,6 +72,14 @@ struct VertexArrayTraits {
   }
   static void destroy(GLuint name) { glDeleteVertexArrays(1, &name); }
 };
+struct TimeQueryTraits {
+  static GLuint create() {
+    GLuint name = 0;
+    glCreateQueries(GL_TIME_ELAPSED, 1, &name);
+    return name;
+  }
+  static void destroy(GLuint name) { glDeleteQueries(1, &name); }
+};
 struct ProgramTraits {
   static GLuint create() { return glCreateProgram(); }
   static void destroy(GLuint name) { glDeleteProgram(name); }
@@ -81,6 +89,7 @@ using Texture = Handle<Texture2DTraits>;
 using Framebuffer = Handle<FramebufferTraits>;
 using Buffer = Handle<BufferTraits>;
 using VertexArray = Handle<VertexArrayTraits>;
+using TimeQuery = Handle<TimeQueryTraits>;
 using Program = Handle<ProgramTraits>;
 
 }  // namespace quincunx::gl

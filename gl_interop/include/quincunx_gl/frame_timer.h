@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// FrameTimer: how long OpenGL worked on each frame, for a resolution controller, without ever waiting for it.
+//
+// GL_TIME_ELAPSED queries are trusted only if they agree with fences on a known load when the timer is made;
+// software renderers count something else. The fall-back sees by a fence that a frame is done: its time runs
+// from begin(), or from when the frame before it was seen done, to the poll() that sees it, and so is an
+// upper bound that is as exact as polls are frequent. All calls on the thread where the GL context is
+// current.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "quincunx/image.h"
+#include "quincunx/status.h"
+
+namespace quincunx::gl {
+
+enum class TimerMethod : std::uint8_t { kQuery, kFence };
+
+struct TimedFrame {
+  std::uint64_t frame = 0;
+  Extent render = {};
+  double gpu_ms = 0;  // above 0
+};
+
+class FrameTimer {
+ public:
+  static constexpr int kRing = 8;  // frames that may be under way
+
+  // Without a method the queries are validated, which draws for some milliseconds, and the fall-back is taken
+  // where they fail; the choice is logged once. Errors: kDeviceFailure where GL makes no objects.
+  static Result<FrameTimer> create(std::optional<TimerMethod> method = std::nullopt);
+
+  ~FrameTimer();
+  FrameTimer(FrameTimer&&) noexcept;
+  FrameTimer& operator=(FrameTimer&&) noexcept;
+
+  TimerMethod method() const;
+
+  // Around the GL calls of a frame; never nested. begin() returns false, and the frame stays untimed, while
+  // kRing frames are under way; end() then does nothing.
+  bool begin(std::uint64_t frame, Extent render);
+  void end();
+
+  // The oldest frame that has come back, once each; nothing while there is none. Call until it says nothing.
+  // Throws nothing: a lost context looks like frames that never come back.
+  std::optional<TimedFrame> poll();
+
+ private:
+  struct Impl;
+  explicit FrameTimer(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quincunx::gl

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx_gl/frame_timer.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <exception>
+#include <utility>
+
+#include "fence.h"
+#include "quincunx_gl/handle.h"
+#include "stopwatch.h"
+
+namespace quincunx::gl {
+namespace {
+
+constexpr double kLeastMs = 1e-6;  // a frame without work may come back as 0, which no controller takes
+
+constexpr const char* kVertexSource = R"(#version 450 core
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); })";
+constexpr const char* kFragmentSource = R"(#version 450 core
+layout(location = 0) out vec4 colour;
+void main() { colour = vec4(sin(gl_FragCoord.xy), 0.25, 0.5); })";
+
+Program linked_program() {
+  Program program = Program::create();
+  for (const auto& [stage, source] :
+       {std::pair{GL_VERTEX_SHADER, kVertexSource}, {GL_FRAGMENT_SHADER, kFragmentSource}}) {
+    const GLuint shader = glCreateShader(static_cast<GLenum>(stage));
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    glAttachShader(program.get(), shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program.get());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
+  if (linked == GL_FALSE) throw InteropError("the frame timer's program does not link");
+  return program;
+}
+
+// Blended layers in one target, like a frame: each needs the one below, so that no driver can leave one out.
+class KnownLoad {
+ public:
+  KnownLoad() : program_(linked_program()) {
+    glTextureStorage2D(texture_.get(), 1, GL_RGBA16F, kSide, kSide);
+    glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, texture_.get(), 0);
+    glGetIntegerv(GL_VIEWPORT, viewport_before_.data());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
+    glUseProgram(program_.get());
+    glBindVertexArray(vertex_array_.get());
+    glViewport(0, 0, kSide, kSide);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+  }
+  ~KnownLoad() {
+    glDisable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ZERO);
+    glViewport(viewport_before_[0], viewport_before_[1], viewport_before_[2], viewport_before_[3]);
+    glBindVertexArray(0);
+    glUseProgram(0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+  }
+  KnownLoad(const KnownLoad&) = delete;
+  KnownLoad& operator=(const KnownLoad&) = delete;
+
+  void draw(int layers) const {
+    for (int layer = 0; layer < layers; ++layer)
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+
+ private:
+  static constexpr GLint kSide = 256;
+  Program program_;
+  Texture texture_ = Texture::create();
+  Framebuffer framebuffer_ = Framebuffer::create();
+  VertexArray vertex_array_ = VertexArray::create();
+  std::array<GLint, 4> viewport_before_ = {};
+};
+
+double query_ms(GLuint query) {
+  GLuint64 nanoseconds = 0;
+  glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+  return static_cast<double>(nanoseconds) * 1e-6;
+}
+
+// Whether queries see a load grow as the host's clock does.
+bool queries_agree() {
+  constexpr double kEnoughMs = 8;  // of load, beside which submission and waking up are small
+  constexpr int kMostLayers = 1 << 16;
+  constexpr double kLeastAgreement = 0.7;
+  constexpr double kMostAgreement = 1.2;
+  const KnownLoad load;
+  const TimeQuery query = TimeQuery::create();
+  if (!query) return false;
+  const auto measure = [&](int layers, double& host_ms) {
+    glFinish();
+    const Stopwatch stopwatch;
+    glBeginQuery(GL_TIME_ELAPSED, query.get());
+    load.draw(layers);
+    glEndQuery(GL_TIME_ELAPSED);
+    Fence fence;
+    fence.set();
+    fence.wait();
+    host_ms = stopwatch.milliseconds();
+    return query_ms(query.get());
+  };
+  int layers = 2;
+  double host_heavy = 0;
+  double heavy = 0;
+  do {
+    layers *= 2;
+    heavy = measure(layers, host_heavy);
+  } while (host_heavy < kEnoughMs && layers < kMostLayers);
+  double host_light = 0;
+  const double light = measure(layers / 4, host_light);
+  const double grown = host_heavy - host_light;
+  spdlog::debug("frame timer: a known load grew by {:.2f} ms, by GL_TIME_ELAPSED {:.2f} ms", grown,
+                heavy - light);
+  return grown > 0 && heavy - light >= kLeastAgreement * grown && heavy - light <= kMostAgreement * grown;
+}
+
+}  // namespace
+
+struct FrameTimer::Impl {
+  struct Slot {
+    TimedFrame frame;
+    TimeQuery query;
+    Fence fence;
+    double begun_ms = 0;
+  };
+
+  TimerMethod method = TimerMethod::kFence;
+  std::array<Slot, kRing> slots;
+  std::size_t first = 0;  // the oldest under way
+  std::size_t count = 0;
+  bool open = false;
+  double last_done_ms = 0;
+  Stopwatch clock;
+
+  bool done(const Slot& slot) const {
+    if (method == TimerMethod::kFence) return slot.fence.done();
+    GLuint available = GL_FALSE;
+    glGetQueryObjectuiv(slot.query.get(), GL_QUERY_RESULT_AVAILABLE, &available);
+    return available != GL_FALSE;
+  }
+};
+
+FrameTimer::FrameTimer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+FrameTimer::~FrameTimer() = default;
+FrameTimer::FrameTimer(FrameTimer&&) noexcept = default;
+FrameTimer& FrameTimer::operator=(FrameTimer&&) noexcept = default;
+
+Result<FrameTimer> FrameTimer::create(std::optional<TimerMethod> method) try {
+  auto impl = std::make_unique<Impl>();
+  if (!method) {
+    method = queries_agree() ? TimerMethod::kQuery : TimerMethod::kFence;
+    spdlog::info("frame timer: {}",
+                 *method == TimerMethod::kQuery
+                     ? "GL_TIME_ELAPSED"
+                     : "fences (GL_TIME_ELAPSED does not agree with them on a known load)");
+  }
+  impl->method = *method;
+  for (Impl::Slot& slot : impl->slots) {
+    if (*method != TimerMethod::kQuery) break;
+    slot.query = TimeQuery::create();
+    if (!slot.query) return Status::device("glCreateQueries made no GL_TIME_ELAPSED query");
+  }
+  return FrameTimer(std::move(impl));
+} catch (const std::exception& error) {
+  return Status::device(error.what());
+}
+
+TimerMethod FrameTimer::method() const {
+  return impl_->method;
+}
+
+bool FrameTimer::begin(std::uint64_t frame, Extent render) {
+  if (impl_->open || impl_->count == impl_->slots.size()) return false;
+  Impl::Slot& slot = impl_->slots[(impl_->first + impl_->count) % impl_->slots.size()];
+  slot.frame = {.frame = frame, .render = render, .gpu_ms = 0};
+  slot.begun_ms = impl_->clock.milliseconds();
+  if (impl_->method == TimerMethod::kQuery) glBeginQuery(GL_TIME_ELAPSED, slot.query.get());
+  impl_->open = true;
+  return true;
+}
+
+void FrameTimer::end() {
+  if (!impl_->open) return;
+  Impl::Slot& slot = impl_->slots[(impl_->first + impl_->count) % impl_->slots.size()];
+  if (impl_->method == TimerMethod::kQuery) {
+    glEndQuery(GL_TIME_ELAPSED);
+  } else {
+    slot.fence.set();
+  }
+  impl_->open = false;
+  ++impl_->count;
+}
+
+std::optional<TimedFrame> FrameTimer::poll() try {
+  if (impl_->count == 0) return std::nullopt;
+  Impl::Slot& slot = impl_->slots[impl_->first];
+  if (!impl_->done(slot)) return std::nullopt;
+  TimedFrame result = slot.frame;
+  if (impl_->method == TimerMethod::kQuery) {
+    result.gpu_ms = query_ms(slot.query.get());
+  } else {
+    const double now = impl_->clock.milliseconds();
+    result.gpu_ms = now - std::max(slot.begun_ms, impl_->last_done_ms);
+    impl_->last_done_ms = now;
+  }
+  result.gpu_ms = std::max(result.gpu_ms, kLeastMs);
+  impl_->first = (impl_->first + 1) % impl_->slots.size();
+  --impl_->count;
+  return result;
+} catch (const std::exception&) {
+  return std::nullopt;
+}
+
+}  // namespace quincunx::gl
