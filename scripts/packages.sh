@@ -15,7 +15,7 @@ run_packages=(
   libegl1 libegl-mesa0 libgl1-mesa-dri   # OpenGL without a window or a GPU
   fonts-dejavu-core                      # captions of the contact sheet
 )
-test_packages=(clang clang-format python3)
+test_packages=(clang clang-format python3 chromium)
 optional_test_packages=(oclgrind)        # memory checks of kernels; Debian 13 has it no more
 
 say() { printf '%s\n' "$*"; }
