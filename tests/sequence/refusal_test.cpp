@@ -125,6 +125,11 @@ TEST_F(Refusal, TheOutputSizeMustBeKnown) {
   resolve_to("u", "--output 20x20");
 }
 
+TEST_F(Refusal, BlurNeedsDepth) {
+  write_frames(1, 2);
+  expect_refused(kRun + "--blur 0.5 --method bilinear", 1, "motion blur reads depth here");
+}
+
 TEST_F(Refusal, CameraMotionNeedsItsMatrices) {
   testing::FrameFile file = frame(1);
   file.depth = true;

@@ -143,6 +143,20 @@ TEST_F(Resume, WhatWasMadeOtherwiseIsMadeAgain) {
     EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "mixed"))) << number;
 }
 
+TEST_F(Resume, AnotherShutterIsAnotherPicture) {
+  for (int number = 1; number <= 2; ++number) {
+    testing::FrameFile file = frame(number);
+    file.depth = true;
+    write_frame(input(number), file);
+  }
+  resolve_to("u", "--blur 1");
+  resolve_to("mixed", "--blur 0.5");
+  const auto result = resolve("'{}/f.%04d.exr' --out '{}/mixed.%04d.exr' --resume --blur 1");
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  for (int number = 1; number <= 2; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "mixed"))) << number;
+}
+
 TEST_F(Resume, LeftoversOfLivingProcessesStay) {
   write_frames(1, 2);
   const std::string mine = folder_.file(fmt::format(".u.0001.exr.{}-0.part", ::getpid()));

@@ -20,6 +20,19 @@ class Run : public testing::SequenceTest {
     }
   }
 
+  // All that moves is the camera, which stands at `place` on the x axis.
+  static testing::FrameFile frame_of_camera(int number, float place) {
+    testing::FrameFile file = frame(number);
+    file.velocity = false;
+    file.depth = true;
+    tools::Matrix matrix = {};
+    matrix[0] = matrix[5] = matrix[10] = 1;
+    matrix[11] = -1;
+    matrix[12] = place;
+    file.attributes.push_back({"worldToNDC", matrix});
+    return file;
+  }
+
   std::vector<float> channel(const std::string& path, const std::string& name) const {
     const tools::LoadedImage picture = image(path);
     std::vector<float> values;
@@ -213,21 +226,47 @@ TEST_F(Run, JitterOfAFileIsThatOfAttributes) {
 
 // What still cameras say is the same as what no motion says; a moving one takes the other frame away.
 TEST_F(Run, CameraMotionComesFromDepthAndMatrices) {
-  for (int number = 1; number <= 3; ++number) {
-    testing::FrameFile file = frame(number);
-    file.velocity = false;
-    file.depth = true;
-    tools::Matrix matrix = {};
-    matrix[0] = matrix[5] = matrix[10] = 1;
-    matrix[11] = -1;
-    matrix[12] = number == 3 ? 2.0f : 0.0f;
-    file.attributes.push_back({"worldToNDC", matrix});
-    write_frame(input(number), file);
-  }
+  for (const auto& [number, place] : {std::pair{1, 0.0f}, {2, 0.0f}, {3, 2.0f}})
+    write_frame(input(number), frame_of_camera(number, place));
   resolve_to("camera", "--velocity camera");
   resolve_to("still", "--velocity none");
   EXPECT_EQ(channel(output(2, "camera"), "R"), channel(output(2, "still"), "R"));
   EXPECT_NE(channel(output(3, "camera"), "R"), channel(output(3, "still"), "R"));
+}
+
+// The camera's motion is that since the frame before, so even a method of one frame has a history here.
+TEST_F(Run, BlurOfAMovingCameraIsTheSameInChunks) {
+  for (const auto& [number, place] : {std::pair{1, 0.0f}, {2, 2.0f}, {3, 5.0f}, {4, 9.0f}})
+    write_frame(input(number), frame_of_camera(number, place));
+  const std::string blur = "--velocity camera --method bilinear --blur 1";
+  resolve_to("whole", blur);
+  for (const char* range : {"1-2", "3", "4"})
+    resolve_to("chunk", fmt::format("{} --frames {}", blur, range));
+  expect_same("whole", "chunk", 1, 4);
+  resolve_to("sharp", "--velocity camera --method bilinear");
+  EXPECT_EQ(channel(output(1, "whole"), "R"), channel(output(1, "sharp"), "R")) << "no frame is before it";
+  EXPECT_NE(channel(output(3, "whole"), "R"), channel(output(3, "sharp"), "R"));
+
+  testing::FrameFile cut = frame_of_camera(3, 5);
+  cut.attributes.push_back({"quincunx:reset", 1});
+  write_frame(input(3), cut);
+  resolve_to("cut", blur);
+  EXPECT_EQ(channel(output(3, "cut"), "R"), channel(output(3, "sharp"), "R"))
+      << "the camera did not fly there";
+}
+
+TEST_F(Run, BlurIsOfTheLinearPicture) {
+  for (int number = 1; number <= 2; ++number) {
+    testing::FrameFile file = frame(number);
+    file.depth = true;
+    write_frame(input(number), file);
+  }
+  resolve_to("sharp", "");
+  resolve_to("blurred", "--blur 2 --blur-samples 16");
+  EXPECT_NE(channel(output(2, "blurred"), "R"), channel(output(2, "sharp"), "R"));
+  const auto result = resolve("'{}/f.%04d.exr' --out '{}/n.%04d.exr' --velocity none --blur 1");
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("nothing is blurred"), std::string::npos) << result.err;
 }
 
 TEST_F(Run, AttributesOfTheResultSayWhatItIs) {
