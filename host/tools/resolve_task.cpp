@@ -164,9 +164,13 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   // Which channels are read follows from a plan of any size.
   if (Status status = settle_plan(options, task, task.format.output, true); !status.ok()) return status;
   if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
-  if (task.output) task.output->settings += "; " + summary_of(task.format);
+  const int history = history_of(task.plan);
+  if (task.output) {
+    task.output->settings += "; " + summary_of(task.format);
+    if (options.warm_up.value_or(history) < history) task.output->settings += "; begun without history";
+  }
   const std::vector<std::int64_t> left = left_to_do(options, task);
-  const std::vector<std::int64_t> read = to_read(options, task, left, history_of(task.plan));
+  const std::vector<std::int64_t> read = to_read(options, task, left, history);
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
   if (const Extent target = task.scan.target(); target != Extent{}) {
     if (Status status = settle_plan(options, task, target, task.scan.half_colour()); !status.ok())

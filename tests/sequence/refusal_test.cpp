@@ -174,7 +174,7 @@ TEST_F(Refusal, BadFramesMayBeSkipped) {
   resolve_to("cold", "--frames 3,6 --warm-up 0");
   resolve_to("warm", "--frames 4,7");
   for (const int number : {3, 6})
-    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "cold"))) << number;
+    EXPECT_EQ(image(output(number)).pixels, image(output(number, "cold")).pixels) << number;
   for (const int number : {4, 7})
     EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "warm"))) << number;
   for (const int number : {2, 5})

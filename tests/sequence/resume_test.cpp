@@ -130,6 +130,16 @@ TEST_F(Resume, ColdRunsStayCold) {
     EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "part"))) << number;
 }
 
+// But a run with history does not take over what was begun without.
+TEST_F(Resume, ColdChunksAreMadeAgain) {
+  write_frames(1, 4);
+  resolve_to("u", "");
+  resolve_to("mixed", "--frames 3-4 --warm-up 0");
+  resolve_to("mixed", "--resume");
+  for (int number = 1; number <= 4; ++number)
+    EXPECT_EQ(testing::read_file(output(number)), testing::read_file(output(number, "mixed"))) << number;
+}
+
 TEST_F(Resume, WhatWasMadeOtherwiseIsMadeAgain) {
   write_frames(1, 4);
   resolve_to("u", "");

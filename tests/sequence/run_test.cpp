@@ -201,13 +201,14 @@ TEST_F(Run, ColdChunksAndCutsHaveNoHistory) {
   write_frames(1, 4);
   resolve_to("whole", "");
   resolve_to("cold", "--frames 3-4 --warm-up 0");
-  EXPECT_NE(testing::read_file(output(3, "whole")), testing::read_file(output(3, "cold")));
-  expect_same("whole", "cold", 4, 4);
+  EXPECT_NE(channel(output(3, "whole"), "G"), channel(output(3, "cold"), "G"));
+  EXPECT_EQ(channel(output(4, "whole"), "G"), channel(output(4, "cold"), "G"));
   testing::FrameFile cut = frame(3);
   cut.attributes.push_back({"quincunx:reset", 1});
   write_frame(input(3), cut);
   resolve_to("cut", "");
-  expect_same("cut", "cold", 3, 4);
+  for (int number = 3; number <= 4; ++number)
+    EXPECT_EQ(channel(output(number, "cut"), "G"), channel(output(number, "cold"), "G")) << number;
 }
 
 TEST_F(Run, JitterOfAFileIsThatOfAttributes) {
