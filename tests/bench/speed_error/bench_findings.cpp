@@ -22,14 +22,6 @@ std::vector<double> scales_of(const BenchResult& result) {
   return {scales.begin(), scales.end()};
 }
 
-// The scale that headlines speak of: the one nearest to 0.7.
-double headline_scale(const BenchResult& result) {
-  const std::vector<double> scales = scales_of(result);
-  return *std::min_element(scales.begin(), scales.end(), [](double a, double b) {
-    return std::abs(a - kSeventy) < std::abs(b - kSeventy);
-  });
-}
-
 MethodMean mean_over_scenes(const BenchResult& result, double scale, const std::string& method) {
   Samples flip, squared_error, ms, cost;
   for (const Row& row : result.rows) {
@@ -120,6 +112,13 @@ void add_soundness(const BenchResult& result, std::vector<Finding>& findings) {
 }
 
 }  // namespace
+
+double headline_scale(const BenchResult& result) {
+  const std::vector<double> scales = scales_of(result);
+  return *std::min_element(scales.begin(), scales.end(), [](double a, double b) {
+    return std::abs(a - kSeventy) < std::abs(b - kSeventy);
+  });
+}
 
 std::vector<MethodMean> method_means(const BenchResult& result) {
   std::vector<MethodMean> means;

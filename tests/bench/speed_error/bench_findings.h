@@ -17,6 +17,9 @@ struct Finding {
 };
 std::vector<Finding> findings_of(const BenchResult& result);
 
+// The scale that headlines speak of: the one nearest to 0.7. At least one row.
+double headline_scale(const BenchResult& result);
+
 // Means over all scenes of one method at one scale.
 struct MethodMean {
   double scale = 1;

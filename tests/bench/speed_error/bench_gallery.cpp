@@ -11,7 +11,7 @@ namespace quincunx::bench {
 namespace {
 
 // What a page may carry, and what a picture and its error map came to, in bytes a pixel, in practice.
-constexpr double kGalleryBytes = 1.3e6;
+constexpr double kGalleryBytes = 4e6;
 constexpr double kBytesPerPixel = 1.6;
 constexpr Extent kLargestCrop{320, 180};
 constexpr Extent kSmallestCrop{64, 36};

@@ -63,7 +63,8 @@ void add_measuring_options(CLI::App& app, BenchOptions& options) {
 }
 
 void add_result_options(CLI::App& app, BenchOptions& options) {
-  app.add_option("--out", options.out, "Write bench.json, bench.csv and bench.html into this folder")
+  app.add_option("--out", options.out,
+                 "Write bench.json, bench.csv, bench.svg and bench.html into this folder")
       ->type_name("FOLDER");
   auto* compare =
       app.add_option("--compare", options.compare, "Say what got better or worse since this bench.json")

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench_page.h"
+#include "bench_plot.h"
 #include "bench_result.h"
 #include "sample_result.h"
 
@@ -63,6 +64,18 @@ TEST(Result, CsvHasALineARowAndQuotesItsText) {
   EXPECT_NE(csv.find("\n\"a \"\"b\"\", c\",0.5,bilinear,32,18,"), std::string::npos) << csv;
   const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
   EXPECT_EQ(std::count(last.begin(), last.end(), ','), std::count(names.begin(), names.end(), ','));
+}
+
+TEST(Plot, HasAPointAMethodAndNoBadNumber) {
+  const std::string svg = plot_of(sample_result());
+  std::size_t circles = 0;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1))
+    ++circles;
+  EXPECT_EQ(circles, sample_result().methods.size());
+  EXPECT_NE(svg.find(">quincunx:mean</text>"), std::string::npos);
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_EQ(plot_of(BenchResult{}), "");
 }
 
 TEST(Page, IsOneFileThatNothingInItEnds) {

@@ -11,6 +11,7 @@
 #include "bench_findings.h"
 #include "bench_options.h"
 #include "bench_page.h"
+#include "bench_plot.h"
 #include "bench_run.h"
 #include "tools/atomic_file.h"
 #include "tools/program.h"
@@ -24,6 +25,7 @@ Status write_files(const std::string& folder, const BenchRun& run) {
   };
   if (Status status = write("bench.json", to_json(run.result)); !status.ok()) return status;
   if (Status status = write("bench.csv", to_csv(run.result)); !status.ok()) return status;
+  if (Status status = write("bench.svg", plot_of(run.result)); !status.ok()) return status;
   return write("bench.html", page_of(run.result, run.gallery));
 }
 

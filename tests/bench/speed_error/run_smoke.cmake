@@ -22,7 +22,7 @@ set(run --output 64x36 --scenes wires --scales 0.5,1 --methods bilinear,quincunx
     --rounds 2 --truth 2)
 bench(0 ${run} --out ${FOLDER}/a)
 bench(0 ${run} --quiet --out ${FOLDER}/b)
-foreach(name bench.json bench.csv bench.html)
+foreach(name bench.json bench.csv bench.svg bench.html)
   if(NOT EXISTS ${FOLDER}/a/${name})
     message(FATAL_ERROR "there is no ${name}")
   endif()
