@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // resolve_quincunx: blend this frame with the previous one on the five-of-a-die pattern, in the seed's form.
-//   c0, c1 = this and the previous frame, bilinear, each offset by the inverse of its jitter
+//   c0, c1 = this and the previous frame, each sampled at the pixel's centre less its jitter
 //   f      = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
 //
 //   params             in   extents, layouts, velocity scales with sqrt(K) in them
@@ -10,18 +10,29 @@
 //   reactive0          in   REACTIVE 1: R8 of frame n, the nearest sample; 0 trusts the previous frame, 1 ignores it
 //   output             out  RGBA32F or RGBA16F, output extent
 //   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
-// Options: WEIGHT    1 by the speed of both frames (default) | 0 plain mean
+// Options: SAMPLING  BILINEAR (default) | POINT: the nearest sample
+//          WEIGHT    1 by the speed of both frames (default) | 0 plain mean
 //          REACTIVE  0 (default) | 1
 //          SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT, OUTPUT_FORMAT as in texel.h
 // Where the previous frame or a velocity is not finite, f is 0: nothing survives into the next frame.
 // Source: Binks, "Dynamic Resolution Rendering", 2012.   Reference: tests/reference/resolve_quincunx.cpp
 #include "bilinear.h"
 
+// Not zero, so that a misspelt option is an error.
+#define BILINEAR 1
+#define POINT 2
+
+#ifndef SAMPLING
+#define SAMPLING BILINEAR
+#endif
 #ifndef WEIGHT
 #define WEIGHT 1
 #endif
 #ifndef REACTIVE
 #define REACTIVE 0
+#endif
+#if SAMPLING != BILINEAR && SAMPLING != POINT
+#error "SAMPLING must be BILINEAR or POINT"
 #endif
 #if WEIGHT < 0 || WEIGHT > 1
 #error "WEIGHT must be 0 or 1"
@@ -32,6 +43,22 @@
 
 static inline int4 nearest_of(__global const AxisTap* columns) {
   return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
+}
+
+// Into *mean four pixels of one frame. `careful`, a constant, chooses the way; the plain one sets bit i of *non_finite where
+// pixel i met NaN or Inf.
+__attribute__((always_inline)) static inline void sample_frame(bool careful, COLOUR_TEXELS colour, SourceFrame frame,
+                                                               __global const AxisTap* columns, AxisTap row,
+                                                               FourPixels* mean, uint* non_finite) {
+#if SAMPLING == BILINEAR
+  sample_four(careful, colour, frame.colour, frame.width, frame.height, columns, row, mean, non_finite);
+#else
+  mean->p0 = load_colour(colour, frame.colour, columns[0].nearest, row.nearest);
+  mean->p1 = load_colour(colour, frame.colour, columns[1].nearest, row.nearest);
+  mean->p2 = load_colour(colour, frame.colour, columns[2].nearest, row.nearest);
+  mean->p3 = load_colour(colour, frame.colour, columns[3].nearest, row.nearest);
+  if (careful) *non_finite = sanitise_four(mean);
+#endif
 }
 
 #if WEIGHT == 1
@@ -78,8 +105,8 @@ __attribute__((always_inline)) static inline int4 resolve_row(
     uint bits1;
     FourPixels c0;
     FourPixels c1;
-    sample_four(careful, colour0, frame0.colour, frame0.width, frame0.height, axes0 + x, row0, &c0, &bits0);
-    sample_four(careful, colour1, frame1.colour, frame1.width, frame1.height, axes1 + x, row1, &c1, &bits1);
+    sample_frame(careful, colour0, frame0, axes0 + x, row0, &c0, &bits0);
+    sample_frame(careful, colour1, frame1, axes1 + x, row1, &c1, &bits1);
 
     float4 trust = 1.0f;
     float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)

@@ -12,7 +12,7 @@ std::uint64_t bytes_of(Extent extent, PixelFormat format) {
 
 std::uint64_t read_of_frame(const ResolvePlan& plan, Extent render) {
   std::uint64_t bytes = bytes_of(render, plan.settings.colour);
-  if (plan.velocity != VelocitySource::kNone) bytes += bytes_of(render, plan.settings.velocity);
+  if (plan.weighs_velocity()) bytes += bytes_of(render, plan.settings.velocity);
   return bytes;
 }
 
@@ -37,6 +37,28 @@ std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent prev
   const std::uint64_t reactive = plan.reads_reactive ? bytes_of(render, PixelFormat::kR8) : 0;
   return read_of_frame(plan, render) + read_of_frame(plan, previous_render) + reactive +
          bytes_of(plan.settings.output, plan.settings.resolved);
+}
+
+std::uint64_t reproject_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
+  const PixelFormat velocity = plan.settings.velocity;
+  std::uint64_t bytes = bytes_of(render, velocity) + bytes_of(render, PixelFormat::kR32F) +
+                        bytes_of(previous_render, PixelFormat::kR32F) +
+                        static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+  if (plan.weighs_residual()) bytes += bytes_of(previous_render, velocity);
+  if (plan.reads_reactive) bytes += bytes_of(render, PixelFormat::kR8);
+  return bytes;
+}
+
+std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
+  std::uint64_t bytes = bytes_of(render, plan.settings.colour) +
+                        bytes_of(previous_render, plan.settings.colour) +
+                        bytes_of(plan.settings.output, plan.settings.resolved);
+  if (plan.velocity != VelocitySource::kNone) {
+    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+  } else if (plan.reads_reactive) {
+    bytes += bytes_of(render, PixelFormat::kR8);
+  }
+  return bytes;
 }
 
 std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render) {

@@ -11,6 +11,8 @@ namespace quincunx {
 std::uint64_t scale_bytes(const ResolveSettings& settings, Extent render);
 std::uint64_t velocity_bytes(const ResolveSettings& settings, Extent render);
 std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent previous_render);
+std::uint64_t reproject_bytes(const ResolvePlan& plan, Extent render, Extent previous_render);
+std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent previous_render);
 std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render);
 std::uint64_t motion_neighbours_bytes(const ResolveSettings& settings);
 std::uint64_t motion_blur_bytes(const ResolveSettings& settings, Extent render);  // where everything moves

@@ -65,8 +65,20 @@ std::string quincunx_options(const ResolvePlan& plan) {
   std::string format;
   if (weighs && settings.storage == Storage::kBuffer)
     format = fmt::format(" -D VELOCITY_FORMAT={}", velocity(settings));
-  return fmt::format("-D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}", weighs ? 1 : 0,
+  return fmt::format("-D SAMPLING={} -D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}",
+                     settings.quincunx.sampling == Sampling::kPoint ? "POINT" : "BILINEAR", weighs ? 1 : 0,
                      plan.reads_reactive ? 1 : 0, source(settings), format, resolved(settings));
+}
+
+std::string reproject_options(const ResolvePlan& plan) {
+  return fmt::format("-D REACTIVE={} -D RESIDUAL={} {}", plan.reads_reactive ? 1 : 0,
+                     plan.weighs_residual() ? 1 : 0, velocity_options(plan.settings));
+}
+
+std::string reprojected_options(const ResolvePlan& plan) {
+  const bool moves = plan.velocity != VelocitySource::kNone;
+  return fmt::format("-D MOTION={} -D REACTIVE={} {}", moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0,
+                     scale_options(plan.settings));
 }
 
 std::string present_options(const ResolveSettings& settings) {

@@ -15,6 +15,8 @@ std::string filter_options(Filter filter, const ResolveSettings& settings, int t
 std::string velocity_options(const ResolveSettings& settings);
 std::string blur_options(const ResolveSettings& settings);  // motion_blur
 std::string quincunx_options(const ResolvePlan& plan);
+std::string reproject_options(const ResolvePlan& plan);
+std::string reprojected_options(const ResolvePlan& plan);  // resolve_reprojected
 std::string present_options(const ResolveSettings& settings);
 std::string clear_options(Storage storage, PixelFormat format);
 

@@ -20,6 +20,11 @@ TexelLayout layout_of(const ImageView& view) {
   return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
 }
 
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent) {
+  const Vec2 to_uv = frame.velocity_scale != Vec2{} ? frame.velocity_scale : Vec2{1, 1};
+  return {static_cast<double>(to_uv.x) * extent.width, static_cast<double>(to_uv.y) * extent.height};
+}
+
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
   kernel.setArg(index, sizeof(memory), &memory);
 }

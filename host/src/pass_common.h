@@ -10,6 +10,7 @@
 
 #include "device_impl.h"
 #include "params.h"
+#include "quincunx/frame.h"
 #include "quincunx/image.h"
 
 namespace quincunx {
@@ -22,6 +23,13 @@ struct Counter {
 
 // In texels; zeros for an image.
 TexelLayout layout_of(const ImageView& view);
+
+// From a frame's velocity, in its own units, to pixels of an extent.
+struct VelocityScale {
+  double x;
+  double y;
+};
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent);
 
 // CLHPP takes no raw handle as an argument.
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);

@@ -17,10 +17,9 @@ int log2_of(int power) {
 // From the units of the velocity target to streaks: a frame's motion in output pixels, times the open part of
 // the frame.
 Vec2 streak_scale(const FrameInputs& inputs, Extent output, float shutter) {
-  const Vec2 to_uv = inputs.velocity_scale != Vec2{} ? inputs.velocity_scale : Vec2{1, 1};
+  const VelocityScale pixels = velocity_scale_to(inputs, output);
   const double units = static_cast<double>(shutter) * static_cast<int>(kStreakUnits);
-  return {static_cast<float>(units * output.width * to_uv.x),
-          static_cast<float>(units * output.height * to_uv.y)};
+  return {static_cast<float>(units * pixels.x), static_cast<float>(units * pixels.y)};
 }
 
 }  // namespace

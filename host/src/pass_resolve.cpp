@@ -20,10 +20,9 @@ SourceFrame source_of(const FrameInputs& frame, bool moves) {
 
 // From the velocity of one frame to sqrt(K) of its render pixels.
 Vec2 speed_scale(const FrameInputs& frame, float weight) {
-  const Vec2 to_uv = frame.velocity_scale != Vec2{} ? frame.velocity_scale : Vec2{1, 1};
+  const VelocityScale pixels = velocity_scale_to(frame, frame.render);
   const double root = std::sqrt(static_cast<double>(weight));
-  return {static_cast<float>(root * frame.render.width * to_uv.x),
-          static_cast<float>(root * frame.render.height * to_uv.y)};
+  return {static_cast<float>(root * pixels.x), static_cast<float>(root * pixels.y)};
 }
 
 }  // namespace

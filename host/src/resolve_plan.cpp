@@ -11,6 +11,8 @@
 #include "frame_traffic.h"
 #include "kernel_options.h"
 #include "pass_motion_blur.h"
+#include "pass_reproject.h"
+#include "pass_resolve.h"
 #include "pass_scale.h"
 
 namespace quincunx {
@@ -53,11 +55,13 @@ Status check(const ResolveSettings& settings) {
   check_format(complaints, "colour", settings.colour, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
-  const float weight = settings.quincunx.velocity_weight;
-  if (!(weight >= 0 && std::isfinite(weight))) {
+  const auto check_weight = [&](const char* field, float weight) {
+    if (weight >= 0 && std::isfinite(weight)) return;
     complaints.add(
-        fmt::format("settings.quincunx.velocity_weight is {}; it must be finite and at least 0", weight));
-  }
+        fmt::format("settings.quincunx.{} is {}; it must be finite and at least 0", field, weight));
+  };
+  check_weight("velocity_weight", settings.quincunx.velocity_weight);
+  check_weight("residual_weight", settings.quincunx.residual_weight);
   if (!(settings.grain >= 0 && settings.grain <= 1)) {
     complaints.add(fmt::format("settings.grain is {}; it must lie in [0, 1]", settings.grain));
   }
@@ -71,12 +75,16 @@ Status check(const ResolveSettings& settings) {
   return complaints.status();
 }
 
-bool form_weighs_velocity(const ResolveSettings& settings) {
+bool has_form(const ResolveSettings& settings, TwoFrameForm form) {
+  return settings.method == Method::kQuincunx && settings.quincunx.form == form;
+}
+
+bool form_reads_velocity(const ResolveSettings& settings) {
   return settings.method == Method::kQuincunx && settings.quincunx.form != TwoFrameForm::kMean;
 }
 
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
-  if (!form_weighs_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
+  if (!form_reads_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
@@ -96,7 +104,7 @@ const char* reason_of(Method method) {
     case Method::kNoiseOffset:
       return "the method: one of four samples, at random";
     case Method::kQuincunx:
-      return "in place of resolve_quincunx on the first frame and after a reset";
+      return "in place of both frames on the first one and after a reset";
   }
   return "";
 }
@@ -118,6 +126,19 @@ void plan_scale(ResolvePlan& plan) {
   }
 }
 
+void plan_reprojected(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  const auto& kernels = ReprojectPass::kKernels;
+  if (plan.velocity != VelocitySource::kNone) {
+    plan.passes.push_back({kernels[0], reproject_options(plan),
+                           "the method: where each sample was, and whether it could be seen",
+                           reproject_bytes(plan, settings.target, settings.target)});
+  }
+  plan.passes.push_back({kernels[1], reprojected_options(plan),
+                         "the method: this frame and the previous one where it moved to",
+                         reprojected_bytes(plan, settings.target, settings.target)});
+}
+
 void plan_blur(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
   const auto& kernels = MotionBlurPass::kKernels;
@@ -136,8 +157,10 @@ void plan_passes(ResolvePlan& plan) {
     plan.passes.push_back({"velocity_from_depth", velocity_options(settings), "nothing but the camera moves",
                            velocity_bytes(settings, settings.target)});
   }
-  if (settings.method == Method::kQuincunx) {
-    plan.passes.push_back({"resolve_quincunx", quincunx_options(plan),
+  if (plan.reprojects()) {
+    plan_reprojected(plan);
+  } else if (settings.method == Method::kQuincunx) {
+    plan.passes.push_back({ResolvePass::kernel_name(), quincunx_options(plan),
                            "the method: this frame and the previous one",
                            quincunx_bytes(plan, settings.target, settings.target)});
   }
@@ -168,13 +191,17 @@ void plan_buffers(ResolvePlan& plan) {
     if (history && !plan.keeps_previous_frame()) break;
     const char* which = history ? " of the previous frame" : "";
     add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
-    if (plan.velocity != VelocitySource::kNone && (!history || plan.weighs_velocity())) {
+    const bool both = plan.weighs_velocity() || plan.weighs_residual();
+    if (plan.velocity != VelocitySource::kNone && (!history || both)) {
       const bool owned = plan.velocity == VelocitySource::kCamera;
       add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling, owned);
     }
-    if (plan.reads_depth && !history) add_buffer(plan, "depth", PixelFormat::kR32F, scaling);
+    if (plan.reads_depth && (!history || plan.reprojects()))
+      add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
     if (plan.reads_reactive && !history) add_buffer(plan, "reactive", PixelFormat::kR8, scaling);
   }
+  if (plan.reprojects() && plan.velocity != VelocitySource::kNone)
+    add_buffer(plan, "moves", PixelFormat::kRGBA32F, Scaling::kScales, true);
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
   if (plan.blurs()) add_buffer(plan, "blurred", settings.resolved, Scaling::kFixed, true);
   if (settings.present) add_buffer(plan, "presented", PixelFormat::kRGBA8, Scaling::kFixed);
@@ -244,8 +271,14 @@ const char* name_of(TwoFrameForm form) {
       return "mean";
     case TwoFrameForm::kVelocity:
       return "velocity";
+    case TwoFrameForm::kReprojected:
+      return "reprojected";
   }
   return "unknown";
+}
+
+const char* name_of(Sampling sampling) {
+  return sampling == Sampling::kPoint ? "point" : "bilinear";
 }
 
 const char* name_of(ToneMap tone_map) {
@@ -290,7 +323,8 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
   plan.needs = needs;
   plan.settings = settings;
   plan.velocity = velocity_source(needs, settings);
-  plan.reads_depth = plan.velocity == VelocitySource::kCamera || plan.blurs();
+  const bool reprojects = plan.reprojects() && plan.velocity != VelocitySource::kNone;
+  plan.reads_depth = plan.velocity == VelocitySource::kCamera || plan.blurs() || reprojects;
   plan.reads_reactive = settings.method == Method::kQuincunx && needs.transparents;
   plan_passes(plan);
   plan_buffers(plan);
@@ -299,7 +333,15 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
 }
 
 bool ResolvePlan::weighs_velocity() const {
-  return velocity != VelocitySource::kNone && form_weighs_velocity(settings);
+  return velocity != VelocitySource::kNone && has_form(settings, TwoFrameForm::kVelocity);
+}
+
+bool ResolvePlan::reprojects() const {
+  return has_form(settings, TwoFrameForm::kReprojected);
+}
+
+bool ResolvePlan::weighs_residual() const {
+  return velocity != VelocitySource::kNone && reprojects() && settings.quincunx.residual_weight > 0;
 }
 
 bool ResolvePlan::blurs() const {

@@ -12,6 +12,7 @@
 #include "pass_clear.h"
 #include "pass_motion_blur.h"
 #include "pass_present.h"
+#include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
 #include "pass_velocity.h"
@@ -25,6 +26,8 @@ struct ResolveService::Impl {
   Status allocate();
   void warm_up();
   void enqueue(const FrameInputs& inputs, const FrameOutputs& outputs, FrameRing::Slot& slot);
+  int resolve_both(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
+                   cl::Event* events);
   void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
   Status check_history(const FrameInputs& inputs) const;
   FrameInputs with_velocity(FrameInputs inputs) const;
@@ -38,7 +41,8 @@ struct ResolveService::Impl {
   AxisTables tables;
   std::optional<VelocityPass> velocity;
   ScalePass scale;
-  std::optional<ResolvePass> resolve;
+  std::optional<ResolvePass> resolve;  // of the two-frame forms one
+  std::optional<ReprojectPass> reproject;
   std::optional<MotionBlurPass> blur;
   std::optional<PresentPass> present;
   std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
@@ -60,7 +64,11 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
       counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {
   const Device::Impl& impl = *device.impl();
   if (plan.velocity == VelocitySource::kCamera) velocity.emplace(impl, plan.settings);
-  if (plan.keeps_previous_frame()) resolve.emplace(impl, plan);
+  if (plan.reprojects()) {
+    reproject.emplace(impl, plan);
+  } else if (plan.keeps_previous_frame()) {
+    resolve.emplace(impl, plan);
+  }
   if (plan.blurs()) blur.emplace(impl, plan.settings);
   if (plan.settings.present) present.emplace(impl, plan.settings);
   for (const PixelFormat format : plan.clears()) {
@@ -94,6 +102,7 @@ void ResolveService::Impl::warm_up() {
   if (velocity) velocity->warm_up(queue);
   scale.warm_up(queue);
   if (resolve) resolve->warm_up(queue);
+  if (reproject) reproject->warm_up(queue);
   if (blur) blur->warm_up(queue);
   if (present) present->warm_up(queue);
   for (auto& [format, pass] : clears)
@@ -131,6 +140,22 @@ FrameInputs ResolveService::Impl::with_velocity(FrameInputs inputs) const {
   return inputs;
 }
 
+// This frame and the previous one; gives the number of kernels.
+int ResolveService::Impl::resolve_both(const FrameInputs& inputs, const ImageView& target, Counter count,
+                                       FrameRing::Slot& slot, cl::Event* events) {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  if (resolve) {
+    resolve->enqueue(queue, tables, inputs, previous, target, count, events);
+    add_pass(slot, ResolvePass::kernel_name(), quincunx_bytes(plan, inputs.render, previous.render));
+    return 1;
+  }
+  reproject->enqueue(queue, inputs, previous, target, count, events);
+  const auto& kernels = ReprojectPass::kKernels;
+  if (reproject->moves()) add_pass(slot, kernels[0], reproject_bytes(plan, inputs.render, previous.render));
+  add_pass(slot, kernels[1], reprojected_bytes(plan, inputs.render, previous.render));
+  return reproject->moves() ? 2 : 1;
+}
+
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
                                    FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
@@ -147,8 +172,7 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     add_pass(slot, VelocityPass::kernel_name(), velocity_bytes(settings, inputs.render));
   }
   if (uses_previous(inputs)) {
-    resolve->enqueue(queue, tables, inputs, previous, target, count, event++);
-    add_pass(slot, ResolvePass::kernel_name(), quincunx_bytes(plan, inputs.render, previous.render));
+    event += resolve_both(inputs, target, count, slot, event);
     slot.report.used_previous = true;
   } else {
     scale.enqueue(queue, tables, inputs, target, count, event++);

@@ -11,19 +11,27 @@ constexpr const char* kVelocitySummary = "both frames, the previous one less whe
 
 const std::map<std::string, MethodChoice>& method_choices() {
   using Form = TwoFrameForm;
-  static const Form usual = QuincunxSettings{}.form;
+  static const auto single = [](Method method, const char* summary) {
+    return MethodChoice{.method = method, .summary = summary};
+  };
+  static const auto both = [](Form form, const char* summary) {
+    return MethodChoice{.method = Method::kQuincunx, .form = form, .summary = summary};
+  };
   static const std::map<std::string, MethodChoice> choices = {
-      {"point", {Method::kPoint, usual, "the nearest sample"}},
-      {"bilinear", {Method::kBilinear, usual, "four samples"}},
-      {"b-spline", {Method::kBSpline, usual, "16 samples, cubic: smooth, never rings"}},
-      {"catmull-rom", {Method::kCatmullRom, usual, "16 samples, cubic: sharp"}},
-      {"lanczos2", {Method::kLanczos2, usual, "16 samples, windowed sinc"}},
-      {"noise", {Method::kNoise, usual, "the nearest sample with film grain"}},
-      {"noise-offset", {Method::kNoiseOffset, usual, "one of bilinear's samples, by chance"}},
-      {"quincunx", {Method::kQuincunx, usual, kVelocitySummary}},
-      {"quincunx:mean",
-       {Method::kQuincunx, Form::kMean, "the plain mean of this frame and the previous one"}},
-      {"quincunx:velocity", {Method::kQuincunx, Form::kVelocity, kVelocitySummary}},
+      {"point", single(Method::kPoint, "the nearest sample")},
+      {"bilinear", single(Method::kBilinear, "four samples")},
+      {"b-spline", single(Method::kBSpline, "16 samples, cubic: smooth, never rings")},
+      {"catmull-rom", single(Method::kCatmullRom, "16 samples, cubic: sharp")},
+      {"lanczos2", single(Method::kLanczos2, "16 samples, windowed sinc")},
+      {"noise", single(Method::kNoise, "the nearest sample with film grain")},
+      {"noise-offset", single(Method::kNoiseOffset, "one of bilinear's samples, by chance")},
+      {"quincunx", single(Method::kQuincunx, kVelocitySummary)},
+      {"quincunx:mean", both(Form::kMean, "the plain mean of this frame and the previous one")},
+      {"quincunx:velocity", both(Form::kVelocity, kVelocitySummary)},
+      {"quincunx:point",
+       {.form = Form::kVelocity, .sampling = Sampling::kPoint, .summary = "the same of nearest samples"}},
+      {"quincunx:reprojected",
+       both(Form::kReprojected, "both frames, the previous one where its surfaces were")},
   };
   return choices;
 }
@@ -31,6 +39,7 @@ const std::map<std::string, MethodChoice>& method_choices() {
 void choose(ResolveSettings& settings, const MethodChoice& choice) {
   settings.method = choice.method;
   settings.quincunx.form = choice.form;
+  settings.quincunx.sampling = choice.sampling;
 }
 
 std::string method_name(const ResolveSettings& settings) {
@@ -38,7 +47,8 @@ std::string method_name(const ResolveSettings& settings) {
   for (const auto& [longer, choice] : method_choices()) {
     ResolveSettings named = settings;
     choose(named, choice);
-    const bool same = named.method == settings.method && named.quincunx.form == settings.quincunx.form;
+    const bool same = named.method == settings.method && named.quincunx.form == settings.quincunx.form &&
+                      named.quincunx.sampling == settings.quincunx.sampling;
     if (same && longer.size() > name.size()) name = longer;
   }
   return name;

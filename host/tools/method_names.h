@@ -13,6 +13,7 @@ namespace quincunx::tools {
 struct MethodChoice {
   Method method = Method::kQuincunx;
   TwoFrameForm form = QuincunxSettings{}.form;
+  Sampling sampling = QuincunxSettings{}.sampling;
   std::string summary = {};  // what it does, in a few words
 
   friend bool operator==(const MethodChoice&, const MethodChoice&) = default;

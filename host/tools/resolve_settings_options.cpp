@@ -12,10 +12,15 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
 
   add_choice(app, "--method", method_choices(),
              "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset or "
-             "quincunx[:mean|:velocity] (default: quincunx)",
+             "quincunx[:mean|:velocity|:point|:reprojected] (default: quincunx)",
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
-                 "K of quincunx:velocity: how fast motion takes the previous frame away")
+                 "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("K");
+  app.add_option("--residual-weight", settings.quincunx.residual_weight,
+                 "K of quincunx:reprojected: how fast a change of motion does; 0 looks at none")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("K");

@@ -3,7 +3,7 @@
 // may fuse one copy of a sum and not another, and two ways to the same pixel differ in the last bit.
 #pragma once
 
-#ifdef FP_FAST_FMAF
+#if defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__)  // PoCL says it by its processor only
 #define MULTIPLY_ADD(a, b, c) fma(a, b, c)
 #else
 #pragma OPENCL FP_CONTRACT OFF

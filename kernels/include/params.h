@@ -9,8 +9,9 @@ namespace quincunx {
 #define QUINCUNX_CHECK_SIZE(type, bytes)
 #endif
 
-// Most kernels make this many neighbouring pixels of a row at once; present, whose pixels are small, sixteen.
-enum { kBlock = 4, kPresentBlock = 16 };
+// Most kernels make this many neighbouring pixels of a row at once; resolve_reprojected, whose weights are many, eight;
+// present, whose pixels are small, sixteen.
+enum { kBlock = 4, kReprojectedBlock = 8, kPresentBlock = 16 };
 
 // Where the texels of a buffer lie: texel (x, y) has the index offset + y * pitch + x. Both in texels; both zero for
 // an image.
@@ -124,6 +125,53 @@ typedef struct ResolveParams {
   float velocity1_scale_x, velocity1_scale_y;
 } ResolveParams;
 QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 12 + 16);
+
+// Of one sample: what it shows is at its own place + (x, y) in the previous frame, in pixels of that, within +-65504.
+typedef struct Move {
+  float x;
+  float y;
+  float trust;  // in [0, 1]: what the previous frame counts there; NaN: the sample's velocity or depth is not finite
+  float unused;
+} Move;
+QUINCUNX_CHECK_SIZE(Move, 16);
+
+typedef struct ReprojectParams {
+  int width;  // the viewport of this frame
+  int height;
+  int previous_width;
+  int previous_height;
+  TexelLayout velocity0;
+  TexelLayout velocity1;
+  TexelLayout depth0;
+  TexelLayout depth1;
+  TexelLayout reactive0;
+  TexelLayout moves;
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands still:
+  // (i * step_x + start_x, j * step_y + start_y).
+  float step_x, step_y, start_x, start_y;
+  float move_x, move_y;  // from velocity0 to pixels of the previous frame, on the way back
+  float edge_x, edge_y;  // the left and the upper edge of the previous frame, as texel coordinates
+  // From the units of the velocity source to sqrt(K) render pixels, per frame.
+  float speed0_x, speed0_y;
+  float speed1_x, speed1_y;
+} ReprojectParams;
+QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 48 + 4 + 48);
+
+typedef struct ReprojectedParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;  // this frame
+  SourceFrame frame1;  // the previous one
+  TexelLayout moves;
+  TexelLayout output;
+  int columns;           // in the position tables: texels of the columns, then fractions; then the same of the rows
+  int counter;           // index into non_finite
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kReprojectedBlock
+  float falloff0_x, falloff0_y;  // 1 / r^2 of each axis, per frame
+  float falloff1_x, falloff1_y;
+} ReprojectedParams;
+QUINCUNX_CHECK_SIZE(ReprojectedParams, 8 + 2 * 32 + 16 + 12 + 16);
 
 // The motion blur looks at the output in tiles, and measures streaks in fixed point.
 enum {

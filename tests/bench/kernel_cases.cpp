@@ -9,6 +9,7 @@
 #include "pass_clear.h"
 #include "pass_motion_blur.h"
 #include "pass_present.h"
+#include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
 #include "pass_velocity.h"
@@ -71,6 +72,35 @@ void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, dou
                pass->enqueue(stage.impl().queue, stage.tables(), current, previous, resolved, stage.counter(),
                              event);
              });
+}
+
+// Both kernels, or where nothing moves the second alone.
+void add_reprojected(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+                     const std::string& suffix, double pixels) {
+  ResolvePlan plan = scene.plan;
+  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
+  plan.settings.velocity = PixelFormat::kRG32F;
+  if (pixels == 0) plan.velocity = VelocitySource::kNone;
+  auto pass = std::make_shared<ReprojectPass>(stage.impl(), plan);
+  FrameInputs current = scene.current;
+  current.velocity = stage.velocity(current.render, [&](int x, int y) {
+    // Surfaces of some size that move apart.
+    const bool odd = (x / 97 + y / 83) % 2 != 0;
+    return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
+  });
+  std::uint64_t bytes = reprojected_bytes(plan, current.render, scene.previous.render);
+  if (pass->moves()) bytes += reproject_bytes(plan, current.render, scene.previous.render);
+  Stage::add(
+      cases,
+      {.name = "resolve_reprojected" + scene.suffix + suffix,
+       .scale = scene.scale,
+       .wanted = wanted,
+       .bytes = bytes},
+      [pass, &stage, current, previous = scene.previous,
+       resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* events) {
+        pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
+      },
+      pass->moves() ? 2 : 1);
 }
 
 void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
@@ -158,14 +188,22 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_scale(cases, stage, scene, Method::kNoise, 1.3);
     add_scale(cases, stage, scene, Method::kNoiseOffset, 1.6);
     add_resolve(cases, stage, scene, 5);
+    add_reprojected(cases, stage, scene, 9, "", 12);
     if (colour != PixelFormat::kRGBA16F) continue;
     add_velocity(cases, stage, scene);
     add_blurs(cases, stage, scene);
+    add_reprojected(cases, stage, scene, 9, " still", 0);
+    scene.plan.settings.quincunx.sampling = Sampling::kPoint;
+    add_resolve(cases, stage, scene, 5, " point");
+    scene.plan.settings.quincunx.sampling = Sampling::kBilinear;
     scene.plan.settings.clamp_ringing = false;
     add_scale(cases, stage, scene, Method::kCatmullRom, 1.7, " unclamped");
     scene.plan.settings.clamp_ringing = true;
     scene.plan.reads_reactive = true;
     add_resolve(cases, stage, scene, 5, " reactive");
+    scene.plan.settings.quincunx.residual_weight = 1;
+    add_reprojected(cases, stage, scene, 0, " reactive residual", 12);
+    scene.plan.settings.quincunx.residual_weight = 0;
     scene.plan.reads_reactive = false;
     scene.plan.velocity = VelocitySource::kNone;
     add_resolve(cases, stage, scene, 5, " still");

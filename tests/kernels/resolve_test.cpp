@@ -33,6 +33,7 @@ struct Variant {
   PixelFormat colour;
   PixelFormat velocity_format;
   PixelFormat resolved;
+  Sampling sampling = Sampling::kBilinear;
 };
 
 class Resolve : public ::testing::TestWithParam<Variant> {
@@ -41,6 +42,7 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     const Variant& v = GetParam();
     plan_.settings = {
         .colour = v.colour, .velocity = v.velocity_format, .resolved = v.resolved, .storage = v.storage};
+    plan_.settings.quincunx.sampling = v.sampling;
     plan_.velocity = v.velocity;
     plan_.reads_reactive = v.reactive;
     formats_ = {.storage = v.storage,
@@ -75,11 +77,13 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     });
   }
 
-  Run bilinear(Rig& rig, const TestFrame& current, Extent output) {
+  // Of this frame alone.
+  Run single(Rig& rig, const TestFrame& current, Extent output) {
     ResolveSettings settings = plan_.settings;
     settings.target = current.inputs.render;
     settings.output = output;
-    ScalePass scale(testing::impl(), Method::kBilinear, settings);
+    const bool point = GetParam().sampling == Sampling::kPoint;
+    ScalePass scale(testing::impl(), point ? Method::kPoint : Method::kBilinear, settings);
     return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
       scale.enqueue(testing::impl().queue, tables, current.inputs, view, counter, nullptr);
     });
@@ -96,7 +100,8 @@ class Resolve : public ::testing::TestWithParam<Variant> {
   reference::Picture expected(const TestFrame& current, const TestFrame& previous, Extent output) const {
     const auto weight =
         plan_.velocity == VelocitySource::kNone ? reference::Weight::kMean : reference::Weight::kVelocity;
-    return reference::resolve_quincunx(current.reference, previous.reference, weight, plan_.reads_reactive, 1,
+    return reference::resolve_quincunx(current.reference, previous.reference, weight,
+                                       GetParam().sampling == Sampling::kPoint, plan_.reads_reactive, 1,
                                        output.width, output.height);
   }
 
@@ -201,7 +206,7 @@ TEST_P(Resolve, AConstantStaysConstant) {
   }
 }
 
-// A previous frame that is NaN throughout leaves no trace: the picture is that of scale_bilinear, bit for
+// A previous frame that is NaN throughout leaves no trace: the picture is that of the scale pass, bit for
 // bit.
 TEST_P(Resolve, NothingOfANonFinitePreviousFrameSurvives) {
   Rig rig;
@@ -211,7 +216,7 @@ TEST_P(Resolve, NothingOfANonFinitePreviousFrameSurvives) {
   const std::vector<Pixel> spoilt(60 * 40, Pixel{std::nan(""), infinity, 1, -infinity});
   const TestFrame previous = with_motion(make_frame(rig, formats_, before, spoilt));
   const Run resolved = resolve(rig, current, previous, {64, 33});
-  EXPECT_EQ(resolved.bytes, bilinear(rig, current, {64, 33}).bytes);
+  EXPECT_EQ(resolved.bytes, single(rig, current, {64, 33}).bytes);
   EXPECT_EQ(resolved.non_finite, 64 * 33);
 }
 
@@ -232,7 +237,9 @@ TEST_P(Resolve, ANonFiniteTexelChangesItsFootprintOnly) {
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
       const auto i = static_cast<std::size_t>(y * output.width + x);
-      if (sample_bilinear(spoilt_frame.reference, x, y, output.width, output.height).non_finite) {
+      const auto sample =
+          GetParam().sampling == Sampling::kPoint ? reference::sample_nearest : reference::sample_bilinear;
+      if (sample(spoilt_frame.reference, x, y, output.width, output.height).non_finite) {
         ++touched;
       } else {
         EXPECT_EQ(before.pixels[i], after.pixels[i]) << x << ", " << y;
@@ -243,20 +250,21 @@ TEST_P(Resolve, ANonFiniteTexelChangesItsFootprintOnly) {
   EXPECT_EQ(after.non_finite, touched);
 }
 
-// With f = 0 in every pixel the pass is scale_bilinear, bit for bit.
-TEST_P(Resolve, WithoutTrustItIsBilinear) {
+// With f = 0 in every pixel the pass is the scale pass, bit for bit.
+TEST_P(Resolve, WithoutTrustItIsTheScalePass) {
   if (!plan_.reads_reactive) return;
   Rig rig;
   TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
   const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}, .seed = 2});
   current.inputs.reactive = rig.image(PixelFormat::kR8, plan_.settings.storage, {45, 23},
                                       std::vector<Pixel>(45 * 23, Pixel{1, 1, 1, 1}), 0);
-  EXPECT_EQ(resolve(rig, current, previous, {64, 33}).bytes, bilinear(rig, current, {64, 33}).bytes);
+  EXPECT_EQ(resolve(rig, current, previous, {64, 33}).bytes, single(rig, current, {64, 33}).bytes);
 }
 
 // A linear picture comes back in place from two frames with opposite jitter: a wrong sign in either would
 // show.
 TEST_P(Resolve, JitterIsTakenBackInBothFrames) {
+  if (GetParam().sampling == Sampling::kPoint) return;
   const Extent output{128, 64};
   const Extent render = testing::scaled(output, .71, .71);
   Rig rig;
@@ -298,6 +306,7 @@ std::vector<Variant> variants() {
           }
         }
         all.push_back({velocity, reactive, Storage::kImage, kRGBA16F, kRG16F, resolved});
+        all.push_back({velocity, reactive, Storage::kBuffer, kRGBA16F, kRG16F, resolved, Sampling::kPoint});
       }
     }
   }
@@ -307,9 +316,9 @@ std::vector<Variant> variants() {
 INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](const auto& instance) {
   const Variant& v = instance.param;
   const char* weight = v.velocity == VelocitySource::kNone ? "mean" : "velocity";
-  return fmt::format("{}{}_{}_{}_{}_to_{}", weight, v.reactive ? "_reactive" : "",
-                     v.storage == Storage::kImage ? "image" : "buffer", name_of(v.colour),
-                     name_of(v.velocity_format), name_of(v.resolved));
+  return fmt::format("{}{}{}_{}_{}_{}_to_{}", weight, v.sampling == Sampling::kPoint ? "_point" : "",
+                     v.reactive ? "_reactive" : "", v.storage == Storage::kImage ? "image" : "buffer",
+                     name_of(v.colour), name_of(v.velocity_format), name_of(v.resolved));
 });
 
 // v is counted in pixels of its frame's viewport, whatever the output: at the same uv velocity a larger

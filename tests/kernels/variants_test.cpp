@@ -50,8 +50,11 @@ TEST_P(KernelVariants, EveryRowBuilds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
-                         ::testing::Values("clear_region", "scale_point", "scale_bilinear",
-                                           "resolve_quincunx", "present", "velocity_from_depth"),
+                         ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter",
+                                           "scale_noise", "scale_noise_offset", "resolve_quincunx",
+                                           "reproject", "resolve_reprojected", "motion_tiles",
+                                           "motion_neighbours", "motion_blur", "present",
+                                           "velocity_from_depth"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -96,7 +99,16 @@ TEST(Variants, EveryOptionStringOfTheHostIsARow) {
             plan.settings.velocity = velocity_format;
             for (const bool reactive : {false, true}) {
               plan.reads_reactive = reactive;
-              expect_row("resolve_quincunx", quincunx_options(plan));
+              for (const Sampling sampling : {Sampling::kPoint, Sampling::kBilinear}) {
+                plan.settings.quincunx = {.sampling = sampling};
+                expect_row("resolve_quincunx", quincunx_options(plan));
+              }
+              plan.settings.quincunx = {.form = TwoFrameForm::kReprojected};
+              expect_row("resolve_reprojected", reprojected_options(plan));
+              for (const float weight : {0.0f, 1.0f}) {
+                plan.settings.quincunx.residual_weight = weight;
+                expect_row("reproject", reproject_options(plan));
+              }
             }
           }
         }

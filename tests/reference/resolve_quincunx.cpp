@@ -40,15 +40,16 @@ double reactive_at(const Frame& frame, int x, int y, int output_width, int outpu
 
 }  // namespace
 
-Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool reactive, double k,
-                         int output_width, int output_height) {
+Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool nearest,
+                         bool reactive, double k, int output_width, int output_height) {
   Picture picture;
   picture.width = output_width;
   picture.height = output_height;
   for (int y = 0; y < output_height; ++y) {
     for (int x = 0; x < output_width; ++x) {
-      const Sample c0 = sample_bilinear(current, x, y, output_width, output_height);
-      const Sample c1 = sample_bilinear(previous, x, y, output_width, output_height);
+      const auto sample = nearest ? sample_nearest : sample_bilinear;
+      const Sample c0 = sample(current, x, y, output_width, output_height);
+      const Sample c1 = sample(previous, x, y, output_width, output_height);
       const Speed v0 = speed_at(current, weight, k, x, y, output_width, output_height);
       const Speed v1 = speed_at(previous, weight, k, x, y, output_width, output_height);
       double f = 1 / (1 + v0.squared + v1.squared);

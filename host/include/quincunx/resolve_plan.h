@@ -30,14 +30,22 @@ enum class Method {
 
 // How kQuincunx weighs the previous frame.
 enum class TwoFrameForm : std::uint8_t {
-  kMean,      // the plain mean of both frames
-  kVelocity,  // f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame (Binks 2012)
+  kMean,         // the plain mean of both frames
+  kVelocity,     // f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame (Binks 2012)
+  kReprojected,  // read where its surfaces were, dropped where they were hidden; samples weighted by distance
+};
+
+// How kMean and kVelocity read the frames.
+enum class Sampling : std::uint8_t {
+  kPoint,     // the nearest sample
+  kBilinear,  // four samples
 };
 
 enum class ToneMap { kClamp, kReinhard, kAces };
 
 const char* name_of(Method method);      // "quincunx"
 const char* name_of(TwoFrameForm form);  // "velocity"
+const char* name_of(Sampling sampling);  // "point"
 const char* name_of(ToneMap tone_map);   // "aces"
 
 // What the scene will ever do while this plan is used.
@@ -50,7 +58,11 @@ struct SceneNeeds {
 
 struct QuincunxSettings {
   TwoFrameForm form = TwoFrameForm::kVelocity;
+  Sampling sampling = Sampling::kBilinear;
   float velocity_weight = 1;  // K of kVelocity; >= 0
+  // kReprojected: K of a factor 1/(1 + K|v0 - v1|^2), v1 of the previous sample there, in render pixels a
+  // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion uncover each other.
+  float residual_weight = 0;
 };
 
 // Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
@@ -130,7 +142,9 @@ struct ResolvePlan {
   std::vector<LeftOut> left_out;
 
   bool keeps_previous_frame() const { return settings.method == Method::kQuincunx; }
-  bool weighs_velocity() const;             // the two-frame resolve reads velocity
+  bool weighs_velocity() const;             // kVelocity, and something moves
+  bool reprojects() const;                  // kReprojected, whether something moves or not
+  bool weighs_residual() const;             // kReprojected reads the previous frame's velocity too
   bool blurs() const;                       // motion blur is wanted, and something moves
   std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ
   std::string explain() const;              // a page of plain text

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Sampling two frames by distance, for resolve_reprojected: eight output pixels at a time.
+#pragma once
+
+#include "multiply_add.h"
+#include "sanitise.h"
+
+// Positions of eight pixels on one axis: between samples `texel` and texel + 1, `fraction` of the way.
+typedef struct Positions {
+  int8 texel;
+  float8 fraction;
+} Positions;
+
+// Moves of eight pixels.
+typedef struct Trusts {
+  float8 move_x, move_y, trust;
+} Trusts;
+
+// Of the 2x2 samples of both frames: a sample's weight is the product of its column's and its row's. All eight of a pixel
+// add up to 1.
+typedef struct Weights {
+  float8 now_x0, now_x1, now_y0, now_y1;
+  float8 before_x0, before_x1, before_y0, before_y1;
+} Weights;
+
+// The same of one pixel, ready for pairs of samples.
+typedef struct PixelWeights {
+  float8 now_x, before_x;
+  float now_y0, now_y1, before_y0, before_y1;
+} PixelWeights;
+
+#define PIXEL_WEIGHTS(w, i)                                                                          \
+  ((PixelWeights){(float8)((float4)((w).now_x0.i), (float4)((w).now_x1.i)),                          \
+                  (float8)((float4)((w).before_x0.i), (float4)((w).before_x1.i)), (w).now_y0.i,      \
+                  (w).now_y1.i, (w).before_y0.i, (w).before_y1.i})
+
+// The samples of one pixel: a pair a row.
+typedef struct FourPairs {
+  float8 now0, now1, before0, before1;
+} FourPairs;
+
+// Moves positions, by less than 2^24, into an axis of last + 1 samples: what leaves it stands at its outermost sample. Then
+// texel + 1 exists too, unless last is 0.
+static inline Positions moved_positions(Positions at, float8 by, int last) {
+  const float8 sum = at.fraction + by;
+  int8 step = convert_int8(sum);
+  step += convert_float8(step) > sum;  // towards minus infinity
+  const int8 wanted = at.texel + step;
+  Positions moved;
+  moved.texel = clamp(wanted, (int8)(0), (int8)(max(last - 1, 0)));
+  moved.fraction = select(sum - convert_float8(step), (float8)(0.0f), wanted < 0);
+  moved.fraction = select(moved.fraction, (float8)(last > 0 ? 1.0f : 0.0f), wanted >= last);
+  return moved;
+}
+
+// The samples nearest to positions; of two equally near ones the upper/left.
+static inline int8 nearest_samples(Positions at) {
+  return at.texel - (at.fraction > 0.5f);
+}
+
+// (1 - d^2 / r^2)^3, close to a Gaussian of sigma .41 r; 0 from d = r on. `falloff` is 1 / r^2.
+static inline float8 distance_weight(float8 distance, float falloff) {
+  const float8 rest = max(1.0f - distance * distance * falloff, (float8)(0.0f));
+  return rest * rest * rest;
+}
+
+static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, float8 now_y, float8 before_x, float8 before_y,
+                                 float8 trust) {
+  const float8 rest = 1.0f - trust;
+  const float8 left = 1.0f - now_x;
+  const float8 above = 1.0f - now_y;
+  Weights w;
+  w.now_x0 = MULTIPLY_ADD(distance_weight(now_x, params->falloff0_x), trust, left * rest);
+  w.now_x1 = MULTIPLY_ADD(distance_weight(left, params->falloff0_x), trust, now_x * rest);
+  w.now_y0 = MULTIPLY_ADD(distance_weight(now_y, params->falloff0_y), trust, above * rest);
+  w.now_y1 = MULTIPLY_ADD(distance_weight(above, params->falloff0_y), trust, now_y * rest);
+  w.before_x0 = distance_weight(before_x, params->falloff1_x);
+  w.before_x1 = distance_weight(1.0f - before_x, params->falloff1_x);
+  w.before_y0 = distance_weight(before_y, params->falloff1_y) * trust;
+  w.before_y1 = distance_weight(1.0f - before_y, params->falloff1_y) * trust;
+  const float8 sum = MULTIPLY_ADD(w.before_x0 + w.before_x1, w.before_y0 + w.before_y1,
+                                  (w.now_x0 + w.now_x1) * (w.now_y0 + w.now_y1));
+  const float8 scale = 1.0f / sum;
+  w.now_y0 *= scale;
+  w.now_y1 *= scale;
+  w.before_y0 *= scale;
+  w.before_y1 *= scale;
+  return w;
+}
+
+static inline float4 blend_samples(FourPairs samples, PixelWeights w) {
+  const float8 now = MULTIPLY_ADD(samples.now1, (float8)(w.now_y1), samples.now0 * w.now_y0);
+  const float8 before = MULTIPLY_ADD(samples.before1, (float8)(w.before_y1), samples.before0 * w.before_y0);
+  const float8 pair = MULTIPLY_ADD(before, w.before_x, now * w.now_x);
+  return pair.lo + pair.hi;
+}
+
+static inline int8 bits_of(FourPairs samples) {
+  return as_int8(samples.now0) | as_int8(samples.now1) | as_int8(samples.before0) | as_int8(samples.before1);
+}
+
+// Whether one of many floats that were or-ed is 2 or more in magnitude, infinite or NaN: all of those, and no other, have the
+// highest bit of the exponent.
+static inline bool any_at_least_two(int8 bits) {
+  const long2 halves = as_long2((bits.lo | bits.hi) & 0x40000000);
+  return (halves.x | halves.y) != 0;
+}
+
+// Of each sample of a pair, in all its lanes: 1 / max(bright, largest of red, green and blue).
+static inline float8 brightness_weight(float8 pair, float bright) {
+  return 1.0f / max(max(max(pair.s01204564, pair.s12015645), pair.s20126456), (float8)(bright));
+}
+
+static inline float4 blend_bright(FourPairs samples, PixelWeights w, float bright) {
+  const float8 now0 = brightness_weight(samples.now0, bright) * w.now_x * w.now_y0;
+  const float8 now1 = brightness_weight(samples.now1, bright) * w.now_x * w.now_y1;
+  const float8 before0 = brightness_weight(samples.before0, bright) * w.before_x * w.before_y0;
+  const float8 before1 = brightness_weight(samples.before1, bright) * w.before_x * w.before_y1;
+  const float8 sum = now0 * samples.now0 + now1 * samples.now1 + before0 * samples.before0 + before1 * samples.before1;
+  const float8 weight = now0 + now1 + before0 + before1;
+  return (sum.lo + sum.hi) / (weight.lo + weight.hi);
+}
+
+// Whether one of a pair of samples is not finite and has a weight.
+static inline bool counts_non_finite(float8 pair, float x0, float x1, float y) {
+  return y != 0.0f && ((x0 != 0.0f && any_non_finite4(pair.lo)) || (x1 != 0.0f && any_non_finite4(pair.hi)));
+}
+
+static inline float8 sanitise8(float8 pair) {
+  return (float8)(sanitise4(pair.lo), sanitise4(pair.hi));
+}

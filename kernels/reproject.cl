@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// reproject: where what each sample shows was in the previous frame, and how far what lies there now is to be trusted.
+//   trust = (1 - reactive) inside visible / (1 + K |v0 - v1|^2)
+//   inside   falls from 1 at the previous frame's edge to 0 a pixel beyond it
+//   visible  1 if one of the 2x2 previous depths there is not nearer than the sample's by more than a tolerance, else 0:
+//            d1 <= 1.02 d0 + 2 (the smaller difference of d0 to left and right + that to above and below); one-sided, so
+//            that thin things that fall between samples are not lost; d is reversed depth, near / distance
+//   v0, v1   velocities of the sample and of the previous one nearest to where it was, render pixels a frame
+//
+//   params        in   viewports, layouts, scales
+//   velocity0, 1  in   RG16F or RG32F, viewports of frame n and n-1; velocity1 is not read where RESIDUAL is 0
+//   depth0, 1     in   R32F, the same viewports, reversed and infinite; a NaN among depths that are compared does not count
+//   reactive0     in   REACTIVE 1: R8 of frame n; 0 trusts the previous frame, 1 ignores it
+//   moves         out  Move of each sample of frame n
+// Options: REACTIVE  0 (default) | 1
+//          RESIDUAL  0 (default) | 1: K is not 0
+//          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
+// A sample whose velocity or depth is not finite moves by 0, and its trust is NaN.
+// Reference: tests/reference/reproject.cpp
+#include "texel_blocks.h"
+
+#ifndef REACTIVE
+#define REACTIVE 0
+#endif
+#ifndef RESIDUAL
+#define RESIDUAL 0
+#endif
+#if REACTIVE < 0 || REACTIVE > 1
+#error "REACTIVE must be 0 or 1"
+#endif
+#if RESIDUAL < 0 || RESIDUAL > 1
+#error "RESIDUAL must be 0 or 1"
+#endif
+
+#define DEPTH_TOLERANCE 1.02f
+#define SLOPE_TOLERANCE 2.0f
+#define LARGEST_MOVE 65504.0f  // beyond any viewport
+#define NAN_BITS 0x7fc00000
+
+// The depths of four neighbours of a row, from x on, which may be -1; beyond the edges what lies on the other side of the
+// outermost texel.
+static inline float4 load_depth_reflected(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if SOURCE_STORAGE == BUFFER
+  if (x >= 0 && x + 3 < width) return vload4(0, texels + texel_index(layout, x, y));
+#endif
+  const int4 column = x + (int4)(0, 1, 2, 3);
+  const int4 reflected = min(max(column, -column), 2 * (width - 1) - column);
+  return load_depth4(texels, layout, clamp(reflected, (int4)(0), (int4)(width - 1)), y);
+}
+
+// How far depth changes from one sample to the next: the gentler side of each axis.
+static inline float4 slope_of(const ReprojectParams* params, DEPTH_TEXELS depth, int x, int y, float4 centre) {
+  const int above = y > 0 ? y - 1 : min(1, params->height - 1);
+  const int below = y + 1 < params->height ? y + 1 : max(y - 1, 0);
+  const float4 left = load_depth_reflected(depth, params->depth0, x - 1, y, params->width);
+  const float4 right = load_depth_reflected(depth, params->depth0, x + 1, y, params->width);
+  const float4 upper = load_depth_block(depth, params->depth0, x, above, params->width);
+  const float4 lower = load_depth_block(depth, params->depth0, x, below, params->width);
+  return fmin(fabs(left - centre), fabs(right - centre)) + fmin(fabs(upper - centre), fabs(lower - centre));
+}
+
+static inline float4 previous_depth(const ReprojectParams* params, DEPTH_TEXELS depth, int4 x, int4 y) {
+  if (params->previous_width > 1 && params->previous_height > 1)
+    return smallest_depths(depth, params->depth1, x, y, params->previous_width);
+  const int right = params->previous_width > 1 ? 1 : 0;
+  const int below = params->previous_height > 1 ? 1 : 0;
+  return fmin(load_depth_at(depth, params->depth1, x, y), load_depth_at(depth, params->depth1, x + right, y + below));
+}
+
+// Towards minus infinity, of less than 2^24.
+static inline int4 floor_of(float4 value) {
+  const int4 whole = convert_int4(value);
+  return whole + (convert_float4(whole) > value);
+}
+
+// 1 inside [low, low + length], 0 from a pixel away on.
+static inline float4 inside_of(float4 at, float low, float length) {
+  return clamp(1.0f - max(low - at, at - (low + length)), 0.0f, 1.0f);
+}
+
+static inline int8 both_axes(int4 lanes) {
+  return (int8)(lanes.s0, lanes.s0, lanes.s1, lanes.s1, lanes.s2, lanes.s2, lanes.s3, lanes.s3);
+}
+
+static inline int4 non_finite_velocity(float8 velocity) {
+  return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
+}
+
+static inline void store_moves(__global float* moves, int index, int count, float4 x, float4 y, float4 trust) {
+  __global float* first = moves + 4 * index;
+  vstore4((float4)(x.s0, y.s0, trust.s0, 0.0f), 0, first);
+  if (count > 1) vstore4((float4)(x.s1, y.s1, trust.s1, 0.0f), 1, first);
+  if (count > 2) vstore4((float4)(x.s2, y.s2, trust.s2, 0.0f), 2, first);
+  if (count > 3) vstore4((float4)(x.s3, y.s3, trust.s3, 0.0f), 3, first);
+}
+
+__kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
+                        DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, __global float* moves) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  const float row = (float)y * params.step_y + params.start_y;
+  const int4 last_x = max(params.previous_width - 2, 0);
+  const int4 last_y = max(params.previous_height - 2, 0);
+  for (int x = first; x < end; x += kBlock) {
+    const float4 depth = load_depth_block(depth0, params.depth0, x, y, params.width);
+    const float8 input = load_velocity_block(velocity0, params.velocity0, x, y, params.width);
+    int4 lost = non_finite_lanes(depth) | non_finite_velocity(input);
+    const float8 velocity = as_float8(select(as_int8(input), (int8)(0), both_axes(lost)));
+    const float4 move_x = clamp(velocity.even * params.move_x, -LARGEST_MOVE, LARGEST_MOVE);
+    const float4 move_y = clamp(velocity.odd * params.move_y, -LARGEST_MOVE, LARGEST_MOVE);
+    const float4 at_x = convert_float4(x + (int4)(0, 1, 2, 3)) * params.step_x + params.start_x + move_x;
+    const float4 at_y = row + move_y;
+
+    const float4 limit = depth * DEPTH_TOLERANCE + slope_of(&params, depth0, x, y, depth) * SLOPE_TOLERANCE;
+    const float4 before = previous_depth(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
+                                         clamp(floor_of(at_y), (int4)(0), last_y));
+    float4 trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
+                   inside_of(at_y, params.edge_y, (float)params.previous_height);
+#if REACTIVE
+    trust *= 1.0f - load_reactive_block(reactive0, params.reactive0, x, y, params.width);
+#endif
+#if RESIDUAL
+    const int4 nearest_x = clamp(floor_of(at_x + 0.5f), (int4)(0), (int4)(params.previous_width - 1));
+    const int4 nearest_y = clamp(floor_of(at_y + 0.5f), (int4)(0), (int4)(params.previous_height - 1));
+    const float8 velocity_before = load_velocity_at(velocity1, params.velocity1, nearest_x, nearest_y);
+    lost |= non_finite_velocity(velocity_before);
+    const float4 residual_x = velocity.even * params.speed0_x - velocity_before.even * params.speed1_x;
+    const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
+    trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
+#endif
+    trust = select((float4)(0.0f), trust, before <= limit);
+    trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
+    store_moves(moves, texel_index(params.moves, x, y), end - x, move_x, move_y, trust);
+  }
+}
