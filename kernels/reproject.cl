@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // reproject: where what each sample shows was in the previous frame, and how far what lies there now is to be trusted.
-//   trust = (1 - reactive) inside visible / (1 + K |v0 - v1|^2)
+//   trust = (1 - reactive0) (1 - reactive1) inside visible / (1 + K |v0 - v1|^2)
 //   inside   falls from 1 at the previous frame's edge to 0 a pixel beyond it
 //   visible  1 if one of the 2x2 previous depths there is not nearer than the sample's by more than a tolerance, else 0:
 //            d1 <= 1.02 d0 + 2 (the smaller difference of d0 to left and right + that to above and below); one-sided, so
 //            that thin things that fall between samples are not lost; d is reversed depth, near / distance
-//   v0, v1   velocities of the sample and of the previous one nearest to where it was, render pixels a frame
+//   v0, v1, reactive0, 1: of the sample and of the previous one nearest to where it was; v in render pixels a frame
 //
 //   params        in   viewports, layouts, scales
 //   velocity0, 1  in   RG16F or RG32F, viewports of frame n and n-1; velocity1 is not read where RESIDUAL is 0
 //   depth0, 1     in   R32F, the same viewports, reversed and infinite; a NaN among depths that are compared does not count
-//   reactive0     in   REACTIVE 1: R8 of frame n; 0 trusts the previous frame, 1 ignores it
+//   reactive0, 1  in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
 //   moves         out  Move of each sample of frame n
 // Options: REACTIVE  0 (default) | 1
 //          RESIDUAL  0 (default) | 1: K is not 0
@@ -95,7 +95,8 @@ static inline void store_moves(__global float* moves, int index, int count, floa
 }
 
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
-                        DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, __global float* moves) {
+                        DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                        __global float* moves) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
@@ -119,12 +120,15 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
                                          clamp(floor_of(at_y), (int4)(0), last_y));
     float4 trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
                    inside_of(at_y, params.edge_y, (float)params.previous_height);
-#if REACTIVE
-    trust *= 1.0f - load_reactive_block(reactive0, params.reactive0, x, y, params.width);
-#endif
-#if RESIDUAL
+#if REACTIVE || RESIDUAL
     const int4 nearest_x = clamp(floor_of(at_x + 0.5f), (int4)(0), (int4)(params.previous_width - 1));
     const int4 nearest_y = clamp(floor_of(at_y + 0.5f), (int4)(0), (int4)(params.previous_height - 1));
+#endif
+#if REACTIVE
+    trust *= 1.0f - load_reactive_block(reactive0, params.reactive0, x, y, params.width);
+    trust *= 1.0f - load_reactive_at(reactive1, params.reactive1, nearest_x, nearest_y);
+#endif
+#if RESIDUAL
     const float8 velocity_before = load_velocity_at(velocity1, params.velocity1, nearest_x, nearest_y);
     lost |= non_finite_velocity(velocity_before);
     const float4 residual_x = velocity.even * params.speed0_x - velocity_before.even * params.speed1_x;

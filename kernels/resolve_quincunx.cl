@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // resolve_quincunx: blend this frame with the previous one on the five-of-a-die pattern, in the seed's form.
 //   c0, c1 = this and the previous frame, each sampled at the pixel's centre less its jitter
-//   f      = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
+//   f      = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
 //
 //   params             in   extents, layouts, velocity scales with sqrt(K) in them
 //   axes0, axes1       in   AxisTap of each output column, then row, for each frame's viewport and jitter
 //   colour0, colour1   in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
 //   velocity0, 1       in   RG16F or RG32F, the same viewports; the nearest sample; not read where WEIGHT is 0
-//   reactive0          in   REACTIVE 1: R8 of frame n, the nearest sample; 0 trusts the previous frame, 1 ignores it
+//   reactive0, 1       in   REACTIVE 1: R8, the nearest sample of each frame; 0: the frames may be mixed, 1: they may not
 //   output             out  RGBA32F or RGBA16F, output extent
 //   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
 // Options: SAMPLING  BILINEAR (default) | POINT: the nearest sample
@@ -94,7 +94,7 @@ static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
 __attribute__((always_inline)) static inline int4 resolve_row(
     bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* axes0,
     __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, VELOCITY_TEXELS velocity0,
-    VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output, uint* met) {
+    VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, uint* met) {
   const SourceFrame frame0 = params->frame0;
   const SourceFrame frame1 = params->frame1;
   const AxisTap row0 = axes0[params->row_axis + y];
@@ -112,12 +112,13 @@ __attribute__((always_inline)) static inline int4 resolve_row(
     float4 speed = 0.0f;  // K (|v0|^2 + |v1|^2)
 #if WEIGHT != 0 || REACTIVE
     const int4 nearest0 = nearest_of(axes0 + x);
+    const int4 nearest1 = nearest_of(axes1 + x);
 #endif
 #if REACTIVE
     trust -= load_reactive4(reactive0, frame0.reactive, nearest0, row0.nearest);
+    trust *= 1.0f - load_reactive4(reactive1, frame1.reactive, nearest1, row1.nearest);
 #endif
 #if WEIGHT != 0
-    const int4 nearest1 = nearest_of(axes1 + x);
     float8 input0 = load_velocity4(velocity0, frame0.velocity, nearest0, row0.nearest);
     float8 input1 = load_velocity4(velocity1, frame1.velocity, nearest1, row1.nearest);
     const int4 lost = non_finite_velocity(input0) | non_finite_velocity(input1);
@@ -150,7 +151,7 @@ __attribute__((always_inline)) static inline int4 resolve_row(
 __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTap* axes0,
                                __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
                                VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0,
-                               OUTPUT_TEXELS output, __global uint* non_finite) {
+                               REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -159,9 +160,10 @@ __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTa
   uint met = 0;
   if (min(params.frame0.width, params.frame1.width) > 1) {
     const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1,
-                                     reactive0, output, &met);
+                                     reactive0, reactive1, output, &met);
     if (!any_reached_infinity(largest)) return;
   }
-  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, output, &met);
+  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, reactive1, output,
+              &met);
   if (met) atomic_add(non_finite + params.counter, met);
 }

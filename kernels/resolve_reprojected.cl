@@ -13,7 +13,7 @@
 //                            position lies between samples `texel` and texel + 1, `fraction` of the way; texels may lie outside
 //   colour0, colour1    in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
 //   moves               in   MOTION 1: of each sample of frame n, from reproject
-//   reactive0           in   REACTIVE 1 with MOTION 0: R8 of frame n; g = 1 - reactive
+//   reactive0, 1        in   REACTIVE 1 with MOTION 0: R8 of both frames; g = (1 - reactive0) (1 - reactive1), nearest samples
 //   output              out  RGBA32F or RGBA16F, output extent
 //   non_finite          out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
 // Options: MOTION    1 (default) | 0: nothing moves, q = p, g = 1 but for REACTIVE
@@ -59,27 +59,24 @@ static inline Positions columns_of(const ReprojectedParams* params, __global con
   return at;
 }
 
-// Of eight pixels, from the samples that are nearest to them.
-static inline Trusts trusts_of(const ReprojectedParams* params, __global const float* moves, REACTIVE_TEXELS reactive0, int8 x,
-                               int y) {
-  Trusts trusts;
 #if MOTION
+// Of eight pixels, from the samples that are nearest to them.
+static inline Trusts trusts_of(const ReprojectedParams* params, __global const float* moves, int8 x, int y) {
+  Trusts trusts;
   __global const float* row = moves + 4 * row_index(params->moves, y);
   const float4 m0 = vload4(x.s0, row), m1 = vload4(x.s1, row), m2 = vload4(x.s2, row), m3 = vload4(x.s3, row);
   const float4 m4 = vload4(x.s4, row), m5 = vload4(x.s5, row), m6 = vload4(x.s6, row), m7 = vload4(x.s7, row);
   trusts.move_x = (float8)(m0.x, m1.x, m2.x, m3.x, m4.x, m5.x, m6.x, m7.x);
   trusts.move_y = (float8)(m0.y, m1.y, m2.y, m3.y, m4.y, m5.y, m6.y, m7.y);
   trusts.trust = (float8)(m0.z, m1.z, m2.z, m3.z, m4.z, m5.z, m6.z, m7.z);
-#else
-  trusts.move_x = trusts.move_y = 0.0f;
-  trusts.trust = 1.0f;
-#if REACTIVE
-  trusts.trust -= (float8)(load_reactive4(reactive0, params->frame0.reactive, x.lo, y),
-                           load_reactive4(reactive0, params->frame0.reactive, x.hi, y));
-#endif
-#endif
   return trusts;
 }
+#elif REACTIVE
+// 1 - reactive of eight samples of a row.
+static inline float8 trust_of(REACTIVE_TEXELS reactive, TexelLayout layout, int8 x, int y) {
+  return 1.0f - (float8)(load_reactive4(reactive, layout, x.lo, y), load_reactive4(reactive, layout, x.hi, y));
+}
+#endif
 
 // The samples x and x + 1 of row y, each moved into the viewport.
 static inline float8 careful_pair(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
@@ -135,8 +132,8 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
 
 __kernel void resolve_reprojected(const ReprojectedParams params, __global const int* positions0,
                                   __global const int* positions1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
-                                  __global const float* moves, REACTIVE_TEXELS reactive0, OUTPUT_TEXELS output,
-                                  __global uint* non_finite) {
+                                  __global const float* moves, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                                  OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -149,7 +146,6 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   const Positions row0 = {(int8)(row.texel0), (float8)(row.fraction0)};
   const Positions row1 = {(int8)(row.texel1), (float8)(row.fraction1)};
   const Positions now_y = moved_positions(row0, (float8)(0.0f), frame0.height - 1);
-  const int nearest_y = nearest_samples(now_y).s0;
   COLOUR_ROW upper = colour_row(colour0, frame0.colour, now_y.texel.s0);
   COLOUR_ROW lower = colour_row(colour0, frame0.colour, min(now_y.texel.s0 + 1, frame0.height - 1));
   COLOUR_ROW upper1 = colour_row(colour1, frame1.colour, 0);
@@ -157,7 +153,17 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   uint met_count = 0;
   for (int x = first; x < end; x += kReprojectedBlock) {
     const Positions now_x = moved_positions(columns_of(&params, positions0, x), (float8)(0.0f), frame0.width - 1);
-    const Trusts trusts = trusts_of(&params, moves, reactive0, nearest_samples(now_x), nearest_y);
+#if MOTION
+    const Trusts trusts = trusts_of(&params, moves, nearest_samples(now_x), nearest_samples(now_y).s0);
+#else
+    Trusts trusts = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f)};
+#if REACTIVE
+    const Positions still_x = moved_positions(columns_of(&params, positions1, x), (float8)(0.0f), frame1.width - 1);
+    const Positions still_y = moved_positions(row1, (float8)(0.0f), frame1.height - 1);
+    trusts.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), nearest_samples(now_y).s0) *
+                   trust_of(reactive1, frame1.reactive, nearest_samples(still_x), nearest_samples(still_y).s0);
+#endif
+#endif
     const Positions before_x = moved_positions(columns_of(&params, positions1, x), trusts.move_x, frame1.width - 1);
     const Positions before_y = moved_positions(row1, trusts.move_y, frame1.height - 1);
     if (pairs) {

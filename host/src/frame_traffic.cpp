@@ -16,6 +16,10 @@ std::uint64_t read_of_frame(const ResolvePlan& plan, Extent render) {
   return bytes;
 }
 
+std::uint64_t reactive_bytes(Extent render, Extent previous_render) {
+  return bytes_of(render, PixelFormat::kR8) + bytes_of(previous_render, PixelFormat::kR8);
+}
+
 std::uint64_t tiles_of(Extent output) {
   const auto side = [](int pixels) {
     return static_cast<std::uint64_t>((pixels + kTileSide - 1) / kTileSide);
@@ -34,7 +38,7 @@ std::uint64_t velocity_bytes(const ResolveSettings& settings, Extent render) {
 }
 
 std::uint64_t quincunx_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
-  const std::uint64_t reactive = plan.reads_reactive ? bytes_of(render, PixelFormat::kR8) : 0;
+  const std::uint64_t reactive = plan.reads_reactive ? reactive_bytes(render, previous_render) : 0;
   return read_of_frame(plan, render) + read_of_frame(plan, previous_render) + reactive +
          bytes_of(plan.settings.output, plan.settings.resolved);
 }
@@ -45,7 +49,7 @@ std::uint64_t reproject_bytes(const ResolvePlan& plan, Extent render, Extent pre
                         bytes_of(previous_render, PixelFormat::kR32F) +
                         static_cast<std::uint64_t>(render.area()) * sizeof(Move);
   if (plan.weighs_residual()) bytes += bytes_of(previous_render, velocity);
-  if (plan.reads_reactive) bytes += bytes_of(render, PixelFormat::kR8);
+  if (plan.reads_reactive) bytes += reactive_bytes(render, previous_render);
   return bytes;
 }
 
@@ -56,7 +60,7 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
   if (plan.velocity != VelocitySource::kNone) {
     bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
   } else if (plan.reads_reactive) {
-    bytes += bytes_of(render, PixelFormat::kR8);
+    bytes += reactive_bytes(render, previous_render);
   }
   return bytes;
 }

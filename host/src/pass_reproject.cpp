@@ -121,7 +121,10 @@ void ReprojectPass::launch(const cl::CommandQueue& queue, PositionTables& tables
                            .falloff0_y = falloff(now.height, extent.height),
                            .falloff1_x = falloff(before.width, extent.width),
                            .falloff1_y = falloff(before.height, extent.height)};
-  if (reads_reactive_) params.frame0.reactive = layout_of(current.reactive);
+  if (reads_reactive_) {
+    params.frame0.reactive = layout_of(current.reactive);
+    params.frame1.reactive = layout_of(previous.reactive);
+  }
   resolve_.setArg(0, params);
   resolve_.setArg(1, tables.get(queue, now, current.jitter));
   resolve_.setArg(2, tables.get(queue, before, previous.jitter));
@@ -130,8 +133,9 @@ void ReprojectPass::launch(const cl::CommandQueue& queue, PositionTables& tables
   resolve_.setArg(5, moves_);
   // What a variant does not read may be any image or buffer.
   set_memory(resolve_, 6, (reads_reactive_ ? current.reactive : current.colour).memory);
-  set_memory(resolve_, 7, output.memory);
-  set_memory(resolve_, 8, counter.memory);
+  set_memory(resolve_, 7, (reads_reactive_ ? previous.reactive : previous.colour).memory);
+  set_memory(resolve_, 8, output.memory);
+  set_memory(resolve_, 9, counter.memory);
   enqueue_rows(device_, queue, resolve_, extent, params.columns_per_item, events);
 }
 
@@ -150,14 +154,18 @@ void ReprojectPass::reproject(const cl::CommandQueue& queue, const FrameInputs& 
   params.columns_per_item = columns_per_item(device_, current.render.width);
   set_positions(params, current, previous);
   if (reads_residual_) set_speeds(params, current, previous, settings_.quincunx.residual_weight);
-  if (reads_reactive_) params.reactive0 = layout_of(current.reactive);
+  if (reads_reactive_) {
+    params.reactive0 = layout_of(current.reactive);
+    params.reactive1 = layout_of(previous.reactive);
+  }
   reproject_->setArg(0, params);
   set_memory(*reproject_, 1, current.velocity.memory);
   set_memory(*reproject_, 2, (reads_residual_ ? previous.velocity : current.velocity).memory);
   set_memory(*reproject_, 3, current.depth.memory);
   set_memory(*reproject_, 4, previous.depth.memory);
   set_memory(*reproject_, 5, (reads_reactive_ ? current.reactive : current.depth).memory);
-  reproject_->setArg(6, moves_);
+  set_memory(*reproject_, 6, (reads_reactive_ ? previous.reactive : previous.depth).memory);
+  reproject_->setArg(7, moves_);
   enqueue_rows(device_, queue, *reproject_, current.render, params.columns_per_item, event);
 }
 

@@ -56,7 +56,10 @@ ResolveParams ResolvePass::params_for(Extent output, const FrameInputs& current,
   params.output_height = output.height;
   params.frame0 = source_of(current, reads_velocity_);
   params.frame1 = source_of(previous, reads_velocity_);
-  if (reads_reactive_) params.frame0.reactive = layout_of(current.reactive);
+  if (reads_reactive_) {
+    params.frame0.reactive = layout_of(current.reactive);
+    params.frame1.reactive = layout_of(previous.reactive);
+  }
   params.velocity0_scale_x = scale0.x;
   params.velocity0_scale_y = scale0.y;
   params.velocity1_scale_x = scale1.x;
@@ -83,6 +86,7 @@ void ResolvePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, con
   set_memory(kernel_, index++, (reads_velocity_ ? current.velocity : current.colour).memory);
   set_memory(kernel_, index++, (reads_velocity_ ? previous.velocity : previous.colour).memory);
   set_memory(kernel_, index++, (reads_reactive_ ? current.reactive : current.colour).memory);
+  set_memory(kernel_, index++, (reads_reactive_ ? previous.reactive : previous.colour).memory);
   set_memory(kernel_, index++, output.memory);
   set_memory(kernel_, index++, counter.memory);
   enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);

@@ -18,7 +18,7 @@ class ResolvePass {
   void warm_up(const cl::CommandQueue& queue);  // blocks
 
   // Reads of `current`: colour, velocity and reactive as planned, render, jitter, velocity_scale; of
-  // `previous` the same but reactive. Writes the whole output extent of `output`.
+  // `previous` the same. Writes the whole output extent of `output`.
   void enqueue(const cl::CommandQueue& queue, AxisTables& tables, const FrameInputs& current,
                const FrameInputs& previous, const ImageView& output, Counter counter, cl::Event* event);
 

@@ -198,7 +198,7 @@ void plan_buffers(ResolvePlan& plan) {
     }
     if (plan.reads_depth && (!history || plan.reprojects()))
       add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
-    if (plan.reads_reactive && !history) add_buffer(plan, "reactive", PixelFormat::kR8, scaling);
+    if (plan.reads_reactive) add_buffer(plan, fmt::format("reactive{}", which), PixelFormat::kR8, scaling);
   }
   if (plan.reprojects() && plan.velocity != VelocitySource::kNone)
     add_buffer(plan, "moves", PixelFormat::kRGBA32F, Scaling::kScales, true);

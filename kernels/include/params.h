@@ -145,6 +145,7 @@ typedef struct ReprojectParams {
   TexelLayout depth0;
   TexelLayout depth1;
   TexelLayout reactive0;
+  TexelLayout reactive1;
   TexelLayout moves;
   int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
   // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands still:
@@ -156,7 +157,7 @@ typedef struct ReprojectParams {
   float speed0_x, speed0_y;
   float speed1_x, speed1_y;
 } ReprojectParams;
-QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 48 + 4 + 48);
+QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 56 + 4 + 48);
 
 typedef struct ReprojectedParams {
   int output_width;

@@ -78,6 +78,18 @@ static inline float4 smallest_depths(DEPTH_TEXELS texels, TexelLayout layout, in
 #endif
 }
 
+// The reactive values of four texels anywhere.
+static inline float4 load_reactive_at(REACTIVE_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
+#if SOURCE_STORAGE == IMAGE
+  return (float4)(read_imagef(texels, (int2)(x.s0, y.s0)).x, read_imagef(texels, (int2)(x.s1, y.s1)).x,
+                  read_imagef(texels, (int2)(x.s2, y.s2)).x, read_imagef(texels, (int2)(x.s3, y.s3)).x);
+#else
+  const int4 index = layout.offset + y * layout.pitch + x;
+  const int4 codes = (int4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3]);
+  return convert_float4(codes) * (1.0f / 255.0f);
+#endif
+}
+
 // The reactive values of four neighbours of a row, from x on.
 static inline float4 load_reactive_block(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER

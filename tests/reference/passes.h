@@ -20,8 +20,8 @@ std::vector<CameraVelocity> velocity_from_depth(const Frame& frame);
 
 enum class Weight { kMean, kVelocity };
 
-// out = (c0 + f c1) / (1 + f), f = (1 - reactive) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels of its own
-// frame; c0, c1 by bilinear samples or, `nearest`, by one.
+// out = (c0 + f c1) / (1 + f), f = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render
+// pixels of its own frame; c0, c1 by bilinear samples or, `nearest`, by one.
 Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool nearest,
                          bool reactive, double k, int output_width, int output_height);
 

@@ -62,6 +62,13 @@ Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int ou
   return sample;
 }
 
+double reactive_at(const Frame& frame, int x, int y, int output_width, int output_height) {
+  const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
+  const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
+  return frame.reactive[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
+                        static_cast<std::size_t>(column)];
+}
+
 Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height) {
   Sample sample;
   for (const Tap& row : bilinear_taps(y, output_height, frame.height, frame.jitter_y)) {

@@ -62,6 +62,9 @@ struct Sample {
 // The texel's sanitised colour, weighed; a weight of 0 leaves the sample as it is.
 void add(Sample& sample, const Pixel& texel, double weight);
 
+// The reactive value of the nearest sample.
+double reactive_at(const Frame& frame, int x, int y, int output_width, int output_height);
+
 Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int output_height);
 Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height);
 

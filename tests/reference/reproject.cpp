@@ -53,13 +53,17 @@ bool close_to_integer(double value, double doubt) {
   return std::abs(value - std::nearbyint(value)) <= doubt;
 }
 
-void apply_residual(Move& move, const Frame& current, const Frame& previous, std::size_t texel, double at_x,
-                    double at_y, double weight) {
-  const int x = std::clamp(static_cast<int>(std::floor(at_x + .5)), 0, previous.width - 1);
-  const int y = std::clamp(static_cast<int>(std::floor(at_y + .5)), 0, previous.height - 1);
+// Index of the texel nearest to a place in texel coordinates.
+std::size_t nearest_at(const Frame& frame, double at_x, double at_y) {
+  const int x = std::clamp(static_cast<int>(std::floor(at_x + .5)), 0, frame.width - 1);
+  const int y = std::clamp(static_cast<int>(std::floor(at_y + .5)), 0, frame.height - 1);
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
+}
+
+void apply_residual(Move& move, const Frame& current, const Frame& previous, std::size_t texel,
+                    std::size_t texel_before, double weight) {
   const auto& v0 = current.velocity[texel];
-  const auto& v1 = previous.velocity[static_cast<std::size_t>(y) * static_cast<std::size_t>(previous.width) +
-                                     static_cast<std::size_t>(x)];
+  const auto& v1 = previous.velocity[texel_before];
   double squared = 0;
   const int sizes[][2] = {{current.width, previous.width}, {current.height, previous.height}};
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -93,9 +97,10 @@ Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions
   move.reach = 2 + std::max(std::abs(still_x) + std::abs(move.x), std::abs(still_y) + std::abs(move.y));
   move.trust =
       inside(at_x, previous.jitter_x, previous.width) * inside(at_y, previous.jitter_y, previous.height);
-  if (options.reactive) move.trust *= 1 - current.reactive[texel];
+  const std::size_t texel_before = nearest_at(previous, at_x, at_y);
+  if (options.reactive) move.trust *= (1 - current.reactive[texel]) * (1 - previous.reactive[texel_before]);
   if (options.residual_weight > 0)
-    apply_residual(move, current, previous, texel, at_x, at_y, options.residual_weight);
+    apply_residual(move, current, previous, texel, texel_before, options.residual_weight);
 
   const double limit = 1.02 * depth + 2 * slope_at(current, x, y);
   const double before = smallest_depth(previous, at_x, at_y);
@@ -103,7 +108,8 @@ Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions
   if (lost) move.trust = std::numeric_limits<double>::quiet_NaN();
 
   const double doubt = kDoubt * move.reach;
-  const double steps = options.residual_weight > 0 ? 2 : 1;  // the nearest texel changes half-way between
+  // The nearest texel changes half-way between two.
+  const double steps = options.residual_weight > 0 || options.reactive ? 2 : 1;
   move.undecided = close_to_integer(at_x * steps, doubt) || close_to_integer(at_y * steps, doubt) ||
                    std::abs(before - limit) <= kDoubt * (std::abs(before) + std::abs(limit));
   return move;

@@ -35,8 +35,10 @@ struct ReprojectedPicture : Picture {
   std::int64_t undecided = 0;  // pixels with an infinite condition
 };
 
-// `moves`: one for each texel of the current frame, with reactive values in their trust.
+// `moves`: one for each texel of the current frame. `reactive`: the reactive values of both frames count too,
+// which they already do in the moves of reproject().
 ReprojectedPicture resolve_reprojected(const Frame& current, const Frame& previous,
-                                       const std::vector<Move>& moves, int output_width, int output_height);
+                                       const std::vector<Move>& moves, bool reactive, int output_width,
+                                       int output_height);
 
 }  // namespace quincunx::reference

@@ -31,13 +31,6 @@ Speed speed_at(const Frame& frame, Weight weight, double k, int x, int y, int ou
   return speed;
 }
 
-double reactive_at(const Frame& frame, int x, int y, int output_width, int output_height) {
-  const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
-  const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
-  return frame.reactive[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
-                        static_cast<std::size_t>(column)];
-}
-
 }  // namespace
 
 Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool nearest,
@@ -53,7 +46,10 @@ Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight wei
       const Speed v0 = speed_at(current, weight, k, x, y, output_width, output_height);
       const Speed v1 = speed_at(previous, weight, k, x, y, output_width, output_height);
       double f = 1 / (1 + v0.squared + v1.squared);
-      if (reactive) f *= 1 - reactive_at(current, x, y, output_width, output_height);
+      if (reactive) {
+        f *= 1 - reactive_at(current, x, y, output_width, output_height);
+        f *= 1 - reactive_at(previous, x, y, output_width, output_height);
+      }
       if (c1.non_finite || v0.non_finite || v1.non_finite) f = 0;
       Pixel out = {};
       for (std::size_t c = 0; c < 4; ++c)

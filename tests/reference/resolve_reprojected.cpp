@@ -119,7 +119,8 @@ Resolved blend(const std::vector<WeightedTap>& taps) {
 }  // namespace
 
 ReprojectedPicture resolve_reprojected(const Frame& current, const Frame& previous,
-                                       const std::vector<Move>& moves, int output_width, int output_height) {
+                                       const std::vector<Move>& moves, bool reactive, int output_width,
+                                       int output_height) {
   ReprojectedPicture picture;
   picture.width = output_width;
   picture.height = output_height;
@@ -131,6 +132,10 @@ ReprojectedPicture resolve_reprojected(const Frame& current, const Frame& previo
                                static_cast<std::size_t>(column)];
       const bool lost = std::isnan(move.trust);
       double trust = lost ? 0 : move.trust;
+      if (reactive) {
+        trust *= 1 - reactive_at(current, x, y, output_width, output_height);
+        trust *= 1 - reactive_at(previous, x, y, output_width, output_height);
+      }
       auto before =
           weigh(previous, texel_coordinate(x, output_width, previous.width, previous.jitter_x) + move.x,
                 texel_coordinate(y, output_height, previous.height, previous.jitter_y) + move.y, 1,

@@ -127,7 +127,7 @@ TEST(ResolvePlan, BytesFollowFromTheFormats) {
   const ResolvePlan p = plan({}, settings(Method::kQuincunx));
   constexpr std::uint64_t kPixels = 1280 * 720;
   EXPECT_EQ(p.passes[0].kernel, "resolve_quincunx");
-  EXPECT_EQ(p.passes[0].bytes, kPixels * (2 * 8 + 2 * 4 + 1 + 16));
+  EXPECT_EQ(p.passes[0].bytes, kPixels * (2 * 8 + 2 * 4 + 2 * 1 + 16));
   EXPECT_EQ(p.passes.back().kernel, "present");
   EXPECT_EQ(p.passes.back().bytes, kPixels * (16 + 4));
 }

@@ -31,9 +31,11 @@ struct HostFrame {
 class ServiceRig {
  public:
   ServiceRig(const SceneNeeds& needs, Method method, Extent output, Extent target)
+      : ServiceRig(needs, {.method = method}, output, target) {}
+
+  // Sets the extents and formats of `settings` itself.
+  ServiceRig(const SceneNeeds& needs, ResolveSettings settings, Extent output, Extent target)
       : device_(Device::open().value()) {
-    ResolveSettings settings;
-    settings.method = method;
     settings.output = output;
     settings.target = target;
     settings.colour = PixelFormat::kRGBA32F;
