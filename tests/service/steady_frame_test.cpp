@@ -124,9 +124,9 @@ void reset_counts() {
   g_heap = g_create = g_compile = g_wait = g_enqueue = 0;
 }
 
-void run_steady_frames(const SceneNeeds& needs, Method method) {
+void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings) {
   constexpr int kFrames = 200;
-  ServiceRig rig(needs, method, {64, 48}, {96, 72});
+  ServiceRig rig(needs, settings, {64, 48}, {96, 72});
   // Two frames in each of three slots: every path (first frame, steady) has been taken once.
   std::vector<FrameInputs> frames;
   for (int i = 0; i < 3; ++i)
@@ -170,16 +170,25 @@ void run_steady_frames(const SceneNeeds& needs, Method method) {
 }
 
 TEST(SteadyFrame, Point) {
-  run_steady_frames({}, Method::kPoint);
+  run_steady_frames({}, {.method = Method::kPoint});
 }
 TEST(SteadyFrame, Bilinear) {
-  run_steady_frames({}, Method::kBilinear);
+  run_steady_frames({}, {.method = Method::kBilinear});
 }
 TEST(SteadyFrame, QuincunxWithVelocityTarget) {
-  run_steady_frames({}, Method::kQuincunx);
+  run_steady_frames({}, {.method = Method::kQuincunx});
 }
 TEST(SteadyFrame, QuincunxWithCameraVelocity) {
-  run_steady_frames({.moving_objects = false, .transparents = false}, Method::kQuincunx);
+  run_steady_frames({.moving_objects = false, .transparents = false}, {.method = Method::kQuincunx});
+}
+
+TEST(SteadyFrame, ReprojectedWithMotionBlur) {
+  run_steady_frames({}, {.method = Method::kQuincunx,
+                         .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
+                         .blur = {.shutter = .5f}});
+}
+TEST(SteadyFrame, CatmullRomThatWidens) {
+  run_steady_frames({}, {.method = Method::kCatmullRom});
 }
 
 TEST(SteadyFrame, TheCountersCount) {
