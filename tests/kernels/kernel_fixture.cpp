@@ -269,7 +269,7 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
     std::vector<Pixel> velocity = pattern_pixels(spec.velocity, spec.render, spec.seed + 100);
     for (Pixel& pixel : velocity) {
       for (double& value : pixel)
-        value *= 0.02;
+        value *= spec.speed;
     }
     for (const Pixel& pixel : put(formats.velocity, velocity, frame.inputs.velocity)) {
       frame.reference.velocity.push_back({pixel[0], pixel[1]});

@@ -70,6 +70,7 @@ struct FrameSpec {
   unsigned seed = 1;
   double outside = 0;
   bool tight = false;
+  double speed = .02;  // by which the velocity pattern is multiplied
 };
 
 // A frame for a pass and the same frame for its reference.

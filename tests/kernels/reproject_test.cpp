@@ -194,6 +194,19 @@ TEST_P(Reprojected, MatchesTheReferenceAtEverySizeScaleAndInput) {
   EXPECT_GE(decided_, compared_ * 9 / 10);
 }
 
+// From nothing over less than a rounding to far beyond the screen; and a row of the widest screens.
+TEST_P(Reprojected, AnySpeedAndTheWidestRowsMatchToo) {
+  const Variant& v = GetParam();
+  if (v.storage == Storage::kImage) return;  // images end at 8192 on some devices, the margin included
+  for (const double pixels : {0.0, 1e-6, .5, 400.0, 1e6}) {
+    compare({.render = {45, 23}, .jitter = {.25f, .25f}, .seed = 3, .speed = pixels / 45},
+            {.render = {60, 31}, .jitter = {-.25f, -.25f}, .seed = 4, .speed = pixels / 60}, {64, 33});
+    if (HasFatalFailure()) return;
+  }
+  compare({.render = {5816, 2}, .jitter = {.25f, .25f}, .seed = 5, .speed = 2e-4},
+          {.render = {5600, 3}, .jitter = {-.25f, -.25f}, .seed = 6, .speed = 2e-4}, {8192, 3});
+}
+
 TEST_P(Reprojected, PoisonOutsideTheViewportChangesNoBit) {
   for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
     Rig rig;
