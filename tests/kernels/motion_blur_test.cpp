@@ -174,7 +174,7 @@ class MotionBlur : public ::testing::TestWithParam<std::tuple<Storage, PixelForm
           return kMeanError * expected.largest[i] + kDenormal +
                  testing::output_rounding(settings_.resolved, expected.largest[i]);
         },
-        what);
+        what, settings_.resolved);
   }
 
   ResolveSettings settings_;
@@ -290,7 +290,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(std::tuple{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA32F},
                       std::tuple{Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
                       std::tuple{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
-                      std::tuple{Storage::kImage, PixelFormat::kRG32F, PixelFormat::kRGBA32F}));
+                      std::tuple{Storage::kImage, PixelFormat::kRG32F, PixelFormat::kRGBA32F}),
+    [](const auto& variant) {
+      return fmt::format("{}_{}_to_{}", std::get<0>(variant.param) == Storage::kImage ? "image" : "buffer",
+                         quincunx::name_of(std::get<1>(variant.param)),
+                         quincunx::name_of(std::get<2>(variant.param)));
+    });
 
 }  // namespace
 }  // namespace quincunx
