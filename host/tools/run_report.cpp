@@ -194,6 +194,7 @@ std::string to_text(const RunReport& report) {
   add_statistics(text, "OpenCL passes", report.passes);
   add_statistics(text, "Around them", report.steps);
   add_busy(text, report);
+  text += pacing_text(report.pacing);
   add_frames(text, report.frames);
   add_scores(text, report.scores);
   if (!report.left_out.empty()) {

@@ -15,6 +15,7 @@
 #include "quincunx/image.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
+#include "tools/pacing_report.h"
 
 namespace quincunx::tools {
 
@@ -97,6 +98,7 @@ struct RunReport {
   std::vector<PassStatistics> passes;  // on the OpenCL device
   std::vector<PassStatistics> steps;   // around them: GL draw, hand over, present, file writing
   std::vector<FrameRow> frames;
+  std::vector<PacingRun> pacing;   // this run against a display, then those it is compared with; or none
   std::vector<BusyTime> busy;      // kinds of work that overlap
   std::vector<ScoreRow> scores;    // where there is a truth
   std::vector<LeftOut> left_out;   // of the plan

@@ -56,6 +56,39 @@ Json frames_json(const std::vector<FrameRow>& frames) {
   return list;
 }
 
+Json summary_json(const PacingRun& run) {
+  const PacingSummary summary = summary_of(run);
+  return {{"achieved_fps", summary.achieved_fps},
+          {"dropped", summary.dropped},
+          {"dropped_at_start", summary.dropped_at_start},
+          {"mean_busy_ms", summary.mean_busy_ms},
+          {"median_busy_ms", summary.median_busy_ms},
+          {"p95_busy_ms", summary.p95_busy_ms},
+          {"over_target", summary.over_target},
+          {"mean_area", summary.mean_area},
+          {"least_area", summary.least_area},
+          {"largest_area", summary.largest_area},
+          {"changes_per_second", summary.changes_per_second}};
+}
+
+Json pacing_json(const PacingRun& run) {
+  Json frames = Json::array();
+  for (const PacedFrame& frame : run.frames) {
+    frames.push_back({{"index", frame.index},
+                      {"render", size_json(frame.render)},
+                      {"start_ms", frame.start_ms},
+                      {"finished_ms", frame.finished_ms},
+                      {"shown_ms", frame.shown_ms},
+                      {"busy_ms", frame.busy_ms},
+                      {"cpu_ms", frame.cpu_ms > 0 ? Json(frame.cpu_ms) : Json(nullptr)},
+                      {"queued", frame.queued},
+                      {"missed", frame.missed}});
+  }
+  return {{"controller", run.controller}, {"measured_by", known(run.measured_by)},
+          {"target_fps", run.target_fps}, {"buffers", run.buffers},
+          {"summary", summary_json(run)}, {"frames", frames}};
+}
+
 Json score_json(const ScoreRow& row) {
   return {{"psnr_linear", row.psnr_linear},
           {"psnr_tone_mapped", row.psnr_tone_mapped},
@@ -84,6 +117,9 @@ std::string to_json(const RunReport& report) {
   Json busy = Json::object();
   for (const BusyTime& time : report.busy)
     busy[time.what] = time.seconds;
+  Json pacing = Json::array();
+  for (const PacingRun& run : report.pacing)
+    pacing.push_back(pacing_json(run));
   Json left_out = Json::array();
   for (const LeftOut& item : report.left_out)
     left_out.push_back({{"what", item.what}, {"why", item.why}});
@@ -114,6 +150,7 @@ std::string to_json(const RunReport& report) {
       {"passes", statistics_json(report.passes)},
       {"steps", statistics_json(report.steps)},
       {"frames", frames_json(report.frames)},
+      {"pacing", pacing},
       {"busy_seconds", busy},
       {"scores", scores_json(report.scores)},
       {"left_out", left_out},

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "frame_pacing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace quincunx::scenes {
+namespace {
+
+constexpr double kLeastFps = 1000 / ResolutionController::kLongestMs;
+constexpr double kMostHeadroom = 0.5;
+constexpr int kLeastBuffers = 2;
+constexpr int kMostBuffers = 8;
+constexpr double kSameMoment = 1e-9;  // of a refresh interval: rounding of sums of intervals
+
+Status check(const PacingSettings& settings) {
+  if (!(settings.target_fps >= kLeastFps && std::isfinite(settings.target_fps))) {
+    return Status::invalid(
+        fmt::format("the target is {} frames a second; it must be a finite number of at least {:.4f}",
+                    settings.target_fps, kLeastFps));
+  }
+  if (settings.buffers < kLeastBuffers || settings.buffers > kMostBuffers) {
+    return Status::invalid(fmt::format("there are {} buffers; there must be {} to {}", settings.buffers,
+                                       kLeastBuffers, kMostBuffers));
+  }
+  if (!(settings.headroom >= 0 && settings.headroom <= kMostHeadroom)) {
+    return Status::invalid(
+        fmt::format("the headroom is {}; it must lie within [0, {}]", settings.headroom, kMostHeadroom));
+  }
+  return {};
+}
+
+Result<std::unique_ptr<ResolutionController>> make_controller(const PacingSettings& settings) {
+  const double target_ms = 1000 / settings.target_fps * (1 - settings.headroom);
+  switch (settings.controller) {
+    case ControllerKind::kPredictive:
+      return make_predictive_controller({.ladder = settings.ladder,
+                                         .target_ms = target_ms,
+                                         .buffers = settings.buffers,
+                                         .calibration = settings.calibration,
+                                         .cpu_bound = settings.cpu_bound,
+                                         .blur_aware = settings.blur_aware});
+    case ControllerKind::kProportional:
+      return make_proportional_controller({.ladder = settings.ladder, .target_ms = target_ms});
+    case ControllerKind::kMinimumOfN:
+      return make_minimum_of_n_controller({.ladder = settings.ladder, .target_ms = target_ms});
+    case ControllerKind::kFixed:
+      break;
+  }
+  return std::unique_ptr<ResolutionController>();
+}
+
+}  // namespace
+
+const char* name_of(ControllerKind kind) {
+  switch (kind) {
+    case ControllerKind::kPredictive:
+      return "predictive";
+    case ControllerKind::kProportional:
+      return "proportional";
+    case ControllerKind::kMinimumOfN:
+      return "minimum-of-n";
+    case ControllerKind::kFixed:
+      return "fixed";
+  }
+  return "unknown";
+}
+
+Result<FramePacing> FramePacing::create(const PacingSettings& settings) {
+  if (Status status = check(settings); !status.ok()) return status;
+  auto controller = make_controller(settings);
+  if (!controller.ok()) return controller.status();
+  return FramePacing(settings, std::move(controller).value());
+}
+
+FramePacing::FramePacing(const PacingSettings& settings, std::unique_ptr<ResolutionController> controller)
+    : controller_(std::move(controller)), refresh_ms_(1000 / settings.target_fps) {
+  run_.controller = name_of(settings.controller);
+  run_.target_fps = settings.target_fps;
+  run_.buffers = settings.buffers;
+  run_.output = settings.ladder.output;
+}
+
+std::optional<Extent> FramePacing::next() const {
+  if (!controller_) return std::nullopt;
+  return controller_->next();
+}
+
+std::optional<double> FramePacing::free_at() const {
+  const std::size_t frame = run_.frames.size() + under_way_.size();
+  const auto buffers = static_cast<std::size_t>(run_.buffers);
+  if (frame < buffers) return -std::numeric_limits<double>::infinity();
+  const std::size_t last_to_replace = frame - buffers + 1;
+  if (last_to_replace >= run_.frames.size()) return std::nullopt;
+  return origin_ms_ + run_.frames[last_to_replace].shown_ms;
+}
+
+std::uint64_t FramePacing::begin(double now_ms, Extent render) {
+  under_way_.push_back({now_ms, render});
+  return run_.frames.size() + under_way_.size() - 1;
+}
+
+void FramePacing::finish(std::uint64_t frame, double now_ms, double cpu_ms) {
+  if (frame != run_.frames.size() || under_way_.empty()) return;
+  const Begun begun = under_way_.front();
+  under_way_.erase(under_way_.begin());
+  if (frame == 0) origin_ms_ = now_ms;
+  tools::PacedFrame paced = {
+      .index = static_cast<std::int64_t>(frame), .render = begun.render, .cpu_ms = cpu_ms};
+  paced.finished_ms = now_ms - origin_ms_;
+  paced.start_ms = begun.begin_ms - origin_ms_;
+  if (frame > 0) {
+    const tools::PacedFrame& before = run_.frames.back();
+    paced.start_ms = std::max(paced.start_ms, before.finished_ms);
+    const double refresh = std::ceil(paced.finished_ms / refresh_ms_ - kSameMoment) * refresh_ms_;
+    paced.shown_ms = std::max(refresh, before.shown_ms + refresh_ms_);
+    paced.missed = static_cast<int>(std::lround((paced.shown_ms - before.shown_ms) / refresh_ms_)) - 1;
+  }
+  paced.busy_ms = paced.finished_ms - paced.start_ms;
+  paced.queued = 1;
+  for (auto past = run_.frames.rbegin(); past != run_.frames.rend() && past->shown_ms > paced.finished_ms;
+       ++past) {
+    ++paced.queued;
+  }
+  run_.frames.push_back(paced);
+}
+
+double FramePacing::busy_ms(std::uint64_t frame) const {
+  return frame < run_.frames.size() ? run_.frames[frame].finished_ms - run_.frames[frame].start_ms : 0;
+}
+
+void FramePacing::observe(std::uint64_t frame, double gpu_ms, double blur_px) {
+  if (frame >= run_.frames.size() || !(gpu_ms > 0 && std::isfinite(gpu_ms))) return;
+  tools::PacedFrame& paced = run_.frames[frame];
+  FrameTiming timing = {.frame = frame,
+                        .next_frame = run_.frames.size() + under_way_.size(),
+                        .render = paced.render,
+                        .gpu_ms = gpu_ms,
+                        .cpu_ms = paced.cpu_ms,
+                        .queued = paced.queued,
+                        .missed_vsyncs = paced.missed,
+                        .blur_px = blur_px};
+  if (frame > 0) timing.interval_ms = paced.start_ms - run_.frames[frame - 1].start_ms;
+  // The report has what the controller was told; without one, what it would have been told.
+  if (!controller_ || controller_->observe(timing).ok()) paced.busy_ms = gpu_ms;
+}
+
+}  // namespace quincunx::scenes
