@@ -35,6 +35,11 @@ FrameView FrameSequence::at(std::int64_t index) {
   const Vec2 scale = settings_.scale_path.at(index, settings_.frames);
   // A ScalePath gives positive finite scales only, so this cannot fail.
   static_cast<void>(viewport_.set_scale(scale.x, scale.y));
+  return at(index, viewport_.render());
+}
+
+FrameView FrameSequence::at(std::int64_t index, Extent render) {
+  static_cast<void>(viewport_.set_render(render));  // one that does not fit leaves the last one
   FrameView view;
   view.render = viewport_.render();
   view.jitter = jitter_of(settings_.jitter, index, viewport_.ratio());

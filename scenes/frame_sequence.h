@@ -38,6 +38,9 @@ class FrameSequence {
   // Frame `index` in [0, size()). Its previous_seconds is one frame earlier, also for frame 0.
   FrameView at(std::int64_t index);
 
+  // The same at another viewport than the path's, within the target, and for any index that is not negative.
+  FrameView at(std::int64_t index, Extent render);
+
  private:
   FrameSequence(const SequenceSettings& settings, const DynamicViewport& viewport)
       : settings_(settings), viewport_(viewport) {}

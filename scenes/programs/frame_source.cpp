@@ -84,12 +84,20 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
 }
 
 Status FrameSource::draw(std::int64_t index, bool keep_targets) {
-  if (Status status = begin(index, keep_targets); !status.ok()) return status;
+  return draw(index, sequence_->at(index), keep_targets);
+}
+
+Status FrameSource::draw(std::int64_t index, const FrameView& view, bool keep_targets) {
+  if (Status status = begin(index, view, keep_targets); !status.ok()) return status;
   return submit();
 }
 
 Status FrameSource::begin(std::int64_t index, bool keep_targets) {
-  DrawnFrame frame = {.index = index, .view = sequence_->at(index)};
+  return begin(index, sequence_->at(index), keep_targets);
+}
+
+Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_targets) {
+  DrawnFrame frame = {.index = index, .view = view};
   auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()));
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;

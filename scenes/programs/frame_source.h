@@ -66,15 +66,19 @@ class FrameSource {
   const Scene& scene() const { return stage_->scene; }
   const Device& device() const { return *stage_->device; }
   const gl::EglContext& context() const { return *stage_->context; }
+  FrameSequence& sequence() { return *sequence_; }
   const FrameSequence& sequence() const { return *sequence_; }
   Renderer& renderer() { return *stage_->renderer; }
   gl::Bridge& bridge() { return *bridge_; }
   const gl::Bridge& bridge() const { return *bridge_; }
 
   Status draw(std::int64_t index, bool keep_targets = false);
+  // As another view than the sequence's, within its target.
+  Status draw(std::int64_t index, const FrameView& view, bool keep_targets = false);
 
   // draw() in its two steps, for those who time them: into the slot; to OpenCL.
   Status begin(std::int64_t index, bool keep_targets = false);
+  Status begin(std::int64_t index, const FrameView& view, bool keep_targets = false);
   Status submit();
 
   // The oldest frame that is not released: waits until OpenCL can read it. Its memory stays as it is until

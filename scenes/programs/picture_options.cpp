@@ -67,7 +67,7 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
   app.add_option("--frames", options.frames, "Number of frames")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  app.add_option("--fps", options.fps, "Frames a second of scene time")
+  app.add_option("--fps", options.fps, "Frames a second of scene time (with --target-fps: that rate)")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--start", options.start, "Scene time of the first frame, seconds")->capture_default_str();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 
 #include "tools/program.h"
@@ -13,6 +15,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-render --scale-path sweep --frames 240 --out "out/frame.%04d.png" --report out/report
   quincunx-render --scene model.glb --scale 0.5 --method bilinear --frames 60 --out "orbit.%04d.exr"
   quincunx-render --scene wheel --truth 8 --shutter 0.5 --out truth.exr   supersampled, half a frame's shutter
+  quincunx-render --target-fps 30 --frames 300 --report pace        a controller holds the rate; the report has how
   quincunx-render --scene chart --scale 0.71 --explain                what this scene needs and what is left out
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
@@ -20,6 +23,7 @@ void add_run_options(CLI::App& app, RenderOptions& options) {
   app.add_option("--truth", options.truth,
                  "Supersampled truth instead: N x N samples a pixel at output size, box")
       ->check(CLI::Range(1, 64))
+      ->excludes("--target-fps")
       ->type_name("N");
   app.add_option("--shutter", options.shutter,
                  "With --truth: part of the frame's time that the shutter is open")
@@ -54,6 +58,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   app.set_version_flag("--version", "quincunx-render " QUINCUNX_VERSION);
   app.get_formatter()->column_width(30);
   add_picture_options(app, options);
+  add_pacing_options(app, options.pacing, app.get_option("--scale"), app.get_option("--scale-path"));
   add_run_options(app, options);
   add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-render", argc, argv);
@@ -62,6 +67,10 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  // Held at its rate, the scene goes at its own speed.
+  if (options.pacing.on() && app.count("--fps") == 0) options.fps = options.pacing.target_fps;
+  // The targets hold whatever a controller may choose.
+  if (options.pacing.controls()) options.scale = fmt::format("{}", options.pacing.max_scale);
   return std::nullopt;
 }
 

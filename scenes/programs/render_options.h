@@ -6,11 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "pacing_options.h"
 #include "picture_options.h"
 
 namespace quincunx::scenes {
 
 struct RenderOptions : PictureOptions {
+  PacingOptions pacing;
+
   int truth = 0;       // 0: off; N: N x N samples a pixel
   double shutter = 0;  // of truth: part of a frame's time that the shutter is open
 

@@ -33,10 +33,17 @@ Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions
   if (Status status = session->check_outputs(); !status.ok()) return status;
   auto settings = source_settings_for(options);
   if (!settings.ok()) return settings.status();
+  // What can be said against the options is said before a device is opened.
+  auto pacing = frame_pacing_for(options.pacing, options.output);
+  if (!pacing.ok()) return pacing.status();
   auto source = FrameSource::create(settings.value());
   if (!source.ok()) return source.status();
   session->source_ = std::move(source).value();
   if (Status status = session->open_service(); !status.ok()) return status;
+  if (!pacing.value()) return session;
+  auto paced = PacedLoop::create(*std::move(pacing).value(), options.pacing.cost);
+  if (!paced.ok()) return paced.status();
+  session->paced_ = std::move(paced).value();
   return session;
 }
 
@@ -77,8 +84,15 @@ bool RenderSession::wants_resolved() const {
 }
 
 Status RenderSession::draw(std::int64_t index) {
+  if (paced_) paced_->wait();
   const Clock::time_point start = Clock::now();
-  if (Status status = source_->draw(index, index == options_.exr_frame); !status.ok()) return status;
+  FrameView view = source_->sequence().at(index);
+  if (paced_) {
+    if (const auto render = paced_->next()) view = source_->sequence().at(index, *render);
+    paced_->begin_frame(view.render);
+  }
+  if (Status status = source_->draw(index, view, index == options_.exr_frame); !status.ok()) return status;
+  if (paced_) paced_->end_draw();
   draw_ms_.push_back(since(start));
   return {};
 }
@@ -99,6 +113,7 @@ Status RenderSession::dispatch() {
 
 Status RenderSession::deliver(std::int64_t index) {
   if (Status status = source_->bridge().present(); !status.ok()) return status;
+  if (paced_) paced_->finish_frame();
   present_ms_.push_back(source_->bridge().traffic().present_ms);
   bytes_out_.push_back(source_->bridge().traffic().bytes_out);
   const Clock::time_point start = Clock::now();
@@ -173,8 +188,10 @@ Result<std::vector<float>> RenderSession::download_resolved() const {
 }
 
 void RenderSession::collect_reports() {
-  while (auto report = service_->next_completed())
+  while (auto report = service_->next_completed()) {
+    if (paced_) paced_->add(*report);
     reports_.push_back(*report);
+  }
 }
 
 void RenderSession::begin_contact_sheet() {
@@ -188,17 +205,22 @@ void RenderSession::begin_contact_sheet() {
 }
 
 // With overlap, GL draws the next frame while OpenCL works on this one.
+bool RenderSession::draws_ahead() const {
+  return options_.overlap && (!paced_ || (paced_->overlaps() && paced_->ready()));
+}
+
 Status RenderSession::run_frame(std::int64_t index) {
   const bool draw_next = index + 1 < options_.frames;
   if (Status status = dispatch(); !status.ok()) return status;
-  if (draw_next && options_.overlap) {
+  const bool draw_now = draw_next && draws_ahead();
+  if (draw_now) {
     if (Status status = draw(index + 1); !status.ok()) return status;
   }
   if (Status status = deliver(index); !status.ok()) return status;
-  if (draw_next && !options_.overlap) {
+  collect_reports();
+  if (draw_next && !draw_now) {
     if (Status status = draw(index + 1); !status.ok()) return status;
   }
-  collect_reports();
   return {};
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frame_source.h"
+#include "paced_loop.h"
 #include "quincunx/resolve_service.h"
 #include "render_options.h"
 #include "tools/contact_sheet.h"
@@ -41,6 +42,7 @@ class RenderSession {
   void begin_contact_sheet();
   Status run_frame(std::int64_t index);
   Status draw(std::int64_t index);
+  bool draws_ahead() const;
   Status dispatch();
   Status deliver(std::int64_t index);
   Status write_frame(std::int64_t index);
@@ -52,6 +54,7 @@ class RenderSession {
   RenderOptions options_;
   std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
+  std::optional<PacedLoop> paced_;
   Image resolved_;  // only where an EXR is wanted
   std::optional<tools::FramePattern> pattern_;
   std::optional<tools::ContactSheet> sheet_;

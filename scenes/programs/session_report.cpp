@@ -13,6 +13,15 @@ const char* name_of_platform(gl::Platform platform) {
   return platform == gl::Platform::kDevice ? "device" : "surfaceless";
 }
 
+std::string scale_text(const RenderOptions& options) {
+  const PacingOptions& pacing = options.pacing;
+  if (pacing.controls()) {
+    return fmt::format("{} controller, {} to {}", name_of(pacing.controller), pacing.min_scale,
+                       pacing.max_scale);
+  }
+  return options.scale_path.empty() ? options.scale : options.scale_path;
+}
+
 }  // namespace
 
 tools::RunReport RenderSession::report() const {
@@ -27,14 +36,15 @@ tools::RunReport RenderSession::report() const {
   report.target = source_->sequence().target();
   report.method = tools::method_name(options_.resolve);
   report.settings = {
-      {"scale", options_.scale_path.empty() ? options_.scale : options_.scale_path},
+      {"scale", scale_text(options_)},
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"tone map", name_of(options_.resolve.tone_map)},
       {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
-      {"overlap",
-       options_.overlap ? "GL draws the next frame while OpenCL works: pass times include that load" : "off"},
+      {"overlap", options_.overlap && (!paced_ || paced_->overlaps())
+                      ? "GL draws the next frame while OpenCL works: pass times include that load"
+                      : "off"},
   };
   const gl::EglInfo& gl = source_->context().info();
   report.gl = {name_of_platform(gl.platform), gl.vendor, gl.renderer, gl.version};
@@ -51,6 +61,7 @@ tools::RunReport RenderSession::report() const {
   };
   report.frames = rows_;
   tools::add_measured(report.frames, reports_);
+  if (paced_) report.pacing = {paced_->run()};
   report.left_out = plan().left_out;
   report.files = files_;
   report.wall_seconds = wall_seconds_;

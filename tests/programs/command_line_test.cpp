@@ -85,6 +85,26 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--exr-frame 5 --frames 2 --out '{}/f.%d.png'", 2, "--exr-frame");
 }
 
+TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
+  for (const char* rate : {"0", "-1", "nan", "inf", "fast"}) {
+    expect_refused(std::string("--target-fps ") + rate, 2, "--target-fps");
+  }
+  expect_refused("--target-fps 1e-9", 2, "frames a second");
+  expect_refused("--target-fps 30 --min-scale 0.9 --max-scale 0.5", 2, "--min-scale 0.9");
+  expect_refused("--target-fps 30 --min-scale 0", 2, "--min-scale");
+  expect_refused("--target-fps 30 --max-scale 2.5", 2, "--max-scale");
+  expect_refused("--target-fps 30 --controller magic", 2, "minimum-of-n");
+  expect_refused("--target-fps 30 --ladder rope", 2, "horizontal-first");
+  expect_refused("--target-fps 30 --buffers 1", 2, "--buffers");
+  expect_refused("--target-fps 30 --headroom 0.6", 2, "--headroom");
+  expect_refused("--target-fps 30 --scale 0.5", 2, "--controller fixed");
+  expect_refused("--target-fps 30 --scale-path sweep", 2, "--controller fixed");
+  expect_refused("--target-fps 30 --truth 4", 2, "--truth");
+  for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2"}) {
+    expect_refused(alone, 2, "--target-fps");
+  }
+}
+
 TEST_F(CommandLine, BadSceneFilesAreExitOneAndOneSentence) {
   expect_refused("--scene '{}/missing.gltf'", 1, "missing.gltf");
   expect_refused("--scene /dev/null.glb", 1, "/dev/null.glb");

@@ -130,6 +130,48 @@ TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
   EXPECT_NE(dumped.find("192"), std::string::npos) << "the last viewport is 192 wide";
 }
 
+// What a run must say of its pacing, whatever this machine makes of the rate.
+TEST_F(EndToEnd, APacedRunReportsEveryFrame) {
+  const std::string common = "--scene pan --target-fps 50 --frames 12 --report '{}/r' ";
+  for (const std::string more :
+       {"--min-scale 0.25 --max-scale 1.5", "--controller proportional --ladder both",
+        "--controller minimum-of-n --buffers 2 --headroom 0.1", "--frame-cost device", "--frame-cost span"}) {
+    render(common + more);
+    const auto json = nlohmann::json::parse(read_file(path("r.json")));
+    ASSERT_EQ(json.at("pacing").size(), 1u) << more;
+    const auto& run = json.at("pacing")[0];
+    EXPECT_EQ(run.at("target_fps"), 50);
+    EXPECT_GT(run.at("summary").at("achieved_fps"), 0);
+    EXPECT_NE(run.at("measured_by"), "");
+    ASSERT_EQ(run.at("frames").size(), 12u);
+    int missed = 0;
+    for (std::size_t i = 0; i < 12; ++i) {
+      const auto& frame = run.at("frames")[i];
+      EXPECT_EQ(frame.at("index"), i);
+      EXPECT_EQ(frame.at("render"), json.at("frames")[i].at("render")) << "what was drawn is what was chosen";
+      EXPECT_GT(frame.at("busy_ms"), 0);
+      EXPECT_GE(frame.at("shown_ms"), frame.at("finished_ms"));
+      missed += frame.at("missed").get<int>();
+    }
+    EXPECT_EQ(run.at("summary").at("dropped"), missed);
+    const std::string text = read_file(path("r.txt"));
+    for (const char* part : {"Pacing: target 50.00", "dropped", "Scale over the frames"})
+      EXPECT_NE(text.find(part), std::string::npos) << part;
+  }
+}
+
+TEST_F(EndToEnd, AControllerStartsAtItsTopAndAFixedOneStaysAtTheScale) {
+  render("--scene pan --target-fps 50 --max-scale 1.5 --frames 2 --report '{}/r'");
+  auto json = nlohmann::json::parse(read_file(path("r.json")));
+  EXPECT_EQ(json.at("target"), nlohmann::json::parse("[240, 135]"));
+  EXPECT_EQ(json.at("frames")[0].at("render"), nlohmann::json::parse("[240, 134]"));
+  render("--scene pan --target-fps 50 --controller fixed --scale 0.5 --frames 8 --report '{}/r'");
+  json = nlohmann::json::parse(read_file(path("r.json")));
+  EXPECT_EQ(json.at("pacing")[0].at("controller"), "fixed");
+  for (const auto& frame : json.at("frames"))
+    EXPECT_EQ(frame.at("render"), nlohmann::json::parse("[80, 44]"));
+}
+
 TEST_F(EndToEnd, ContactSheetAndJson) {
   const ProgramResult result = run_program(
       folder_, "--output 160x90 --scene pan --frames 5 --json --contact-sheet '{}/sheet.png' 2>/dev/null");

@@ -34,6 +34,14 @@ TEST(FrameSequence, AViewportOfTheLadderAndTheAspectOfThePicture) {
   EXPECT_EQ(FrameSequence::create(settings("ramp:0.5,1.5")).value().target(), (Extent{1920, 1080}));
 }
 
+TEST(FrameSequence, AnotherViewportThanThePaths) {
+  FrameSequence sequence = FrameSequence::create(settings()).value();
+  const FrameView view = sequence.at(30, {1001, 555});
+  EXPECT_EQ(view.render, (Extent{1001, 555}));
+  EXPECT_EQ(view.seconds, 0.5);
+  EXPECT_EQ(sequence.at(0).render, (Extent{640, 360})) << "the path is as it was";
+}
+
 TEST(FrameSequence, QuincunxJitterIsSymmetricAndAlternates) {
   for (std::int64_t index = 0; index < 10; ++index) {
     const Vec2 now = jitter_of(Jitter::kQuincunx, index, {1, 1});

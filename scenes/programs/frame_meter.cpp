@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "frame_meter.h"
+
+#include <algorithm>
+
+namespace quincunx::scenes {
+namespace {
+
+// -1 where a pass's time is not known.
+double time_of_passes(const FrameReport& report) {
+  double sum = 0;
+  for (int i = 0; i < report.pass_count; ++i) {
+    const double ms = report.passes[static_cast<std::size_t>(i)].ms;
+    if (ms < 0) return -1;
+    sum += ms;
+  }
+  return sum;
+}
+
+}  // namespace
+
+Result<FrameMeter> FrameMeter::create(FrameCost cost) {
+  if (cost == FrameCost::kSpan) return FrameMeter(std::nullopt);
+  std::optional<gl::TimerMethod> method;
+  if (cost == FrameCost::kDevice) method = gl::TimerMethod::kQuery;
+  auto timer = gl::FrameTimer::create(method);
+  if (!timer.ok()) return timer.status();
+  if (timer->method() != gl::TimerMethod::kQuery) return FrameMeter(std::nullopt);
+  return FrameMeter(std::move(timer).value());
+}
+
+std::string FrameMeter::method() const {
+  return measures_device() ? "GL_TIME_ELAPSED of the drawing and OpenCL events of the passes"
+                           : "host clock, from a frame's beginning until its picture is complete";
+}
+
+void FrameMeter::begin(std::uint64_t frame, Extent render) {
+  if (timer_) timer_->begin(frame, render);
+}
+
+void FrameMeter::end() {
+  if (timer_) timer_->end();
+}
+
+void FrameMeter::add(const FrameReport& report) {
+  const double ms = time_of_passes(report);
+  if (timer_ && ms >= 0) cl_.push_back({report.frame_index, ms});
+}
+
+std::optional<FrameMeter::Cost> FrameMeter::next() {
+  if (!timer_) return std::nullopt;
+  while (auto timed = timer_->poll())
+    gl_.push_back({timed->frame, timed->gpu_ms});
+  while (!gl_.empty() && !cl_.empty() && gl_.front().frame != cl_.front().frame) {
+    std::deque<Cost>& older = gl_.front().frame < cl_.front().frame ? gl_ : cl_;
+    older.pop_front();
+  }
+  if (gl_.empty() || cl_.empty()) return std::nullopt;
+  const Cost cost = {gl_.front().frame, gl_.front().ms + cl_.front().ms};
+  gl_.pop_front();
+  cl_.pop_front();
+  return cost;
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// PacedLoop: FramePacing with the host's clock and a FrameMeter: what a program calls around its frames.
+//
+//   for each frame:  loop.wait();
+//                    const Extent render = loop.next().value_or(chosen otherwise);
+//                    loop.begin_frame(render);  draw;  loop.end_draw();
+//                    resolve, present;
+//                    loop.finish_frame();
+//                    loop.add(report) for every FrameReport that has come back, oldest first
+//
+// Where overlaps(), the next frame may be drawn before this one is finished, if ready().
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "frame_meter.h"
+#include "frame_pacing.h"
+
+namespace quincunx::scenes {
+
+class PacedLoop {
+ public:
+  // `pacing` has no frames yet. Errors: of FrameMeter::create(). One thread, that of the GL context.
+  static Result<PacedLoop> create(FramePacing pacing, FrameCost cost);
+
+  bool overlaps() const { return meter_.measures_device(); }
+
+  bool ready() const;  // the next frame has a buffer
+  void wait() const;   // sleeps until ready(); not where that depends on a frame that is not finished
+
+  std::optional<Extent> next() const { return pacing_.next(); }  // nothing: the caller chooses
+
+  void begin_frame(Extent render);
+  void end_draw();      // after the OpenGL calls of the frame begun last
+  void finish_frame();  // the picture of the oldest unfinished frame is complete
+  void add(const FrameReport& report);
+
+  const FramePacing& pacing() const { return pacing_; }
+  tools::PacingRun run() const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  PacedLoop(FramePacing pacing, FrameMeter meter) : pacing_(std::move(pacing)), meter_(std::move(meter)) {}
+  double now_ms() const;
+
+  FramePacing pacing_;
+  FrameMeter meter_;
+  Clock::time_point start_ = Clock::now();
+  double cpu_at_begin_ms_ = 0;
+  std::deque<double> cpu_ms_;  // of the frames that are not finished
+};
+
+}  // namespace quincunx::scenes

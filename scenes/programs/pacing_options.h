@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// PacingOptions: what a command line says of resolution control.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "frame_meter.h"
+#include "frame_pacing.h"
+
+namespace quincunx::scenes {
+
+struct PacingOptions {
+  double target_fps = 0;  // 0: no resolution control
+  ControllerKind controller = ControllerKind::kPredictive;
+  double min_scale = 0.5;
+  double max_scale = 1;
+  AxisOrder order = AxisOrder::kHorizontalFirst;
+  int buffers = 3;
+  double headroom = 0;
+  FrameCost cost = FrameCost::kAuto;
+
+  bool on() const { return target_fps > 0; }
+  bool controls() const { return on() && controller != ControllerKind::kFixed; }
+};
+
+// `scale` and `scale_path`: the options that choose the resolution where no controller does.
+void add_pacing_options(CLI::App& app, PacingOptions& options, CLI::Option* scale, CLI::Option* scale_path);
+
+// Nothing where no rate is asked for. Errors: kInvalidArgument, naming the option.
+Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output);
+
+}  // namespace quincunx::scenes
