@@ -17,5 +17,6 @@ Scene make_wires(std::uint64_t seed);
 Scene make_wheel(std::uint64_t seed);
 Scene make_occluders(std::uint64_t seed);
 Scene make_particles(std::uint64_t seed);
+Scene make_flight(std::uint64_t seed);
 
 }  // namespace quincunx::scenes

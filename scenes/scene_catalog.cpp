@@ -39,6 +39,8 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
      "tens of pixels a frame before detail: what they uncover has no history", make_occluders},
     {"particles", "Smoke, sparks and tinted glass before a lettered wall",
      "transparents without velocity: reactive values must keep their trails away", make_particles},
+    {"flight", "The courtyard, flown through; smoke hangs before the camera for a third of the way",
+     "a load that changes: what a resolution controller makes of it", make_flight},
 });
 
 bool is_gltf_path(std::string_view name) {

@@ -65,6 +65,13 @@ void add_pacing_options(CLI::App& app, PacingOptions& options, CLI::Option* scal
       ->check(CLI::Range(0.0, 0.5))
       ->needs(target)
       ->capture_default_str();
+  app.add_option(
+         "--compare-fixed", options.compared_scales,
+         "Draw the same frames again at each of these fixed scales; the report sets them side by side")
+      ->check(CLI::Range(0.01, 2.0))
+      ->delimiter(',')
+      ->needs(target)
+      ->type_name("S,S");
   app.parse_complete_callback([&options, scale, scale_path] {
     if (!options.controls()) return;
     const CLI::Option* given = scale->count() > 0 ? scale : scale_path;

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
-#include <string>
+#include <vector>
 
 #include "frame_meter.h"
 #include "frame_pacing.h"
@@ -20,6 +20,7 @@ struct PacingOptions {
   int buffers = 3;
   double headroom = 0;
   FrameCost cost = FrameCost::kAuto;
+  std::vector<float> compared_scales;  // the same frames again, each at one of these
 
   bool on() const { return target_fps > 0; }
   bool controls() const { return on() && controller != ControllerKind::kFixed; }

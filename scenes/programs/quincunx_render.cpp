@@ -31,6 +31,17 @@ int explain(const RenderOptions& options) {
   return tools::kDone;
 }
 
+// The same frames at fixed scales, beside those of the report.
+Status compare(const RenderSession& session, const std::vector<float>& scales, tools::RunReport& report) {
+  for (const float scale : scales) {
+    auto fixed = session.at_fixed_scale(scale);
+    if (!fixed.ok()) return fixed.status();
+    if (Status status = fixed.value()->run(); !status.ok()) return status;
+    report.pacing.push_back(fixed.value()->report().pacing.front());
+  }
+  return {};
+}
+
 int render(const RenderOptions& options) {
   if (options.truth > 0) {
     const Status status = run_truth(options);
@@ -39,7 +50,10 @@ int render(const RenderOptions& options) {
   auto session = RenderSession::create(options);
   if (!session.ok()) return tools::fail(session.status());
   if (Status status = session.value()->run(); !status.ok()) return tools::fail(status);
-  const tools::RunReport report = session.value()->report();
+  tools::RunReport report = session.value()->report();
+  if (Status status = compare(*session.value(), options.pacing.compared_scales, report); !status.ok()) {
+    return tools::fail(status);
+  }
   if (options.json) {
     fmt::print("{}\n", tools::to_json(report));
   } else if (!options.quiet) {

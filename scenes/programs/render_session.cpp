@@ -38,13 +38,41 @@ Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions
   if (!pacing.ok()) return pacing.status();
   auto source = FrameSource::create(settings.value());
   if (!source.ok()) return source.status();
-  session->source_ = std::move(source).value();
-  if (Status status = session->open_service(); !status.ok()) return status;
-  if (!pacing.value()) return session;
-  auto paced = PacedLoop::create(*std::move(pacing).value(), options.pacing.cost);
-  if (!paced.ok()) return paced.status();
-  session->paced_ = std::move(paced).value();
+  if (Status status = session->open(std::move(source).value(), std::move(pacing).value()); !status.ok()) {
+    return status;
+  }
   return session;
+}
+
+Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale) const {
+  RenderOptions options = options_;
+  options.pacing.controller = ControllerKind::kFixed;
+  options.scale = fmt::format("{}", scale);
+  options.scale_path.clear();
+  options.out.clear();
+  options.contact_sheet.clear();
+  options.exr_frame = -1;
+  auto settings = source_settings_for(options);
+  if (!settings.ok()) return settings.status();
+  auto pacing = frame_pacing_for(options.pacing, options.output);
+  if (!pacing.ok()) return pacing.status();
+  auto source = source_->another(settings.value().sequence);
+  if (!source.ok()) return source.status();
+  auto session = std::unique_ptr<RenderSession>(new RenderSession(options));
+  if (Status status = session->open(std::move(source).value(), std::move(pacing).value()); !status.ok()) {
+    return status;
+  }
+  return session;
+}
+
+Status RenderSession::open(std::unique_ptr<FrameSource> source, std::optional<FramePacing> pacing) {
+  source_ = std::move(source);
+  if (Status status = open_service(); !status.ok()) return status;
+  if (!pacing) return {};
+  auto paced = PacedLoop::create(std::move(*pacing), options_.pacing.cost);
+  if (!paced.ok()) return paced.status();
+  paced_ = std::move(paced).value();
+  return {};
 }
 
 // Before anything is drawn, so that a long run does not end in a wrong name.

@@ -24,6 +24,9 @@ class RenderSession {
   // Opens everything the options ask for. Errors: of any part, as that part words them.
   static Result<std::unique_ptr<RenderSession>> create(const RenderOptions& options);
 
+  // Another run of the same frames, paced, at one scale, on the same devices; writes no files.
+  Result<std::unique_ptr<RenderSession>> at_fixed_scale(float scale) const;
+
   ~RenderSession();
   RenderSession(const RenderSession&) = delete;
   RenderSession& operator=(const RenderSession&) = delete;
@@ -36,6 +39,7 @@ class RenderSession {
 
  private:
   explicit RenderSession(const RenderOptions& options);
+  Status open(std::unique_ptr<FrameSource> source, std::optional<FramePacing> pacing);
   Status open_service();
   Status check_outputs();
 

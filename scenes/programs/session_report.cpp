@@ -61,7 +61,10 @@ tools::RunReport RenderSession::report() const {
   };
   report.frames = rows_;
   tools::add_measured(report.frames, reports_);
-  if (paced_) report.pacing = {paced_->run()};
+  if (paced_) {
+    report.pacing = {paced_->run()};
+    if (!options_.pacing.controls()) report.pacing.front().controller += " " + scale_text(options_);
+  }
   report.left_out = plan().left_out;
   report.files = files_;
   report.wall_seconds = wall_seconds_;

@@ -100,6 +100,8 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused("--target-fps 30 --scale 0.5", 2, "--controller fixed");
   expect_refused("--target-fps 30 --scale-path sweep", 2, "--controller fixed");
   expect_refused("--target-fps 30 --truth 4", 2, "--truth");
+  expect_refused("--target-fps 30 --compare-fixed 1,0", 2, "--compare-fixed");
+  expect_refused("--compare-fixed 1", 2, "--target-fps");
   for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2"}) {
     expect_refused(alone, 2, "--target-fps");
   }

@@ -167,9 +167,26 @@ TEST_F(EndToEnd, AControllerStartsAtItsTopAndAFixedOneStaysAtTheScale) {
   EXPECT_EQ(json.at("frames")[0].at("render"), nlohmann::json::parse("[240, 134]"));
   render("--scene pan --target-fps 50 --controller fixed --scale 0.5 --frames 8 --report '{}/r'");
   json = nlohmann::json::parse(read_file(path("r.json")));
-  EXPECT_EQ(json.at("pacing")[0].at("controller"), "fixed");
+  EXPECT_EQ(json.at("pacing")[0].at("controller"), "fixed 0.5");
   for (const auto& frame : json.at("frames"))
     EXPECT_EQ(frame.at("render"), nlohmann::json::parse("[80, 44]"));
+}
+
+TEST_F(EndToEnd, TheSameFramesAtFixedScalesBesideTheControllers) {
+  render(
+      "--scene pan --target-fps 50 --frames 6 --compare-fixed 1,0.5 --out '{}/f.%02d.png' --report '{}/r'");
+  const auto pacing = nlohmann::json::parse(read_file(path("r.json"))).at("pacing");
+  ASSERT_EQ(pacing.size(), 3u);
+  EXPECT_EQ(pacing[0].at("controller"), "predictive");
+  EXPECT_EQ(pacing[1].at("controller"), "fixed 1");
+  EXPECT_EQ(pacing[2].at("controller"), "fixed 0.5");
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(pacing[1].at("frames")[i].at("render"), nlohmann::json::parse("[160, 90]"));
+    EXPECT_EQ(pacing[2].at("frames")[i].at("render"), nlohmann::json::parse("[80, 44]"));
+  }
+  const std::string text = read_file(path("r.txt"));
+  EXPECT_NE(text.find("fixed 0.5"), std::string::npos) << text;
+  EXPECT_NE(text.find("speed-up"), std::string::npos) << text;
 }
 
 TEST_F(EndToEnd, ContactSheetAndJson) {

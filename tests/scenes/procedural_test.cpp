@@ -213,7 +213,8 @@ constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>({{"courtyard"
                                                                     {"wires", false, true, false},
                                                                     {"wheel", true, false, false},
                                                                     {"occluders", true, false, false},
-                                                                    {"particles", true, true, true}});
+                                                                    {"particles", true, true, true},
+                                                                    {"flight", true, true, true}});
 
 // What moves within a frame, by looking, must be what the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
