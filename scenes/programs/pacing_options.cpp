@@ -4,12 +4,39 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
 #include <map>
+#include <utility>
 
 #include "tools/option_choice.h"
 
 namespace quincunx::scenes {
 namespace {
+
+Result<CostTable> read_calibration(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) return Status::io(fmt::format("--calibration: '{}' cannot be read", path));
+  auto table = CostTable::from_json(text);
+  if (!table.ok()) {
+    return Status::invalid(fmt::format("--calibration: '{}': {}", path, table.status().message()));
+  }
+  return table;
+}
+
+std::string positive_finite(const std::string& text) {
+  double value = 0;
+  const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+  return good ? std::string() : fmt::format("'{}' is no positive finite number", text);
+}
+
+void refuse_given(CLI::App& app, std::initializer_list<std::string> names, const std::string& why) {
+  for (const std::string& name : names) {
+    if (app.count(name) > 0) throw CLI::ValidationError(name, why);
+  }
+}
 
 void add_controller_options(CLI::App& app, PacingOptions& options) {
   static const std::map<std::string, ControllerKind> kControllers = {
@@ -17,89 +44,121 @@ void add_controller_options(CLI::App& app, PacingOptions& options) {
       {"proportional", ControllerKind::kProportional},
       {"minimum-of-n", ControllerKind::kMinimumOfN},
       {"fixed", ControllerKind::kFixed}};
+  tools::add_choice(
+      app, "--controller", options.controller, kControllers,
+      "With --target-fps: predictive (default), proportional, minimum-of-n, or fixed: none, only "
+      "the report");
+  app.add_option("--calibration", options.calibration,
+                 "For the predictive controller: what --calibrate wrote")
+      ->type_name("FILE");
+  app.add_flag_callback(
+      "--follow-cpu", [&options] { options.cpu_bound = CpuBound::kFollow; },
+      "Where the processor takes longer than the target, the predictive controller makes its time the "
+      "target");
+}
+
+void add_ladder_options(CLI::App& app, PacingOptions& options) {
   static const std::map<std::string, AxisOrder> kOrders = {{"horizontal-first", AxisOrder::kHorizontalFirst},
                                                            {"horizontal-only", AxisOrder::kHorizontalOnly},
                                                            {"both", AxisOrder::kBoth}};
-  static const std::map<std::string, FrameCost> kCosts = {
-      {"auto", FrameCost::kAuto}, {"device", FrameCost::kDevice}, {"span", FrameCost::kSpan}};
-  tools::add_choice(
-      app, "--controller", options.controller, kControllers,
-      "With --target-fps: predictive (default), proportional, minimum-of-n, or fixed: none, only the "
-      "report");
   tools::add_choice(app, "--ladder", options.order, kOrders,
                     "With a controller: horizontal-first (default), horizontal-only or both");
-  tools::add_choice(
-      app, "--frame-cost", options.cost, kCosts,
-      "What a frame costs: device (timers of OpenGL and OpenCL), span (until its picture is complete) "
-      "or auto (default: device where OpenGL's timers can be trusted)");
-}
-
-}  // namespace
-
-void add_pacing_options(CLI::App& app, PacingOptions& options, CLI::Option* scale, CLI::Option* scale_path) {
-  auto* target = app.add_option("--target-fps", options.target_fps,
-                                "Hold this rate: a controller chooses each frame's resolution")
-                     ->check([](const std::string& text) {
-                       double fps = 0;
-                       const bool good =
-                           CLI::detail::lexical_cast(text, fps) && fps > 0 && std::isfinite(fps);
-                       return good ? std::string() : fmt::format("'{}' is no positive finite number", text);
-                     })
-                     ->type_name("F");
-  add_controller_options(app, options);
-  for (const char* name : {"--controller", "--ladder", "--frame-cost"})
-    app.get_option(name)->needs(target);
   app.add_option("--min-scale", options.min_scale, "Lowest scale that a controller may choose, per axis")
       ->check(CLI::Range(0.01, 2.0))
-      ->needs(target)
       ->capture_default_str();
   app.add_option("--max-scale", options.max_scale, "Highest scale that a controller may choose")
       ->check(CLI::Range(0.01, 2.0))
-      ->needs(target)
       ->capture_default_str();
+}
+
+void add_display_options(CLI::App& app, PacingOptions& options) {
   app.add_option("--buffers", options.buffers, "Of the display that frames are made for")
       ->check(CLI::Range(2, 8))
-      ->needs(target)
       ->capture_default_str();
   app.add_option("--headroom", options.headroom, "Part of the refresh interval that a controller leaves free")
       ->check(CLI::Range(0.0, 0.5))
-      ->needs(target)
       ->capture_default_str();
   app.add_option(
          "--compare-fixed", options.compared_scales,
          "Draw the same frames again at each of these fixed scales; the report sets them side by side")
       ->check(CLI::Range(0.01, 2.0))
       ->delimiter(',')
-      ->needs(target)
       ->type_name("S,S");
-  app.parse_complete_callback([&options, scale, scale_path] {
-    if (!options.controls()) return;
-    const CLI::Option* given = scale->count() > 0 ? scale : scale_path;
-    if (given->count() == 0) return;
-    throw CLI::ValidationError(
-        given->get_name(),
-        fmt::format(
-            "the {} controller chooses the scale; bound it by --min-scale and --max-scale, or ask for "
-            "--controller fixed",
-            name_of(options.controller)));
-  });
 }
 
-Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output) {
-  if (!options.on()) return std::optional<FramePacing>();
+void add_measuring_options(CLI::App& app, PacingOptions& options) {
+  static const std::map<std::string, FrameCost> kCosts = {
+      {"auto", FrameCost::kAuto}, {"device", FrameCost::kDevice}, {"span", FrameCost::kSpan}};
+  tools::add_choice(
+      app, "--frame-cost", options.cost, kCosts,
+      "What a frame costs: device (timers of OpenGL and OpenCL), span (until its picture is complete) "
+      "or auto (default: device where OpenGL's timers can be trusted)");
+  app.add_option("--calibrate", options.calibrate,
+                 "Measure instead what frames cost at a few resolutions, and write it for --calibration")
+      ->excludes("--target-fps")
+      ->type_name("FILE");
+}
+
+// What fits together, where it is more than one option needing another.
+void check_together(CLI::App& app, const PacingOptions& options) {
+  if (options.has_ladder()) {
+    refuse_given(app, {"--scale", "--scale-path"},
+                 "here the resolution is chosen for you; bound it by --min-scale and --max-scale, or ask for "
+                 "--controller fixed");
+  } else {
+    refuse_given(app, {"--ladder", "--min-scale", "--max-scale"},
+                 "nothing chooses the resolution; give --target-fps with a controller, or --calibrate");
+  }
+  if (options.controller != ControllerKind::kPredictive) {
+    refuse_given(app, {"--calibration", "--follow-cpu"}, "only the predictive controller makes use of it");
+  }
+}
+
+}  // namespace
+
+void add_pacing_options(CLI::App& app, PacingOptions& options) {
+  auto* target = app.add_option("--target-fps", options.target_fps,
+                                "Hold this rate: a controller chooses each frame's resolution")
+                     ->check(positive_finite)
+                     ->type_name("F");
+  add_controller_options(app, options);
+  add_ladder_options(app, options);
+  add_display_options(app, options);
+  for (const char* name :
+       {"--controller", "--calibration", "--follow-cpu", "--buffers", "--headroom", "--compare-fixed"}) {
+    app.get_option(name)->needs(target);
+  }
+  add_measuring_options(app, options);
+  app.parse_complete_callback([&app, &options] { check_together(app, options); });
+}
+
+Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output) {
   if (options.min_scale > options.max_scale) {
     return Status::invalid(
         fmt::format("--min-scale {} is above --max-scale {}", options.min_scale, options.max_scale));
   }
+  return LadderSettings{.output = output,
+                        .min_scale = options.min_scale,
+                        .max_scale = options.max_scale,
+                        .order = options.order};
+}
+
+Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output) {
+  if (!options.on()) return std::optional<FramePacing>();
+  const auto ladder = ladder_for(options, output);
+  if (!ladder.ok()) return ladder.status();
   PacingSettings settings;
   settings.controller = options.controller;
-  settings.ladder = {.output = output,
-                     .min_scale = options.min_scale,
-                     .max_scale = options.max_scale,
-                     .order = options.order};
+  settings.ladder = ladder.value();
   settings.target_fps = options.target_fps;
   settings.buffers = options.buffers;
   settings.headroom = options.headroom;
+  settings.cpu_bound = options.cpu_bound;
+  if (!options.calibration.empty()) {
+    auto table = read_calibration(options.calibration);
+    if (!table.ok()) return table.status();
+    settings.calibration = std::move(table).value();
+  }
   auto pacing = FramePacing::create(settings);
   if (!pacing.ok()) return pacing.status();
   return std::optional<FramePacing>(std::move(pacing).value());

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "frame_meter.h"
@@ -20,16 +21,24 @@ struct PacingOptions {
   int buffers = 3;
   double headroom = 0;
   FrameCost cost = FrameCost::kAuto;
+  CpuBound cpu_bound = CpuBound::kHold;
+  std::string calibration;             // file that --calibrate wrote; empty: none
+  std::string calibrate;               // file to write instead of a run; empty: none
   std::vector<float> compared_scales;  // the same frames again, each at one of these
 
   bool on() const { return target_fps > 0; }
   bool controls() const { return on() && controller != ControllerKind::kFixed; }
+  bool has_ladder() const { return controls() || !calibrate.empty(); }  // else the scale is given
 };
 
-// `scale` and `scale_path`: the options that choose the resolution where no controller does.
-void add_pacing_options(CLI::App& app, PacingOptions& options, CLI::Option* scale, CLI::Option* scale_path);
+// After --scale and --scale-path, with which they are checked.
+void add_pacing_options(CLI::App& app, PacingOptions& options);
 
-// Nothing where no rate is asked for. Errors: kInvalidArgument, naming the option.
+// Errors: kInvalidArgument, naming the option.
+Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output);
+
+// Nothing where no rate is asked for. Errors: kInvalidArgument, naming the option; kIoFailure for a
+// calibration file that cannot be read.
 Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output);
 
 }  // namespace quincunx::scenes

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "calibration_run.h"
 #include "render_options.h"
 #include "render_session.h"
 #include "scene_catalog.h"
@@ -45,6 +46,10 @@ Status compare(const RenderSession& session, const std::vector<float>& scales, t
 int render(const RenderOptions& options) {
   if (options.truth > 0) {
     const Status status = run_truth(options);
+    return status.ok() ? tools::kDone : tools::fail(status);
+  }
+  if (!options.pacing.calibrate.empty()) {
+    const Status status = run_calibration(options);
     return status.ok() ? tools::kDone : tools::fail(status);
   }
   auto session = RenderSession::create(options);

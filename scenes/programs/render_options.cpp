@@ -24,6 +24,7 @@ void add_run_options(CLI::App& app, RenderOptions& options) {
                  "Supersampled truth instead: N x N samples a pixel at output size, box")
       ->check(CLI::Range(1, 64))
       ->excludes("--target-fps")
+      ->excludes("--calibrate")
       ->type_name("N");
   app.add_option("--shutter", options.shutter,
                  "With --truth: part of the frame's time that the shutter is open")
@@ -58,7 +59,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   app.set_version_flag("--version", "quincunx-render " QUINCUNX_VERSION);
   app.get_formatter()->column_width(30);
   add_picture_options(app, options);
-  add_pacing_options(app, options.pacing, app.get_option("--scale"), app.get_option("--scale-path"));
+  add_pacing_options(app, options.pacing);
   add_run_options(app, options);
   add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-render", argc, argv);
@@ -70,7 +71,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   // Held at its rate, the scene goes at its own speed.
   if (options.pacing.on() && app.count("--fps") == 0) options.fps = options.pacing.target_fps;
   // The targets hold whatever a controller may choose.
-  if (options.pacing.controls()) options.scale = fmt::format("{}", options.pacing.max_scale);
+  if (options.pacing.has_ladder()) options.scale = fmt::format("{}", options.pacing.max_scale);
   return std::nullopt;
 }
 

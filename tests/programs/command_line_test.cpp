@@ -102,7 +102,15 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused("--target-fps 30 --truth 4", 2, "--truth");
   expect_refused("--target-fps 30 --compare-fixed 1,0", 2, "--compare-fixed");
   expect_refused("--compare-fixed 1", 2, "--target-fps");
-  for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2"}) {
+  expect_refused("--target-fps 30 --calibrate '{}/c.json'", 2, "--calibrate");
+  expect_refused("--target-fps 30 --calibration /dev/null", 2, "/dev/null");
+  expect_refused("--target-fps 30 --calibration '{}/missing.json'", 1, "missing.json");
+  expect_refused("--calibrate /proc/none/c.json", 1, "/proc/none");
+  expect_refused("--calibrate '{}/c.json' --min-scale 0.9 --max-scale 0.5", 2, "--min-scale 0.9");
+  expect_refused("--target-fps 30 --controller fixed --min-scale 0.5", 2, "--min-scale");
+  expect_refused("--target-fps 30 --controller proportional --follow-cpu", 2, "--follow-cpu");
+  for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2",
+                            "--calibration c.json", "--follow-cpu"}) {
     expect_refused(alone, 2, "--target-fps");
   }
 }

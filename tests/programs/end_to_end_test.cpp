@@ -189,6 +189,21 @@ TEST_F(EndToEnd, TheSameFramesAtFixedScalesBesideTheControllers) {
   EXPECT_NE(text.find("speed-up"), std::string::npos) << text;
 }
 
+TEST_F(EndToEnd, ACalibrationIsReadBack) {
+  render("--scene pan --calibrate '{}/costs.json'");
+  const auto table = nlohmann::json::parse(read_file(path("costs.json")));
+  EXPECT_EQ(table.at("quincunx_cost_table"), 1);
+  EXPECT_GE(table.at("entries").size(), 5u) << "nine test points, as far as the ladder has them";
+  render("--scene pan --target-fps 50 --frames 4 --calibration '{}/costs.json' --follow-cpu --report '{}/r'");
+  EXPECT_NE(read_file(path("r.txt")).find("Pacing"), std::string::npos);
+
+  std::ofstream(path("broken.json")) << R"({"quincunx_cost_table": 2, "entries": []})";
+  const ProgramResult broken = run_program(folder_, "-q --target-fps 50 --calibration '{}/broken.json'");
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_NE(broken.err.find("broken.json"), std::string::npos) << broken.err;
+  EXPECT_NE(broken.err.find("version"), std::string::npos) << broken.err;
+}
+
 TEST_F(EndToEnd, ContactSheetAndJson) {
   const ProgramResult result = run_program(
       folder_, "--output 160x90 --scene pan --frames 5 --json --contact-sheet '{}/sheet.png' 2>/dev/null");
