@@ -1,40 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The figures of the page and what all parts use.
-"use strict";
+// The figures of the page of speed against error.
 
-const page = JSON.parse(document.getElementById("data").textContent);
 const result = page.result;
-const kColours = 8;
 
-const byId = (id) => document.getElementById(id);
-const unique = (values) => [...new Set(values)];
 const sceneNames = result.scenes.map((scene) => scene.name);
 const scales = unique(result.rows.map((row) => row.scale)).sort((a, b) => a - b);
 const methodNames = result.methods.map((method) => method.name);
 // The scale that the findings speak of.
 const headlineScale = scales.reduce((best, s) => (Math.abs(s - 0.7) < Math.abs(best - 0.7) ? s : best), scales[0]);
 
-function fill(node, attributes, children) {
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith("on")) node.addEventListener(name.slice(2), value);
-    else if (value !== null && value !== undefined) node.setAttribute(name, value);
-  }
-  node.append(...children.filter((child) => child !== null && child !== undefined));
-  return node;
-}
-const el = (tag, attributes = {}, ...children) => fill(document.createElement(tag), attributes, children);
-const svg = (tag, attributes = {}, ...children) =>
-  fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
-
-// 3 significant digits without an exponent; "∞" where a picture equals the truth.
-function number(value, digits = 3) {
-  if (value === null || value === undefined) return "–";
-  if (!Number.isFinite(value)) return "∞";
-  if (value === 0) return "0";
-  const magnitude = Math.floor(Math.log10(Math.abs(value)));
-  if (magnitude < -5) return value.toExponential(1);
-  return value.toFixed(Math.max(0, digits - 1 - magnitude));
-}
 const megabytes = (bytes) => number(bytes / 1e6) + " MB";
 const plusMinus = (spread) => {
   const half = spread.median > 0 ? (50 * (spread.high - spread.low)) / spread.median : 0;
@@ -48,8 +22,6 @@ function errorOf(row, name) {
   const value = row.quality[name];
   return value === null && isDecibels(name) ? Infinity : value;
 }
-
-const mean = (values) => values.reduce((sum, value) => sum + value, 0) / values.length;
 
 // Ratios of power are averaged as errors, not as decibels.
 function meanError(values, name) {
@@ -92,31 +64,5 @@ const copyMs = (scene, scale) =>
   mean(result.copies.filter((row) => row.scale === scale && (scene === "" || row.scene === scene))
     .map((row) => row.ms.median));
 
-const colourOf = (index) => `var(--c${index % kColours})`;
-
-function options(select, entries, chosen) {
-  for (const [value, text] of entries) {
-    select.append(el("option", { value, selected: String(value) === String(chosen) ? "" : null }, String(text)));
-  }
-}
 const sceneEntries = (all) => (sceneNames.length > 1 ? [["", all]] : []).concat(sceneNames.map((name) => [name, name]));
 const firstScene = sceneNames.length > 1 ? "" : sceneNames[0];
-
-const tip = byId("tip");
-function showTip(text, target) {
-  tip.textContent = text;
-  tip.hidden = false;
-  const box = target.getBoundingClientRect();
-  const left = Math.min(box.right + 10, document.documentElement.clientWidth - tip.offsetWidth - 8);
-  const above = box.top - tip.offsetHeight - 8;
-  tip.style.left = `${Math.max(8, left) + window.scrollX}px`;
-  tip.style.top = `${(above > 0 ? above : box.bottom + 8) + window.scrollY}px`;
-}
-const hideTip = () => { tip.hidden = true; };
-// The attributes of a node that explains itself to mouse and keyboard.
-const explains = (text) => ({
-  tabindex: 0, role: "img", "aria-label": text,
-  onmouseenter: (event) => showTip(text, event.currentTarget), onmouseleave: hideTip,
-  onfocus: (event) => showTip(text, event.currentTarget), onblur: hideTip,
-});
-document.addEventListener("keydown", (event) => { if (event.key === "Escape") hideTip(); });

@@ -13,15 +13,6 @@ function logTicks(low, high) {
   return ticks;
 }
 
-function linearTicks(low, high, count) {
-  const raw = (high - low) / count;
-  const power = Math.pow(10, Math.floor(Math.log10(raw)));
-  const step = [1, 2, 5, 10].map((s) => s * power).find((s) => s >= raw);
-  const ticks = [];
-  for (let tick = Math.ceil(low / step); tick <= Math.floor(high / step + 1e-9); ++tick) ticks.push(tick * step);
-  return ticks;
-}
-
 function padded(values, part) {
   const low = Math.min(...values);
   const high = Math.max(...values);

@@ -16,6 +16,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --scenes wires,pan --scales 0.5,0.71 --methods bilinear,quincunx --json
   quincunx-bench --quick --compare old/bench.json    what got better or worse beyond noise
   quincunx-bench --from new/bench.json --compare old/bench.json       the same of two files, nothing is measured
+  quincunx-bench --traces --out report               resolution controllers over load traces; open report/traces.html
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
 void add_choice_options(CLI::App& app, BenchOptions& options) {
@@ -64,7 +65,8 @@ void add_measuring_options(CLI::App& app, BenchOptions& options) {
 
 void add_result_options(CLI::App& app, BenchOptions& options) {
   app.add_option("--out", options.out,
-                 "Write bench.json, bench.csv, bench.svg and bench.html into this folder")
+                 "Write bench.json, .csv, .svg and .html (with --traces: traces.json, .csv and .html) into "
+                 "this folder")
       ->type_name("FOLDER");
   auto* compare =
       app.add_option("--compare", options.compare, "Say what got better or worse since this bench.json")
@@ -100,6 +102,7 @@ std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& optio
   add_choice_options(app, options);
   add_measuring_options(app, options);
   add_result_options(app, options);
+  traces::add_trace_options(app, options.traces);
   scenes::add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-bench", argc, argv);
   try {

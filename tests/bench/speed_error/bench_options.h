@@ -9,6 +9,7 @@
 
 #include "picture_options.h"
 #include "quincunx/image.h"
+#include "traces/trace_command.h"
 
 namespace quincunx::bench {
 
@@ -26,6 +27,7 @@ struct BenchOptions : scenes::PictureOptions {
   std::string compare;  // an older bench.json; empty: none
   std::string from;     // a bench.json instead of measuring; empty: measure
   bool list_methods = false;
+  traces::TraceOptions traces;
   bool json = false;
 
   std::string command_line;

@@ -2,23 +2,16 @@
 #include "bench_page.h"
 
 #include <nlohmann/json.hpp>
-#include <stdexcept>
-#include <string_view>
+#include <span>
 
 #include "bench_findings.h"
 #include "bench_statistics.h"
+#include "page/page_template.h"
 
 namespace quincunx::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string_view file(std::string_view name) {
-  for (const EmbeddedFile& embedded : embedded_page_files()) {
-    if (embedded.name == name) return embedded.text;
-  }
-  throw std::out_of_range("page file " + std::string(name));
-}
 
 std::string base64(std::span<const std::uint8_t> bytes) {
   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -32,20 +25,6 @@ std::string base64(std::span<const std::uint8_t> bytes) {
       text += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63] : '=';
   }
   return text;
-}
-
-// JSON inside a script element: no "</script>" or "<!--" may end it, whatever a name holds.
-std::string safe_in_script(std::string json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
 }
 
 Json gallery_json(const Gallery& gallery) {
@@ -82,25 +61,13 @@ Json page_json(const BenchResult& result, const Gallery& gallery) {
           {"result", Json::parse(to_json(result))},   {"gallery", gallery_json(gallery)}};
 }
 
-// Replaces the one place where `mark` stands.
-void put(std::string& page, std::string_view mark, std::string_view text) {
-  const std::size_t at = page.find(mark);
-  if (at == std::string::npos) throw std::out_of_range("page mark " + std::string(mark));
-  page.replace(at, mark.size(), text);
-}
-
 }  // namespace
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
-  std::string page{file("bench.html")};
-  std::string script;
-  for (const char* name : {"data.js", "plots.js", "frames.js", "tables.js", "viewer.js", "page.js"})
-    script += file(name);
-  put(page, "/*style*/", file("bench.css"));
-  put(page, "/*script*/", script);
-  put(page, "/*data*/",
-      safe_in_script(page_json(result, gallery).dump(-1, ' ', false, Json::error_handler_t::replace)));
-  return page;
+  return page_from_template("bench.html",
+                            {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js",
+                             "tables.js", "viewer.js", "page.js"},
+                            page_json(result, gallery));
 }
 
 }  // namespace quincunx::bench

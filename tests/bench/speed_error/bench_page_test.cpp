@@ -3,37 +3,27 @@
 // presses its buttons and leaves what it saw in the document.
 #include "bench_page.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "page/page_fixture.h"
 #include "sample_result.h"
 #include "skip.h"
 #include "tools/image_io.h"
-#include "tools/temporary_folder.h"
 
 namespace quincunx::bench {
 namespace {
 
 using Json = nlohmann::json;
 
+using testing::kListener;
+using testing::PageInBrowser;
+using testing::with;
+
 constexpr Extent kCrop{16, 8};
 constexpr int kPictures = 3;  // truth and two methods
-
-// First in the page, so that nothing escapes it.
-constexpr const char* kListener = R"(<script>
-window.seen = { errors: [] };
-const note = (text) => window.seen.errors.push(String(text));
-addEventListener("error", (event) => note(event.message));
-addEventListener("unhandledrejection", (event) => note(event.reason));
-document.addEventListener("securitypolicyviolation", (event) => note(event.violatedDirective));
-</script>)";
 
 constexpr const char* kProbe = R"(<script>
 (async () => {
@@ -149,37 +139,6 @@ BenchResult sample_of_two_scenes() {
   for (Row& row : result.rows)
     row.quality.flip += row.scene == "wires" ? 0.01 : 0;
   return result;
-}
-
-class PageInBrowser : public ::testing::Test {
- protected:
-  static bool there() { return std::system("command -v chromium >/dev/null") == 0; }
-
-  // `options` of Chromium; gives what it writes on its standard output. On stderr it repeats the console.
-  std::string browse(const std::string& page, const std::string& options) {
-    std::ofstream(folder_.file("page.html"), std::ios::binary) << page;
-    const int status = std::system(
-        fmt::format("cd '{0}' && HOME='{0}' timeout 120 chromium --headless --no-sandbox --disable-gpu "
-                    "--disable-dev-shm-usage --user-data-dir='{0}/profile' --enable-logging=stderr "
-                    "--virtual-time-budget=20000 {1} 'file://{0}/page.html' >out 2>err",
-                    folder_.file("."), options)
-            .c_str());
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of("err");
-    return text_of("out");
-  }
-
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(folder_.file(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-
-  testing::TemporaryFolder folder_;
-};
-
-std::string with(std::string page, const std::string& after, const std::string& text) {
-  const std::size_t at = page.find(after);
-  EXPECT_NE(at, std::string::npos) << after;
-  return page.insert(at + (after == "<head>" ? after.size() : 0), text);
 }
 
 Json grey(int scene, int scale, int picture) {

@@ -71,6 +71,23 @@ int measure(const BenchOptions& options) {
   return comparison->worse() ? tools::kFailed : tools::kDone;
 }
 
+int replay_traces(const BenchOptions& options) {
+  const auto run = traces::run_traces(options.traces);
+  if (!run.ok()) return tools::fail(run.status());
+  if (!options.out.empty()) {
+    if (Status status = traces::write_files(run.value(), options.out, options.command_line); !status.ok()) {
+      return tools::fail(status);
+    }
+  }
+  if (options.json) {
+    fmt::print("{}", traces::json_of(run.value()));
+  } else if (!options.quiet) {
+    fmt::print("{}", traces::text_of(run.value()));
+    if (!options.out.empty()) fmt::print("\nThe page: {}/traces.html\n", options.out);
+  }
+  return tools::kDone;
+}
+
 int run(int argc, char** argv) {
   BenchOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
@@ -83,6 +100,8 @@ int run(int argc, char** argv) {
     scenes::print_scenes();
   } else if (options.list_devices) {
     scenes::print_devices(options);
+  } else if (options.traces.wanted) {
+    return replay_traces(options);
   } else {
     return measure(options);
   }

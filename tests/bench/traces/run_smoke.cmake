@@ -1,4 +1,4 @@
-# Runs quincunx-traces with a recorded load and reads its JSON and CSV.
+# Runs quincunx-bench --traces with a recorded load and reads its files.
 cmake_minimum_required(VERSION 3.25)
 
 set(recorded "gpu_ms,frame,area_fraction\n")
@@ -6,11 +6,10 @@ foreach(i RANGE 200)
   string(APPEND recorded "12.5,${i},0.5\n")
 endforeach()
 file(WRITE ${FOLDER}/recorded.csv "${recorded}")
-execute_process(COMMAND ${TRACES} --seeds 1 --recorded ${FOLDER}/recorded.csv --json ${FOLDER}/traces.json
-                        --csv ${FOLDER}/traces.csv
+execute_process(COMMAND ${BENCH} --traces --seeds 1 --recorded ${FOLDER}/recorded.csv --out ${FOLDER}
                 OUTPUT_VARIABLE text RESULT_VARIABLE code)
 if(NOT code EQUAL 0)
-  message(FATAL_ERROR "quincunx-traces ended with ${code}")
+  message(FATAL_ERROR "quincunx-bench --traces ended with ${code}")
 endif()
 file(READ ${FOLDER}/traces.json json)
 string(JSON count LENGTH "${json}" results)
@@ -23,6 +22,9 @@ foreach(key dropped pixels_over_oracle changes_per_second reversals_per_second s
     message(FATAL_ERROR "${key} is missing")
   endif()
 endforeach()
+if(NOT EXISTS ${FOLDER}/traces.html)
+  message(FATAL_ERROR "there is no traces.html")
+endif()
 file(STRINGS ${FOLDER}/traces.csv lines)
 list(LENGTH lines count)
 if(NOT count EQUAL 260)  # a header, 7 * (18 + 18 + 1)
@@ -30,7 +32,7 @@ if(NOT count EQUAL 260)  # a header, 7 * (18 + 18 + 1)
 endif()
 
 file(WRITE ${FOLDER}/bad.csv "gpu_ms,area_fraction\n12.5,half\n")
-execute_process(COMMAND ${TRACES} --seeds 1 --recorded ${FOLDER}/bad.csv ERROR_VARIABLE text RESULT_VARIABLE code)
+execute_process(COMMAND ${BENCH} --traces --seeds 1 --recorded ${FOLDER}/bad.csv ERROR_VARIABLE text RESULT_VARIABLE code)
 if(code EQUAL 0 OR NOT text MATCHES "line 2")
   message(FATAL_ERROR "a bad recording ended with ${code}: ${text}")
 endif()

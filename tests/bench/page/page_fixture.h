@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Opens a page in headless Chromium, for tests that look at what it drew.
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "tools/temporary_folder.h"
+
+namespace quincunx::testing {
+
+// First in the page, so that nothing escapes it.
+inline constexpr const char* kListener = R"(<script>
+window.seen = { errors: [] };
+const note = (text) => window.seen.errors.push(String(text));
+addEventListener("error", (event) => note(event.message));
+addEventListener("unhandledrejection", (event) => note(event.reason));
+document.addEventListener("securitypolicyviolation", (event) => note(event.violatedDirective));
+</script>)";
+
+class PageInBrowser : public ::testing::Test {
+ protected:
+  static bool there() { return std::system("command -v chromium >/dev/null") == 0; }
+
+  // `options` of Chromium; gives what it writes on its standard output. On stderr it repeats the console.
+  std::string browse(const std::string& page, const std::string& options) {
+    std::ofstream(folder_.file("page.html"), std::ios::binary) << page;
+    const int status = std::system(
+        fmt::format("cd '{0}' && HOME='{0}' timeout 120 chromium --headless --no-sandbox --disable-gpu "
+                    "--disable-dev-shm-usage --user-data-dir='{0}/profile' --enable-logging=stderr "
+                    "--virtual-time-budget=20000 {1} 'file://{0}/page.html' >out 2>err",
+                    folder_.file("."), options)
+            .c_str());
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of("err");
+    return text_of("out");
+  }
+
+  std::string text_of(const std::string& name) const {
+    std::ifstream file(folder_.file(name), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+
+  TemporaryFolder folder_;
+};
+
+inline std::string with(std::string page, const std::string& after, const std::string& text) {
+  const std::size_t at = page.find(after);
+  EXPECT_NE(at, std::string::npos) << after;
+  return page.insert(at + (after == "<head>" ? after.size() : 0), text);
+}
+
+}  // namespace quincunx::testing
