@@ -9,13 +9,16 @@ build_packages=(
   libtinygltf-dev libstb-dev
   libepoxy-dev libegl-dev libgl-dev
   ocl-icd-opencl-dev opencl-clhpp-headers
+  libglfw3-dev libimgui-dev               # the window; without them, all but the window is built
 )
 run_packages=(
   pocl-opencl-icd                        # an OpenCL device on every CPU
   libegl1 libegl-mesa0 libgl1-mesa-dri   # OpenGL without a window or a GPU
   fonts-dejavu-core                      # captions of the contact sheet
 )
-test_packages=(clang clang-format python3 chromium)
+test_packages=(clang clang-format python3 chromium
+  xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
+)
 optional_test_packages=(oclgrind)        # memory checks of kernels; Debian 13 has it no more
 
 say() { printf '%s\n' "$*"; }

@@ -102,13 +102,15 @@ bool is_software(const std::string& renderer) {
 struct EglContext::Impl {
   DisplayUse display;
   EGLContext context = EGL_NO_CONTEXT;
+  bool borrowed = false;  // the context is its maker's
+  EGLDisplay handle = EGL_NO_DISPLAY;
   EglInfo info;
 
   Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    if (context == EGL_NO_CONTEXT) return;
+    if (context == EGL_NO_CONTEXT || borrowed) return;
     eglBindAPI(EGL_OPENGL_API);
     if (eglGetCurrentContext() == context &&
         eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) != EGL_TRUE) {
@@ -120,6 +122,11 @@ struct EglContext::Impl {
   }
 
   Status make_current() const {
+    // Not by eglMakeCurrent: that would take the window's surface away.
+    if (borrowed) {
+      if (eglGetCurrentContext() == context) return {};
+      return Status::invalid("the window's OpenGL context is not current on this thread");
+    }
     if (eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
       return Status::device(egl_error("eglMakeCurrent without a surface"));
     }
@@ -128,6 +135,9 @@ struct EglContext::Impl {
 
   // Opens `native` of `platform_enum`; "" when that worked, else what went wrong.
   std::string open(EGLenum platform_enum, void* native, Platform platform);
+
+  // Takes the context that is current; "" when that worked, else what went wrong.
+  std::string borrow_current();
 
  private:
   std::string make_context();
@@ -189,12 +199,21 @@ std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform
   const auto get_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_display == nullptr) return "EGL lacks eglGetPlatformDisplayEXT";
-  const EGLDisplay handle = get_display(platform_enum, native, nullptr);
+  handle = get_display(platform_enum, native, nullptr);
   if (handle == EGL_NO_DISPLAY) return egl_error("eglGetPlatformDisplayEXT");
   display = DisplayUse::initialise(handle);
   if (!display) return egl_error("eglInitialize");
   if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return egl_error("eglBindAPI for desktop OpenGL");
   if (std::string error = make_context(); !error.empty()) return error;
+  return describe_context();
+}
+
+std::string EglContext::Impl::borrow_current() {
+  info.platform = Platform::kCurrent;
+  context = eglGetCurrentContext();
+  handle = eglGetCurrentDisplay();
+  borrowed = true;
+  if (context == EGL_NO_CONTEXT) return "no EGL context is current on this thread";
   return describe_context();
 }
 
@@ -226,7 +245,28 @@ void note(std::string* tried, const std::string& what, const std::string& error)
 
 }  // namespace
 
+const char* name_of(Platform platform) {
+  switch (platform) {
+    case Platform::kAuto:
+      return "auto";
+    case Platform::kSurfaceless:
+      return "surfaceless";
+    case Platform::kDevice:
+      return "device";
+    case Platform::kCurrent:
+      return "window";
+  }
+  return "unknown";
+}
+
 Result<EglContext> EglContext::create(Platform platform) {
+  if (platform == Platform::kCurrent) {
+    auto impl = std::make_unique<Impl>();
+    if (const std::string error = impl->borrow_current(); !error.empty()) {
+      return Status::unsupported(fmt::format("the current OpenGL context cannot be used: {}", error));
+    }
+    return EglContext(std::move(impl));
+  }
   std::string tried;
   std::unique_ptr<Impl> software;  // the first software device, kept in case nothing better comes
 
@@ -275,7 +315,7 @@ const EglInfo& EglContext::info() const {
   return impl_->info;
 }
 void* EglContext::display() const {
-  return impl_->display.get();
+  return impl_->handle;
 }
 void* EglContext::context() const {
   return impl_->context;

@@ -12,7 +12,6 @@ namespace quincunx::tools {
 
 namespace {
 
-// Debian's fonts-dejavu-core.
 constexpr const char* kSansPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr const char* kSansBoldPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 constexpr int kSubpixels = 64;  // FreeType's unit: 26.6 fixed point
@@ -116,6 +115,10 @@ struct TextPainter::Fonts {
     return pen;
   }
 };
+
+const char* font_path(Face face) {
+  return face == Face::kSans ? kSansPath : kSansBoldPath;
+}
 
 TextPainter::TextPainter() : fonts_(std::make_unique<Fonts>()) {}
 

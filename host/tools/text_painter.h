@@ -30,6 +30,8 @@ struct Canvas {
 enum class Face { kSans, kSansBold };
 enum class Align { kLeft, kRight };
 
+const char* font_path(Face face);  // the file of Debian's fonts-dejavu-core, whether it is there or not
+
 // Not thread-safe. `size_px` is the height of the em; text is UTF-8, one line.
 class TextPainter {
  public:

@@ -12,6 +12,7 @@
 #include "tools/program.h"
 #include "tools/run_report.h"
 #include "truth_run.h"
+#include "window_run.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -50,6 +51,10 @@ int render(const RenderOptions& options) {
   }
   if (!options.pacing.calibrate.empty()) {
     const Status status = run_calibration(options);
+    return status.ok() ? tools::kDone : tools::fail(status);
+  }
+  if (options.window) {
+    const Status status = run_window(options);
     return status.ok() ? tools::kDone : tools::fail(status);
   }
   auto session = RenderSession::create(options);

@@ -17,6 +17,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-render --scene wheel --truth 8 --shutter 0.5 --out truth.exr   supersampled, half a frame's shutter
   quincunx-render --target-fps 30 --frames 300 --report pace        a controller holds the rate; the report has how
   quincunx-render --scene chart --scale 0.71 --explain                what this scene needs and what is left out
+  quincunx-render --window --scale 0.71                               in a window; H there lists the keys
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
 void add_run_options(CLI::App& app, RenderOptions& options) {
@@ -49,6 +50,25 @@ void add_run_options(CLI::App& app, RenderOptions& options) {
   app.add_flag("--json", options.json, "Print the report as JSON on standard output");
 }
 
+void add_window_options(CLI::App& app, RenderOptions& options) {
+  auto* window = app.add_flag("--window", options.window,
+                              "Show the frames in a window, until it is closed or --frames are shown");
+  for (const char* other : {"--truth", "--out", "--contact-sheet", "--exr-frame", "--report", "--json",
+                            "--calibrate", "--compare-fixed"}) {
+    window->excludes(app.get_option(other));
+  }
+  app.add_option("--script", options.script, "Keys and sizes for the window, by frame; docs/window.md")
+      ->needs(window)
+      ->type_name("FILE");
+  app.add_option("--captures", options.captures, "Folder of the window's screenshots and dumps")
+      ->needs(window)
+      ->capture_default_str()
+      ->type_name("FOLDER");
+  app.add_flag("!--hide-ui", options.show_ui, "Begin with the picture alone; Tab shows the panel")
+      ->needs(window);
+  app.add_flag("!--no-vsync", options.vsync, "Show pictures without waiting for the display")->needs(window);
+}
+
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& options) {
@@ -61,6 +81,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   add_picture_options(app, options);
   add_pacing_options(app, options.pacing);
   add_run_options(app, options);
+  add_window_options(app, options);
   add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-render", argc, argv);
   try {
@@ -72,6 +93,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   if (options.pacing.on() && app.count("--fps") == 0) options.fps = options.pacing.target_fps;
   // The targets hold whatever a controller may choose.
   if (options.pacing.has_ladder()) options.scale = fmt::format("{}", options.pacing.max_scale);
+  if (options.window && app.count("--frames") == 0) options.frames = 0;
   return std::nullopt;
 }
 

@@ -25,6 +25,12 @@ struct RenderOptions : PictureOptions {
   bool explain = false;
   bool json = false;
 
+  bool window = false;           // show the frames in a window; `frames` 0: until it is closed
+  std::string script;            // file of keys for the window; empty: none
+  std::string captures = "out";  // folder of the window's screenshots and dumps
+  bool show_ui = true;
+  bool vsync = true;
+
   std::string command_line;  // as typed, for the report
 };
 

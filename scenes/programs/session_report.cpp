@@ -9,10 +9,6 @@
 namespace quincunx::scenes {
 namespace {
 
-const char* name_of_platform(gl::Platform platform) {
-  return platform == gl::Platform::kDevice ? "device" : "surfaceless";
-}
-
 std::string scale_text(const RenderOptions& options) {
   const PacingOptions& pacing = options.pacing;
   if (pacing.controls()) {
@@ -47,7 +43,7 @@ tools::RunReport RenderSession::report() const {
                       : "off"},
   };
   const gl::EglInfo& gl = source_->context().info();
-  report.gl = {name_of_platform(gl.platform), gl.vendor, gl.renderer, gl.version};
+  report.gl = {gl::name_of(gl.platform), gl.vendor, gl.renderer, gl.version};
   const DeviceInfo& cl = source_->device().info();
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
   report.interop = gl::name_of(source_->bridge().kind());

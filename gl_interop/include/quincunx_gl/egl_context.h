@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// EglContext: an OpenGL 4.5 core context without a window.
+// EglContext: an OpenGL 4.5 core context: one of its own without a window, or that of a window made
+// elsewhere.
 #pragma once
 
 #include <memory>
@@ -9,7 +10,14 @@
 
 namespace quincunx::gl {
 
-enum class Platform { kAuto, kSurfaceless, kDevice };  // kAuto: device where it is a GPU, else surfaceless
+enum class Platform {
+  kAuto,  // device where it is a GPU, else surfaceless
+  kSurfaceless,
+  kDevice,
+  kCurrent,  // no new context: the one that is current on this thread, for example a window's
+};
+
+const char* name_of(Platform platform);  // "surfaceless"
 
 struct EglInfo {
   Platform platform = Platform::kAuto;  // the one in use
@@ -19,12 +27,14 @@ struct EglInfo {
   bool software = false;                // llvmpipe, softpipe, swrast
 };
 
-// Owns display connection and context. Move-only; the context is current on the thread that made it, and
+// Owns display connection and context, but for kCurrent: that context stays its maker's, who keeps it alive
+// and current longer than this object. Move-only; the context is current on the thread that made it, and
 // every GL call of this library happens on the thread where it is current. Destroying it after all GL objects
 // is the caller's duty. Debug output of the driver (errors, not chatter) goes to the log.
 class EglContext {
  public:
-  // Errors: kUnsupported with what was tried and what each said.
+  // Errors: kUnsupported with what was tried and what each said; for kCurrent also where no EGL context is
+  // current.
   static Result<EglContext> create(Platform platform = Platform::kAuto);
 
   ~EglContext();

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// FrameTrace: what the last frames cost, for graphs and tables.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "live_picture.h"
+
+namespace quincunx::scenes {
+
+struct TracePoint {
+  double area = 0;         // pixels drawn, part of the output's
+  double draw_ms = 0;      // OpenGL
+  double opencl_ms = 0;    // all passes
+  double cpu_ms = 0;       // the processor's part of drawing
+  double interval_ms = 0;  // since the frame before
+  int dropped = 0;         // refreshes that this frame missed
+};
+
+struct PassTime {
+  std::string kernel;
+  double ms = 0;  // running mean
+};
+
+class FrameTrace {
+ public:
+  static constexpr std::size_t kLength = 240;
+
+  void add(const FrameTimes& times, Extent output, double interval_ms, int dropped);
+
+  const std::vector<TracePoint>& points() const { return points_; }  // oldest first
+  const std::vector<PassTime>& passes() const { return passes_; }    // of the last frame's passes, in order
+  const TracePoint& mean() const { return mean_; }                   // running
+  int dropped() const { return dropped_; }                           // in all
+
+ private:
+  std::vector<TracePoint> points_;
+  std::vector<PassTime> passes_;
+  TracePoint mean_;
+  int dropped_ = 0;
+};
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+#include "key_bindings.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "scene_catalog.h"
+#include "tools/method_names.h"
+
+namespace quincunx::scenes {
+namespace {
+
+constexpr float kScaleStep = 0.05f;
+constexpr float kSplitStep = 0.05f;
+constexpr float kShutterStep = 0.25f;
+constexpr float kLongestShutter = 2;
+constexpr const char* kShift = "shift+";
+
+// The one after `value`, or before it; the first where it is none of them.
+template <typename Value>
+Value neighbour(const std::vector<Value>& values, const Value& value, bool back) {
+  const auto found = std::find(values.begin(), values.end(), value);
+  if (found == values.end()) return values.front();
+  const auto at = static_cast<std::size_t>(found - values.begin());
+  return values[(at + (back ? values.size() - 1 : 1)) % values.size()];
+}
+
+template <typename Value>
+Value neighbour(Value value, int count, bool back) {
+  return static_cast<Value>((static_cast<int>(value) + (back ? count - 1 : 1)) % count);
+}
+
+// Methods of one frame, or those that use earlier ones.
+std::vector<std::string> methods(bool of_one_frame) {
+  std::vector<std::string> names;
+  for (const auto& [name, choice] : tools::method_choices()) {
+    if ((choice.method < Method::kQuincunx) == of_one_frame) names.push_back(name);
+  }
+  return names;
+}
+
+void next_scene(WindowSettings& settings, bool back) {
+  std::vector<std::string> names;
+  for (const SceneEntry& entry : list_scenes())
+    names.push_back(entry.name);
+  settings.look.scene = neighbour(names, settings.look.scene, back);
+}
+
+void next_comparison(WindowSettings& settings, bool back) {
+  std::vector<std::string> names = {kCompareNothing, kCompareTruth};
+  for (const auto& [name, choice] : tools::method_choices())
+    names.push_back(name);
+  settings.look.compared = neighbour(names, settings.look.compared, back);
+}
+
+// On steps, whatever the value was before.
+void step_scale(WindowSettings& settings, float steps) {
+  const float scale = kScaleStep * (std::round(settings.resolution.scale / kScaleStep) + steps);
+  settings.resolution.mode = ResolutionMode::kFixed;
+  settings.resolution.scale = std::clamp(scale, kSmallestScale, kLargestScale);
+}
+
+void step_zoom(WindowSettings& settings, bool out) {
+  int& factor = settings.zoom.factor;
+  factor = out ? std::max(factor / 2, 1) : factor == kLargestZoom ? 1 : factor * 2;
+}
+
+void step_shutter(WindowSettings& settings, bool back) {
+  float& shutter = settings.look.shutter;
+  shutter += back ? -kShutterStep : kShutterStep;
+  if (shutter > kLongestShutter) shutter = 0;
+  if (shutter < 0) shutter = kLongestShutter;
+}
+
+void next_rate(WindowSettings& settings, bool back) {
+  settings.rate.target_fps = neighbour<double>({15.0, 24.0, 30.0, 48.0, 60.0, 75.0, 90.0, 120.0, 144.0},
+                                               settings.rate.target_fps, back);
+}
+
+void step_split(WindowSettings& settings, float step) {
+  settings.split = std::clamp(settings.split + step, 0.0f, 1.0f);
+}
+
+constexpr std::array kBindings = std::to_array<KeyBinding>({
+    {GLFW_KEY_N, "n", "N", "next scene", next_scene},
+    {GLFW_KEY_UP, "up", "Up", "scale up", [](WindowSettings& settings, bool) { step_scale(settings, 1); }},
+    {GLFW_KEY_DOWN, "down", "Down", "scale down",
+     [](WindowSettings& settings, bool) { step_scale(settings, -1); }},
+    {GLFW_KEY_M, "m", "M", "resolution: fixed, controller, sweep, random, lowest",
+     [](WindowSettings& settings, bool back) {
+       settings.resolution.mode = neighbour(settings.resolution.mode, kResolutionModes, back);
+     }},
+    {GLFW_KEY_C, "c", "C", "next controller",
+     [](WindowSettings& settings, bool back) {
+       settings.rate.controller = neighbour(settings.rate.controller, kControllers, back);
+     }},
+    {GLFW_KEY_P, "p", "P", "target: more pictures a second", next_rate},
+    {GLFW_KEY_T, "t", "T", "time: equal steps or by the clock",
+     [](WindowSettings& settings, bool) { settings.real_time = !settings.real_time; }},
+    {GLFW_KEY_F, "f", "F", "next filter of one frame",
+     [](WindowSettings& settings, bool back) {
+       settings.look.method = neighbour(methods(true), settings.look.method, back);
+     }},
+    {GLFW_KEY_R, "r", "R", "next resolve over frames",
+     [](WindowSettings& settings, bool back) {
+       settings.look.method = neighbour(methods(false), settings.look.method, back);
+     }},
+    {GLFW_KEY_B, "b", "B", "motion blur: longer shutter", step_shutter},
+    {GLFW_KEY_V, "v", "V", "split view: truth, other methods", next_comparison},
+    {GLFW_KEY_LEFT, "left", "Left", "split to the left",
+     [](WindowSettings& settings, bool) { step_split(settings, -kSplitStep); }},
+    {GLFW_KEY_RIGHT, "right", "Right", "split to the right",
+     [](WindowSettings& settings, bool) { step_split(settings, kSplitStep); }},
+    {GLFW_KEY_SPACE, "space", "Space", "freeze the frame",
+     [](WindowSettings& settings, bool) { settings.frozen = !settings.frozen; }},
+    {GLFW_KEY_PERIOD, "period", ".", "one frame on, while frozen",
+     [](WindowSettings& settings, bool) { ++settings.step; }},
+    {GLFW_KEY_COMMA, "comma", ",", "one frame back, while frozen",
+     [](WindowSettings& settings, bool) { --settings.step; }},
+    {GLFW_KEY_Z, "z", "Z", "zoom to pixels: 2, 4 ... 32 times", step_zoom},
+    {GLFW_KEY_S, "s", "S", "screenshot (PNG)",
+     [](WindowSettings& settings, bool) { settings.screenshot = true; }},
+    {GLFW_KEY_D, "d", "D", "dump targets and picture (EXR)",
+     [](WindowSettings& settings, bool) { settings.dump = true; }},
+    {GLFW_KEY_O, "o", "O", "how this interface is drawn",
+     [](WindowSettings& settings,
+        bool back) { settings.drawing = neighbour(settings.drawing, kUiDrawings, back); }},
+    {GLFW_KEY_TAB, "tab", "Tab", "hide or show the interface",
+     [](WindowSettings& settings, bool) { settings.show_ui = !settings.show_ui; }},
+    {GLFW_KEY_H, "h", "H", "this help",
+     [](WindowSettings& settings, bool) { settings.show_help = !settings.show_help; }},
+    {GLFW_KEY_ESCAPE, "escape", "Esc", "close the window",
+     [](WindowSettings& settings, bool) { settings.close = true; }},
+});
+
+}  // namespace
+
+std::span<const KeyBinding> key_bindings() {
+  return kBindings;
+}
+
+void act_on(const KeyPress& press, WindowSettings& settings) {
+  for (const KeyBinding& binding : kBindings) {
+    if (binding.key == press.key) binding.act(settings, press.shift);
+  }
+}
+
+std::optional<KeyPress> key_named(const std::string& name) {
+  const bool shift = name.starts_with(kShift);
+  const std::string plain = shift ? name.substr(std::string(kShift).size()) : name;
+  for (const KeyBinding& binding : kBindings) {
+    if (plain == binding.name) return KeyPress{binding.key, shift};
+  }
+  return std::nullopt;
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// LivePicture: frames drawn and resolved one after the other into textures of the current OpenGL context, by
+// settings that may change between any two of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame_source.h"
+#include "picture_options.h"
+#include "presenter.h"
+#include "quincunx/resolve_service.h"
+#include "quincunx_gl/frame_timer.h"
+#include "quincunx_gl/handle.h"
+#include "window_settings.h"
+
+namespace quincunx::scenes {
+
+// What one frame cost.
+struct FrameTimes {
+  double draw_ms = 0;  // OpenGL's work
+  double cpu_ms = 0;   // the processor's, to prepare that
+  FrameReport report;  // OpenCL's passes
+};
+
+class LivePicture {
+ public:
+  // Seed, exposure, devices, frame rate and what LookSettings leaves open come from `options`. An OpenGL
+  // context is current, and stays longer than this object. Errors: of any part, as that part words them.
+  static Result<std::unique_ptr<LivePicture>> create(const PictureOptions& options);
+
+  // From the next draw() on. Makes anew what has to be; nothing where nothing has changed.
+  Status configure(const LookSettings& look, const ResolutionSettings& resolution, Extent output);
+
+  // What frame `index` is by these settings. `chosen`: by a controller, for ResolutionMode::kController.
+  FrameView view_of(std::int64_t index, Extent chosen);
+
+  enum class Keep : std::uint8_t { kNothing, kForFiles };
+
+  // Draws frame `index` as `view`, then makes the picture from it and waits for that. `reset`: nothing of the
+  // frames before may be used, as at a cut.
+  Status draw(std::int64_t index, const FrameView& view, Keep keep = Keep::kNothing);
+  Status resolve(bool reset = false);
+
+  // Of the last resolve(), until the next draw().
+  GLuint picture() const { return source_->bridge().presented_texture(); }
+  GLuint compared() const { return compared_.get(); }  // 0 where nothing is compared
+  const std::uint8_t* pixels() { return source_->bridge().presented_pixels(); }
+  const FrameTimes& times() const { return times_; }
+
+  // The last frame's targets and resolved picture, as EXR files BASE_targets.exr and BASE_resolved.exr; it
+  // must have been drawn with kForFiles.
+  Status write(const std::string& base) const;
+
+  Extent output() const { return source_->sequence().output(); }
+  const ResolvePlan& plan() const { return service_->plan(); }
+  const FrameSource& source() const { return *source_; }
+
+ private:
+  LivePicture(const PictureOptions& options, gl::FrameTimer timer)
+      : options_(options), timer_(std::move(timer)) {}
+
+  PictureOptions options_for(const LookSettings& look, Extent output) const;
+  Status open_source(const FrameSourceSettings& settings);
+  Status open_services(const ResolveSettings& wanted);
+  Status open_compared(const ResolvePlan& plan);
+  Status dispatch(bool reset);
+  Status bring_compared(const FrameView& view);
+  void poll_timer();
+  void collect_times();
+  float exposure() const;
+
+  PictureOptions options_;
+  gl::FrameTimer timer_;
+  ScalePath sweep_;
+  ScalePath random_;
+  std::uint64_t timed_ = 0;  // frames that the timer was told of
+  LookSettings look_;
+  ResolutionSettings resolution_;
+  std::unique_ptr<FrameSource> source_;
+  std::optional<FrameSequence> sequence_;  // of the views; its target is the source's
+  std::optional<ResolveService> service_;
+  Image resolved_;  // made when the first file wants it
+
+  std::optional<ResolveService> other_service_;
+  Image other_image_;
+  std::optional<Presenter> truth_presenter_;
+  gl::Texture compared_;
+
+  FrameTimes times_;
+  Keep keep_ = Keep::kNothing;
+  std::optional<DrawnFrame> kept_;
+};
+
+}  // namespace quincunx::scenes

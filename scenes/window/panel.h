@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The panel and what else lies over the picture: labels of the split view, the pixel under the cursor, help.
+// By Dear ImGui, between the beginning and the end of one of its frames.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frame_trace.h"
+#include "window_settings.h"
+
+namespace quincunx::scenes {
+
+struct PickedPixel {
+  int x = 0;
+  int y = 0;
+  std::array<std::uint8_t, 4> rgba = {};
+};
+
+// What the panel tells; what it changes is in the settings.
+struct PanelFacts {
+  std::vector<std::string> scenes;
+  std::int64_t frame = 0;
+  Extent render = {};
+  Extent output = {};
+  double target_ms = 0;  // 0: none
+  std::string opengl;
+  std::string opencl;
+  std::optional<PickedPixel> pixel;  // under the cursor, where the picture is enlarged
+  std::string message;               // of what was done last; may be empty
+};
+
+void draw_panel(WindowSettings& settings, const FrameTrace& trace, const PanelFacts& facts);
+
+}  // namespace quincunx::scenes
