@@ -50,13 +50,17 @@ void DrawList::build_casters(const SceneLayout& layout, const std::vector<Instan
 }
 
 void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& boxes, const Frustum& frustum,
-                       const glm::vec3& eye) {
+                       const glm::vec3& eye, float least_span) {
   items_.clear();
   blended_items_.clear();
   for (const Piece& piece : layout.pieces) {
     const PlacedInstance& instance = layout.instances[static_cast<std::size_t>(piece.instance)];
     const Bounds& box = instance.moves ? boxes[static_cast<std::size_t>(piece.instance)] : piece.box;
     if (!frustum.may_see(box)) continue;
+    const glm::vec3 centre = 0.5f * (box.low + box.high);
+    const float to_centre = glm::distance(centre, eye);
+    const float diagonal = glm::distance(box.low, box.high);
+    if (diagonal < least_span * to_centre) continue;
     const SurfaceFeatures& features = layout.programs[static_cast<std::size_t>(piece.program)];
     Item item;
     item.stage = features.mask ? 1 : 0;
@@ -65,14 +69,13 @@ void DrawList::collect(const SceneLayout& layout, const std::vector<Bounds>& box
     item.light_set = piece.light_set;
     item.mirrored = instance.mirrored;
     item.instance = static_cast<std::uint32_t>(piece.instance);
-    const glm::vec3 centre = 0.5f * (box.low + box.high);
-    item.distance = glm::distance(centre, eye);
+    item.distance = to_centre;
     if (features.blend) {
       blended_items_.push_back(item);
       continue;
     }
     // Large things (floors, walls) tend to lie behind what stands before them.
-    item.distance += 0.5f * glm::distance(box.low, box.high);
+    item.distance += 0.5f * diagonal;
     items_.push_back(item);
   }
 }
@@ -92,11 +95,11 @@ void DrawList::group_repeated_parts(std::size_t parts) {
 
 void DrawList::build_view(const SceneLayout& layout, const std::vector<InstanceData>& placed,
                           const std::vector<Bounds>& boxes, const Frustum& frustum, const glm::vec3& eye,
-                          std::vector<Particle>& particles) {
+                          float least_span, std::vector<Particle>& particles) {
   instances_.clear();
   opaque_.clear();
   blended_.clear();
-  collect(layout, boxes, frustum, eye);
+  collect(layout, boxes, frustum, eye, least_span);
   group_repeated_parts(layout.parts.size());
   std::sort(items_.begin(), items_.end(), [](const Item& a, const Item& b) {
     return std::tie(a.stage, a.group_distance, a.range, a.program, a.light_set, a.mirrored, a.distance,

@@ -30,10 +30,11 @@ class DrawList {
 
   // What the frustum sees: opaque front to back (near things hide fill cost; a mesh with many instances stays
   // one draw), then alpha-tested, as `opaque`; blended instances and particles back to front as `blended`.
-  // `boxes`: world bounds of this frame. Sorts `particles`.
+  // `boxes`: world bounds of this frame. What spans less than `least_span` (its diagonal over its distance)
+  // is left out; 0 leaves nothing out. Sorts `particles`.
   void build_view(const SceneLayout& layout, const std::vector<InstanceData>& placed,
                   const std::vector<Bounds>& boxes, const Frustum& frustum, const glm::vec3& eye,
-                  std::vector<Particle>& particles);
+                  float least_span, std::vector<Particle>& particles);
 
   const std::vector<InstanceData>& instances() const { return instances_; }
   const std::vector<Batch>& opaque() const { return opaque_; }
@@ -52,7 +53,7 @@ class DrawList {
   };
 
   void collect(const SceneLayout& layout, const std::vector<Bounds>& boxes, const Frustum& frustum,
-               const glm::vec3& eye);
+               const glm::vec3& eye, float least_span);
   void group_repeated_parts(std::size_t parts);
   void append(std::vector<Batch>& batches, const Item& item, const InstanceData& data);
   void merge_blended(const std::vector<InstanceData>& placed, const glm::vec3& eye,

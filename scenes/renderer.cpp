@@ -28,11 +28,13 @@ Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
   }
   const bool finite = std::isfinite(view.jitter.x) && std::isfinite(view.jitter.y) &&
                       std::isfinite(view.seconds) && std::isfinite(view.previous_seconds) &&
-                      std::isfinite(view.lod_bias) && std::isfinite(view.aspect) && view.aspect >= 0;
+                      std::isfinite(view.lod_bias) && std::isfinite(view.aspect) && view.aspect >= 0 &&
+                      std::isfinite(view.least_size) && view.least_size >= 0 &&
+                      std::isfinite(view.shadow_age) && view.shadow_age >= 0;
   if (!finite) {
     return Status::invalid(
-        "FrameView::jitter, seconds, previous_seconds, lod_bias and aspect must be finite, and "
-        "aspect not negative");
+        "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size and shadow_age must be "
+        "finite, and the last three not negative");
   }
   return {};
 }
@@ -68,7 +70,7 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
 
   const DrawState state;
   glBindVertexArray(impl_->surface_array.get());
-  impl_->shadows.update(impl_->layout, impl_->gpu, impl_->placed, view.seconds);
+  impl_->shadows.update(impl_->layout, impl_->gpu, impl_->placed, view.seconds, view.shadow_age);
   clear_for_frame(targets, view.render);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
   glViewport(0, 0, view.render.width, view.render.height);

@@ -25,6 +25,9 @@ struct FrameView {
       0;  // of the picture, width / height; 0: the viewport's. A viewport is rounded to pixels, so frames
           // of one picture at several resolutions show the same only with the picture's own aspect
   float lod_bias = 0;  // of every texture
+  // Less work where detail may go; both 0: all of it.
+  float least_size = 0;   // surfaces that span less than this part of the picture's height are left out
+  double shadow_age = 0;  // seconds for which the drawn shadows of what moves may stay
 };
 
 struct TruthSettings;

@@ -145,7 +145,7 @@ void Renderer::Impl::make_lists(const View& view, const FrameView& frame) {
   const float jitter = std::max(std::abs(frame.jitter.x), std::abs(frame.jitter.y)) + 1;
   const float margin = 2 * jitter / static_cast<float>(std::min(frame.render.width, frame.render.height));
   list.build_view(layout, placed, boxes, Frustum(matrix, margin), glm::vec3(view.now.world_from_camera[3]),
-                  particles);
+                  frame.least_size * 2 * std::tan(view.camera.vertical_fov / 2), particles);
 }
 
 void Renderer::Impl::upload_frame(const FrameBlock& block) {

@@ -3,6 +3,8 @@
 
 #include <epoxy/gl.h>
 
+#include <cmath>
+
 #include "gl_program.h"
 #include "vertex_input.h"
 
@@ -77,10 +79,10 @@ Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layou
 }
 
 void ShadowMap::update(const SceneLayout& layout, const GpuScene& gpu,
-                       const std::vector<InstanceData>& placed, double seconds) {
+                       const std::vector<InstanceData>& placed, double seconds, double most_age) {
   if (!texture_) return;
   const bool first = drawn_seconds_ != drawn_seconds_;
-  if (!first && (!layout.shadow.moves || drawn_seconds_ == seconds)) return;
+  if (!first && (!layout.shadow.moves || std::abs(seconds - drawn_seconds_) <= most_age)) return;
   drawn_seconds_ = seconds;
   glDisable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);

@@ -17,10 +17,11 @@ class ShadowMap {
   // A map that is not enabled (ShadowFit::enabled) owns nothing.
   static Result<ShadowMap> create(const Scene& scene, const SceneLayout& layout);
 
-  // `placed`: the instances at `seconds`. The frame block, mesh buffers and vertex array are bound. Leaves
-  // viewport, framebuffer and depth state changed.
+  // `placed`: the instances at `seconds`. What was drawn at a time no further away than `most_age` stays. The
+  // frame block, mesh buffers and vertex array are bound. Leaves viewport, framebuffer and depth state
+  // changed.
   void update(const SceneLayout& layout, const GpuScene& gpu, const std::vector<InstanceData>& placed,
-              double seconds);
+              double seconds, double most_age);
 
   GLuint texture() const { return texture_.get(); }  // compares; 0: none
 

@@ -20,6 +20,8 @@ struct PacedFrame {
   double finished_ms = 0;  // its picture was complete
   double shown_ms = 0;     // the refresh that showed it
   double busy_ms = 0;      // what it cost, as the controller was told
+  double blur_px = 0;      // mean streak of its motion blur, as the controller was told
+  int detail = 0;          // level that was left out where detail follows the resolution; 0: none
   double cpu_ms = 0;       // what the processor needed to prepare it; 0: not known
   int queued = 0;          // frames finished and not yet shown when it was finished, itself included
   int missed = 0;          // refreshes without a new frame just before it was shown: dropped frames

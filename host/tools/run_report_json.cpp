@@ -81,6 +81,8 @@ Json pacing_json(const PacingRun& run) {
                       {"shown_ms", frame.shown_ms},
                       {"busy_ms", frame.busy_ms},
                       {"cpu_ms", frame.cpu_ms > 0 ? Json(frame.cpu_ms) : Json(nullptr)},
+                      {"blur_px", frame.blur_px},
+                      {"detail", frame.detail},
                       {"queued", frame.queued},
                       {"missed", frame.missed}});
   }

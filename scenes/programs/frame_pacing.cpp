@@ -99,8 +99,8 @@ std::optional<double> FramePacing::free_at() const {
   return origin_ms_ + run_.frames[last_to_replace].shown_ms;
 }
 
-std::uint64_t FramePacing::begin(double now_ms, Extent render) {
-  under_way_.push_back({now_ms, render});
+std::uint64_t FramePacing::begin(double now_ms, Extent render, double blur_px, int detail) {
+  under_way_.push_back({now_ms, render, blur_px, detail});
   return run_.frames.size() + under_way_.size() - 1;
 }
 
@@ -111,6 +111,8 @@ void FramePacing::finish(std::uint64_t frame, double now_ms, double cpu_ms) {
   if (frame == 0) origin_ms_ = now_ms;
   tools::PacedFrame paced = {
       .index = static_cast<std::int64_t>(frame), .render = begun.render, .cpu_ms = cpu_ms};
+  paced.blur_px = begun.blur_px;
+  paced.detail = begun.detail;
   paced.finished_ms = now_ms - origin_ms_;
   paced.start_ms = begun.begin_ms - origin_ms_;
   if (frame > 0) {
@@ -133,7 +135,7 @@ double FramePacing::busy_ms(std::uint64_t frame) const {
   return frame < run_.frames.size() ? run_.frames[frame].finished_ms - run_.frames[frame].start_ms : 0;
 }
 
-void FramePacing::observe(std::uint64_t frame, double gpu_ms, double blur_px) {
+void FramePacing::observe(std::uint64_t frame, double gpu_ms) {
   if (frame >= run_.frames.size() || !(gpu_ms > 0 && std::isfinite(gpu_ms))) return;
   tools::PacedFrame& paced = run_.frames[frame];
   FrameTiming timing = {.frame = frame,
@@ -143,7 +145,7 @@ void FramePacing::observe(std::uint64_t frame, double gpu_ms, double blur_px) {
                         .cpu_ms = paced.cpu_ms,
                         .queued = paced.queued,
                         .missed_vsyncs = paced.missed,
-                        .blur_px = blur_px};
+                        .blur_px = paced.blur_px};
   if (frame > 0) timing.interval_ms = paced.start_ms - run_.frames[frame - 1].start_ms;
   // The report has what the controller was told; without one, what it would have been told.
   if (!controller_ || controller_->observe(timing).ok()) paced.busy_ms = gpu_ms;

@@ -59,8 +59,8 @@ class FramePacing {
   // always was one. Nothing where that depends on a frame that is not finished yet: finish it first.
   std::optional<double> free_at() const;
 
-  // Work on the next frame starts. Returns its number.
-  std::uint64_t begin(double now_ms, Extent render);
+  // Work on the next frame starts. Returns its number. blur_px: see FrameTiming. detail: for the report only.
+  std::uint64_t begin(double now_ms, Extent render, double blur_px = 0, int detail = 0);
 
   // Its picture is complete. Frames finish in order; cpu_ms 0: not known.
   void finish(std::uint64_t frame, double now_ms, double cpu_ms = 0);
@@ -70,8 +70,8 @@ class FramePacing {
   double busy_ms(std::uint64_t frame) const;
 
   // Tells the controller what a finished frame cost. Late times and lost ones do no harm; a frame that is not
-  // finished, or a time that is none, changes nothing. blur_px: see FrameTiming.
-  void observe(std::uint64_t frame, double gpu_ms, double blur_px = 0);
+  // finished, or a time that is none, changes nothing.
+  void observe(std::uint64_t frame, double gpu_ms);
 
   // Every finished frame so far. `measured_by` is the caller's to fill in.
   const tools::PacingRun& run() const { return run_; }
@@ -83,6 +83,8 @@ class FramePacing {
   struct Begun {
     double begin_ms = 0;
     Extent render = {};
+    double blur_px = 0;
+    int detail = 0;
   };
 
   std::unique_ptr<ResolutionController> controller_;

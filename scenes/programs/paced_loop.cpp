@@ -39,9 +39,9 @@ void PacedLoop::wait() const {
   if (wait_ms > 0) std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(wait_ms));
 }
 
-void PacedLoop::begin_frame(Extent render) {
+void PacedLoop::begin_frame(Extent render, double blur_px, int detail) {
   cpu_at_begin_ms_ = thread_cpu_ms();
-  const std::uint64_t frame = pacing_.begin(now_ms(), render);
+  const std::uint64_t frame = pacing_.begin(now_ms(), render, blur_px, detail);
   meter_.begin(frame, render);
 }
 

@@ -33,7 +33,8 @@ class PacedLoop {
 
   std::optional<Extent> next() const { return pacing_.next(); }  // nothing: the caller chooses
 
-  void begin_frame(Extent render);
+  // blur_px: see FrameTiming. detail: for the report only.
+  void begin_frame(Extent render, double blur_px = 0, int detail = 0);
   void end_draw();      // after the OpenGL calls of the frame begun last
   void finish_frame();  // the picture of the oldest unfinished frame is complete
   void add(const FrameReport& report);

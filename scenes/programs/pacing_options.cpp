@@ -55,6 +55,13 @@ void add_controller_options(CLI::App& app, PacingOptions& options) {
       "--follow-cpu", [&options] { options.cpu_bound = CpuBound::kFollow; },
       "Where the processor takes longer than the target, the predictive controller makes its time the "
       "target");
+  app.add_flag("--blur-aware", options.blur_aware,
+               "The longer the streaks that the camera's motion draws, the lower the highest resolution "
+               "(predictive)")
+      ->needs("--blur");
+  app.add_flag(
+      "--detail-follows", options.detail_follows,
+      "Where the resolution is low, small surfaces are left out and moving shadows drawn less often");
 }
 
 void add_ladder_options(CLI::App& app, PacingOptions& options) {
@@ -110,7 +117,8 @@ void check_together(CLI::App& app, const PacingOptions& options) {
                  "nothing chooses the resolution; give --target-fps with a controller, or --calibrate");
   }
   if (options.controller != ControllerKind::kPredictive) {
-    refuse_given(app, {"--calibration", "--follow-cpu"}, "only the predictive controller makes use of it");
+    refuse_given(app, {"--calibration", "--follow-cpu", "--blur-aware"},
+                 "only the predictive controller makes use of it");
   }
 }
 
@@ -124,8 +132,8 @@ void add_pacing_options(CLI::App& app, PacingOptions& options) {
   add_controller_options(app, options);
   add_ladder_options(app, options);
   add_display_options(app, options);
-  for (const char* name :
-       {"--controller", "--calibration", "--follow-cpu", "--buffers", "--headroom", "--compare-fixed"}) {
+  for (const char* name : {"--controller", "--calibration", "--follow-cpu", "--blur-aware",
+                           "--detail-follows", "--buffers", "--headroom", "--compare-fixed"}) {
     app.get_option(name)->needs(target);
   }
   add_measuring_options(app, options);
@@ -154,6 +162,7 @@ Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options
   settings.buffers = options.buffers;
   settings.headroom = options.headroom;
   settings.cpu_bound = options.cpu_bound;
+  settings.blur_aware.enabled = options.blur_aware;
   if (!options.calibration.empty()) {
     auto table = read_calibration(options.calibration);
     if (!table.ok()) return table.status();

@@ -22,6 +22,8 @@ struct PacingOptions {
   double headroom = 0;
   FrameCost cost = FrameCost::kAuto;
   CpuBound cpu_bound = CpuBound::kHold;
+  bool blur_aware = false;
+  bool detail_follows = false;
   std::string calibration;             // file that --calibrate wrote; empty: none
   std::string calibrate;               // file to write instead of a run; empty: none
   std::vector<float> compared_scales;  // the same frames again, each at one of these

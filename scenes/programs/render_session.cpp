@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "camera_streak.h"
 #include "target_file.h"
 #include "tools/image_io.h"
 #include "tools/method_names.h"
@@ -47,6 +48,7 @@ Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions
 Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale) const {
   RenderOptions options = options_;
   options.pacing.controller = ControllerKind::kFixed;
+  options.pacing.detail_follows = false;
   options.scale = fmt::format("{}", scale);
   options.scale_path.clear();
   options.out.clear();
@@ -72,6 +74,10 @@ Status RenderSession::open(std::unique_ptr<FrameSource> source, std::optional<Fr
   auto paced = PacedLoop::create(std::move(*pacing), options_.pacing.cost);
   if (!paced.ok()) return paced.status();
   paced_ = std::move(paced).value();
+  if (!options_.pacing.detail_follows) return {};
+  auto detail = FrameDetail::create();
+  if (!detail.ok()) return detail.status();
+  detail_ = detail.value();
   return {};
 }
 
@@ -111,14 +117,26 @@ bool RenderSession::wants_resolved() const {
   return options_.exr_frame >= 0 || (pattern_ && pattern_->format() == tools::FileFormat::kExr);
 }
 
+// The view as the controller wants it.
+FrameView RenderSession::begin_paced(std::int64_t index) {
+  FrameView view = source_->sequence().at(index);
+  if (const auto render = paced_->next()) view = source_->sequence().at(index, *render);
+  const auto area = static_cast<double>(view.render.area()) / static_cast<double>(options_.output.area());
+  if (detail_) detail_->follow(area, view);
+  double blur_px = 0;
+  if (options_.pacing.blur_aware) {
+    blur_px = camera_streak_px(source_->renderer().camera_motion(view),
+                               source_->scene().camera(view.seconds).near_plane, options_.output,
+                               options_.resolve.blur.shutter);
+  }
+  paced_->begin_frame(view.render, blur_px, detail_ ? detail_->level() : 0);
+  return view;
+}
+
 Status RenderSession::draw(std::int64_t index) {
   if (paced_) paced_->wait();
   const Clock::time_point start = Clock::now();
-  FrameView view = source_->sequence().at(index);
-  if (paced_) {
-    if (const auto render = paced_->next()) view = source_->sequence().at(index, *render);
-    paced_->begin_frame(view.render);
-  }
+  const FrameView view = paced_ ? begin_paced(index) : source_->sequence().at(index);
   if (Status status = source_->draw(index, view, index == options_.exr_frame); !status.ok()) return status;
   if (paced_) paced_->end_draw();
   draw_ms_.push_back(since(start));

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frame_detail.h"
 #include "frame_source.h"
 #include "paced_loop.h"
 #include "quincunx/resolve_service.h"
@@ -46,6 +47,7 @@ class RenderSession {
   void begin_contact_sheet();
   Status run_frame(std::int64_t index);
   Status draw(std::int64_t index);
+  FrameView begin_paced(std::int64_t index);
   bool draws_ahead() const;
   Status dispatch();
   Status deliver(std::int64_t index);
@@ -59,6 +61,7 @@ class RenderSession {
   std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
   std::optional<PacedLoop> paced_;
+  std::optional<FrameDetail> detail_;
   Image resolved_;  // only where an EXR is wanted
   std::optional<tools::FramePattern> pattern_;
   std::optional<tools::ContactSheet> sheet_;

@@ -108,9 +108,10 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused("--calibrate /proc/none/c.json", 1, "/proc/none");
   expect_refused("--calibrate '{}/c.json' --min-scale 0.9 --max-scale 0.5", 2, "--min-scale 0.9");
   expect_refused("--target-fps 30 --controller fixed --min-scale 0.5", 2, "--min-scale");
+  expect_refused("--target-fps 30 --blur-aware", 2, "--blur");
   expect_refused("--target-fps 30 --controller proportional --follow-cpu", 2, "--follow-cpu");
   for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2",
-                            "--calibration c.json", "--follow-cpu"}) {
+                            "--calibration c.json", "--follow-cpu", "--detail-follows"}) {
     expect_refused(alone, 2, "--target-fps");
   }
 }

@@ -189,6 +189,15 @@ TEST_F(EndToEnd, TheSameFramesAtFixedScalesBesideTheControllers) {
   EXPECT_NE(text.find("speed-up"), std::string::npos) << text;
 }
 
+TEST_F(EndToEnd, DetailAndStreaksAreReported) {
+  render(
+      "--scene particles --target-fps 5 --min-scale 0.3 --max-scale 0.3 --frames 9 --detail-follows "
+      "--blur 0.5 --blur-aware --report '{}/r'");
+  const auto frames = nlohmann::json::parse(read_file(path("r.json"))).at("pacing")[0].at("frames");
+  EXPECT_GT(frames[8].at("detail"), 0) << "at a tenth of the pixels";
+  EXPECT_GT(frames[8].at("blur_px"), 0) << "the camera moves";
+}
+
 TEST_F(EndToEnd, ACalibrationIsReadBack) {
   render("--scene pan --calibrate '{}/costs.json'");
   const auto table = nlohmann::json::parse(read_file(path("costs.json")));

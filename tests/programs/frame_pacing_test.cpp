@@ -156,6 +156,24 @@ TEST(FramePacing, AnInfeasibleLoadStaysAtTheLowestRungAndIsLeftAtOnce) {
   EXPECT_EQ(player.pacing.next(), (Extent{1280, 720})) << "no wind-up";
 }
 
+TEST(FramePacing, LongStreaksLowerTheHighestResolution) {
+  PacingSettings blurred = settings();
+  blurred.blur_aware.enabled = true;
+  FramePacing pacing = made(blurred);
+  for (std::uint64_t frame = 0; frame < 40; ++frame) {
+    const double now = static_cast<double>(frame) * kRefreshMs;
+    pacing.begin(now, pacing.next().value(), frame < 20 ? 0 : 30, 2);
+    pacing.finish(frame, now + 1);
+    pacing.observe(frame, 1);
+    if (frame == 19) {
+      EXPECT_EQ(pacing.next(), (Extent{1280, 720}));
+    }
+  }
+  EXPECT_NEAR(area(pacing.next().value()), 0.71 * 0.71, 0.01);
+  EXPECT_EQ(pacing.run().frames[39].blur_px, 30);
+  EXPECT_EQ(pacing.run().frames[39].detail, 2);
+}
+
 TEST(FramePacing, HeadroomIsLeftFree) {
   PacingSettings careful = settings();
   careful.headroom = 0.2;

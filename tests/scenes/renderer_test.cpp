@@ -85,6 +85,48 @@ TEST_F(RenderTest, ViewportLeavesTheRestOfTheTargetAlone) {
   }
 }
 
+TEST_F(RenderTest, SmallSurfacesAreLeftOutWhereAskedFor) {
+  Scene scene;
+  scene.materials = {unlit({1, 0, 0, 1})};
+  scene.meshes = {plate({0.5f, 0.5f}, 0)};
+  scene.instances.push_back({0, at(-1, 0, 0), {}});
+  scene.instances.push_back({0, at(4, 0, -12), {}});  // four times as far
+  scene.sky.visible = false;
+  scene.sky.zenith = glm::vec3(0);
+  scene.camera = fixed_camera({0, 0, 4}, {0, 0, 0});
+  Renderer renderer = renderer_of(scene);
+  const auto red = [&](float least_size) {
+    FrameView view = view_of_size(kSize);
+    view.least_size = least_size;
+    const Picture picture = draw(renderer, view, kSize);
+    int count = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x)
+        count += picture.rgb(x, y).x > 0 ? 1 : 0;
+    }
+    return count;
+  };
+  const int both = red(0);
+  EXPECT_EQ(red(0.01f), both);
+  EXPECT_LT(red(0.2f), both) << "the far one spans less";
+  EXPECT_GT(red(0.2f), 0);
+  EXPECT_EQ(red(2), 0);
+}
+
+TEST_F(RenderTest, MovingShadowsStayAsLongAsTheyMay) {
+  const auto after = [](double shadow_age) {
+    Renderer renderer = renderer_of(rich_scene());
+    FrameView view = view_of_size(kSize, {}, 0.4, 0.3);
+    draw(renderer, view, kSize);
+    view.seconds = 0.6;
+    view.shadow_age = shadow_age;
+    return draw(renderer, view, kSize).colour;
+  };
+  const auto fresh = after(0);
+  EXPECT_NE(after(0.3), fresh);
+  EXPECT_EQ(after(0.1), fresh) << "older than it may be";
+}
+
 TEST_F(RenderTest, NothingOfTheFrameBeforeShinesThrough) {
   Renderer renderer = renderer_of(rich_scene());
   const FrameView view = view_of_size(kSize, {}, 0.4, 0.3);

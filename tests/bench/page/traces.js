@@ -93,7 +93,7 @@ function drawTime(host, trace, names) {
   const drops = { left, right, top: 470, bottom: 470 + 24 * chosen.length };
   drawDropped(chart, drops, x, chosen);
   for (const tick of linearTicks(0, page.frames / page.refresh_hz, 8)) {
-    chart.append(svg("text", { class: "tick", x: x(tick * page.refresh_hz), y: height - 8, "text-anchor": "middle" }, `${tick} s`));
+    chart.append(svg("text", { class: "tick", x: x(tick * page.refresh_hz), y: height - 8, "text-anchor": tick * page.refresh_hz < page.frames ? "middle" : "end" }, `${tick} s`));
   }
   host.replaceChildren(chart);
 }
