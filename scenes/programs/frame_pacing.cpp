@@ -136,7 +136,7 @@ double FramePacing::busy_ms(std::uint64_t frame) const {
 }
 
 void FramePacing::observe(std::uint64_t frame, double gpu_ms) {
-  if (frame >= run_.frames.size() || !(gpu_ms > 0 && std::isfinite(gpu_ms))) return;
+  if (frame >= run_.frames.size() || !(gpu_ms > 0 && gpu_ms <= ResolutionController::kLongestMs)) return;
   tools::PacedFrame& paced = run_.frames[frame];
   FrameTiming timing = {.frame = frame,
                         .next_frame = run_.frames.size() + under_way_.size(),

@@ -49,6 +49,8 @@ Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale
   RenderOptions options = options_;
   options.pacing.controller = ControllerKind::kFixed;
   options.pacing.detail_follows = false;
+  // Measured alike, or the times could not be compared.
+  options.pacing.cost = paced_->overlaps() ? FrameCost::kDevice : FrameCost::kSpan;
   options.scale = fmt::format("{}", scale);
   options.scale_path.clear();
   options.out.clear();

@@ -198,6 +198,15 @@ TEST(FramePacing, BadTimesChangeNothing) {
   EXPECT_EQ(player.last().busy_ms, busy);
 }
 
+TEST(FramePacing, AFixedRunTakesNoNonsenseEither) {
+  Player player(settings(ControllerKind::kFixed));
+  player.play(3, [](Extent) { return 5; });
+  for (const double time : {0.0, std::nan(""), 4e7}) {
+    player.pacing.observe(2, time);
+    EXPECT_EQ(player.last().busy_ms, 5);
+  }
+}
+
 TEST(FramePacing, TheSameTimesGiveTheSameRun) {
   const auto cost = [](Extent render) { return 3 + 28 * area(render) + 0.01 * (render.width % 7); };
   Player one(settings());
