@@ -37,6 +37,14 @@ std::int64_t frames_before(const LookSettings& look) {
   return most < Method::kQuincunx ? 0 : most == Method::kQuincunx ? 1 : static_cast<std::int64_t>(kWarmUp);
 }
 
+// `base`, with a number behind it where there is such a file already: a frozen frame has many pictures.
+std::string unused_name(const std::filesystem::path& base, const std::string& ending) {
+  std::string name = base.string();
+  for (int number = 2; std::filesystem::exists(name + ending); ++number)
+    name = fmt::format("{}-{}", base.string(), number);
+  return name;
+}
+
 WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   WindowSettings settings;
   settings.look.scene = options.scene.empty() ? list_scenes().front().name : options.scene;
@@ -95,6 +103,8 @@ Status WindowSession::run() {
          (options_.frames == 0 || shown_count_ < options_.frames)) {
     if (Status status = turn(); !status.ok()) return status;
   }
+  spdlog::debug("{} pictures of {} frames, the interface drawn {} times", shown_count_, frame_ + 1,
+                ui_->drawn());
   return {};
 }
 
@@ -267,14 +277,14 @@ PanelFacts WindowSession::facts() {
 Status WindowSession::write_files() {
   const std::filesystem::path folder = options_.captures;
   if (std::exchange(settings_.screenshot, false)) {
-    const std::string path = (folder / fmt::format("screenshot.{:04}.png", frame_)).string();
+    const std::string path = unused_name(folder / fmt::format("screenshot.{:04}", frame_), ".png") + ".png";
     const Extent window = window_->framebuffer();
     if (Status status = tools::write_png(path, window, Screen::read(window).data()); !status.ok())
       return status;
     say("wrote " + path);
   }
   if (std::exchange(settings_.dump, false)) {
-    const std::string base = (folder / fmt::format("dump.{:04}", frame_)).string();
+    const std::string base = unused_name(folder / fmt::format("dump.{:04}", frame_), "_targets.exr");
     if (Status status = show_again(LivePicture::Keep::kForFiles); !status.ok()) return status;
     if (Status status = picture_->write(base); !status.ok()) return status;
     say("wrote " + base + "_targets.exr and _resolved.exr");

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+// Keys and what follows from them, without a window.
+#include "key_bindings.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "frame_trace.h"
+#include "screen.h"
+#include "tools/method_names.h"
+
+namespace quincunx::scenes {
+namespace {
+
+void press(WindowSettings& settings, const std::string& name) {
+  const auto key = key_named(name);
+  ASSERT_TRUE(key) << name;
+  act_on(*key, settings);
+}
+
+WindowSettings usual() {
+  WindowSettings settings;
+  settings.look.scene = "courtyard";
+  settings.look.method = "quincunx:velocity";
+  return settings;
+}
+
+TEST(KeyBindings, NamesAndKeysAreDifferent) {
+  std::set<std::string> names;
+  std::set<int> keys;
+  for (const KeyBinding& binding : key_bindings()) {
+    EXPECT_TRUE(names.insert(binding.name).second) << binding.name;
+    EXPECT_TRUE(keys.insert(binding.key).second) << binding.name;
+    const auto shifted = key_named(std::string("shift+") + binding.name);
+    ASSERT_TRUE(shifted);
+    EXPECT_EQ(shifted->key, binding.key);
+    EXPECT_TRUE(shifted->shift);
+  }
+  EXPECT_FALSE(key_named("nothing"));
+}
+
+// Every method of the table, once around, and back again by Shift.
+TEST(KeyBindings, FilterAndResolveReachEveryMethod) {
+  std::set<std::string> reached;
+  for (const std::string key : {"f", "r"}) {
+    WindowSettings settings = usual();
+    for (std::size_t i = 0; i < tools::method_choices().size(); ++i) {
+      press(settings, key);
+      reached.insert(settings.look.method);
+    }
+    const std::string before = settings.look.method;
+    press(settings, key);
+    press(settings, "shift+" + key);
+    EXPECT_EQ(settings.look.method, before);
+  }
+  EXPECT_EQ(reached.size(), tools::method_choices().size());
+}
+
+TEST(KeyBindings, RoundTheWholeOfModesAndBack) {
+  WindowSettings settings = usual();
+  std::set<ResolutionMode> modes;
+  for (int i = 0; i < kResolutionModes; ++i) {
+    press(settings, "m");
+    modes.insert(settings.resolution.mode);
+  }
+  EXPECT_EQ(modes.size(), static_cast<std::size_t>(kResolutionModes));
+  EXPECT_EQ(settings.resolution.mode, ResolutionMode::kFixed);
+  press(settings, "shift+c");
+  EXPECT_NE(settings.rate.controller, ControllerKind::kFixed) << "fixed is a mode, not a controller";
+  EXPECT_NE(settings.rate.controller, ControllerKind::kPredictive);
+}
+
+TEST(KeyBindings, ValuesStayWithinTheirBounds) {
+  WindowSettings settings = usual();
+  for (int i = 0; i < 100; ++i) {
+    for (const std::string key : {"up", "right", "b", "z"})
+      press(settings, key);
+    EXPECT_LE(settings.resolution.scale, kLargestScale);
+    EXPECT_LE(settings.split, 1);
+    EXPECT_LE(settings.look.shutter, 2);
+    EXPECT_LE(settings.zoom.factor, kLargestZoom);
+  }
+  for (int i = 0; i < 100; ++i) {
+    for (const std::string key : {"down", "left", "shift+b", "shift+z"})
+      press(settings, key);
+    EXPECT_GE(settings.resolution.scale, kSmallestScale);
+    EXPECT_GE(settings.split, 0);
+    EXPECT_GE(settings.look.shutter, 0);
+  }
+  EXPECT_EQ(settings.zoom.factor, 1);
+}
+
+TEST(ZoomOrigin, ShowsTheMiddleAndNeverMoreThanThePicture) {
+  const Extent picture = {101, 50};
+  for (int factor = 1; factor <= kLargestZoom; factor *= 2) {
+    for (const float centre : {-1.0f, 0.0f, 0.5f, 1.0f, 2.0f}) {
+      const ZoomOrigin origin = zoom_origin({factor, {centre, centre}}, picture);
+      EXPECT_GE(origin.x, 0);
+      EXPECT_GE(origin.y, 0);
+      EXPECT_LE(origin.x + std::max(picture.width / factor, 1), picture.width);
+      EXPECT_LE(origin.y + std::max(picture.height / factor, 1), picture.height);
+    }
+  }
+  EXPECT_EQ(zoom_origin({2, {.5f, .5f}}, {100, 60}).x, 25);
+  EXPECT_EQ(zoom_origin({2, {.5f, .5f}}, {100, 60}).y, 15);
+}
+
+TEST(FrameTrace, KeepsTheLastFramesAndCountsDroppedOnes) {
+  FrameTrace trace;
+  FrameTimes times;
+  times.draw_ms = 4;
+  times.report.render = {50, 50};
+  times.report.pass_count = 2;
+  times.report.passes[0] = {.kernel = "resolve_quincunx", .ms = 2};
+  times.report.passes[1] = {.kernel = "present", .ms = -1};  // not known
+  for (std::size_t i = 0; i < FrameTrace::kLength + 5; ++i)
+    trace.add(times, {100, 100}, 16, i % 5 == 0 ? 2 : 0);
+  EXPECT_EQ(trace.points().size(), FrameTrace::kLength);
+  EXPECT_EQ(trace.dropped(), 2 * static_cast<int>(FrameTrace::kLength + 5) / 5);
+  EXPECT_DOUBLE_EQ(trace.points().back().area, .25);
+  EXPECT_DOUBLE_EQ(trace.points().back().opencl_ms, 2);
+  ASSERT_EQ(trace.passes().size(), 2u);
+  EXPECT_DOUBLE_EQ(trace.passes()[0].ms, 2) << "the mean of equal values is that value";
+  EXPECT_DOUBLE_EQ(trace.mean().draw_ms, 4);
+}
+
+}  // namespace
+}  // namespace quincunx::scenes
