@@ -5,15 +5,20 @@
 //   visible  1 if one of the 2x2 previous depths there is not nearer than the sample's by more than a tolerance, else 0:
 //            d1 <= 1.02 d0 + 2 (the smaller difference of d0 to left and right + that to above and below); one-sided, so
 //            that thin things that fall between samples are not lost; d is reversed depth, near / distance
-//   v0, v1, reactive0, 1: of the sample and of the previous one nearest to where it was; v in render pixels a frame
+//   v0, v1, reactive0, 1: of the sample and of the previous one nearest to where it was, reactive with CONTRAST the largest of
+//            3x3; v in render pixels a frame
 //
 //   params        in   viewports, layouts, scales
 //   velocity0, 1  in   RG16F or RG32F, viewports of frame n and n-1; velocity1 is not read where RESIDUAL is 0
 //   depth0, 1     in   R32F, the same viewports, reversed and infinite; a NaN among depths that are compared does not count
 //   reactive0, 1  in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
+//   previous_moves in  CONTRAST 1: what this kernel gave for frame n-1; all zero where there is none
 //   moves         out  Move of each sample of frame n
 // Options: REACTIVE  0 (default) | 1
 //          RESIDUAL  0 (default) | 1: K is not 0
+//          CONTRAST  0 (default) | 1: the moves hold how much the velocity differs from the eight neighbours', at most; and
+//                    where something nearer was among the 2x2 previous depths and an edge of motion there, trust goes: what
+//                    was accumulated there is that thing's as well
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // A sample whose velocity or depth is not finite moves by 0, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
@@ -25,6 +30,9 @@
 #ifndef RESIDUAL
 #define RESIDUAL 0
 #endif
+#ifndef CONTRAST
+#define CONTRAST 0
+#endif
 #if REACTIVE < 0 || REACTIVE > 1
 #error "REACTIVE must be 0 or 1"
 #endif
@@ -32,9 +40,15 @@
 #error "RESIDUAL must be 0 or 1"
 #endif
 
+#if CONTRAST < 0 || CONTRAST > 1
+#error "CONTRAST must be 0 or 1"
+#endif
+
 #define DEPTH_TOLERANCE 1.02f
 #define SLOPE_TOLERANCE 2.0f
 #define LARGEST_MOVE 65504.0f  // beyond any viewport
+#define EDGE_BEGINS 0.15f  // output pixels
+#define EDGE_ENDS 0.6f
 #define NAN_BITS 0x7fc00000
 
 // The depths of four neighbours of a row, from x on, which may be -1; beyond the edges what lies on the other side of the
@@ -59,13 +73,45 @@ static inline float4 slope_of(const ReprojectParams* params, DEPTH_TEXELS depth,
   return fmin(fabs(left - centre), fabs(right - centre)) + fmin(fabs(upper - centre), fabs(lower - centre));
 }
 
-static inline float4 previous_depth(const ReprojectParams* params, DEPTH_TEXELS depth, int4 x, int4 y) {
+static inline DepthRange previous_depths(const ReprojectParams* params, DEPTH_TEXELS depth, int4 x, int4 y) {
   if (params->previous_width > 1 && params->previous_height > 1)
-    return smallest_depths(depth, params->depth1, x, y, params->previous_width);
+    return depth_ranges(depth, params->depth1, x, y, params->previous_width);
   const int right = params->previous_width > 1 ? 1 : 0;
   const int below = params->previous_height > 1 ? 1 : 0;
-  return fmin(load_depth_at(depth, params->depth1, x, y), load_depth_at(depth, params->depth1, x + right, y + below));
+  const float4 first = load_depth_at(depth, params->depth1, x, y);
+  const float4 last = load_depth_at(depth, params->depth1, x + right, y + below);
+  return range_of_rows(first, first, last, last);
 }
+
+#if REACTIVE && CONTRAST
+// The largest of 3x3 samples: an accumulated picture holds each sample further than its own pixel.
+static inline float4 reactive_block(const ReprojectParams* params, REACTIVE_TEXELS texels, int x, int y) {
+  float4 largest = (float4)(0.0f);
+  for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
+    for (int column = x - 1; column <= x + 1; ++column)
+      largest = max(largest, load_reactive_block(texels, params->reactive0, column, row, params->width));
+  }
+  return largest;
+}
+
+static inline float4 previous_reactive(const ReprojectParams* params, REACTIVE_TEXELS texels, int4 x, int4 y) {
+  float4 largest = (float4)(0.0f);
+  for (int i = 0; i < 9; ++i) {
+    const int4 column = clamp(x + (i % 3 - 1), (int4)(0), (int4)(params->previous_width - 1));
+    const int4 row = clamp(y + (i / 3 - 1), (int4)(0), (int4)(params->previous_height - 1));
+    largest = max(largest, load_reactive_at(texels, params->reactive1, column, row));
+  }
+  return largest;
+}
+#elif REACTIVE
+static inline float4 reactive_block(const ReprojectParams* params, REACTIVE_TEXELS texels, int x, int y) {
+  return load_reactive_block(texels, params->reactive0, x, y, params->width);
+}
+
+static inline float4 previous_reactive(const ReprojectParams* params, REACTIVE_TEXELS texels, int4 x, int4 y) {
+  return load_reactive_at(texels, params->reactive1, x, y);
+}
+#endif
 
 // Towards minus infinity, of less than 2^24.
 static inline int4 floor_of(float4 value) {
@@ -86,17 +132,48 @@ static inline int4 non_finite_velocity(float8 velocity) {
   return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
 }
 
-static inline void store_moves(__global float* moves, int index, int count, float4 x, float4 y, float4 trust) {
+static inline void store_moves(__global float* moves, int index, int count, float4 x, float4 y, float4 trust,
+                               float4 contrast) {
   __global float* first = moves + 4 * index;
-  vstore4((float4)(x.s0, y.s0, trust.s0, 0.0f), 0, first);
-  if (count > 1) vstore4((float4)(x.s1, y.s1, trust.s1, 0.0f), 1, first);
-  if (count > 2) vstore4((float4)(x.s2, y.s2, trust.s2, 0.0f), 2, first);
-  if (count > 3) vstore4((float4)(x.s3, y.s3, trust.s3, 0.0f), 3, first);
+  vstore4((float4)(x.s0, y.s0, trust.s0, contrast.s0), 0, first);
+  if (count > 1) vstore4((float4)(x.s1, y.s1, trust.s1, contrast.s1), 1, first);
+  if (count > 2) vstore4((float4)(x.s2, y.s2, trust.s2, contrast.s2), 2, first);
+  if (count > 3) vstore4((float4)(x.s3, y.s3, trust.s3, contrast.s3), 3, first);
 }
+
+#if CONTRAST
+// The largest squared distance so far, or that of four velocities to their neighbours if it is larger; a NaN does not count.
+static inline float4 larger_distance(const ReprojectParams* params, float4 largest, float8 velocity, float8 neighbour) {
+  const float4 x = (neighbour.even - velocity.even) * params->contrast_x;
+  const float4 y = (neighbour.odd - velocity.odd) * params->contrast_y;
+  return fmax(largest, x * x + y * y);
+}
+
+static inline float4 contrast_of(const ReprojectParams* params, VELOCITY_TEXELS texels, int x, int y, float8 velocity) {
+  float4 largest = (float4)(0.0f);
+  for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
+    const float8 left = load_velocity_block(texels, params->velocity0, x - 1, row, params->width);
+    const float8 same = load_velocity_block(texels, params->velocity0, x, row, params->width);
+    const float8 right = load_velocity_block(texels, params->velocity0, x + 1, row, params->width);
+    largest = larger_distance(params, largest, velocity, left);
+    largest = larger_distance(params, largest, velocity, same);
+    largest = larger_distance(params, largest, velocity, right);
+  }
+  return sqrt(min(largest, LARGEST_MOVE));
+}
+
+// How much of an edge of motion there was at four samples of the previous frame: 0 to 1.
+static inline float4 edge_before(const ReprojectParams* params, __global const float* moves, int4 x, int4 y) {
+  const int4 at = 4 * (params->moves.offset + y * params->moves.pitch + x) + 3;
+  const float4 contrast = (float4)(moves[at.s0], moves[at.s1], moves[at.s2], moves[at.s3]);
+  const float4 t = clamp((contrast - EDGE_BEGINS) * (1.0f / (EDGE_ENDS - EDGE_BEGINS)), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+#endif
 
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
                         DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                        __global float* moves) {
+                        __global const float* previous_moves, __global float* moves) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
@@ -116,17 +193,17 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 at_y = row + move_y;
 
     const float4 limit = depth * DEPTH_TOLERANCE + slope_of(&params, depth0, x, y, depth) * SLOPE_TOLERANCE;
-    const float4 before = previous_depth(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
-                                         clamp(floor_of(at_y), (int4)(0), last_y));
+    const DepthRange before = previous_depths(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
+                                              clamp(floor_of(at_y), (int4)(0), last_y));
     float4 trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
                    inside_of(at_y, params.edge_y, (float)params.previous_height);
-#if REACTIVE || RESIDUAL
+#if REACTIVE || RESIDUAL || CONTRAST
     const int4 nearest_x = clamp(floor_of(at_x + 0.5f), (int4)(0), (int4)(params.previous_width - 1));
     const int4 nearest_y = clamp(floor_of(at_y + 0.5f), (int4)(0), (int4)(params.previous_height - 1));
 #endif
 #if REACTIVE
-    trust *= 1.0f - load_reactive_block(reactive0, params.reactive0, x, y, params.width);
-    trust *= 1.0f - load_reactive_at(reactive1, params.reactive1, nearest_x, nearest_y);
+    trust *= 1.0f - reactive_block(&params, reactive0, x, y);
+    trust *= 1.0f - previous_reactive(&params, reactive1, nearest_x, nearest_y);
 #endif
 #if RESIDUAL
     const float8 velocity_before = load_velocity_at(velocity1, params.velocity1, nearest_x, nearest_y);
@@ -135,8 +212,16 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
 #endif
-    trust = select((float4)(0.0f), trust, before <= limit);
+    trust = select((float4)(0.0f), trust, before.least <= limit);
     trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
-    store_moves(moves, texel_index(params.moves, x, y), end - x, move_x, move_y, trust);
+#if CONTRAST
+    const float4 kept = 1.0f - edge_before(&params, previous_moves, nearest_x, nearest_y);
+    trust *= select((float4)(1.0f), kept, before.most > limit);
+    trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
+    const float4 contrast = contrast_of(&params, velocity0, x, y, velocity);
+#else
+    const float4 contrast = (float4)(0.0f);
+#endif
+    store_moves(moves, texel_index(params.moves, x, y), end - x, move_x, move_y, trust, contrast);
   }
 }

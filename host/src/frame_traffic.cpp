@@ -27,6 +27,12 @@ std::uint64_t tiles_of(Extent output) {
   return side(output.width) * side(output.height);
 }
 
+std::uint64_t temporal_tile_bytes(const ResolveSettings& settings) {
+  const auto tiles = [](int side) { return (side + kTemporalTile - 1) / kTemporalTile; };
+  return static_cast<std::uint64_t>(tiles(settings.output.width)) *
+         static_cast<std::uint64_t>(tiles(settings.output.height)) * sizeof(TemporalTile);
+}
+
 }  // namespace
 
 std::uint64_t scale_bytes(const ResolveSettings& settings, Extent render) {
@@ -63,6 +69,39 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
     bytes += reactive_bytes(render, previous_render);
   }
   return bytes;
+}
+
+std::uint64_t temporal_tiles_bytes(const ResolvePlan& plan, Extent render) {
+  const ResolveSettings& settings = plan.settings;
+  std::uint64_t bytes = 2 * temporal_tile_bytes(settings);
+  if (plan.follows()) bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+  if (plan.judges_history())
+    bytes += bytes_of(render, settings.colour) + bytes_of(settings.output, settings.temporal.history);
+  return bytes;
+}
+
+std::uint64_t temporal_light_bytes(const ResolvePlan& plan) {
+  return 3 * temporal_tile_bytes(plan.settings);
+}
+
+std::uint64_t temporal_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
+  const ResolveSettings& settings = plan.settings;
+  std::uint64_t bytes = bytes_of(render, settings.colour) + 2 * temporal_tile_bytes(settings) +
+                        2 * bytes_of(settings.output, settings.temporal.history);
+  if (plan.follows()) {
+    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+  } else if (plan.reads_reactive) {
+    bytes += reactive_bytes(render, previous_render);
+  }
+  if (settings.temporal.view != TemporalView::kPicture) bytes += bytes_of(settings.output, settings.resolved);
+  return bytes;
+}
+
+std::uint64_t temporal_display_bytes(const ResolvePlan& plan, Extent render) {
+  const ResolveSettings& settings = plan.settings;
+  const std::uint64_t alpha = plan.needs.background ? 0 : bytes_of(render, settings.colour);
+  return alpha + temporal_tile_bytes(settings) + bytes_of(settings.output, settings.temporal.history) +
+         bytes_of(settings.output, settings.resolved);
 }
 
 std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render) {

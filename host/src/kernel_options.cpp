@@ -21,6 +21,10 @@ const char* velocity(const ResolveSettings& settings) {
   return settings.velocity == PixelFormat::kRG16F ? "HALF" : "FLOAT";
 }
 
+const char* history(const ResolveSettings& settings) {
+  return settings.temporal.history == PixelFormat::kRGBA16F ? "HALF" : "FLOAT";
+}
+
 const char* storage_name(Storage storage) {
   return storage == Storage::kImage ? "IMAGE" : "BUFFER";
 }
@@ -71,14 +75,38 @@ std::string quincunx_options(const ResolvePlan& plan) {
 }
 
 std::string reproject_options(const ResolvePlan& plan) {
-  return fmt::format("-D REACTIVE={} -D RESIDUAL={} {}", plan.reads_reactive ? 1 : 0,
-                     plan.weighs_residual() ? 1 : 0, velocity_options(plan.settings));
+  return fmt::format("-D REACTIVE={} -D RESIDUAL={} -D CONTRAST={} {}", plan.reads_reactive ? 1 : 0,
+                     plan.weighs_residual() ? 1 : 0, plan.accumulates() ? 1 : 0,
+                     velocity_options(plan.settings));
 }
 
 std::string reprojected_options(const ResolvePlan& plan) {
   const bool moves = plan.velocity != VelocitySource::kNone;
   return fmt::format("-D MOTION={} -D REACTIVE={} {}", moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0,
                      scale_options(plan.settings));
+}
+
+std::string temporal_tiles_options(const ResolvePlan& plan) {
+  const bool judges = plan.settings.temporal.preset != TemporalPreset::kFast;
+  return fmt::format("-D MOTION={} -D JUDGE={} {} -D HISTORY_FORMAT={}",
+                     plan.velocity != VelocitySource::kNone ? 1 : 0, judges ? 1 : 0, source(plan.settings),
+                     history(plan.settings));
+}
+
+std::string temporal_options(const ResolvePlan& plan) {
+  const TemporalPreset preset = plan.settings.temporal.preset;
+  const bool moves = plan.velocity != VelocitySource::kNone;
+  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} {} -D HISTORY_FORMAT={}",
+                     moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0,
+                     moves && preset == TemporalPreset::kFast ? 4 : 16,
+                     moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
+                     source(plan.settings), history(plan.settings));
+}
+
+std::string temporal_display_options(const ResolvePlan& plan) {
+  return fmt::format("-D ALPHA={} -D SMOOTH={} {} -D HISTORY_FORMAT={}", plan.needs.background ? 0 : 1,
+                     plan.settings.temporal.preset == TemporalPreset::kFast ? 0 : 1,
+                     scale_options(plan.settings), history(plan.settings));
 }
 
 std::string present_options(const ResolveSettings& settings) {

@@ -17,6 +17,9 @@ std::string blur_options(const ResolveSettings& settings);  // motion_blur
 std::string quincunx_options(const ResolvePlan& plan);
 std::string reproject_options(const ResolvePlan& plan);
 std::string reprojected_options(const ResolvePlan& plan);  // resolve_reprojected
+std::string temporal_tiles_options(const ResolvePlan& plan);
+std::string temporal_options(const ResolvePlan& plan);  // resolve_temporal
+std::string temporal_display_options(const ResolvePlan& plan);
 std::string present_options(const ResolveSettings& settings);
 std::string clear_options(Storage storage, PixelFormat format);
 

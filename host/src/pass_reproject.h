@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pass_common.h"
+#include "pass_moves.h"
 #include "position_table.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
@@ -19,7 +20,7 @@ class ReprojectPass {
 
   // In the order in which they run; without velocity the second alone.
   static constexpr std::array<const char*, 2> kKernels = {"reproject", "resolve_reprojected"};
-  bool moves() const { return reproject_.has_value(); }
+  bool moves() const { return moves_.has_value(); }
 
   void warm_up(const cl::CommandQueue& queue);  // blocks
 
@@ -29,24 +30,18 @@ class ReprojectPass {
   void enqueue(const cl::CommandQueue& queue, const FrameInputs& current, const FrameInputs& previous,
                const ImageView& output, Counter counter, cl::Event* events);
 
-  // What `reproject` wrote last: Move of each sample, the settings' target extent as RGBA32F. Only where
-  // moves().
-  ImageView move_view() const;
+  ImageView move_view() const { return moves_->view(); }  // see MovePass; only where moves()
 
  private:
   void launch(const cl::CommandQueue& queue, PositionTables& tables, const FrameInputs& current,
               const FrameInputs& previous, const ImageView& output, Counter counter, cl::Event* events);
-  void reproject(const cl::CommandQueue& queue, const FrameInputs& current, const FrameInputs& previous,
-                 cl::Event* event);
 
   const Device::Impl& device_;
   ResolveSettings settings_;
   bool reads_reactive_;
-  bool reads_residual_;
   PositionTables tables_;
-  std::optional<cl::Kernel> reproject_;
+  std::optional<MovePass> moves_;
   cl::Kernel resolve_;
-  cl::Buffer moves_;  // Move of each sample of the largest viewport
 };
 
 // How far a sample reaches, in render pixels, on an axis with `render` samples under `output` pixels: the

@@ -34,6 +34,7 @@ const char* small_kernel(Method method) {
       return FilterPass::kernel_name();
     case Method::kBilinear:
     case Method::kQuincunx:
+    case Method::kTemporal:
       return "scale_bilinear";
   }
   return "scale_bilinear";

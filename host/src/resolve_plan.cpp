@@ -14,6 +14,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_temporal.h"
 
 namespace quincunx {
 namespace {
@@ -55,6 +56,8 @@ Status check(const ResolveSettings& settings) {
   check_format(complaints, "colour", settings.colour, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
+               PixelFormat::kRGBA32F);
   const auto check_weight = [&](const char* field, float weight) {
     if (weight >= 0 && std::isfinite(weight)) return;
     complaints.add(
@@ -79,12 +82,13 @@ bool has_form(const ResolveSettings& settings, TwoFrameForm form) {
   return settings.method == Method::kQuincunx && settings.quincunx.form == form;
 }
 
-bool form_reads_velocity(const ResolveSettings& settings) {
+bool method_reads_velocity(const ResolveSettings& settings) {
+  if (settings.method == Method::kTemporal) return true;
   return settings.method == Method::kQuincunx && settings.quincunx.form != TwoFrameForm::kMean;
 }
 
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
-  if (!form_reads_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
+  if (!method_reads_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
@@ -105,6 +109,8 @@ const char* reason_of(Method method) {
       return "the method: one of four samples, at random";
     case Method::kQuincunx:
       return "in place of both frames on the first one and after a reset";
+    case Method::kTemporal:
+      return "in place of the history where samples are denser than pixels";
   }
   return "";
 }
@@ -139,6 +145,29 @@ void plan_reprojected(ResolvePlan& plan) {
                          reprojected_bytes(plan, settings.target, settings.target)});
 }
 
+void plan_temporal(ResolvePlan& plan) {
+  const ResolveSettings& settings = plan.settings;
+  const auto& kernels = TemporalPass::kKernels;
+  const Extent largest = settings.target;
+  if (plan.follows()) {
+    plan.passes.push_back({kernels[0], reproject_options(plan),
+                           "the method: where each sample was, and whether it could be seen",
+                           reproject_bytes(plan, largest, largest)});
+  }
+  plan.passes.push_back({kernels[1], temporal_tiles_options(plan), "the method: which tiles move as a whole",
+                         temporal_tiles_bytes(plan, largest)});
+  if (plan.judges_history()) {
+    plan.passes.push_back(
+        {kernels[2], "", "the method: where the light has changed", temporal_light_bytes(plan)});
+  }
+  plan.passes.push_back({kernels[3], temporal_options(plan), "the method: this frame added to the history",
+                         temporal_bytes(plan, largest, largest)});
+  if (settings.temporal.view == TemporalView::kPicture) {
+    plan.passes.push_back({kernels[4], temporal_display_options(plan), "the method: the history's picture",
+                           temporal_display_bytes(plan, largest)});
+  }
+}
+
 void plan_blur(ResolvePlan& plan) {
   const ResolveSettings& settings = plan.settings;
   const auto& kernels = MotionBlurPass::kKernels;
@@ -157,14 +186,16 @@ void plan_passes(ResolvePlan& plan) {
     plan.passes.push_back({"velocity_from_depth", velocity_options(settings), "nothing but the camera moves",
                            velocity_bytes(settings, settings.target)});
   }
-  if (plan.reprojects()) {
+  if (plan.accumulates()) {
+    plan_temporal(plan);
+  } else if (plan.reprojects()) {
     plan_reprojected(plan);
   } else if (settings.method == Method::kQuincunx) {
     plan.passes.push_back({ResolvePass::kernel_name(), quincunx_options(plan),
                            "the method: this frame and the previous one",
                            quincunx_bytes(plan, settings.target, settings.target)});
   }
-  plan_scale(plan);
+  if (!plan.accumulates() || plan.is_dense(settings.target)) plan_scale(plan);
   if (plan.blurs()) plan_blur(plan);
   if (settings.present) {
     plan.passes.push_back(
@@ -190,18 +221,28 @@ void plan_buffers(ResolvePlan& plan) {
     const bool history = scaling == Scaling::kHistory;
     if (history && !plan.keeps_previous_frame()) break;
     const char* which = history ? " of the previous frame" : "";
-    add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
+    if (!history || !plan.accumulates())
+      add_buffer(plan, fmt::format("colour{}", which), settings.colour, scaling);
     const bool both = plan.weighs_velocity() || plan.weighs_residual();
     if (plan.velocity != VelocitySource::kNone && (!history || both)) {
       const bool owned = plan.velocity == VelocitySource::kCamera;
       add_buffer(plan, fmt::format("velocity{}", which), settings.velocity, scaling, owned);
     }
-    if (plan.reads_depth && (!history || plan.reprojects()))
+    if (plan.reads_depth && (!history || plan.follows()))
       add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
     if (plan.reads_reactive) add_buffer(plan, fmt::format("reactive{}", which), PixelFormat::kR8, scaling);
   }
-  if (plan.reprojects() && plan.velocity != VelocitySource::kNone)
-    add_buffer(plan, "moves", PixelFormat::kRGBA32F, Scaling::kScales, true);
+  if (plan.follows()) add_buffer(plan, "moves", PixelFormat::kRGBA32F, Scaling::kScales, true);
+  for (const char* name : {"history", "updated history"}) {
+    if (plan.accumulates()) add_buffer(plan, name, settings.temporal.history, Scaling::kFixed, true);
+  }
+  if (plan.accumulates()) {
+    const std::uint64_t bytes =
+        static_cast<std::uint64_t>(temporal_tiles(settings.output).area()) * sizeof(TemporalTile);
+    for (const char* name : {"tiles", "updated tiles"})
+      plan.buffers.push_back(
+          {name, temporal_tiles(settings.output), PixelFormat::kNone, Scaling::kFixed, bytes, true});
+  }
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
   if (plan.blurs()) add_buffer(plan, "blurred", settings.resolved, Scaling::kFixed, true);
   if (settings.present) add_buffer(plan, "presented", PixelFormat::kRGBA8, Scaling::kFixed);
@@ -210,22 +251,21 @@ void plan_buffers(ResolvePlan& plan) {
 void note_left_out(ResolvePlan& plan) {
   const auto note = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
   const SceneNeeds& needs = plan.needs;
-  const bool quincunx = plan.settings.method == Method::kQuincunx;
-  if (!quincunx) {
+  const bool several = plan.keeps_previous_frame();
+  if (!several) {
     note("the previous frame", "the method uses one frame only");
     if (plan.velocity == VelocitySource::kNone) note("velocity", "the method uses one frame only");
     note("reactive values", "the method uses one frame only");
   }
-  if (quincunx && plan.velocity == VelocitySource::kCamera) {
+  if (several && plan.velocity == VelocitySource::kCamera) {
     note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
   }
-  if (quincunx && plan.velocity == VelocitySource::kNone) {
-    note("velocity", plan.settings.quincunx.form == TwoFrameForm::kMean
-                         ? "the form is the plain mean"
-                         : "nothing moves: both frames count alike");
+  if (several && plan.velocity == VelocitySource::kNone) {
+    note("velocity", has_form(plan.settings, TwoFrameForm::kMean) ? "the form is the plain mean"
+                                                                  : "nothing moves: all frames count alike");
   }
   if (!plan.reads_depth) note("depth", "no pass reads it");
-  if (quincunx && !needs.transparents) note("reactive values", "the scene has no transparents");
+  if (several && !needs.transparents) note("reactive values", "the scene has no transparents");
   if (!plan.blurs()) {
     note("motion blur", plan.settings.blur.shutter > 0 ? "nothing moves" : "the shutter opens for no time");
   }
@@ -261,6 +301,8 @@ const char* name_of(Method method) {
       return "noise-offset";
     case Method::kQuincunx:
       return "quincunx";
+    case Method::kTemporal:
+      return "temporal";
   }
   return "unknown";
 }
@@ -273,6 +315,32 @@ const char* name_of(TwoFrameForm form) {
       return "velocity";
     case TwoFrameForm::kReprojected:
       return "reprojected";
+  }
+  return "unknown";
+}
+
+const char* name_of(TemporalPreset preset) {
+  switch (preset) {
+    case TemporalPreset::kFast:
+      return "fast";
+    case TemporalPreset::kBalanced:
+      return "balanced";
+    case TemporalPreset::kQuality:
+      return "quality";
+  }
+  return "unknown";
+}
+
+const char* name_of(TemporalView view) {
+  switch (view) {
+    case TemporalView::kPicture:
+      return "picture";
+    case TemporalView::kConfidence:
+      return "confidence";
+    case TemporalView::kRejection:
+      return "rejection";
+    case TemporalView::kOffset:
+      return "offset";
   }
   return "unknown";
 }
@@ -323,9 +391,8 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
   plan.needs = needs;
   plan.settings = settings;
   plan.velocity = velocity_source(needs, settings);
-  const bool reprojects = plan.reprojects() && plan.velocity != VelocitySource::kNone;
-  plan.reads_depth = plan.velocity == VelocitySource::kCamera || plan.blurs() || reprojects;
-  plan.reads_reactive = settings.method == Method::kQuincunx && needs.transparents;
+  plan.reads_depth = plan.velocity == VelocitySource::kCamera || plan.blurs() || plan.follows();
+  plan.reads_reactive = plan.keeps_previous_frame() && needs.transparents;
   plan_passes(plan);
   plan_buffers(plan);
   note_left_out(plan);
@@ -338,6 +405,20 @@ bool ResolvePlan::weighs_velocity() const {
 
 bool ResolvePlan::reprojects() const {
   return has_form(settings, TwoFrameForm::kReprojected);
+}
+
+bool ResolvePlan::follows() const {
+  return velocity != VelocitySource::kNone && (reprojects() || accumulates());
+}
+
+bool ResolvePlan::is_dense(Extent render) const {
+  constexpr double kDense = .64;  // output pixels a sample
+  return accumulates() &&
+         static_cast<double>(settings.output.area()) < kDense * static_cast<double>(render.area());
+}
+
+bool ResolvePlan::judges_history() const {
+  return accumulates() && settings.temporal.preset != TemporalPreset::kFast;
 }
 
 bool ResolvePlan::weighs_residual() const {
@@ -371,8 +452,9 @@ std::string ResolvePlan::explain() const {
   fmt::format_to(
       out, "Scene needs    moving objects {}, camera motion {}, transparents {}, covering background {}\n",
       yes(needs.moving_objects), yes(needs.camera_motion), yes(needs.transparents), yes(needs.background));
-  const std::string form =
-      settings.method == Method::kQuincunx ? fmt::format(":{}", name_of(settings.quincunx.form)) : "";
+  std::string form;
+  if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
+  if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
   fmt::format_to(out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
                  name_of(settings.method), form, settings.output.width, settings.output.height,
                  settings.target.width, settings.target.height,

@@ -15,6 +15,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_temporal.h"
 #include "pass_velocity.h"
 #include "program_cache.h"
 
@@ -28,6 +29,8 @@ struct ResolveService::Impl {
   void enqueue(const FrameInputs& inputs, const FrameOutputs& outputs, FrameRing::Slot& slot);
   int resolve_both(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
                    cl::Event* events);
+  int accumulate(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
+                 cl::Event* events);
   void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
   Status check_history(const FrameInputs& inputs) const;
   FrameInputs with_velocity(FrameInputs inputs) const;
@@ -40,9 +43,10 @@ struct ResolveService::Impl {
   ResolvePlan plan;
   AxisTables tables;
   std::optional<VelocityPass> velocity;
-  ScalePass scale;
+  std::optional<ScalePass> scale;      // where frames are not accumulated
   std::optional<ResolvePass> resolve;  // of the two-frame forms one
   std::optional<ReprojectPass> reproject;
+  std::optional<TemporalPass> temporal;
   std::optional<MotionBlurPass> blur;
   std::optional<PresentPass> present;
   std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
@@ -53,6 +57,7 @@ struct ResolveService::Impl {
   cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
   FrameInputs previous;
   bool has_previous = false;
+  bool has_history = false;  // of TemporalPass
   FrameRing ring;
 };
 
@@ -60,11 +65,14 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
     : device(on),
       plan(to_do),
       tables(*on.impl(), to_do.settings.output),
-      scale(*on.impl(), to_do.settings.method, to_do.settings),
       counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {
   const Device::Impl& impl = *device.impl();
   if (plan.velocity == VelocitySource::kCamera) velocity.emplace(impl, plan.settings);
-  if (plan.reprojects()) {
+  if (!plan.accumulates() || plan.is_dense(plan.settings.target))
+    scale.emplace(impl, plan.settings.method, plan.settings);
+  if (plan.accumulates()) {
+    temporal.emplace(impl, plan);
+  } else if (plan.reprojects()) {
     reproject.emplace(impl, plan);
   } else if (plan.keeps_previous_frame()) {
     resolve.emplace(impl, plan);
@@ -100,9 +108,10 @@ Status ResolveService::Impl::allocate() {
 void ResolveService::Impl::warm_up() {
   const cl::CommandQueue& queue = device.impl()->queue;
   if (velocity) velocity->warm_up(queue);
-  scale.warm_up(queue);
+  if (scale) scale->warm_up(queue);
   if (resolve) resolve->warm_up(queue);
   if (reproject) reproject->warm_up(queue);
+  if (temporal) temporal->warm_up(queue);
   if (blur) blur->warm_up(queue);
   if (present) present->warm_up(queue);
   for (auto& [format, pass] : clears)
@@ -125,11 +134,14 @@ Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
   const auto same = [](const ImageView& a, const ImageView& b) {
     return a.memory == b.memory && a.offset == b.offset;
   };
-  if (!same(inputs.colour, previous.colour)) return {};
+  const char* shared = nullptr;
+  if (!plan.accumulates() && same(inputs.colour, previous.colour)) shared = "colour";
+  if (plan.accumulates() && plan.follows() && same(inputs.depth, previous.depth)) shared = "depth";
+  if (shared == nullptr) return {};
   return Status::invalid(
-      "colour is the memory of the previous frame, which this dispatch reads as history; give consecutive "
-      "frames "
-      "different memory, or set reset");
+      fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
+                  "consecutive frames different memory, or set reset",
+                  shared));
 }
 
 // The frame as the passes see it: where velocity comes from the camera it has the service's own target.
@@ -156,6 +168,27 @@ int ResolveService::Impl::resolve_both(const FrameInputs& inputs, const ImageVie
   return reproject->moves() ? 2 : 1;
 }
 
+// This frame and all before it; gives the number of kernels.
+int ResolveService::Impl::accumulate(const FrameInputs& inputs, const ImageView& target, Counter count,
+                                     FrameRing::Slot& slot, cl::Event* events) {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  const bool known = uses_previous(inputs) && has_history;
+  has_history = true;
+  const FrameInputs& before = known ? previous : inputs;
+  if (!known) temporal->forget(queue);
+  temporal->enqueue(queue, inputs, before, target, count, events);
+  slot.report.used_previous = known;
+  const int first = slot.report.pass_count;
+  const auto& kernels = TemporalPass::kKernels;
+  if (plan.follows()) add_pass(slot, kernels[0], reproject_bytes(plan, inputs.render, before.render));
+  add_pass(slot, kernels[1], temporal_tiles_bytes(plan, inputs.render));
+  if (plan.judges_history()) add_pass(slot, kernels[2], temporal_light_bytes(plan));
+  add_pass(slot, kernels[3], temporal_bytes(plan, inputs.render, before.render));
+  if (plan.settings.temporal.view == TemporalView::kPicture)
+    add_pass(slot, kernels[4], temporal_display_bytes(plan, inputs.render));
+  return slot.report.pass_count - first;
+}
+
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
                                    FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
@@ -171,12 +204,15 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     velocity->enqueue(queue, inputs, inputs.velocity, event++);
     add_pass(slot, VelocityPass::kernel_name(), velocity_bytes(settings, inputs.render));
   }
-  if (uses_previous(inputs)) {
+  if (temporal && !plan.is_dense(inputs.render)) {
+    event += accumulate(inputs, target, count, slot, event);
+  } else if (!temporal && uses_previous(inputs)) {
     event += resolve_both(inputs, target, count, slot, event);
     slot.report.used_previous = true;
   } else {
-    scale.enqueue(queue, tables, inputs, target, count, event++);
-    add_pass(slot, scale.kernel_name(inputs.render), scale_bytes(settings, inputs.render));
+    has_history = false;
+    scale->enqueue(queue, tables, inputs, target, count, event++);
+    add_pass(slot, scale->kernel_name(inputs.render), scale_bytes(settings, inputs.render));
   }
   const ImageView* picture = &target;
   if (blur && (outputs.blurred || outputs.presented)) {

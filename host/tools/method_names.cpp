@@ -7,6 +7,8 @@ namespace {
 
 constexpr const char* kVelocitySummary = "both frames, the previous one less where anything moves";
 
+constexpr const char* kBalancedSummary = "all frames so far, where their surfaces are now";
+
 }  // namespace
 
 const std::map<std::string, MethodChoice>& method_choices() {
@@ -16,6 +18,9 @@ const std::map<std::string, MethodChoice>& method_choices() {
   };
   static const auto both = [](Form form, const char* summary) {
     return MethodChoice{.method = Method::kQuincunx, .form = form, .summary = summary};
+  };
+  static const auto all = [](TemporalPreset preset, const char* summary) {
+    return MethodChoice{.method = Method::kTemporal, .preset = preset, .summary = summary};
   };
   static const std::map<std::string, MethodChoice> choices = {
       {"point", single(Method::kPoint, "the nearest sample")},
@@ -32,6 +37,10 @@ const std::map<std::string, MethodChoice>& method_choices() {
        {.form = Form::kVelocity, .sampling = Sampling::kPoint, .summary = "the same of nearest samples"}},
       {"quincunx:reprojected",
        both(Form::kReprojected, "both frames, the previous one where its surfaces were")},
+      {"temporal", single(Method::kTemporal, kBalancedSummary)},
+      {"temporal:fast", all(TemporalPreset::kFast, "all frames so far, the cheapest way")},
+      {"temporal:balanced", all(TemporalPreset::kBalanced, kBalancedSummary)},
+      {"temporal:quality", all(TemporalPreset::kQuality, "all frames so far, with all that helps")},
   };
   return choices;
 }
@@ -40,6 +49,7 @@ void choose(ResolveSettings& settings, const MethodChoice& choice) {
   settings.method = choice.method;
   settings.quincunx.form = choice.form;
   settings.quincunx.sampling = choice.sampling;
+  settings.temporal.preset = choice.preset;
 }
 
 std::string method_name(const ResolveSettings& settings) {
@@ -48,7 +58,8 @@ std::string method_name(const ResolveSettings& settings) {
     ResolveSettings named = settings;
     choose(named, choice);
     const bool same = named.method == settings.method && named.quincunx.form == settings.quincunx.form &&
-                      named.quincunx.sampling == settings.quincunx.sampling;
+                      named.quincunx.sampling == settings.quincunx.sampling &&
+                      named.temporal.preset == settings.temporal.preset;
     if (same && longer.size() > name.size()) name = longer;
   }
   return name;

@@ -14,6 +14,7 @@ struct MethodChoice {
   Method method = Method::kQuincunx;
   TwoFrameForm form = QuincunxSettings{}.form;
   Sampling sampling = QuincunxSettings{}.sampling;
+  TemporalPreset preset = TemporalSettings{}.preset;
   std::string summary = {};  // what it does, in a few words
 
   friend bool operator==(const MethodChoice&, const MethodChoice&) = default;

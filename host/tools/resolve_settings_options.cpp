@@ -10,9 +10,15 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
   static const std::map<std::string, ToneMap> kToneMaps = {
       {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
+  static const std::map<std::string, TemporalView> kViews = {{"picture", TemporalView::kPicture},
+                                                             {"confidence", TemporalView::kConfidence},
+                                                             {"rejection", TemporalView::kRejection},
+                                                             {"offset", TemporalView::kOffset}};
+
   add_choice(app, "--method", method_choices(),
-             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset or "
-             "quincunx[:mean|:velocity|:point|:reprojected] (default: quincunx)",
+             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset, "
+             "quincunx[:mean|:velocity|:point|:reprojected] or temporal[:fast|:balanced|:quality] "
+             "(default: quincunx)",
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
                  "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
@@ -24,6 +30,8 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("K");
+  add_choice(app, "--view", settings.temporal.view, kViews,
+             "What temporal shows: picture, confidence, rejection or offset (default: picture)");
   app.add_option("--blur", settings.blur.shutter,
                  "Motion blur: part of a frame's time that the shutter is open, to 2")
       ->check(CLI::Range(0.0, 2.0))
@@ -44,10 +52,11 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
-  return fmt::format("{}, velocity weight {}, ringing {}, grain {}, noise {}, blur {} of {} samples",
-                     method_name(settings), settings.quincunx.velocity_weight,
-                     settings.clamp_ringing ? "clamped" : "free", settings.grain,
-                     settings.noise_moves ? "moves" : "still", settings.blur.shutter, settings.blur.samples);
+  return fmt::format("{}, view {}, velocity weight {}, ringing {}, grain {}, noise {}, blur {} of {} samples",
+                     method_name(settings), name_of(settings.temporal.view),
+                     settings.quincunx.velocity_weight, settings.clamp_ringing ? "clamped" : "free",
+                     settings.grain, settings.noise_moves ? "moves" : "still", settings.blur.shutter,
+                     settings.blur.samples);
 }
 
 }  // namespace quincunx::tools

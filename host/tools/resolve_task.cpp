@@ -12,7 +12,9 @@ namespace quincunx::tools {
 namespace {
 
 // Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
+// What was accumulated before the last 48 is less than can be seen.
 int history_of(const ResolvePlan& plan) {
+  if (plan.accumulates()) return 48;
   return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
 }
 

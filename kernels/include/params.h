@@ -131,7 +131,7 @@ typedef struct Move {
   float x;
   float y;
   float trust;  // in [0, 1]: what the previous frame counts there; NaN: the sample's velocity or depth is not finite
-  float unused;
+  float contrast;  // the largest difference of velocity to the eight neighbours, output pixels; 0 where not asked for
 } Move;
 QUINCUNX_CHECK_SIZE(Move, 16);
 
@@ -156,8 +156,9 @@ typedef struct ReprojectParams {
   // From the units of the velocity source to sqrt(K) render pixels, per frame.
   float speed0_x, speed0_y;
   float speed1_x, speed1_y;
+  float contrast_x, contrast_y;  // from velocity0 to output pixels
 } ReprojectParams;
-QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 56 + 4 + 48);
+QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 56 + 4 + 56);
 
 typedef struct ReprojectedParams {
   int output_width;
@@ -173,6 +174,83 @@ typedef struct ReprojectedParams {
   float falloff1_x, falloff1_y;
 } ReprojectedParams;
 QUINCUNX_CHECK_SIZE(ReprojectedParams, 8 + 2 * 32 + 16 + 12 + 16);
+
+// A history texel is the accumulated colour and, in place of alpha, its confidence: the sum of the weights of the samples in it.
+typedef struct TemporalParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;  // this frame
+  SourceFrame frame1;  // the previous one: only the viewport and reactive
+  TexelLayout moves;
+  TexelLayout output;
+  int columns;           // in the position table, as in ReprojectedParams
+  int counter;           // index into non_finite
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kReprojectedBlock
+  float move_x, move_y;        // from pixels of the previous viewport to output pixels
+  float spacing_x, spacing_y;  // output pixels between neighbouring samples
+  int tiles_x;                 // of TemporalTile
+  int tiles_y;
+  int view;                    // kView...
+  int half_output;             // of a view: RGBA16F
+} TemporalParams;
+QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 16);
+
+// What resolve_temporal shows: nothing, for the picture follows; or what it knows.
+enum { kViewPicture = 0, kViewConfidence = 1, kViewRejection = 2, kViewOffset = 3 };
+
+enum { kTemporalTile = 8 };  // output pixels, as many as resolve_temporal makes at once
+
+// What a tile's pixels share. In a rigid tile all moves alike: its texels are copied, not resampled, and hold the picture at an
+// offset from their centres that is carried along.
+typedef struct TemporalTile {
+  float offset_x, offset_y;  // where its texels' picture lies from their centres, output pixels, within [-.5, .5]
+  float source_x, source_y;  // the same of the texels it takes
+  int step_x, step_y;        // texel (x, y) takes (x - step_x, y - step_y)
+  int rigid;                 // 0: offsets are 0
+  // Of its samples: how much brighter they are than history says, history's light, and the errors of history and of the
+  // neighbours as forecasts; brightness as the eye has it, not light.
+  float brightening, light, history_error, neighbour_error;
+  float count;  // of the samples that say so
+  float persistence;  // of a change of light, in [-1, 1], over frames
+  float doubt;        // of history, in [0, 1]
+  float gain;         // of history's light, to be this frame's
+} TemporalTile;
+QUINCUNX_CHECK_SIZE(TemporalTile, 60);
+
+// Of all tiles, in units of 1 / kLightUnits of a tile's mean: whether the light of the whole picture has changed.
+typedef struct TotalLight {
+  int brightening, change, light;  // sum of signed brightenings, of their magnitudes, and of the light
+  int history_error, neighbour_error;
+} TotalLight;
+QUINCUNX_CHECK_SIZE(TotalLight, 20);
+enum { kLightUnits = 2048 };
+
+typedef struct TemporalTileParams {
+  int width;  // the viewport
+  int height;
+  int output_width;
+  int output_height;
+  int tiles_x;
+  int tiles_y;
+  TexelLayout colour;
+  TexelLayout moves;
+  // The centre of sample (i, j) in output pixels: (i * spacing_x + start_x, j * spacing_y + start_y).
+  float spacing_x, spacing_y;
+  float start_x, start_y;
+  float move_x, move_y;  // as in TemporalParams
+} TemporalTileParams;
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 24 + 16 + 24);
+
+typedef struct TemporalDisplayParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;
+  TexelLayout output;
+  int tiles_x;
+  int columns;           // of the position table
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
+} TemporalDisplayParams;
+QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 12);
 
 // The motion blur looks at the output in tiles, and measures streaks in fixed point.
 enum {

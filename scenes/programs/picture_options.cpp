@@ -107,12 +107,15 @@ void print_devices(const PictureOptions& options) {
 }
 
 Jitter jitter_for(Method method) {
+  if (method == Method::kTemporal) return Jitter::kHalton;
   return method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
 }
 
-// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012).
+// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012); more frames bear more, but
+// what moves is known from few.
 float lod_bias_for(Method method, Jitter jitter) {
-  return method == Method::kQuincunx && jitter != Jitter::kNone ? -0.5f : 0.0f;
+  const bool several = method == Method::kQuincunx || method == Method::kTemporal;
+  return several && jitter != Jitter::kNone ? -0.5f : 0.0f;
 }
 
 Jitter jitter_for(const PictureOptions& options) {

@@ -26,6 +26,7 @@ enum class Method {
   kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
   kNoiseOffset,  // one of bilinear's four samples, at random by their weights (Binks 2012)
   kQuincunx,     // this frame and the previous one on the five-of-a-die pattern
+  kTemporal,  // all frames so far, accumulated where the surfaces are: needs a jitter of many places (Halton)
 };
 
 // How kQuincunx weighs the previous frame.
@@ -65,6 +66,27 @@ struct QuincunxSettings {
   float residual_weight = 0;
 };
 
+// What kTemporal spends. Each is the best picture found at its cost; docs/pipeline.md has the figures.
+enum class TemporalPreset : std::uint8_t { kFast, kBalanced, kQuality };
+
+// What the resolved picture of kTemporal shows.
+enum class TemporalView : std::uint8_t {
+  kPicture,
+  kConfidence,  // how much is known of a pixel: 1 (white) is all that is ever kept
+  kRejection,   // why history is doubted: red hidden, off screen or reactive; green an edge of motion; blue a
+                // change
+  kOffset,      // where between texels history was read: red x, green y; blue: how far it moved
+};
+
+const char* name_of(TemporalPreset preset);  // "balanced"
+const char* name_of(TemporalView view);      // "confidence"
+
+struct TemporalSettings {
+  TemporalPreset preset = TemporalPreset::kBalanced;
+  TemporalView view = TemporalView::kPicture;
+  PixelFormat history = PixelFormat::kRGBA32F;  // RGBA32F or RGBA16F
+};
+
 // Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
 // moment.
 struct MotionBlurSettings {
@@ -89,6 +111,7 @@ struct ResolveSettings {
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
   QuincunxSettings quincunx = {};
+  TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
 };
 
@@ -141,9 +164,15 @@ struct ResolvePlan {
   std::vector<PlannedBuffer> buffers;
   std::vector<LeftOut> left_out;
 
-  bool keeps_previous_frame() const { return settings.method == Method::kQuincunx; }
+  // Some images of a frame are read by the next dispatch too.
+  bool keeps_previous_frame() const { return settings.method == Method::kQuincunx || accumulates(); }
+  bool accumulates() const { return settings.method == Method::kTemporal; }
+  // kTemporal: whether samples are so dense, from 1.56 a pixel on, that a frame alone is the better picture.
+  bool is_dense(Extent render) const;
+  bool judges_history() const;              // accumulates, and looks for changes of light and cuts
   bool weighs_velocity() const;             // kVelocity, and something moves
   bool reprojects() const;                  // kReprojected, whether something moves or not
+  bool follows() const;                     // where each sample was in the previous frame is computed
   bool weighs_residual() const;             // kReprojected reads the previous frame's velocity too
   bool blurs() const;                       // motion blur is wanted, and something moves
   std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ

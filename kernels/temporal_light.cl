@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// temporal_light: whether the light has changed in each tile, from what temporal_tiles found in it and the eight around it.
+//   relative   sum of brightenings / sum of light; coherence |sum of brightenings| / sum of their magnitudes
+//   A coherent change that persists for two frames gives the gain 1 + relative; aliased texture changes its sign before that.
+//   Where the whole picture changes one way the gain is given at once.
+//   Doubt: history foretells the samples much worse than their neighbours do, and not by a change of light; or over the whole
+//   picture as badly, as after a cut.
+//
+//   tiles_x, tiles_y  in      count
+//   previous          in      TemporalTile of each tile, of the previous frame
+//   total             in      of all tiles
+//   tiles             in out  persistence, doubt and gain are written
+// Reference: tests/reference/temporal_light.cpp
+#include "params.h"
+
+#define COHERENT 0.75f
+#define RELATIVE 0.05f      // the least change of light
+#define PERSISTENT 0.62f    // of two frames: .64
+#define MEMORY 0.6f
+#define MOST_GAIN 4.0f
+#define SURE 3.0f
+#define WHOLE_COHERENT 0.8f
+#define OWN 0.3f
+#define WORSE 1.6f          // than the neighbours
+#define ERROR_FLOOR 0.02f
+#define INCOHERENT 0.5f
+#define CUT 0.95f           // of the neighbours' error, over the whole picture; without a cut up to .9
+#define CUT_RANGE 0.25f
+#define CUT_FLOOR 0.03f     // of the light
+
+typedef struct Around {
+  float brightening, change, light, history_error, neighbour_error, count;
+} Around;
+
+static inline Around sums_around(__global const TemporalTile* tiles, int tiles_x, int tiles_y, int x, int y) {
+  Around sums = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
+    for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
+      __global const TemporalTile* tile = tiles + row * tiles_x + column;
+      sums.brightening += tile->brightening;
+      sums.change += fabs(tile->brightening);
+      sums.light += tile->light;
+      sums.history_error += tile->history_error;
+      sums.neighbour_error += tile->neighbour_error;
+      sums.count += tile->count;
+    }
+  }
+  return sums;
+}
+
+__kernel void temporal_light(int tiles_x, int tiles_y, __global const TemporalTile* previous, __global const TotalLight* total,
+                             __global TemporalTile* tiles) {
+  const int x = get_global_id(0), y = get_global_id(1);
+  if (x >= tiles_x || y >= tiles_y) return;
+
+  const Around sums = sums_around(tiles, tiles_x, tiles_y, x, y);
+  __global TemporalTile* tile = tiles + y * tiles_x + x;
+  const float relative = sums.brightening / max(sums.light, 1e-6f);
+  const float coherence = fabs(sums.brightening) / max(sums.change, 1e-6f);
+  const float direction = relative > 0.0f ? 1.0f : -1.0f;
+  const float chance = sums.neighbour_error / sqrt(max(sums.count, 1.0f));  // what aliasing alone may give
+  const bool hit = coherence > COHERENT && fabs(relative) > RELATIVE && fabs(sums.brightening) > SURE * chance;
+  const float persistence = MEMORY * previous[y * tiles_x + x].persistence + (hit ? (1.0f - MEMORY) * direction : 0.0f);
+  float gain = hit && persistence * direction > PERSISTENT ? 1.0f + relative : 1.0f;
+
+  const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
+  const bool relit = fabs(whole) > WHOLE_COHERENT * change && fabs(whole) > RELATIVE * light;
+  if (relit) {
+    const float everywhere = whole / light;  // surer than what one tile finds, unless that differs much
+    const bool own = coherence > 0.5f && relative * whole > 0.0f && fabs(relative - everywhere) > OWN * fabs(everywhere);
+    gain = 1.0f + (own ? relative : everywhere);
+  }
+  tile->persistence = persistence;
+  tile->gain = clamp(gain, 1.0f / MOST_GAIN, MOST_GAIN);
+
+  const float allowed = WORSE * sums.neighbour_error + ERROR_FLOOR;
+  const bool incoherent = fabs(sums.brightening) < INCOHERENT * sums.history_error;
+  const float here = incoherent ? (sums.history_error - allowed) / allowed : 0.0f;
+  const float error = (float)total->history_error, usual = (float)total->neighbour_error;
+  const float cut = !relit && error > CUT_FLOOR * light ? (error - CUT * usual) / (CUT_RANGE * usual + 1.0f) : 0.0f;
+  tile->doubt = clamp(max(here, cut), 0.0f, 1.0f);
+}
