@@ -38,4 +38,6 @@ check("" "AxisTables.*" "Clear*"
 # computes the minimum of int8 wrongly.
 check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
-  "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*")
+  "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"
+  "*Temporal.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F"
+  "*Temporal.ATight*/still_reactive_buffer_*")

@@ -52,8 +52,9 @@ TEST_P(KernelVariants, EveryRowBuilds) {
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                          ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter",
                                            "scale_noise", "scale_noise_offset", "resolve_quincunx",
-                                           "reproject", "resolve_reprojected", "motion_tiles",
-                                           "motion_neighbours", "motion_blur", "present",
+                                           "reproject", "resolve_reprojected", "temporal_tiles",
+                                           "temporal_light", "resolve_temporal", "temporal_display",
+                                           "motion_tiles", "motion_neighbours", "motion_blur", "present",
                                            "velocity_from_depth"),
                          [](const auto& instance) { return instance.param; });
 
@@ -109,6 +110,21 @@ TEST(Variants, EveryOptionStringOfTheHostIsARow) {
                 plan.settings.quincunx.residual_weight = weight;
                 expect_row("reproject", reproject_options(plan));
               }
+              plan.settings.method = Method::kTemporal;
+              for (const TemporalPreset preset :
+                   {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
+                for (const PixelFormat history : {kRGBA16F, kRGBA32F}) {
+                  plan.settings.temporal = {.preset = preset, .history = history};
+                  if (velocity != VelocitySource::kNone) expect_row("reproject", reproject_options(plan));
+                  expect_row("temporal_tiles", temporal_tiles_options(plan));
+                  expect_row("resolve_temporal", temporal_options(plan));
+                  for (const bool background : {false, true}) {
+                    plan.needs.background = background;
+                    expect_row("temporal_display", temporal_display_options(plan));
+                  }
+                }
+              }
+              plan.settings.method = Method::kQuincunx;
             }
           }
         }

@@ -34,19 +34,29 @@ double slope_at(const Frame& frame, int x, int y) {
   return std::fmin(step(-1, 0), step(1, 0)) + std::fmin(step(0, -1), step(0, 1));
 }
 
-double smallest_depth(const Frame& frame, double at_x, double at_y) {
+struct DepthRange {
+  double least, most;
+};
+
+DepthRange depths_around(const Frame& frame, double at_x, double at_y) {
   const int x = std::clamp(static_cast<int>(std::floor(at_x)), 0, std::max(frame.width - 2, 0));
   const int y = std::clamp(static_cast<int>(std::floor(at_y)), 0, std::max(frame.height - 2, 0));
   const int right = std::min(x + 1, frame.width - 1);
   const int below = std::min(y + 1, frame.height - 1);
-  return std::fmin(std::fmin(depth_at(frame, x, y), depth_at(frame, right, y)),
-                   std::fmin(depth_at(frame, x, below), depth_at(frame, right, below)));
+  const double upper_left = depth_at(frame, x, y), upper_right = depth_at(frame, right, y);
+  const double lower_left = depth_at(frame, x, below), lower_right = depth_at(frame, right, below);
+  return {std::fmin(std::fmin(upper_left, upper_right), std::fmin(lower_left, lower_right)),
+          std::fmax(std::fmax(upper_left, upper_right), std::fmax(lower_left, lower_right))};
 }
 
 // 1 inside the viewport, 0 a pixel away from it; `at` in texel coordinates.
 double inside(double at, double jitter, int size) {
   const double from_edge = at + .5 + jitter;
   return std::clamp(1 - std::max(-from_edge, from_edge - size), 0.0, 1.0);
+}
+
+bool close_depths(double a, double b) {
+  return std::abs(a - b) <= kDoubt * (std::abs(a) + std::abs(b));
 }
 
 bool close_to_integer(double value, double doubt) {
@@ -76,6 +86,53 @@ void apply_residual(Move& move, const Frame& current, const Frame& previous, std
   if (!std::isfinite(v1[0]) || !std::isfinite(v1[1])) move.trust = std::numeric_limits<double>::quiet_NaN();
 }
 
+// A neighbour whose difference is NaN does not count.
+double contrast_at(const Frame& current, const ReprojectOptions& options, int x, int y) {
+  const auto velocity_at = [&](int column, int row) {
+    return current.velocity[static_cast<std::size_t>(row) * static_cast<std::size_t>(current.width) +
+                            static_cast<std::size_t>(column)];
+  };
+  const auto& own = velocity_at(x, y);
+  double largest = 0;
+  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, current.height - 1); ++row) {
+    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, current.width - 1); ++column) {
+      const auto& other = velocity_at(column, row);
+      const double dx = (other[0] - own[0]) * current.velocity_scale[0] * options.output_width;
+      const double dy = (other[1] - own[1]) * current.velocity_scale[1] * options.output_height;
+      largest = std::fmax(largest, dx * dx + dy * dy);
+    }
+  }
+  return std::sqrt(std::min(largest, kLargestMove));
+}
+
+// Of the 3x3 texels around (x, y).
+double largest_reactive(const Frame& frame, int x, int y) {
+  double largest = 0;
+  for (int i = 0; i < 9; ++i) {
+    const int column = std::clamp(x + i % 3 - 1, 0, frame.width - 1);
+    const int row = std::clamp(y + i / 3 - 1, 0, frame.height - 1);
+    largest = std::max(largest, frame.reactive[static_cast<std::size_t>(row * frame.width + column)]);
+  }
+  return largest;
+}
+
+double reactive_trust(const Frame& current, const Frame& previous, bool around, int x, int y,
+                      std::size_t texel_before) {
+  const int before = static_cast<int>(texel_before);
+  if (!around) {
+    return (1 - current.reactive[static_cast<std::size_t>(y * current.width + x)]) *
+           (1 - previous.reactive[texel_before]);
+  }
+  return (1 - largest_reactive(current, x, y)) *
+         (1 - largest_reactive(previous, before % previous.width, before / previous.width));
+}
+
+// What is left of trust where something nearer was at an edge of motion.
+double left_by_edge(double contrast) {
+  const double t = std::clamp((contrast - .15) / .45, 0.0, 1.0);
+  return 1 - t * t * (3 - 2 * t);
+}
+
 Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions& options, int x, int y) {
   const auto texel =
       static_cast<std::size_t>(y) * static_cast<std::size_t>(current.width) + static_cast<std::size_t>(x);
@@ -98,20 +155,24 @@ Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions
   move.trust =
       inside(at_x, previous.jitter_x, previous.width) * inside(at_y, previous.jitter_y, previous.height);
   const std::size_t texel_before = nearest_at(previous, at_x, at_y);
-  if (options.reactive) move.trust *= (1 - current.reactive[texel]) * (1 - previous.reactive[texel_before]);
+  const bool accumulates = options.output_width > 0;
+  if (options.reactive) move.trust *= reactive_trust(current, previous, accumulates, x, y, texel_before);
   if (options.residual_weight > 0)
     apply_residual(move, current, previous, texel, texel_before, options.residual_weight);
 
   const double limit = 1.02 * depth + 2 * slope_at(current, x, y);
-  const double before = smallest_depth(previous, at_x, at_y);
-  if (!(before <= limit) && !std::isnan(move.trust)) move.trust = 0;
+  const DepthRange before = depths_around(previous, at_x, at_y);
+  if (!(before.least <= limit) && !std::isnan(move.trust)) move.trust = 0;
+  if (!options.contrast_before.empty() && before.most > limit)
+    move.trust *= left_by_edge(options.contrast_before[texel_before]);
   if (lost) move.trust = std::numeric_limits<double>::quiet_NaN();
+  if (accumulates) move.contrast = contrast_at(current, options, x, y);
 
   const double doubt = kDoubt * move.reach;
   // The nearest texel changes half-way between two.
-  const double steps = options.residual_weight > 0 || options.reactive ? 2 : 1;
+  const double steps = options.residual_weight > 0 || options.reactive || accumulates ? 2 : 1;
   move.undecided = close_to_integer(at_x * steps, doubt) || close_to_integer(at_y * steps, doubt) ||
-                   std::abs(before - limit) <= kDoubt * (std::abs(before) + std::abs(limit));
+                   close_depths(before.least, limit) || (accumulates && close_depths(before.most, limit));
   return move;
 }
 

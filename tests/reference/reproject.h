@@ -16,11 +16,15 @@ struct Move {
   double speed = 0;        // |sqrt(K) v0| + |sqrt(K) v1|, for error bounds
   double reach = 0;        // largest texel coordinate that went into its place, likewise
   bool undecided = false;  // a rounding may decide which texels are compared, or whether they hide the sample
+  double contrast = 0;     // the largest difference of velocity to the eight neighbours, output pixels
 };
 
 struct ReprojectOptions {
   bool reactive = false;
   double residual_weight = 0;  // K
+  int output_width = 0;        // contrast is wanted, in pixels of this output, and what follows from it
+  int output_height = 0;
+  std::vector<double> contrast_before = {};  // of each texel of the previous frame; empty: none
 };
 
 // At each texel of the current frame's viewport.

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// The stages of the temporal upscaler one by one, on inputs that are made: the same on the device and for the
+// references.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "../reference/temporal.h"
+#include "kernel_fixture.h"
+#include "params.h"
+#include "position_table.h"
+
+namespace quincunx::testing {
+
+struct StageVariant {
+  Storage storage = Storage::kBuffer;
+  PixelFormat colour = PixelFormat::kRGBA16F;
+  PixelFormat history = PixelFormat::kRGBA32F;
+  PixelFormat resolved = PixelFormat::kRGBA32F;
+  bool moves = true;
+  bool reactive = false;  // only where nothing moves
+};
+std::string name_of(const StageVariant& variant);
+
+struct StageSpec {
+  Extent output;
+  Extent render;
+  Extent previous;
+  Vec2 jitter = {.21f,
+                 -.17f};  // no multiple of a small fraction: no place is half-way between two by rounding
+  Pattern colour = Pattern::kNoise;
+  unsigned seed = 1;
+  double outside = 0;
+  bool tight = false;
+};
+
+// What a stage reads. Zones of the picture move as one or each sample on its own; the history's confidences
+// range from 0 to 32, its tiles' offsets change from zone to zone.
+struct StageInputs {
+  reference::TemporalInputs reference;
+  FrameInputs frame;
+  ImageView reactive_before;
+  ImageView moves;
+};
+
+template <typename Element>
+cl::Buffer to_device(const std::vector<Element>& elements) {
+  cl::Buffer buffer(impl().context, CL_MEM_READ_WRITE, elements.size() * sizeof(Element));
+  impl().queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, elements.size() * sizeof(Element), elements.data());
+  return buffer;
+}
+
+template <typename Element>
+std::vector<Element> from_device(const cl::Buffer& buffer, std::size_t count) {
+  std::vector<Element> elements(count);
+  impl().queue.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(Element), elements.data());
+  return elements;
+}
+
+template <typename Element>
+std::vector<unsigned char> bytes_of(const std::vector<Element>& elements) {
+  const auto* first = reinterpret_cast<const unsigned char*>(elements.data());
+  return {first, first + elements.size() * sizeof(Element)};
+}
+
+TemporalTile to_kernel(const reference::Tile& tile);
+reference::Tile to_reference(const TemporalTile& tile);
+
+class TemporalStages {
+ public:
+  explicit TemporalStages(const StageVariant& variant) : variant_(variant) {}
+
+  StageInputs inputs(Rig& rig, const StageSpec& spec) const;
+
+  // Tiles for resolve_temporal as temporal_tiles would make them of these inputs, some of them doubtful and
+  // of other light; exact on both sides.
+  std::vector<reference::Tile> tiles(const StageInputs& in, unsigned seed) const;
+
+  struct Tiles {
+    std::vector<TemporalTile> tiles;
+    TotalLight total;
+  };
+  Tiles run_tiles(const StageInputs& in) const;
+  std::vector<TemporalTile> run_light(Extent tiles, const std::vector<reference::Tile>& before,
+                                      const TotalLight& total, const std::vector<reference::Tile>& now) const;
+
+  struct Result {
+    std::vector<unsigned char> bytes;
+    std::vector<Pixel> pixels;
+    std::int64_t non_finite = 0;
+  };
+  Result run_resolve(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
+                     const std::string& options = "") const;
+  Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
+                     const std::string& options = "") const;
+
+ private:
+  cl::Kernel kernel(const std::string& name, const std::string& options) const;
+  cl::Buffer history(const StageInputs& in) const;
+
+  StageVariant variant_;
+};
+
+}  // namespace quincunx::testing

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+// The temporal upscaler over several frames: what must hold whatever is in them.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pass_moves.h"
+#include "pass_temporal.h"
+#include "temporal_fixture.h"
+
+namespace quincunx {
+namespace {
+
+using testing::FrameFormats;
+using testing::FrameSpec;
+using testing::Pattern;
+using testing::Pixel;
+using testing::Rig;
+using testing::TestFrame;
+
+constexpr double kRounding = 0x1p-24;
+constexpr Vec2 kJitters[] = {{.25f, -.25f}, {-.125f, .375f}, {.4375f, .0625f}, {-.4f, -.3f}};
+
+ResolvePlan plan_for_test(Extent output, PixelFormat history = PixelFormat::kRGBA32F) {
+  ResolvePlan plan;
+  plan.settings = {
+      .method = Method::kTemporal, .output = output, .target = {2 * output.width, 2 * output.height}};
+  plan.settings.temporal.history = history;
+  plan.velocity = VelocitySource::kTarget;
+  return plan;
+}
+
+std::vector<Pixel> constant(Extent extent, const Pixel& pixel) {
+  return std::vector<Pixel>(static_cast<std::size_t>(extent.area()), pixel);
+}
+
+class Sequence {
+ public:
+  explicit Sequence(const ResolvePlan& plan) : plan_(plan), pass_(testing::impl(), plan) {
+    pass_.forget(testing::impl().queue);
+  }
+
+  // A frame of this colour; velocity is `speed` times noise.
+  void run(Extent render, const std::vector<Pixel>& colour, double speed) {
+    const unsigned i = count_++;
+    TestFrame now = make_frame(
+        rig_, {.colour = plan_.settings.colour, .with_velocity = true, .with_depth = true},
+        {.render = render, .jitter = kJitters[i % std::size(kJitters)], .seed = i, .speed = speed}, colour);
+    // One surface, which hides nothing.
+    now.inputs.depth =
+        rig_.image(PixelFormat::kR32F, Storage::kBuffer, render, constant(render, {1, 0, 0, 0}), 0);
+    if (count_ == 1) before_ = now.inputs;
+    const ImageView view = rig_.output(plan_.settings.resolved, plan_.settings.output);
+    const Counter counter = rig_.counter();
+    pass_.enqueue(testing::impl().queue, now.inputs, before_, view, counter, nullptr);
+    before_ = now.inputs;
+    shown = rig_.pixels(view, plan_.settings.output);
+    history_bytes = rig_.bytes(pass_.history(), plan_.settings.output);
+    history = testing::decode(plan_.settings.temporal.history, history_bytes);
+    non_finite = rig_.count(counter);
+  }
+
+  std::vector<Pixel> shown, history;
+  std::vector<unsigned char> history_bytes;
+  std::int64_t non_finite = 0;
+
+ private:
+  Rig rig_;
+  ResolvePlan plan_;
+  TemporalPass pass_;
+  FrameInputs before_;
+  unsigned count_ = 0;
+};
+
+// All weights mix equal values. A cubic of 16 products, a box in tone space, a Gaussian of nine and the
+// sample round less than 128 times in all; what went before is kept but for a part of each frame.
+TEST(TemporalPass, AConstantPictureStaysConstantUnderAnyMotion) {
+  constexpr int kFrames = 12;
+  for (const double speed : {0.0, .002, .02, .5}) {
+    Sequence sequence(plan_for_test({67, 41}));
+    for (int i = 0; i < kFrames; ++i) {
+      const Extent render{30 + i, 23};
+      sequence.run(render, constant(render, {.25, .75, .125, 1}), speed);
+      for (std::size_t p = 0; p < sequence.shown.size(); ++p) {
+        const double allowed = 128 * (i + 1) * kRounding;
+        ASSERT_NEAR(sequence.shown[p][0], .25, allowed) << speed << " frame " << i << " pixel " << p;
+        ASSERT_NEAR(sequence.shown[p][1], .75, allowed) << speed << " frame " << i << " pixel " << p;
+        ASSERT_NEAR(sequence.shown[p][2], .125, allowed) << speed << " frame " << i << " pixel " << p;
+        ASSERT_NEAR(sequence.shown[p][3], 1, allowed);
+        ASSERT_LE(sequence.history[p][3], 32);
+      }
+    }
+  }
+}
+
+// A frame of nothing but NaN adds nothing: where nothing moves history is what it was, bit for bit.
+TEST(TemporalPass, HistoryThatStandsStillIsCopied) {
+  for (const PixelFormat format : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
+    for (const Extent output : {Extent{64, 64}, Extent{7, 5}, Extent{257, 129}}) {
+      Sequence sequence(plan_for_test(output, format));
+      const Extent render = testing::scaled(output, .6, .7);
+      std::vector<Pixel> colour = pattern_pixels(Pattern::kNoise, render, 4);
+      for (Pixel& pixel : colour) {
+        for (double& value : pixel)
+          value = std::abs(value);
+      }
+      for (int i = 0; i < 4; ++i)
+        sequence.run(render, colour, 0);
+      const auto before = sequence.history_bytes;
+      sequence.run(render, constant(render, Pixel{std::nan(""), 0, 0, 1}), 0);
+      EXPECT_TRUE(before == sequence.history_bytes) << output.width << "x" << output.height;
+      EXPECT_EQ(sequence.non_finite, output.area());
+    }
+  }
+}
+
+// Nor is anything larger than what was valid ever seen.
+TEST(TemporalPass, WhatIsNotFiniteNeverReachesHistory) {
+  const double spoilt[] = {std::nan(""), std::numeric_limits<double>::infinity(), 65504, 1e30};
+  for (const PixelFormat format : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
+    const Extent render{39, 20};
+    ResolvePlan plan = plan_for_test({64, 33});
+    plan.settings.colour = format;
+    Sequence sequence(plan);
+    for (unsigned i = 0; i < 8; ++i) {
+      std::vector<Pixel> colour = pattern_pixels(Pattern::kNoise, render, i);
+      for (std::size_t p = 0; p < colour.size(); ++p) {
+        for (double& value : colour[p])
+          value = std::abs(value);
+        if ((p * 7 + i) % 11 == 0) colour[p][p % 4] = spoilt[p % std::size(spoilt)];
+      }
+      sequence.run(render, colour, i % 2 == 0 ? .02 : 0);
+      for (const auto& pixels : {sequence.history, sequence.shown}) {
+        for (const Pixel& pixel : pixels) {
+          for (std::size_t c = 0; c < 3; ++c) {
+            // The light may seem to have changed, four times at most.
+            ASSERT_GE(pixel[c], 0) << "frame " << i;
+            ASSERT_LE(pixel[c], 4 * 3) << "frame " << i;
+          }
+        }
+      }
+    }
+    EXPECT_GT(sequence.non_finite, 0);
+  }
+}
+
+// From tile offsets 0 every frame takes .37 px from the left, and whole texels once it is nearer to the next.
+TEST(TemporalStill, OffsetsFollowAPan) {
+  const testing::TemporalStages stages({});
+  Rig rig;
+  testing::StageInputs in =
+      stages.inputs(rig, {.output = {64, 64}, .render = {32, 40}, .previous = {32, 40}, .seed = 2});
+  const double move = -.37 * 32 / 64;
+  in.reference.moves.assign(32 * 40, {.x = move, .trust = 1});
+  in.moves =
+      rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, {32, 40}, constant({32, 40}, {move, 0, 1, 0}), 0);
+  in.reference.before.assign(64, {});
+  const double expected[] = {.37, -.26, .11, .48, -.15, .22, -.41};
+  const int steps[] = {0, 1, 0, 0, 1, 0, 1};
+  for (std::size_t i = 0; i < std::size(expected); ++i) {
+    const auto made = stages.run_tiles(in).tiles;
+    for (std::size_t t = 0; t < made.size(); ++t) {
+      ASSERT_EQ(made[t].rigid, 1) << "frame " << i << " tile " << t;
+      ASSERT_EQ(made[t].step_x, steps[i]);
+      ASSERT_EQ(made[t].step_y, 0);
+      // A move is rounded twice and its sum once, every frame.
+      ASSERT_NEAR(static_cast<double>(made[t].offset_x), expected[i],
+                  static_cast<double>(4 * (i + 1)) * kRounding);
+      in.reference.before[t] = testing::to_reference(made[t]);
+    }
+  }
+}
+
+// Without history a pixel is a Gaussian of the frame, of confidence .15, and the nearest sample by its
+// weight.
+TEST(TemporalStill, AFrameAloneIsAGaussianAndItsNearestSample) {
+  const testing::TemporalStages stages({.colour = PixelFormat::kRGBA32F});
+  Rig rig;
+  const Extent output{24, 16};
+  testing::StageInputs in = stages.inputs(
+      rig, {.output = output, .render = {11, 9}, .previous = {11, 9}, .colour = Pattern::kNoise, .seed = 2});
+  // Below 2 no sample counts less for being bright.
+  std::vector<Pixel> colour = pattern_pixels(Pattern::kNoise, {11, 9}, 3);
+  for (Pixel& pixel : colour) {
+    for (double& value : pixel)
+      value = testing::stored_value(PixelFormat::kRGBA32F, std::abs(value) / 2);
+  }
+  in.frame.colour = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, {11, 9}, colour, 0);
+  in.reference.history.assign(static_cast<std::size_t>(output.area()), {});
+  reference::Tile moving;  // free tiles: the reach does not narrow
+  const std::vector<reference::Tile> tiles(in.reference.before.size(), moving);
+  in.reference.before = tiles;
+  const auto actual = stages.run_resolve(rig, in, tiles).pixels;
+  const auto place = [](int x, int size, int samples, double jitter) {
+    return std::clamp((x + .5) * samples / size - .5 - jitter, 0.0, samples - 1.0);
+  };
+  for (int y = 0; y < output.height; ++y) {
+    for (int x = 0; x < output.width; ++x) {
+      const double u = place(x, output.width, 11, in.reference.frame.jitter_x);
+      const double v = place(y, output.height, 9, in.reference.frame.jitter_y);
+      const int column = static_cast<int>(std::lround(u)), row = static_cast<int>(std::lround(v));
+      double sum = 0, weights = 0;
+      for (int i = 0; i < 9; ++i) {
+        const int sx = column + i % 3 - 1, sy = row + i / 3 - 1;
+        const double t = ((sx - u) * (sx - u) + (sy - v) * (sy - v)) / (2 * .5 * .5);
+        const double weight = std::pow(std::max(1 - t / 8, 0.0), 8);
+        sum +=
+            weight * colour[static_cast<std::size_t>(std::clamp(sy, 0, 8) * 11 + std::clamp(sx, 0, 10))][1];
+        weights += weight;
+      }
+      const double dx = (u - column) * output.width / 11, dy = (v - row) * output.height / 9;
+      const double near = std::max(1 - (dx * dx + dy * dy) / (1.05 * 1.05), 0.0);
+      const double nearest = colour[static_cast<std::size_t>(row * 11 + column)][1];
+      const double expected = (.15 * sum / weights + near * near * nearest) / (.15 + near * near);
+      const auto i = static_cast<std::size_t>(y * output.width + x);
+      // Weights of eighth power of places that round by 2^-24 of 2, times 9 in a mean of values below 2.
+      const double allowed = 9 * 8 * 4 * 2 * kRounding;
+      ASSERT_NEAR(actual[i][1], expected, allowed) << x << ", " << y;
+      ASSERT_NEAR(actual[i][3], .15 + near * near, allowed) << x << ", " << y;
+    }
+  }
+}
+
+TEST(TemporalMoves, ContrastMatchesTheReference) {
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
+      unsigned seed = 0;
+      for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
+        ResolvePlan plan = plan_for_test({129, 65});
+        plan.settings.storage = storage;
+        plan.settings.velocity = velocity;
+        Rig rig;
+        const FrameFormats formats{
+            .storage = storage, .velocity = velocity, .with_velocity = true, .with_depth = true};
+        const FrameSpec spec{.render = render,
+                             .jitter = {.25f, .25f},
+                             .velocity = seed % 2 == 0 ? Pattern::kNonFinite : Pattern::kNoise,
+                             .seed = ++seed,
+                             .outside = std::nan("")};
+        const TestFrame now = make_frame(rig, formats, spec);
+        MovePass pass(testing::impl(), plan);
+        pass.enqueue(testing::impl().queue, now.inputs, now.inputs, nullptr);
+        const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+        const auto expected =
+            reference::reproject(now.reference, now.reference, {.output_width = 129, .output_height = 65});
+        for (std::size_t i = 0; i < moves.size(); ++i) {
+          if (std::isnan(expected[i].trust)) continue;
+          // Of each axis the difference, the scale and a product; two squares, their sum, a root of 3 last
+          // places.
+          ASSERT_NEAR(moves[i][3], expected[i].contrast, 24 * kRounding * expected[i].contrast + 0x1p-62)
+              << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(TemporalMoves, TrustGoesWhereAnEdgeOfMotionWas) {
+  std::int64_t decided = 0, compared = 0, gone = 0;
+  unsigned seed = 40;
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
+      ResolvePlan plan = plan_for_test({129, 65});
+      plan.settings.storage = storage;
+      plan.reads_reactive = true;
+      Rig rig;
+      const FrameFormats formats{
+          .storage = storage, .with_velocity = true, .with_depth = true, .with_reactive = true};
+      FrameSpec spec{.render = render, .velocity = Pattern::kNoise, .seed = ++seed, .outside = std::nan("")};
+      TestFrame before = make_frame(rig, formats, spec);
+      spec.seed = ++seed;
+      TestFrame now = make_frame(rig, formats, spec);
+      for (TestFrame* frame : {&before, &now}) {
+        frame->inputs.velocity_scale = {.05f, .05f};
+        frame->reference.velocity_scale = {.05f, .05f};
+      }
+      MovePass pass(testing::impl(), plan);
+      const cl::CommandQueue& queue = testing::impl().queue;
+      pass.forget(queue);
+      pass.enqueue(queue, before.inputs, before.inputs, nullptr);
+      reference::ReprojectOptions options{.reactive = true, .output_width = 129, .output_height = 65};
+      for (const Pixel& move : rig.pixels(pass.view(), render))
+        options.contrast_before.push_back(move[3]);
+      pass.enqueue(queue, now.inputs, before.inputs, nullptr);
+      const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+      const auto expected = reference::reproject(now.reference, before.reference, options);
+      for (std::size_t i = 0; i < moves.size(); ++i) {
+        ++compared;
+        if (expected[i].undecided) continue;
+        ++decided;
+        gone += expected[i].trust == 0 ? 1 : 0;
+        // The place rounds by 8 * 2^-24 of the largest coordinate, and enters once on each axis; of the rest
+        // each factor rounds a few times.
+        const double allowed = (16 * expected[i].reach + 64) * kRounding;
+        ASSERT_NEAR(moves[i][2], expected[i].trust, allowed) << render.width << " " << i;
+      }
+    }
+  }
+  EXPECT_GT(decided, compared * 3 / 4);
+  EXPECT_GT(gone, 0);
+}
+
+}  // namespace
+}  // namespace quincunx

@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "temporal.h"
+
+namespace quincunx::reference {
+namespace {
+
+constexpr double kHistoryCubic = -1;  // Keys' a
+constexpr double kMost = 32;          // confidence that is ever kept
+constexpr double kMostResampled = 8;  // and once resampled
+constexpr double kStart = .15;        // confidence of what a frame alone shows
+constexpr double kReach = 1.05;       // output pixels, from where on a sample counts nothing
+constexpr double kLeastReach = .85;   // in a still tile
+constexpr double kSameOffset = .02;   // output pixels that offsets of copied texels may differ by
+constexpr double kBoxSize = .75;      // standard deviations
+constexpr double kSigma = .5;         // of the Gaussian, samples
+constexpr double kBoxMargin = .02;    // of confidence
+
+struct Place {
+  int nearest = 0;  // sample
+  Bounded past;     // how far the place lies past it, in samples
+  Bounded at;
+};
+
+// Where an output pixel's picture lies among the samples; what lies outside stands at the outermost one.
+Place place_of(int x, int output, int render, double jitter, const Bounded& offset, bool& undecided) {
+  const double u = (x + .5) * render / output - .5 - jitter;
+  const double whole = std::floor(u);
+  const Bounded sum = rounded(u - whole) + offset / rounded(static_cast<double>(output) / render);
+  const Bounded at = clamp({sum.value + whole, sum.error}, 0, render - 1);
+  const int nearest = decide(
+      at, [](double place) { return static_cast<int>(std::ceil(place - .5)); }, undecided);
+  return {nearest, at - nearest, at};
+}
+
+Bounded smooth_step(const Bounded& x, double low, double high) {
+  const Bounded t = clamp((x - rounded(low)) * rounded(1 / (high - low)), 0, 1);
+  return t * t * (Bounded(3) - Bounded(2) * t);
+}
+
+Bounded largest_colour(const BoundedPixel& c) {
+  return max(max(c[0], c[1]), max(c[2], 0));
+}
+
+BoundedPixel exact(const Pixel& pixel) {
+  return {pixel[0], pixel[1], pixel[2], pixel[3]};
+}
+
+const Pixel& sample_at(const Frame& frame, int x, int y) {
+  return texel_at(frame, std::clamp(x, 0, frame.width - 1), std::clamp(y, 0, frame.height - 1));
+}
+
+struct Pixels {
+  BoundedPixel colour;  // of history; its fourth is not used
+  Bounded confidence;
+  Bounded doubt;
+};
+
+// Whether the eight texels that a block of a rigid tile takes are all there, at one offset.
+bool copies(const TemporalInputs& in, const Tile& tile, int x, int y) {
+  const int first = x - tile.step[0];
+  const int row = y - tile.step[1];
+  if (!tile.rigid || first < 0 || row < 0 || first + 8 > in.output_width || row >= in.output_height)
+    return false;
+  for (const int column : {first, first + 7}) {
+    const Tile& from = in.tile_before(column / kTile, row / kTile);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      if (std::abs(from.offset[axis].value - tile.source[axis]) > kSameOffset) return false;
+    }
+  }
+  return true;
+}
+
+BoundedPixel sample_linear(const TemporalInputs& in, int x, int y, const Bounded& fx, const Bounded& fy) {
+  const auto texel = [&](int column, int row) {
+    return exact(in.history_at(std::clamp(x + column, 0, in.output_width - 1),
+                               std::clamp(y + row, 0, in.output_height - 1)));
+  };
+  const BoundedPixel t00 = texel(0, 0), t10 = texel(1, 0), t01 = texel(0, 1), t11 = texel(1, 1);
+  BoundedPixel result;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Bounded upper = t00[c] + (t10[c] - t00[c]) * fx;
+    const Bounded lower = t01[c] + (t11[c] - t01[c]) * fx;
+    result[c] = upper + (lower - upper) * fy;
+  }
+  return result;
+}
+
+// History where the pixel's picture was, and how far between texels that is.
+struct Taken {
+  BoundedPixel value;
+  Bounded between;
+};
+
+Taken take_history(const TemporalInputs& in, const Tile& tile, const Move& move, int x, int y,
+                   const TemporalOptions& options, bool& undecided) {
+  if (copies(in, tile, x / 8 * 8, y)) return {exact(in.history_at(x - tile.step[0], y - tile.step[1])), 0};
+  const std::array<int, 2> texel = {x, y};
+  const std::array<double, 2> moves = {move.x, move.y};
+  std::array<Bounded, 2> at;
+  std::array<int, 2> from;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Bounded by = Bounded(moves[axis]) * rounded(in.move_scale(static_cast<int>(axis)));
+    at[axis] = clamp(by, -65536, 65536) + tile.offset[axis];
+    const int last = axis == 0 ? in.output_width - 1 : in.output_height - 1;
+    from[axis] = decide(
+        at[axis] + .5,
+        [&](double place) { return std::clamp(static_cast<int>(place) + texel[axis], 0, last) / kTile; },
+        undecided);
+  }
+  const Tile& source = in.tile_before(from[0], from[1]);
+  std::array<int, 2> step;
+  std::array<Bounded, 2> fraction;
+  Bounded between = 0;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    at[axis] = at[axis] - source.offset[axis];
+    // The cubic is continuous, but from one texel to the next what it is held in is not.
+    step[axis] = floor_of(at[axis], undecided);
+    fraction[axis] = {at[axis].value - step[axis], at[axis].error};
+    between = between + fraction[axis] * (Bounded(1) - fraction[axis]);
+  }
+  const auto sample = [&] {
+    if (options.taps == 4) return sample_linear(in, x + step[0], y + step[1], fraction[0], fraction[1]);
+    return sample_cubic(in, x + step[0], y + step[1], fraction[0], fraction[1], kHistoryCubic);
+  };
+  return {sample(), min(Bounded(4) * between, 1)};
+}
+
+Bounded most_confidence(const Bounded& trust) {
+  return rounded(kStart) + trust / (Bounded(1 + 1 / kMost) - trust);
+}
+
+Bounded weigh(const Taken& taken, const Bounded& trust, const Bounded& contrast, bool& undecided) {
+  Bounded w = clamp(taken.value[3], 0, kMost);
+  w = w / (Bounded(1) + rounded(.2) * taken.between * w);
+  if (less(rounded(.01), taken.between, undecided)) w = min(w, kMostResampled);
+  w = min(w, most_confidence(trust));
+  return w / (Bounded(1) + Bounded(2) * smooth_step(contrast, .1, 1) * w);
+}
+
+// Between tiles: on a row linear between the means of neighbours at their common edge, over rows between
+// middles.
+Bounded between_tiles(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y,
+                      Bounded Tile::*what) {
+  const auto edge = [&](int column, int row) {
+    const auto tile = [&](int i) {
+      return tiles[static_cast<std::size_t>(row * in.tiles_x() + std::clamp(i, 0, in.tiles_x() - 1))].*what;
+    };
+    return Bounded(.5) * (tile(column - 1) + tile(column));
+  };
+  const int middle = y - kTile / 2;
+  const int above = std::max(middle, 0) / kTile;
+  const int below = std::min(above + 1, in.tiles_y() - 1);
+  const Bounded down = middle < 0 ? 0 : (middle % kTile + .5) / kTile;
+  const auto at_edge = [&](int column) {
+    const Bounded upper = edge(column, above);
+    return upper + (edge(column, below) - upper) * down;
+  };
+  const Bounded left = at_edge(x / kTile);
+  const Bounded along = (x % kTile + .5) / kTile;
+  return left + (at_edge(x / kTile + 1) - left) * along;
+}
+
+BoundedPixel to_tone(const BoundedPixel& colour) {
+  const Bounded scale = Bounded(1) + largest_colour(colour);
+  return {colour[0] / scale, colour[1] / scale, colour[2] / scale, 0};
+}
+
+struct Box {
+  BoundedPixel mean, deviation;
+  bool any = false;
+};
+
+Box box_at(const Frame& frame, int x, int y) {
+  const int cross[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  Box box;
+  BoundedPixel first, sum, squares;
+  double count = 0;
+  for (const auto& step : cross) {
+    const Pixel& sample = sample_at(frame, x + step[0], y + step[1]);
+    if (!is_valid(sample)) continue;
+    const BoundedPixel tone = to_tone(exact(sample));
+    if (count == 0) first = tone;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Bounded difference = count == 0 ? Bounded(0) : tone[c] - first[c];
+      sum[c] = sum[c] + difference;
+      squares[c] = squares[c] + difference * difference;
+    }
+    ++count;
+  }
+  box.any = count > 0;
+  for (std::size_t c = 0; c < 3 && box.any; ++c) {
+    const Bounded mean = sum[c] / count;
+    box.mean[c] = first[c] + mean;
+    box.deviation[c] = Bounded(kBoxSize) * sqrt(max(squares[c] / count - mean * mean, 0));
+  }
+  return box;
+}
+
+// Towards what the surroundings allow; confidence falls by how wrong history was.
+void rectify(Pixels& pixel, const Box& box) {
+  if (!box.any) return;
+  BoundedPixel tone = to_tone(pixel.colour);
+  Bounded distance = 0;
+  Bounded spread = 0;
+  bool stays = true;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Bounded low = box.mean[c] - box.deviation[c];
+    const Bounded high = box.mean[c] + box.deviation[c];
+    spread = spread + box.deviation[c];
+    bool unsure = false;
+    if (!less(tone[c], low, unsure) && !less(high, tone[c], unsure) && !unsure) continue;
+    stays = false;
+    const Bounded step = clamp(tone[c], low, high) - tone[c];
+    distance = distance + abs(step);
+    tone[c] = tone[c] + step * pixel.doubt;
+  }
+  const Bounded wrong = min(1, distance / (spread + rounded(kBoxMargin)));
+  pixel.confidence = pixel.confidence * (Bounded(1) - pixel.doubt * wrong);
+  if (stays) return;
+  const Bounded rest = max(Bounded(1) - largest_colour(tone), 0x1p-16);
+  for (std::size_t c = 0; c < 3; ++c)
+    pixel.colour[c] = tone[c] / rest;
+}
+
+// The less confident, the more of a Gaussian of the frame.
+void start(Pixels& pixel, const Frame& frame, const Place& column, const Place& row, bool& undecided) {
+  if (pixel.confidence.value - pixel.confidence.error >= kStart) return;
+  BoundedPixel sum, stand_in;
+  Bounded weights = 0;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const Pixel& sample = sample_at(frame, column.nearest + dx, row.nearest + dy);
+      const Bounded across = Bounded(dx) - column.past;
+      const Bounded down = Bounded(dy) - row.past;
+      const Bounded near = bell((across * across + down * down) * (.5 / (kSigma * kSigma)));
+      if (!is_valid(sample)) {
+        for (std::size_t c = 0; c < 3; ++c)
+          stand_in[c] = stand_in[c] + Bounded(sanitised(sample[c])) * rounded(1. / 9);
+        continue;
+      }
+      const Bounded weight = near / max(1, Bounded(.5) * largest_colour(exact(sample)));
+      weights = weights + weight;
+      for (std::size_t c = 0; c < 3; ++c)
+        sum[c] = sum[c] + Bounded(sample[c]) * weight;
+    }
+  }
+  const bool any = less(0, weights, undecided);
+  const Bounded share = max(Bounded(1) - pixel.confidence / rounded(kStart), 0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Bounded smooth = any ? sum[c] / weights : stand_in[c];
+    pixel.colour[c] = pixel.colour[c] + (smooth - pixel.colour[c]) * share;
+  }
+  if (!any) less(pixel.confidence, rounded(kStart), undecided);
+  pixel.confidence = any ? max(pixel.confidence, rounded(kStart)) : Bounded(0);
+}
+
+HistoryTexel add_sample(const Pixels& pixel, const Pixel& sample, bool still,
+                        const std::array<Bounded, 2>& away) {
+  HistoryTexel texel;
+  Bounded weight = 0;
+  if (is_valid(sample)) {
+    const Bounded reach =
+        still ? max(rounded(kReach) - rounded(.1) * pixel.confidence, rounded(kLeastReach)) : rounded(kReach);
+    const Bounded near = max(Bounded(1) - (away[0] * away[0] + away[1] * away[1]) / (reach * reach), 0);
+    weight = near * near / max(1, Bounded(.5) * largest_colour(exact(sample)));
+  }
+  const Bounded total = pixel.confidence + weight;
+  const Bounded part = weight.value == 0 && weight.error == 0 ? Bounded(0) : weight / max(total, 1e-30);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Bounded& before = pixel.colour[c];
+    texel.value[c] = is_valid(sample) ? before + (Bounded(sample[c]) - before) * part : before;
+  }
+  texel.value[3] = min(total, kMost);
+  return texel;
+}
+
+double known_trust(const Move& move) {
+  return std::isnan(move.trust) ? 0 : std::max(move.trust, 0.0);
+}
+
+// Between samples.
+Bounded trust_between(const TemporalInputs& in, const Bounded& at_x, const Bounded& at_y) {
+  const int x = std::clamp(static_cast<int>(std::floor(at_x.value)), 0, std::max(in.frame.width - 2, 0));
+  const int y = std::clamp(static_cast<int>(std::floor(at_y.value)), 0, std::max(in.frame.height - 2, 0));
+  const int right = std::min(x + 1, in.frame.width - 1);
+  const int below = std::min(y + 1, in.frame.height - 1);
+  const Bounded fx = at_x - x;
+  const Bounded fy = at_y - y;
+  const auto on_row = [&](int row) {
+    return Bounded(known_trust(in.move_of(x, row))) * (Bounded(1) - fx) +
+           Bounded(known_trust(in.move_of(right, row))) * fx;
+  };
+  return on_row(y) * (Bounded(1) - fy) + on_row(below) * fy;
+}
+
+// Of the still sample (x, y), by the reactive values of both frames.
+Bounded trust_of_still(const TemporalInputs& in, int x, int y, bool& undecided) {
+  if (in.frame.reactive.empty()) return 1;
+  const auto before = [&](int sample, int size, int size_before) {
+    return decide((Bounded(sample) + .5) * rounded(static_cast<double>(size_before) / size),
+                  [&](double at) { return std::min(static_cast<int>(at), size_before - 1); }, undecided);
+  };
+  const int column = before(x, in.frame.width, in.previous_width);
+  const int row = before(y, in.frame.height, in.previous_height);
+  const double now = in.frame.reactive[static_cast<std::size_t>(y * in.frame.width + x)];
+  const double then = in.reactive_before[static_cast<std::size_t>(row * in.previous_width + column)];
+  return (Bounded(1) - rounded(now)) * (Bounded(1) - rounded(then));
+}
+
+Bounded trust_at(const TemporalInputs& in, const TemporalOptions& options, const Place& column,
+                 const Place& row, bool& undecided) {
+  if (in.moves.empty()) return trust_of_still(in, column.nearest, row.nearest, undecided);
+  if (options.bilinear_trust) return trust_between(in, column.at, row.at);
+  return known_trust(in.move_of(column.nearest, row.nearest));
+}
+
+HistoryTexel resolve(const TemporalInputs& in, const std::vector<Tile>& tiles, const TemporalOptions& options,
+                     int x, int y) {
+  const Frame& frame = in.frame;
+  const Tile& tile = tiles[static_cast<std::size_t>(y / kTile * in.tiles_x() + x / kTile)];
+  bool undecided = false;
+  const Place column = place_of(x, in.output_width, frame.width, frame.jitter_x, tile.offset[0], undecided);
+  const Place row = place_of(y, in.output_height, frame.height, frame.jitter_y, tile.offset[1], undecided);
+  Move move{.trust = 1};
+  if (!in.moves.empty()) move = in.move_of(column.nearest, row.nearest);
+  const Bounded trust = trust_at(in, options, column, row, undecided);
+
+  const Taken taken = take_history(in, tile, move, x, y, options, undecided);
+  Pixels pixel{taken.value, weigh(taken, trust, move.contrast, undecided),
+               max(Bounded(1) - trust, smooth_step(move.contrast, .15, .6))};
+  const Bounded changed = between_tiles(in, tiles, x, y, &Tile::doubt);
+  pixel.doubt = max(pixel.doubt, changed);
+  pixel.confidence = min(pixel.confidence, most_confidence(Bounded(1) - changed));
+  const Bounded gain = between_tiles(in, tiles, x, y, &Tile::gain);
+  for (Bounded& value : pixel.colour)
+    value = value * gain;
+  if (pixel.doubt.value + pixel.doubt.error > 0) rectify(pixel, box_at(frame, column.nearest, row.nearest));
+  start(pixel, frame, column, row, undecided);
+
+  const bool still = tile.rigid && tile.offset[0].value == 0 && tile.offset[1].value == 0 &&
+                     tile.step[0] == 0 && tile.step[1] == 0;
+  HistoryTexel texel = add_sample(pixel, sample_at(frame, column.nearest, row.nearest), still,
+                                  {column.past * rounded(in.spacing(0)), row.past * rounded(in.spacing(1))});
+  texel.undecided = undecided;
+  return texel;
+}
+
+}  // namespace
+
+Bounded bell(const Bounded& t) {
+  const Bounded rest = max(Bounded(1) - Bounded(.125) * t, 0);
+  const Bounded square = rest * rest;
+  const Bounded fourth = square * square;
+  return fourth * fourth;
+}
+
+BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,
+                          const Bounded& fraction_y, double a) {
+  const auto weights = [a](const Bounded& f) {
+    const Bounded rest = Bounded(1) - f;
+    const Bounded w0 = Bounded(a) * f * rest * rest;
+    const Bounded w1 = (Bounded(a + 2) * f - Bounded(a + 3)) * f * f + 1;
+    const Bounded w3 = Bounded(a) * rest * f * f;
+    return std::array<Bounded, 4>{w0, w1, Bounded(1) - w0 - w1 - w3, w3};
+  };
+  const auto wx = weights(fraction_x);
+  const auto wy = weights(fraction_y);
+  BoundedPixel result, least, most;
+  for (std::size_t c = 0; c < 4; ++c) {
+    for (int row = 0; row < 4; ++row) {
+      for (int column = 0; column < 4; ++column) {
+        const Bounded texel = in.history_at(std::clamp(x + column - 1, 0, in.output_width - 1),
+                                            std::clamp(y + row - 1, 0, in.output_height - 1))[c];
+        const auto i = static_cast<std::size_t>(column);
+        const auto j = static_cast<std::size_t>(row);
+        result[c] = result[c] + texel * wx[i] * wy[j];
+        if (row % 3 == 0 || column % 3 == 0) continue;
+        const bool first = row == 1 && column == 1;
+        least[c] = first ? texel : min(least[c], texel);
+        most[c] = first ? texel : max(most[c], texel);
+      }
+    }
+    result[c] = clamp(result[c], least[c], most[c]);
+  }
+  return result;
+}
+
+std::vector<HistoryTexel> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                                           const TemporalOptions& options) {
+  std::vector<HistoryTexel> updated;
+  for (int y = 0; y < in.output_height; ++y) {
+    for (int x = 0; x < in.output_width; ++x)
+      updated.push_back(resolve(in, tiles, options, x, y));
+  }
+  return updated;
+}
+
+}  // namespace quincunx::reference
