@@ -93,6 +93,8 @@ const LongRun kRuns[] = {
       .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
       .blur = {.shutter = 0.5f}},
      1000},
+    {"temporal", {.method = Method::kTemporal}, 1000},
+    {"temporal_half", {.method = Method::kTemporal, .temporal = {.history = PixelFormat::kRGBA16F}}, 200},
     {"catmull_rom", {.method = Method::kCatmullRom}, 200},
     {"bilinear", {.method = Method::kBilinear}, 200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},

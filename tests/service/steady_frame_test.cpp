@@ -187,6 +187,12 @@ TEST(SteadyFrame, ReprojectedWithMotionBlur) {
                          .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
                          .blur = {.shutter = .5f}});
 }
+TEST(SteadyFrame, TemporalWithVelocityTarget) {
+  run_steady_frames({}, {.method = Method::kTemporal});
+}
+TEST(SteadyFrame, TemporalOfAStillScene) {
+  run_steady_frames({.moving_objects = false, .camera_motion = false}, {.method = Method::kTemporal});
+}
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});
 }

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+// What kTemporal makes of inputs that are bad, missing or strange.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "temporal_scene.h"
+
+namespace quincunx {
+namespace {
+
+using testing::HostFrame;
+using testing::Mask;
+using testing::Pixel;
+using testing::Place;
+using testing::ServiceRig;
+using testing::TemporalRun;
+using testing::TemporalScene;
+using Pixels = std::vector<Pixel>;
+
+constexpr Extent kOutput{160, 96};
+constexpr Extent kHalf{80, 48};
+constexpr ResolveSettings kBilinear{.method = Method::kBilinear};
+
+TemporalScene moving_scene(Place velocity, Extent output = kOutput) {
+  TemporalScene scene;
+  scene.output = output;
+  scene.surfaces = {{.centre = {80, 48}, .velocity = velocity, .texture = testing::noise_texture(9)}};
+  return scene;
+}
+
+// Sets a block of samples of one input.
+struct Poison {
+  const char* name;
+  void (*spoil)(HostFrame& frame);
+};
+
+bool in_block(int x, int y) {
+  return x >= 30 && x < 38 && y >= 20 && y < 26;
+}
+
+template <typename T>
+void spoil(std::function<T(int, int)>& input, T value) {
+  input = [before = input, value](int x, int y) { return in_block(x, y) ? value : before(x, y); };
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+const Poison kPoisons[] = {
+    {"colour NaN",
+     [](HostFrame& f) {
+       spoil(f.colour, Pixel{kNan, kNan, kNan, kNan});
+     }},
+    {"colour Inf",
+     [](HostFrame& f) {
+       spoil(f.colour, Pixel{kInf, .1f, -kInf, 1});
+     }},
+    {"colour 65504",
+     [](HostFrame& f) {
+       spoil(f.colour, Pixel{65504, 65504, 65504, 1});
+     }},
+    {"velocity NaN",
+     [](HostFrame& f) {
+       spoil(f.velocity, Vec2{kNan, kNan});
+     }},
+    {"velocity Inf",
+     [](HostFrame& f) {
+       spoil(f.velocity, Vec2{kInf, -kInf});
+     }},
+    {"velocity 65504",
+     [](HostFrame& f) {
+       spoil(f.velocity, Vec2{65504, -65504});
+     }},
+    {"depth NaN", [](HostFrame& f) { spoil(f.depth, kNan); }},
+    {"depth Inf", [](HostFrame& f) { spoil(f.depth, kInf); }},
+    {"depth 65504", [](HostFrame& f) { spoil(f.depth, 65504.f); }},
+    {"reactive 255", [](HostFrame& f) { spoil(f.reactive, std::uint8_t{255}); }},
+};
+
+// The frame after a bad one is as good there as a frame alone, and no frame has a value that is not finite.
+TEST(TemporalRobustness, BadSamplesLeaveWithinOneFrame) {
+  const Mask near = [](int x, int y) { return x >= 52 && x < 84 && y >= 32 && y < 60; };
+  for (const Place velocity : {Place(), Place(1.3, .4)}) {
+    for (const Poison& poison : kPoisons) {
+      const TemporalScene scene = moving_scene(velocity);
+      TemporalRun run(scene), single(scene, kBilinear);
+      run.until(12), single.until(13);
+      HostFrame bad = scene.render(12, kHalf, testing::halton_jitter(12, 32));
+      poison.spoil(bad);
+      for (const Pixel& pixel : run.rig().resolve(bad)) {
+        for (const float value : pixel)
+          ASSERT_TRUE(std::isfinite(value)) << poison.name;
+      }
+      run.skip();
+      const Pixels after = run.next(), alone = single.next(), truth = run.truth();
+      const double own = testing::psnr(testing::squared_error(after, truth, kOutput, near));
+      const double bilinear = testing::psnr(testing::squared_error(alone, truth, kOutput, near));
+      RecordProperty(poison.name, std::to_string(own - bilinear));
+      EXPECT_GE(own, bilinear) << poison.name << ", velocity " << velocity;
+    }
+  }
+}
+
+int drift_frames() {
+  const char* text = std::getenv("QUINCUNX_DRIFT_FRAMES");
+  return text != nullptr ? std::atoi(text) : 600;
+}
+
+// After a long run a plain picture still has its colour, and a textured one is as good as after a short run.
+TEST(TemporalRobustness, NothingDrifts) {
+  constexpr Extent kSmall{32, 20};
+  constexpr int kWarm = 96, kWindow = 32;
+  const int frames = std::max(drift_frames(), kWarm + kWindow);
+  for (const PixelFormat format : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
+    const ResolveSettings settings{.method = Method::kTemporal, .temporal = {.history = format}};
+    TemporalScene scene = moving_scene({.37, -.21}, {64, 40});
+    TemporalRun old(scene, settings), young(scene, settings);
+    scene.surfaces[0].texture = testing::plain_texture(.7f, .2f, 3);
+    TemporalRun plain(scene, settings);
+    while (young.frame() < frames - kWindow - kWarm)
+      young.skip();
+    old.until(frames - kWindow, kSmall), young.until(frames - kWindow, kSmall);
+    double of_old = 0, of_young = 0;
+    for (int i = 0; i < kWindow; ++i) {
+      const Pixels one = old.next(kSmall), other = young.next(kSmall), truth = old.truth();
+      of_old += testing::squared_error(one, truth, scene.output);
+      of_young += testing::squared_error(other, truth, scene.output);
+    }
+    EXPECT_GE(testing::psnr(of_old), testing::psnr(of_young) - .05) << name_of(format);
+    const Pixels last = plain.until(frames, kSmall);
+    EXPECT_LE(testing::largest_difference(last, plain.truth(), scene.output), 1. / 1024) << name_of(format);
+  }
+}
+
+// After 20 frames.
+void expect_no_worse_than_bilinear(Extent output, std::array<double, 2> scale, Place velocity) {
+  const Extent render{static_cast<int>(std::lround(output.width * scale[0])),
+                      static_cast<int>(std::lround(output.height * scale[1]))};
+  const TemporalScene scene = moving_scene(velocity, output);
+  TemporalRun run(scene), single(scene, kBilinear);
+  const Pixels pixels = run.until(20, render), alone = single.until(20, render), truth = run.truth();
+  EXPECT_GE(testing::psnr(pixels, truth), testing::psnr(alone, truth))
+      << render.width << "x" << render.height << " of " << output.width << "x" << output.height
+      << ", velocity " << velocity;
+}
+
+TEST(TemporalRobustness, StillAtAnyScaleIsNoWorseThanBilinear) {
+  for (const Extent output : {Extent{160, 96}, Extent{97, 61}, Extent{33, 17}}) {
+    for (const std::array<double, 2> scale : {std::array{.33, .33},
+                                              {.33, .8},
+                                              {.5, .5},
+                                              {.71, .45},
+                                              {1., 1.},
+                                              {1., .5},
+                                              {1.4, 1.7},
+                                              {2., 2.},
+                                              {2., .6}})
+      expect_no_worse_than_bilinear(output, scale, {});
+  }
+}
+
+TEST(TemporalRobustness, MovingAtLowScalesIsNoWorseThanBilinear) {
+  for (const Extent output : {Extent{160, 96}, Extent{97, 61}}) {
+    for (const std::array<double, 2> scale : {std::array{.33, .33}, {.33, .8}, {.5, .5}})
+      expect_no_worse_than_bilinear(output, scale, {.7, -.4});
+  }
+}
+
+// From the smallest viewports on, a plain picture is itself.
+TEST(TemporalRobustness, TinyViewportsKeepColour) {
+  for (const Extent output : {Extent{4, 4}, Extent{7, 5}, Extent{33, 17}}) {
+    TemporalScene scene = moving_scene({.3, .2}, output);
+    scene.surfaces[0].texture = testing::plain_texture(.7f, .2f, 3);
+    TemporalRun run(scene);
+    const Pixels truth = scene.truth(0);
+    for (int i = 0; i < 24; ++i) {
+      const Extent render{1 + i * 5 % 9, 1 + i * 7 % 8};
+      EXPECT_LE(testing::largest_difference(run.next(render), truth, output), 1. / 1024)
+          << render.width << "x" << render.height;
+    }
+    for (int i = 0; i < 4; ++i)
+      EXPECT_LE(testing::largest_difference(run.next({4, 4}), truth, output), 1. / 1024);
+  }
+}
+
+TEST(TemporalRobustness, HalfHistoryIsAsGood) {
+  for (const Place velocity : {Place(), Place(.7, -.4)}) {
+    const TemporalScene scene = moving_scene(velocity);
+    TemporalRun whole(scene),
+        half(scene, {.method = Method::kTemporal, .temporal = {.history = PixelFormat::kRGBA16F}});
+    whole.until(48), half.until(48);
+    double of_float = 0, of_half = 0;
+    for (int i = 0; i < 16; ++i) {
+      const Pixels one = whole.next(), other = half.next(), truth = whole.truth();
+      of_float += testing::squared_error(one, truth, kOutput),
+          of_half += testing::squared_error(other, truth, kOutput);
+    }
+    EXPECT_GE(testing::psnr(of_half), testing::psnr(of_float) - .05) << velocity;
+  }
+}
+
+}  // namespace
+}  // namespace quincunx

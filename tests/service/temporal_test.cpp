@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+// What must hold for the pictures of kTemporal, on analytic sequences with exact velocity and truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "temporal_scene.h"
+
+namespace quincunx {
+namespace {
+
+using testing::Mask;
+using testing::Pixel;
+using testing::Place;
+using testing::Surface;
+using testing::TemporalRun;
+using testing::TemporalScene;
+using Pixels = std::vector<Pixel>;
+using Shape = Surface::Shape;
+
+constexpr Extent kOutput{160, 96};
+constexpr Extent kHalf{80, 48};
+
+constexpr ResolveSettings kBilinear{.method = Method::kBilinear};
+
+TemporalScene still_scene() {
+  TemporalScene scene;
+  scene.surfaces = {{.shape = Shape::kDisc,
+                     .half_size = 17,
+                     .centre = {60, 40},
+                     .distance = 4,
+                     .texture = testing::noise_texture(5, 20)},
+                    {.shape = Shape::kRectangle,
+                     .half_size = {.6, 30},
+                     .centre = {110.3, 50},
+                     .distance = 5,
+                     .texture = testing::plain_texture(2, 1.5f, .2f)},
+                    {.texture = testing::noise_texture(9)}};
+  return scene;
+}
+
+// A still camera's picture, had each sample of all phases been taken: (1 - d^2 / R^2)^2, R = .85 output
+// pixels.
+Pixels limit_of(const TemporalScene& scene, Extent render) {
+  constexpr double kReach = .85;
+  const int phases = testing::halton_phases(scene.output, render);
+  const double step_x = static_cast<double>(scene.output.width) / render.width;
+  const double step_y = static_cast<double>(scene.output.height) / render.height;
+  std::vector<std::array<double, 4>> sums(static_cast<std::size_t>(scene.output.area()));
+  for (int phase = 0; phase < phases; ++phase) {
+    const Vec2 jitter = testing::halton_jitter(phase, phases);
+    for (int i = 0; i < render.area(); ++i) {
+      const Place place((i % render.width + .5 + jitter.x) * step_x,
+                        (i / render.width + .5 + jitter.y) * step_y);
+      const Pixel colour = scene.colour_at(place, 0);
+      for (int y = std::max(0, static_cast<int>(place.imag()) - 1);
+           y <= std::min(scene.output.height - 1, static_cast<int>(place.imag()) + 1); ++y) {
+        for (int x = std::max(0, static_cast<int>(place.real()) - 1);
+             x <= std::min(scene.output.width - 1, static_cast<int>(place.real()) + 1); ++x) {
+          const double near = std::max(0., 1 - std::norm(place - Place(x + .5, y + .5)) / (kReach * kReach));
+          auto& sum = sums[static_cast<std::size_t>(y * scene.output.width + x)];
+          for (int c = 0; c < 3; ++c)
+            sum[c] += near * near * colour[c];
+          sum[3] += near * near;
+        }
+      }
+    }
+  }
+  Pixels pixels;
+  for (const auto& sum : sums)
+    pixels.push_back({static_cast<float>(sum[0] / sum[3]), static_cast<float>(sum[1] / sum[3]),
+                      static_cast<float>(sum[2] / sum[3]), 1});
+  return pixels;
+}
+
+TEST(Temporal, StillPictureConvergesToItsLimit) {
+  TemporalRun run(still_scene(),
+                  {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kFast}});
+  const Pixels truth = run.scene().truth(0);
+  const double limit = testing::psnr(limit_of(run.scene(), kHalf), truth);
+  double before = 0;
+  for (const int end : {4, 8, 16, 32, 64, 96, 128, 160}) {
+    double sum = 0;
+    const int first = run.frame();
+    while (run.frame() < end)
+      sum += testing::psnr(run.next(), truth);
+    const double mean = sum / (end - first);
+    EXPECT_GE(mean, before - .001) << "before frame " << end;
+    before = mean;
+  }
+  EXPECT_GE(before, limit - .5);
+}
+
+// Of wires over a background that moves otherwise, and over one that moves with them.
+TEST(Temporal, ThinWiresFlickerLittle) {
+  for (const bool together : {false, true}) {
+    for (const Place velocity : {Place(.37, 0), Place(1.2, .4)}) {
+      TemporalScene scene;
+      for (int i = 0; i < 8; ++i) {
+        scene.surfaces.push_back({.shape = Shape::kRectangle,
+                                  .half_size = {.3 + .1 * (i % 4), 200},
+                                  .centre = {20. + 14.3 * i, 48},
+                                  .velocity = velocity,
+                                  .distance = 4,
+                                  .texture = testing::plain_texture(.02f, .02f, .03f)});
+      }
+      scene.surfaces.push_back(
+          {.velocity = together ? velocity : Place(), .texture = testing::noise_texture(12)});
+      TemporalRun run(scene);
+      Pixels before = run.until(16), truth_before = run.truth();
+      double flicker = 0, truth_flicker = 0;
+      for (int i = 0; i < 24; ++i) {
+        const Pixels now = run.next(), truth = run.truth();
+        for (std::size_t p = 0; p < now.size(); ++p) {
+          for (int c = 0; c < 3; ++c) {
+            flicker += std::abs(testing::tone_of(now[p][c]) - testing::tone_of(before[p][c]));
+            truth_flicker += std::abs(testing::tone_of(truth[p][c]) - testing::tone_of(truth_before[p][c]));
+          }
+        }
+        before = now, truth_before = truth;
+      }
+      EXPECT_LE(flicker, 1.5 * truth_flicker) << together << ", " << velocity;
+    }
+  }
+}
+
+TEST(Temporal, ACutShowsNoOldPixel) {
+  TemporalRun old(still_scene());
+  old.until(12);
+  TemporalScene scene;
+  scene.surfaces = {{.velocity = {1.7, -.6}, .texture = testing::noise_texture(6, 40)}};
+  TemporalRun fresh(scene);
+  for (int i = 0; i < 3; ++i) {
+    testing::HostFrame frame = scene.render(i, kHalf, testing::halton_jitter(i, 32));
+    const Pixels expected = fresh.rig().resolve(frame);
+    frame.reset = i == 0;
+    const Pixels actual = old.rig().resolve(frame);
+    EXPECT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0)
+        << "frame " << i;
+  }
+}
+
+TemporalScene moving_scene(Place velocity) {
+  TemporalScene scene;
+  scene.surfaces = {{.centre = {80, 48}, .velocity = velocity, .texture = testing::noise_texture(9)}};
+  return scene;
+}
+
+// Mean over frames of the error of the picture.
+template <typename NextRender>
+double mean_psnr(TemporalRun& run, int first, int end, const NextRender& render) {
+  double sum = 0;
+  while (run.frame() < end) {
+    const Pixels pixels = run.next(render(run.frame()));
+    if (run.frame() > first) sum += testing::squared_error(pixels, run.truth(), kOutput);
+  }
+  return testing::psnr(sum / (end - first));
+}
+
+TEST(Temporal, AScaleThatAlwaysChangesCostsLittle) {
+  // Widths and heights from .5 to .67, the mean of both orders .585.
+  const auto changing = [](int frame) { return Extent{80 + frame * 11 % 28, 48 + frame * 7 % 17}; };
+  const auto fixed = [](int) { return Extent{94, 56}; };
+  const auto compare = [&](const char* name, const TemporalScene& scene) {
+    TemporalRun one(scene), other(scene), single(scene, kBilinear);
+    const double varied = mean_psnr(one, 24, 40, changing), constant = mean_psnr(other, 24, 40, fixed);
+    const double bilinear = mean_psnr(single, 24, 40, changing);
+    EXPECT_GE(varied, constant - .3) << name;
+    EXPECT_GE(varied, bilinear + 1) << name << ": the history is lost";
+  };
+  compare("slow pan", moving_scene({.37, .21}));
+  compare("pan", moving_scene({2.3, -1.1}));
+}
+
+TEST(Temporal, AStepOfLightRecoversInTwoFramesWhileMoving) {
+  for (const double factor : {.5, 1.6, 3.}) {
+    for (const Place velocity : {Place(.7, -.4), Place(1.3, .4)}) {
+      TemporalScene scene = moving_scene(velocity);
+      constexpr int kStep = 24;
+      scene.light = [=](Place, int frame) { return frame < kStep ? 1 : factor; };
+      TemporalRun run(scene);
+      scene.light = [=](Place, int) { return factor; };
+      TemporalRun constant(scene);
+      run.until(kStep + 2), constant.until(kStep + 2);
+      const Pixels after = run.next(), expected = constant.next();
+      const Pixels truth = run.truth();
+      const double own = testing::psnr(after, truth), reference = testing::psnr(expected, truth);
+      EXPECT_GE(own, reference - 1) << factor << ", " << velocity;
+    }
+  }
+}
+
+// A highlight and a shadow of 12 pixels move, the shadow also over a plane that moves: the error around them
+// is not above that of one frame alone.
+TEST(Temporal, HighlightAndShadowDoNotSmear) {
+  for (const double speed : {.7, 2., 5.}) {
+    for (const double strength : {4., -.8}) {
+      for (const Place velocity : {Place(), Place(1.3, .4)}) {
+        if (strength > 0 && velocity != Place()) continue;
+        TemporalScene scene = moving_scene(velocity);
+        const auto spot_at = [=](int frame) { return Place(24 + speed * (frame % 24), 48); };
+        scene.light = [=](Place place, int frame) {
+          const double near = std::max(0., 1 - std::norm(place - spot_at(frame)) / 144);
+          return 1 + strength * near * near;
+        };
+        TemporalRun run(scene), single(scene, kBilinear);
+        double own = 0, bilinear = 0;
+        for (int i = 0; i < 24; ++i) {
+          const Pixels one = run.next(), other = single.next();
+          if (i < 8) continue;
+          const Mask around = [=](int x, int y) { return std::abs(Place(x + .5, y + .5) - spot_at(i)) < 24; };
+          const Pixels truth = run.truth();
+          own += testing::squared_error(one, truth, kOutput, around);
+          bilinear += testing::squared_error(other, truth, kOutput, around);
+        }
+        EXPECT_LE(own, bilinear) << speed << ", " << strength << ", " << velocity;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace quincunx
