@@ -12,6 +12,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_temporal.h"
 #include "pass_velocity.h"
 
 namespace quincunx::bench {
@@ -101,6 +102,43 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, const Scene& scene,
         pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
       },
       pass->moves() ? 2 : 1);
+}
+
+// Both kernels. `moves`: pixels that a surface of the case above moves.
+void add_temporal(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+                  const std::string& suffix, TemporalPreset preset, double pixels) {
+  ResolvePlan plan = scene.plan;
+  plan.settings.method = Method::kTemporal;
+  plan.settings.temporal.preset = preset;
+  plan.settings.velocity = PixelFormat::kRG32F;
+  auto pass = std::make_shared<TemporalPass>(stage.impl(), plan);
+  pass->forget(stage.impl().queue);
+  FrameInputs current = scene.current;
+  current.velocity = stage.velocity(current.render, [&](int x, int y) {
+    const bool odd = (x / 97 + y / 83) % 2 != 0;
+    return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
+  });
+  plan.needs.background = true;
+  // A wall of one colour: whatever moves, history agrees with the frame.
+  current.colour = stage.constant(current.render, scene.plan.settings.colour);
+  current.depth = stage.constant(current.render, PixelFormat::kR32F);
+  FrameInputs previous = current;
+  previous.jitter = scene.previous.jitter;
+  const std::uint64_t bytes = reproject_bytes(plan, current.render, scene.previous.render) +
+                              temporal_tiles_bytes(plan, current.render) + temporal_light_bytes(plan) +
+                              temporal_bytes(plan, current.render, scene.previous.render) +
+                              temporal_display_bytes(plan, current.render);
+  Stage::add(
+      cases,
+      {.name = fmt::format("temporal:{}{}{}", name_of(preset), scene.suffix, suffix),
+       .scale = scene.scale,
+       .wanted = wanted,
+       .bytes = bytes},
+      [pass, &stage, current, previous,
+       resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* events) {
+        pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
+      },
+      plan.judges_history() ? 5 : 4);
 }
 
 void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
@@ -193,6 +231,10 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_velocity(cases, stage, scene);
     add_blurs(cases, stage, scene);
     add_reprojected(cases, stage, scene, 9, " still", 0);
+    add_temporal(cases, stage, scene, 10, "", TemporalPreset::kFast, 12);
+    add_temporal(cases, stage, scene, 18, "", TemporalPreset::kBalanced, 12);
+    add_temporal(cases, stage, scene, 35, "", TemporalPreset::kQuality, 12);
+    add_temporal(cases, stage, scene, 0, " still", TemporalPreset::kBalanced, 0);
     scene.plan.settings.quincunx.sampling = Sampling::kPoint;
     add_resolve(cases, stage, scene, 5, " point");
     scene.plan.settings.quincunx.sampling = Sampling::kBilinear;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "stage.h"
 
+#include <cstring>
+
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -69,6 +71,20 @@ ImageView Stage::noise(Extent extent, PixelFormat format, int index) {
   if (!status.ok()) throw std::runtime_error(status.message());
   images_.push_back({extent, format, index, std::move(image).value()});
   return images_.back().image.view();
+}
+
+ImageView Stage::constant(Extent extent, PixelFormat format) {
+  Result<Image> image = device_.allocate(extent, format);
+  if (!image.ok()) throw std::runtime_error(image.status().message());
+  const bool half = format == PixelFormat::kRGBA16F;
+  std::vector<unsigned char> texels(bytes_of(extent, format));
+  const std::uint32_t bits = half ? 0x38003800u : 0x3f000000u;  // 0.5, twice as halves
+  for (std::size_t i = 0; i < texels.size(); i += sizeof(bits))
+    std::memcpy(texels.data() + i, &bits, sizeof(bits));
+  const Status status = device_.upload(image->view(), extent, texels.data());
+  if (!status.ok()) throw std::runtime_error(status.message());
+  constants_.push_back(std::move(image).value());
+  return constants_.back().view();
 }
 
 ImageView Stage::velocity(Extent extent, const std::function<float(int x, int y)>& value) {

@@ -31,6 +31,9 @@ class Stage {
   // down. One image for each extent, format and `index`, shared by all who ask for it.
   ImageView noise(Extent extent, PixelFormat format, int index = 0);
 
+  // The same with one value, 0.5, in every channel.
+  ImageView constant(Extent extent, PixelFormat format);
+
   // A velocity target whose texel (x, y) holds (value(x, y), 0).
   ImageView velocity(Extent extent, const std::function<float(int x, int y)>& value);
 
@@ -58,6 +61,7 @@ class Stage {
   cl::Buffer counter_;
   std::vector<Noise> images_;
   std::vector<Image> velocities_;
+  std::vector<Image> constants_;
 };
 
 }  // namespace quincunx::bench
