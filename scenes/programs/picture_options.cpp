@@ -111,8 +111,8 @@ Jitter jitter_for(Method method) {
   return method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
 }
 
-// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012); more frames bear more, but
-// what moves is known from few.
+// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012); more frames
+// bear more, but what moves is known from few.
 float lod_bias_for(Method method, Jitter jitter) {
   const bool several = method == Method::kQuincunx || method == Method::kTemporal;
   return several && jitter != Jitter::kNone ? -0.5f : 0.0f;
