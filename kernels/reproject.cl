@@ -22,6 +22,7 @@
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // A sample whose velocity or depth is not finite moves by 0, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
+#include "motion_contrast.h"
 #include "texel_blocks.h"
 
 #ifndef REACTIVE
@@ -39,16 +40,14 @@
 #if RESIDUAL < 0 || RESIDUAL > 1
 #error "RESIDUAL must be 0 or 1"
 #endif
-
 #if CONTRAST < 0 || CONTRAST > 1
 #error "CONTRAST must be 0 or 1"
 #endif
 
+#include "reactive_around.h"
+
 #define DEPTH_TOLERANCE 1.02f
 #define SLOPE_TOLERANCE 2.0f
-#define LARGEST_MOVE 65504.0f  // beyond any viewport
-#define EDGE_BEGINS 0.15f  // output pixels
-#define EDGE_ENDS 0.6f
 #define NAN_BITS 0x7fc00000
 
 // The depths of four neighbours of a row, from x on, which may be -1; beyond the edges what lies on the other side of the
@@ -83,36 +82,6 @@ static inline DepthRange previous_depths(const ReprojectParams* params, DEPTH_TE
   return range_of_rows(first, first, last, last);
 }
 
-#if REACTIVE && CONTRAST
-// The largest of 3x3 samples: an accumulated picture holds each sample further than its own pixel.
-static inline float4 reactive_block(const ReprojectParams* params, REACTIVE_TEXELS texels, int x, int y) {
-  float4 largest = (float4)(0.0f);
-  for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
-    for (int column = x - 1; column <= x + 1; ++column)
-      largest = max(largest, load_reactive_block(texels, params->reactive0, column, row, params->width));
-  }
-  return largest;
-}
-
-static inline float4 previous_reactive(const ReprojectParams* params, REACTIVE_TEXELS texels, int4 x, int4 y) {
-  float4 largest = (float4)(0.0f);
-  for (int i = 0; i < 9; ++i) {
-    const int4 column = clamp(x + (i % 3 - 1), (int4)(0), (int4)(params->previous_width - 1));
-    const int4 row = clamp(y + (i / 3 - 1), (int4)(0), (int4)(params->previous_height - 1));
-    largest = max(largest, load_reactive_at(texels, params->reactive1, column, row));
-  }
-  return largest;
-}
-#elif REACTIVE
-static inline float4 reactive_block(const ReprojectParams* params, REACTIVE_TEXELS texels, int x, int y) {
-  return load_reactive_block(texels, params->reactive0, x, y, params->width);
-}
-
-static inline float4 previous_reactive(const ReprojectParams* params, REACTIVE_TEXELS texels, int4 x, int4 y) {
-  return load_reactive_at(texels, params->reactive1, x, y);
-}
-#endif
-
 // Towards minus infinity, of less than 2^24.
 static inline int4 floor_of(float4 value) {
   const int4 whole = convert_int4(value);
@@ -140,36 +109,6 @@ static inline void store_moves(__global float* moves, int index, int count, floa
   if (count > 2) vstore4((float4)(x.s2, y.s2, trust.s2, contrast.s2), 2, first);
   if (count > 3) vstore4((float4)(x.s3, y.s3, trust.s3, contrast.s3), 3, first);
 }
-
-#if CONTRAST
-// The largest squared distance so far, or that of four velocities to their neighbours if it is larger; a NaN does not count.
-static inline float4 larger_distance(const ReprojectParams* params, float4 largest, float8 velocity, float8 neighbour) {
-  const float4 x = (neighbour.even - velocity.even) * params->contrast_x;
-  const float4 y = (neighbour.odd - velocity.odd) * params->contrast_y;
-  return fmax(largest, x * x + y * y);
-}
-
-static inline float4 contrast_of(const ReprojectParams* params, VELOCITY_TEXELS texels, int x, int y, float8 velocity) {
-  float4 largest = (float4)(0.0f);
-  for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
-    const float8 left = load_velocity_block(texels, params->velocity0, x - 1, row, params->width);
-    const float8 same = load_velocity_block(texels, params->velocity0, x, row, params->width);
-    const float8 right = load_velocity_block(texels, params->velocity0, x + 1, row, params->width);
-    largest = larger_distance(params, largest, velocity, left);
-    largest = larger_distance(params, largest, velocity, same);
-    largest = larger_distance(params, largest, velocity, right);
-  }
-  return sqrt(min(largest, LARGEST_MOVE));
-}
-
-// How much of an edge of motion there was at four samples of the previous frame: 0 to 1.
-static inline float4 edge_before(const ReprojectParams* params, __global const float* moves, int4 x, int4 y) {
-  const int4 at = 4 * (params->moves.offset + y * params->moves.pitch + x) + 3;
-  const float4 contrast = (float4)(moves[at.s0], moves[at.s1], moves[at.s2], moves[at.s3]);
-  const float4 t = clamp((contrast - EDGE_BEGINS) * (1.0f / (EDGE_ENDS - EDGE_BEGINS)), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-#endif
 
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
                         DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
@@ -217,7 +156,6 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
 #if CONTRAST
     const float4 kept = 1.0f - edge_before(&params, previous_moves, nearest_x, nearest_y);
     trust *= select((float4)(1.0f), kept, before.most > limit);
-    trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
     const float4 contrast = contrast_of(&params, velocity0, x, y, velocity);
 #else
     const float4 contrast = (float4)(0.0f);

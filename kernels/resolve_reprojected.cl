@@ -107,7 +107,8 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
   samples.before0 = sanitise8(samples.before0);
   samples.before1 = sanitise8(samples.before1);
   const PixelWeights own = PIXEL_WEIGHTS(weights, s0);
-  return any_at_least_two(bits_of(samples)) ? blend_bright(samples, own, BRIGHT) : blend_samples(samples, own);
+  const int8 bits = bits_of(samples);
+  return any_at_least_two(bits.lo | bits.hi) ? blend_bright(samples, own, BRIGHT) : blend_samples(samples, own);
 }
 
 // Pixel i of a block the fast way: into pixel_<i>.
@@ -179,7 +180,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
       RESOLVE(s5);
       RESOLVE(s6);
       RESOLVE(s7);
-      if (!any_at_least_two(bits)) {
+      if (!any_at_least_two(bits.lo | bits.hi)) {
         const FourPixels left = {pixel_s0, pixel_s1, pixel_s2, pixel_s3};
         const FourPixels right = {pixel_s4, pixel_s5, pixel_s6, pixel_s7};
         store_four(output, params.output, x, y, end, left);

@@ -31,6 +31,7 @@
 #include "distance_weights.h"
 #include "history_sampling.h"
 #include "temporal_evidence.h"
+#include "temporal_view.h"
 
 #define REACH 1.05f        // output pixels
 #define LEAST_REACH 0.85f
@@ -63,10 +64,9 @@ static inline void correct_history(COLOUR_TEXELS colour, const SourceFrame* fram
   }
 }
 
-// What a sample counts: the less the brighter it is, so that one does not outshine the others, and nothing where it is not
-// valid; that one becomes black. Without bright and invalid samples it is 1.
-static inline float worth_of(float4* sample) {
-  if (is_valid(*sample)) return 1.0f / max(1.0f, 0.5f * largest_colour(*sample));
+// Of a sample that is not valid, which becomes black, nothing.
+static inline float worth_or_none(float4* sample) {
+  if (is_valid(*sample)) return worth_of(*sample);
   *sample = (float4)(0.0f);
   return 0.0f;
 }
@@ -85,39 +85,10 @@ static inline float worth_of(float4* sample) {
   float4 s##n = load_colour(colour, frame0.colour, nearest_x.i, nearest_y); \
   bits |= as_int4(s##n)
 
-#define WEIGH(i, n)                                                \
+// Without bright and invalid samples each is worth 1.
+#define WEIGH(i, n)                                         \
   if (x + n < end && any_non_finite4(s##n)) met_count += 1; \
-  weight.i *= worth_of(&s##n)
-
-// What is shown of eight pixels in place of the picture.
-typedef struct View {
-  float8 red, green, blue;
-} View;
-
-static inline View view_of(int view, TemporalTile tile, const Motion* motion, float8 confidence, float8 changed, float8 fraction_x,
-                           float8 fraction_y) {
-  const float8 part = confidence * (1.0f / MOST_CONFIDENCE);
-  View shown = {part, part, part};
-  if (view == kViewRejection) {
-    shown.red = 1.0f - motion->trust;
-    shown.green = edge_strength(motion->contrast);
-    shown.blue = changed;
-  } else if (view == kViewOffset) {
-    shown.red = tile.rigid ? (float8)(tile.offset_x + 0.5f) : fraction_x;
-    shown.green = tile.rigid ? (float8)(tile.offset_y + 0.5f) : fraction_y;
-    shown.blue = (float8)(tile.rigid ? 1.0f : 0.0f);
-  }
-  return shown;
-}
-
-static inline void store_view(__global float* output, const TemporalParams* params, int x, int y, float4 value) {
-  const int index = texel_index(params->output, x, y);
-  if (params->half_output) {
-    vstore_half4(value, index, (__global half*)output);
-  } else {
-    vstore4(value, index, output);
-  }
-}
+  weight.i *= worth_or_none(&s##n)
 
 #define SHOW(i, n) \
   if (x + n < end) store_view(output, &params, x + n, y, (float4)(shown.red.i, shown.green.i, shown.blue.i, 1.0f))
@@ -197,7 +168,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     float8 weight = near * near;
     int4 bits = (int4)(0);
     EIGHT(LOAD);
-    if (any_bright(bits)) {
+    if (any_at_least_two(bits)) {
       EIGHT(WEIGH);
     }
     const float8 total = evidence.confidence + weight;

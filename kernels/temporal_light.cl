@@ -13,17 +13,17 @@
 // Reference: tests/reference/temporal_light.cpp
 #include "params.h"
 
-#define COHERENT 0.75f
+#define COHERENT 0.75f      // how far tiles must agree
 #define RELATIVE 0.05f      // the least change of light
 #define PERSISTENT 0.62f    // of two frames: .64
-#define MEMORY 0.6f
+#define MEMORY 0.6f         // of persistence
 #define MOST_GAIN 4.0f
-#define SURE 3.0f
+#define SURE 3.0f           // times what chance gives
 #define WHOLE_COHERENT 0.8f
-#define OWN 0.3f
+#define OWN 0.3f            // part by which a tile must differ from the whole to go its own way
 #define WORSE 1.6f          // than the neighbours
 #define ERROR_FLOOR 0.02f
-#define INCOHERENT 0.5f
+#define INCOHERENT 0.5f     // part of the error that a change of light may be
 #define CUT 0.95f           // of the neighbours' error, over the whole picture; without a cut up to .9
 #define CUT_RANGE 0.25f
 #define CUT_FLOOR 0.03f     // of the light

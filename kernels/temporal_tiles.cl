@@ -50,10 +50,6 @@ static inline int tile_index(const TemporalTileParams* params, float x, float y)
 }
 
 #if JUDGE
-static inline float4 sample_at(COLOUR_TEXELS colour, const TemporalTileParams* params, int x, int y) {
-  return load_colour(colour, params->colour, clamp(x, 0, params->width - 1), clamp(y, 0, params->height - 1));
-}
-
 static inline float luma(float4 colour) {
   return max(0.25f * (colour.x + colour.z) + 0.5f * colour.y, 0.0f);
 }
@@ -81,10 +77,10 @@ static inline void judge_sample(TemporalTile* tile, COLOUR_TEXELS colour, __glob
   }
   if (!(at_x >= 0.0f && at_y >= 0.0f && at_x < (float)params->output_width && at_y < (float)params->output_height)) return;
   const float4 before = load_history(history, (int)at_y * params->output_width + (int)at_x);
-  const float4 sample = sample_at(colour, params, x, y);
+  const float4 sample = sample_at(colour, &params->frame, x, y);
   if (before.w < KNOWN || !is_valid(sample)) return;
-  const float4 around = 0.25f * (sample_at(colour, params, x - 1, y) + sample_at(colour, params, x + 1, y) +
-                                 sample_at(colour, params, x, y - 1) + sample_at(colour, params, x, y + 1));
+  const float4 around = 0.25f * (sample_at(colour, &params->frame, x - 1, y) + sample_at(colour, &params->frame, x + 1, y) +
+                                 sample_at(colour, &params->frame, x, y - 1) + sample_at(colour, &params->frame, x, y + 1));
   const float own = luma(sample), known = luma(before);
   const float scale = 1.0f / (1.0f + own + known);
   tile->brightening += (own - known) * scale;
@@ -139,7 +135,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   TemporalTile tile = {.gain = 1.0f};
 #if MOTION || JUDGE
   const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
-  const int2 limit = (int2)(params.width - 1, params.height - 1);
+  const int2 limit = (int2)(params.frame.width - 1, params.frame.height - 1);
   const float2 spacing = (float2)(params.spacing_x, params.spacing_y), start = (float2)(params.start_x, params.start_y);
   const int2 first = clamp(convert_int2(ceil((corner - start) / spacing)), (int2)(0), limit);
   const int2 last = clamp(convert_int2(ceil((corner + (float)kTemporalTile - start) / spacing)) - 1, first, limit);
@@ -156,7 +152,9 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
     for (int x = first.x + (first.x + y) % 2; x <= last.x; x += 2)  // every second one will do
       judge_sample(&tile, colour, moves, history, previous, &params, x, y);
   }
-  const float units = (float)kLightUnits / max(tile.count, 1.0f);
+  // So that no total leaves an int.
+  const float most = min((float)kLightUnits, 0x1p30f / ((float)params.tiles_x * (float)params.tiles_y));
+  const float units = most / max(tile.count, 1.0f);
   atomic_add(&total->brightening, convert_int(tile.brightening * units));
   atomic_add(&total->change, convert_int(fabs(tile.brightening) * units));
   atomic_add(&total->light, convert_int(tile.light * units));

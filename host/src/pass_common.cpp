@@ -61,6 +61,16 @@ ImageView Scratch::view(Storage storage, PixelFormat format) {
   return view;
 }
 
+FrameInputs Scratch::frame(const ResolveSettings& settings) {
+  FrameInputs frame;
+  frame.colour = view(settings.storage, settings.colour);
+  frame.velocity = view(settings.storage, settings.velocity);
+  frame.depth = view(settings.storage, PixelFormat::kR32F);
+  frame.reactive = view(settings.storage, PixelFormat::kR8);
+  frame.render = {1, 1};
+  return frame;
+}
+
 Counter Scratch::counter() {
   memory_.push_back(cl::Buffer(device_.context, CL_MEM_READ_WRITE, sizeof(cl_uint)));
   return {memory_.back()(), 0};

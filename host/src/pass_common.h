@@ -12,6 +12,7 @@
 #include "params.h"
 #include "quincunx/frame.h"
 #include "quincunx/image.h"
+#include "quincunx/resolve_plan.h"
 
 namespace quincunx {
 
@@ -50,6 +51,7 @@ class Scratch {
 
   // Released with the Scratch, after the caller has finished the queue.
   ImageView view(Storage storage, PixelFormat format);
+  FrameInputs frame(const ResolveSettings& settings);  // of one pixel, with all its images
   Counter counter();
 
  private:

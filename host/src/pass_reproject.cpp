@@ -32,12 +32,7 @@ ReprojectPass::ReprojectPass(const Device::Impl& device, const ResolvePlan& plan
 void ReprojectPass::warm_up(const cl::CommandQueue& queue) {
   Scratch scratch(device_);
   PositionTables tables(device_, {1, 1});
-  FrameInputs frame;
-  frame.colour = scratch.view(settings_.storage, settings_.colour);
-  frame.velocity = scratch.view(settings_.storage, settings_.velocity);
-  frame.depth = scratch.view(settings_.storage, PixelFormat::kR32F);
-  frame.reactive = scratch.view(settings_.storage, PixelFormat::kR8);
-  frame.render = {1, 1};
+  const FrameInputs frame = scratch.frame(settings_);
   launch(queue, tables, frame, frame, scratch.view(Storage::kBuffer, settings_.resolved), scratch.counter(),
          nullptr);
   queue.finish();

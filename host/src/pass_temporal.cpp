@@ -72,12 +72,7 @@ ImageView TemporalPass::history() const {
 void TemporalPass::warm_up(const cl::CommandQueue& queue) {
   Scratch scratch(device_);
   PositionTables tables(device_, {1, 1});
-  FrameInputs frame;
-  frame.colour = scratch.view(settings_.storage, settings_.colour);
-  frame.velocity = scratch.view(settings_.storage, settings_.velocity);
-  frame.depth = scratch.view(settings_.storage, PixelFormat::kR32F);
-  frame.reactive = scratch.view(settings_.storage, PixelFormat::kR8);
-  frame.render = {1, 1};
+  const FrameInputs frame = scratch.frame(settings_);
   forget(queue);
   const ImageView output = scratch.view(Storage::kBuffer, settings_.resolved);
   launch(queue, tables, {frame, frame, output, scratch.counter()}, nullptr);
@@ -115,20 +110,19 @@ void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& fram
   const Extent tiles = temporal_tiles(output);
   const Ratio spacing = ratio_of(output, render);
   const Ratio move = ratio_of(output, frame.previous.render);
-  const TemporalTileParams params{.width = render.width,
-                                  .height = render.height,
-                                  .output_width = output.width,
-                                  .output_height = output.height,
-                                  .tiles_x = tiles.width,
-                                  .tiles_y = tiles.height,
-                                  .colour = layout_of(frame.current.colour),
-                                  .moves = moves_layout(),
-                                  .spacing_x = spacing.x,
-                                  .spacing_y = spacing.y,
-                                  .start_x = (.5f + frame.current.jitter.x) * spacing.x,
-                                  .start_y = (.5f + frame.current.jitter.y) * spacing.y,
-                                  .move_x = move.x,
-                                  .move_y = move.y};
+  const TemporalTileParams params{
+      .frame = {render.width, render.height, layout_of(frame.current.colour), {}, {}},
+      .output_width = output.width,
+      .output_height = output.height,
+      .tiles_x = tiles.width,
+      .tiles_y = tiles.height,
+      .moves = moves_layout(),
+      .spacing_x = spacing.x,
+      .spacing_y = spacing.y,
+      .start_x = (.5f + frame.current.jitter.x) * spacing.x,
+      .start_y = (.5f + frame.current.jitter.y) * spacing.y,
+      .move_x = move.x,
+      .move_y = move.y};
   if (light_kernel_) queue.enqueueFillBuffer(total_, cl_uint{0}, 0, sizeof(TotalLight));
   tiles_kernel_.setArg(0, params);
   set_memory(tiles_kernel_, 1, frame.current.colour.memory);

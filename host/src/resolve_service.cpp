@@ -57,7 +57,6 @@ struct ResolveService::Impl {
   cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
   FrameInputs previous;
   bool has_previous = false;
-  bool has_history = false;  // of TemporalPass
   FrameRing ring;
 };
 
@@ -172,8 +171,8 @@ int ResolveService::Impl::resolve_both(const FrameInputs& inputs, const ImageVie
 int ResolveService::Impl::accumulate(const FrameInputs& inputs, const ImageView& target, Counter count,
                                      FrameRing::Slot& slot, cl::Event* events) {
   const cl::CommandQueue& queue = device.impl()->queue;
-  const bool known = uses_previous(inputs) && has_history;
-  has_history = true;
+  // A dense frame has left no history.
+  const bool known = uses_previous(inputs) && !plan.is_dense(previous.render);
   const FrameInputs& before = known ? previous : inputs;
   if (!known) temporal->forget(queue);
   temporal->enqueue(queue, inputs, before, target, count, events);
@@ -210,7 +209,6 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     event += resolve_both(inputs, target, count, slot, event);
     slot.report.used_previous = true;
   } else {
-    has_history = false;
     scale->enqueue(queue, tables, inputs, target, count, event++);
     add_pass(slot, scale->kernel_name(inputs.render), scale_bytes(settings, inputs.render));
   }

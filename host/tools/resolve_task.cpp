@@ -11,10 +11,13 @@
 namespace quincunx::tools {
 namespace {
 
+// An accumulated picture depends on all frames before it; still ones grow better for some 100, moving ones
+// for ten.
+constexpr int kAccumulatedFrames = 48;
+
 // Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
-// What was accumulated before the last 48 is less than can be seen.
 int history_of(const ResolvePlan& plan) {
-  if (plan.accumulates()) return 48;
+  if (plan.accumulates()) return kAccumulatedFrames;
   return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
 }
 

@@ -101,8 +101,8 @@ static inline int8 bits_of(FourPairs samples) {
 
 // Whether one of many floats that were or-ed is 2 or more in magnitude, infinite or NaN: all of those, and no other, have the
 // highest bit of the exponent.
-static inline bool any_at_least_two(int8 bits) {
-  const long2 halves = as_long2((bits.lo | bits.hi) & 0x40000000);
+static inline bool any_at_least_two(int4 bits) {
+  const long2 halves = as_long2(bits & 0x40000000);
   return (halves.x | halves.y) != 0;
 }
 

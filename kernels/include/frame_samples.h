@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The samples of this frame around one output pixel, for resolve_temporal: 3x3 of them, one after another. Samples that are
-// not finite, or as large as a half can be, take no part.
+// The samples of this frame around a place, one after another. Those that are not finite, or as large as a half can be, take no
+// part.
 #pragma once
 
 #include "texel.h"
 
 #define INVALID_BITS 0x477fe000  // of 65504, the largest half
 #define DARKEST_REST 0x1p-16f
-#define BOX_SIZE 0.75f                      // standard deviations
+#define BOX_SIZE 0.75f       // standard deviations
 #define BOX_MARGIN 0.02f
 #define SMOOTH_FALLOFF 2.0f  // 1 / (2 sigma^2), sigma half a sample
 
@@ -18,6 +18,16 @@ static inline bool is_valid(float4 sample) {
 
 static inline float largest_colour(float4 colour) {
   return max(max(colour.x, colour.y), max(colour.z, 0.0f));
+}
+
+// Beyond the viewport's edges the outermost sample once more.
+static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
+  return load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
+}
+
+// What a valid sample counts: the less the brighter it is, so that one does not outshine the others.
+static inline float worth_of(float4 sample) {
+  return 1.0f / max(1.0f, 0.5f * largest_colour(sample));
 }
 
 // c / (1 + max c): differences as the eye has them rather than as light.
@@ -41,8 +51,7 @@ static inline ToneBox tone_box(COLOUR_TEXELS texels, const SourceFrame* frame, i
   float count = 0.0f;
   for (int i = 0; i < 5; ++i) {
     const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
-    const float4 sample = load_colour(texels, frame->colour, clamp(x + column, 0, frame->width - 1),
-                                      clamp(y + row, 0, frame->height - 1));
+    const float4 sample = sample_at(texels, frame, x + column, y + row);
     if (!is_valid(sample)) continue;
     const float4 tone = to_tone(sample);
     if (count == 0.0f) first = tone;
@@ -88,11 +97,10 @@ static inline float4 smooth_samples(COLOUR_TEXELS texels, const SourceFrame* fra
     const float away_y = (float)row - offset_y;
     for (int column = -1; column <= 1; ++column) {
       const float away_x = (float)column - offset_x;
-      const float4 sample = load_colour(texels, frame->colour, clamp(x + column, 0, frame->width - 1),
-                                        clamp(y + row, 0, frame->height - 1));
+      const float4 sample = sample_at(texels, frame, x + column, y + row);
       const float near = bell((away_x * away_x + away_y * away_y) * SMOOTH_FALLOFF);
       if (is_valid(sample)) {
-        const float weight = near / max(1.0f, 0.5f * largest_colour(sample));
+        const float weight = near * worth_of(sample);
         sum += sample * weight;
         weights += weight;
       } else {

@@ -32,11 +32,7 @@ static inline float4 load_history(HISTORY_TEXELS texels, int index) {
 // The texels index to index + 3.
 static inline float16 load_history4(HISTORY_TEXELS texels, int index) {
 #if HISTORY_FORMAT == HALF
-  // Through private memory, as in load_colour_pair.
-  __global const uint* words = (__global const uint*)texels + 2 * index;
-  const uint4 lower = vload4(0, words);
-  const uint4 upper = vload4(1, words);
-  return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
+  return load_half_texels4(texels, index);
 #else
   return vload16(0, texels + 4 * index);
 #endif

@@ -217,7 +217,7 @@ typedef struct TemporalTile {
 } TemporalTile;
 QUINCUNX_CHECK_SIZE(TemporalTile, 60);
 
-// Of all tiles, in units of 1 / kLightUnits of a tile's mean: whether the light of the whole picture has changed.
+// Of all tiles, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are very many: whether the light of the whole picture has changed.
 typedef struct TotalLight {
   int brightening, change, light;  // sum of signed brightenings, of their magnitudes, and of the light
   int history_error, neighbour_error;
@@ -226,20 +226,18 @@ QUINCUNX_CHECK_SIZE(TotalLight, 20);
 enum { kLightUnits = 2048 };
 
 typedef struct TemporalTileParams {
-  int width;  // the viewport
-  int height;
+  SourceFrame frame;
   int output_width;
   int output_height;
   int tiles_x;
   int tiles_y;
-  TexelLayout colour;
   TexelLayout moves;
   // The centre of sample (i, j) in output pixels: (i * spacing_x + start_x, j * spacing_y + start_y).
   float spacing_x, spacing_y;
   float start_x, start_y;
   float move_x, move_y;  // as in TemporalParams
 } TemporalTileParams;
-QUINCUNX_CHECK_SIZE(TemporalTileParams, 24 + 16 + 24);
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 24);
 
 typedef struct TemporalDisplayParams {
   int output_width;

@@ -4,7 +4,7 @@
 
 #include "distance_weights.h"
 #include "frame_samples.h"
-#include "texel.h"
+#include "motion_contrast.h"
 
 #ifndef MOTION
 #define MOTION 1
@@ -28,14 +28,14 @@
 #error "TRUST must be NEAREST or BILINEAR"
 #endif
 
-#define HISTORY_SHARPNESS -1.0f      // a of the cubic
-#define MOST_CONFIDENCE 32.0f        // about 140 frames at scale .5
+#define HISTORY_SHARPNESS -1.0f     // a of the cubic
+#define MOST_CONFIDENCE 32.0f       // about 140 frames at scale .5
 #define RESAMPLED_CONFIDENCE 8.0f
 #define LEAST_CONFIDENCE 0.15f      // where a Gaussian of this frame begins
 #define LEAST_WEIGHT 1e-30f
 #define RESAMPLING_COST 0.2f
 #define EDGE_COST 2.0f
-#define SAME_OFFSET 0.02f            // output pixels
+#define SAME_OFFSET 0.02f           // output pixels
 #define FARTHEST_MOVE 65536.0f
 
 // In output pixels, to where the samples' surfaces were.
@@ -52,12 +52,6 @@ static inline bool any_lane(int8 lanes) {
   const long4 longs = as_long4(lanes);
   const long2 pairs = longs.lo | longs.hi;
   return (pairs.x | pairs.y) != 0;
-}
-
-// Whether one of many floats that were or-ed is 2 or more in magnitude, infinite or NaN; see any_at_least_two.
-static inline bool any_bright(int4 bits) {
-  const long2 halves = as_long2(bits & 0x40000000);
-  return (halves.x | halves.y) != 0;
 }
 
 #if MOTION
@@ -119,7 +113,7 @@ static inline float8 smooth_step(float8 x, float low, float high) {
 
 // How much an edge of motion makes history doubtful.
 static inline float8 edge_strength(float8 contrast) {
-  return smooth_step(contrast, 0.15f, 0.6f);
+  return smooth_step(contrast, EDGE_BEGINS, EDGE_ENDS);
 }
 
 // What may be kept with a trust in [0, 1].

@@ -294,15 +294,19 @@ static inline void will_read_resolved16(RESOLVED_TEXELS texels, TexelLayout layo
 #endif
 }
 
-// The texels (x, y) to (x + 3, y).
-static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
-  const int index = texel_index(layout, x, y);
-#if SOURCE_FORMAT == HALF
-  // Through private memory, as in load_colour_pair.
+// The four-channel texels index to index + 3, through private memory, as in load_colour_pair.
+static inline float16 load_half_texels4(__global const half* texels, int index) {
   __global const uint* words = (__global const uint*)texels + 2 * index;
   const uint4 lower = vload4(0, words);
   const uint4 upper = vload4(1, words);
   return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
+}
+
+// The texels (x, y) to (x + 3, y).
+static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+  const int index = texel_index(layout, x, y);
+#if SOURCE_FORMAT == HALF
+  return load_half_texels4(texels, index);
 #else
   return vload16(0, texels + 4 * index);
 #endif

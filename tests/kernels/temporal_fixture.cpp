@@ -244,13 +244,11 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent count = tile_count(r);
   TemporalTileParams params{};
-  params.width = r.frame.width;
-  params.height = r.frame.height;
+  params.frame = source_of(in);
   params.output_width = r.output_width;
   params.output_height = r.output_height;
   params.tiles_x = count.width;
   params.tiles_y = count.height;
-  params.colour = layout_of(in.frame.colour);
   params.moves = variant_.moves ? layout_of(in.moves) : TexelLayout{};
   params.spacing_x = to_float(r.spacing(0));
   params.spacing_y = to_float(r.spacing(1));

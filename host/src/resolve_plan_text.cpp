@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// A plan in words: names and explain().
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+namespace {
+
+std::string size_text(std::uint64_t bytes) {
+  return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+}  // namespace
+
+const char* name_of(Method method) {
+  switch (method) {
+    case Method::kPoint:
+      return "point";
+    case Method::kBilinear:
+      return "bilinear";
+    case Method::kBSpline:
+      return "b-spline";
+    case Method::kCatmullRom:
+      return "catmull-rom";
+    case Method::kLanczos2:
+      return "lanczos2";
+    case Method::kNoise:
+      return "noise";
+    case Method::kNoiseOffset:
+      return "noise-offset";
+    case Method::kQuincunx:
+      return "quincunx";
+    case Method::kTemporal:
+      return "temporal";
+  }
+  return "unknown";
+}
+
+const char* name_of(TwoFrameForm form) {
+  switch (form) {
+    case TwoFrameForm::kMean:
+      return "mean";
+    case TwoFrameForm::kVelocity:
+      return "velocity";
+    case TwoFrameForm::kReprojected:
+      return "reprojected";
+  }
+  return "unknown";
+}
+
+const char* name_of(TemporalPreset preset) {
+  switch (preset) {
+    case TemporalPreset::kFast:
+      return "fast";
+    case TemporalPreset::kBalanced:
+      return "balanced";
+    case TemporalPreset::kQuality:
+      return "quality";
+  }
+  return "unknown";
+}
+
+const char* name_of(TemporalView view) {
+  switch (view) {
+    case TemporalView::kPicture:
+      return "picture";
+    case TemporalView::kConfidence:
+      return "confidence";
+    case TemporalView::kRejection:
+      return "rejection";
+    case TemporalView::kOffset:
+      return "offset";
+  }
+  return "unknown";
+}
+
+const char* name_of(Sampling sampling) {
+  return sampling == Sampling::kPoint ? "point" : "bilinear";
+}
+
+const char* name_of(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return "clamp";
+    case ToneMap::kReinhard:
+      return "reinhard";
+    case ToneMap::kAces:
+      return "aces";
+  }
+  return "unknown";
+}
+
+const char* name_of(VelocitySource source) {
+  switch (source) {
+    case VelocitySource::kNone:
+      return "none";
+    case VelocitySource::kTarget:
+      return "target";
+    case VelocitySource::kCamera:
+      return "depth and camera";
+  }
+  return "unknown";
+}
+
+const char* name_of(Scaling scaling) {
+  switch (scaling) {
+    case Scaling::kScales:
+      return "scales";
+    case Scaling::kHistory:
+      return "last frame's";
+    case Scaling::kFixed:
+      return "fixed";
+  }
+  return "unknown";
+}
+
+std::string ResolvePlan::explain() const {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto yes = [](bool value) { return value ? "yes" : "no"; };
+  fmt::format_to(
+      out, "Scene needs    moving objects {}, camera motion {}, transparents {}, covering background {}\n",
+      yes(needs.moving_objects), yes(needs.camera_motion), yes(needs.transparents), yes(needs.background));
+  std::string form;
+  if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
+  if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
+  fmt::format_to(out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
+                 name_of(settings.method), form, settings.output.width, settings.output.height,
+                 settings.target.width, settings.target.height,
+                 settings.storage == Storage::kImage ? "image" : "buffer", name_of(settings.tone_map),
+                 yes(settings.dither));
+  fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
+                 name_of(velocity));
+  for (const PlannedPass& pass : passes) {
+    fmt::format_to(out, "  {:<19} {:>11}  {}\n  {:<19} {:>11}  {}\n", pass.kernel, size_text(pass.bytes),
+                   pass.reason, "", "", pass.options);
+  }
+  text += "\nBuffers\n";
+  for (const PlannedBuffer& buffer : buffers) {
+    fmt::format_to(out, "  {:<31} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
+                   buffer.extent.height, name_of(buffer.format), name_of(buffer.scaling),
+                   size_text(buffer.bytes), buffer.owned ? "the service's" : "the caller's");
+  }
+  text += "\nLeft out\n";
+  for (const LeftOut& left : left_out)
+    fmt::format_to(out, "  {:<31} {}\n", left.what, left.why);
+  return text;
+}
+
+}  // namespace quincunx
