@@ -18,5 +18,10 @@ Scene make_wheel(std::uint64_t seed);
 Scene make_occluders(std::uint64_t seed);
 Scene make_particles(std::uint64_t seed);
 Scene make_flight(std::uint64_t seed);
+Scene make_still(std::uint64_t seed);
+Scene make_zoom(std::uint64_t seed);
+Scene make_cut(std::uint64_t seed);
+Scene make_sparkles(std::uint64_t seed);
+Scene make_shadows(std::uint64_t seed);
 
 }  // namespace quincunx::scenes

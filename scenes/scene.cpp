@@ -2,8 +2,20 @@
 #include "scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace quincunx::scenes {
+namespace {
+
+// Cuts up to a time, as if the scene had always repeated.
+std::int64_t cuts_until(const Scene& scene, double seconds) {
+  const double round = std::floor(seconds / scene.duration);
+  const double within = seconds - round * scene.duration;
+  const auto passed = std::upper_bound(scene.cuts.begin(), scene.cuts.end(), within) - scene.cuts.begin();
+  return static_cast<std::int64_t>(round) * static_cast<std::int64_t>(scene.cuts.size()) + passed;
+}
+
+}  // namespace
 
 SceneNeeds needs_of(const Scene& scene) {
   SceneNeeds needs;
@@ -19,6 +31,17 @@ SceneNeeds needs_of(const Scene& scene) {
                        std::any_of(scene.instances.begin(), scene.instances.end(), is_blended);
   needs.background = true;  // the renderer fills what no surface covers, with a sky or a plain colour
   return needs;
+}
+
+bool is_cut(const Scene& scene, double previous_seconds, double seconds) {
+  return cuts_until(scene, previous_seconds) != cuts_until(scene, seconds);
+}
+
+std::optional<double> next_cut(const Scene& scene, double seconds) {
+  if (scene.cuts.empty()) return std::nullopt;
+  const double round = std::floor(seconds / scene.duration) * scene.duration;
+  const auto next = std::lower_bound(scene.cuts.begin(), scene.cuts.end(), seconds - round);
+  return next != scene.cuts.end() ? round + *next : round + scene.duration + scene.cuts.front();
 }
 
 Bounds bounds_of(const Scene& scene) {

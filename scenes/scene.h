@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -131,7 +132,8 @@ struct Scene {
   Sky sky;
   CameraPath camera;
   bool camera_moves = false;
-  double duration = 4;  // seconds after which it is meant to repeat or end
+  std::vector<double> cuts;  // seconds in [0, duration), ascending: where another shot begins
+  double duration = 4;       // seconds after which it is meant to repeat or end
   float exposure = 1;
 
   static constexpr int kMaxPointLights = 16;
@@ -139,6 +141,13 @@ struct Scene {
 
 // What the resolve plan may leave out follows from this.
 SceneNeeds needs_of(const Scene& scene);
+
+// Whether the frame at `seconds` belongs to another shot than the one at `previous_seconds`: nothing of that
+// one may be used then.
+bool is_cut(const Scene& scene, double previous_seconds, double seconds);
+
+// The first cut at or after `seconds`; nothing where the scene has none.
+std::optional<double> next_cut(const Scene& scene, double seconds);
 
 // World bounds of all instances at time 0.
 Bounds bounds_of(const Scene& scene);

@@ -41,6 +41,16 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
      "transparents without velocity: reactive values must keep their trails away", make_particles},
     {"flight", "The courtyard, flown through; smoke hangs before the camera for a third of the way",
      "a load that changes: what a resolution controller makes of it", make_flight},
+    {"still", "The courtyard, stopped at one moment",
+     "nothing moves at all: what accumulates must come to rest, and near the truth", make_still},
+    {"zoom", "A walk to a lettered wall between columns, and back",
+     "everything grows or shrinks: history of another size than the frame", make_zoom},
+    {"cut", "Two shots of the brick wall behind columns, four seconds each",
+     "the camera jumps: the first frames of a shot have no history", make_cut},
+    {"sparkles", "Turning mirror balls and swinging strings of tiny lamps in the evening",
+     "moving points of light, smaller than a pixel and hundreds of times brighter than white", make_sparkles},
+    {"shadows", "Shadows of turning blades over a lettered wall; polished vases that turn",
+     "light that moves otherwise than what it falls on: no velocity tells where it goes", make_shadows},
 });
 
 bool is_gltf_path(std::string_view name) {

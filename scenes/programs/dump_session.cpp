@@ -177,7 +177,7 @@ Status DumpSession::collect_targets() {
                            .camera = source_->scene().camera(current_->view.seconds),
                            .output = options_.output,
                            .index = options_.frame,
-                           .reset = options_.frame == 0,
+                           .reset = current_->reset,
                            .fps = options_.fps};
   const Extent render = current_->view.render;
   planes_[Stage::kColour] = colour_planes(render, colour_of(current_->targets), tools::ChannelType::kHalf);

@@ -97,7 +97,9 @@ Status FrameSource::begin(std::int64_t index, bool keep_targets) {
 }
 
 Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_targets) {
-  DrawnFrame frame = {.index = index, .view = view};
+  const bool cut = is_cut(scene(), view.previous_seconds, view.seconds);
+  DrawnFrame frame = {.index = index, .view = view, .reset = cut || index == 0};
+  if (cut) frame.view.previous_seconds = view.seconds;
   auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()));
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
@@ -125,6 +127,7 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.camera = stage_->renderer->camera_motion(frame.view);
   inputs.exposure = settings_.exposure > 0 ? settings_.exposure : scene().exposure;
   inputs.frame_index = static_cast<std::uint64_t>(frame.index);
+  inputs.reset = frame.reset;
   return inputs;
 }
 

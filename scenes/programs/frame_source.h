@@ -40,7 +40,8 @@ enum class HandOver : std::uint8_t {
 // A frame that was drawn and is not released yet.
 struct DrawnFrame {
   std::int64_t index = 0;
-  FrameView view;
+  FrameView view;      // at a cut of the scene with its own time as the previous one: nothing has moved
+  bool reset = false;  // the first frame, or the first of a shot
   gl::TargetPixels targets = {};  // only where draw() was asked for them
 };
 
@@ -82,7 +83,7 @@ class FrameSource {
   Status submit();
 
   // The oldest frame that is not released: waits until OpenCL can read it. Its memory stays as it is until
-  // the frame after the next is drawn.
+  // the frame after the next is drawn. `reset` is set where DrawnFrame::reset is.
   Result<FrameInputs> acquire();
 
   DrawnFrame& oldest() { return drawn_.front(); }

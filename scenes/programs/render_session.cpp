@@ -214,7 +214,7 @@ Status RenderSession::write_exr_frame(std::int64_t index) {
                            .camera = source_->scene().camera(view.seconds),
                            .output = options_.output,
                            .index = index,
-                           .reset = index == 0,
+                           .reset = frame.reset,
                            .fps = options_.fps};
   const std::filesystem::path folder = std::filesystem::path(options_.out).parent_path();
   const std::string targets_path = (folder / fmt::format("frame_{:04}_targets.exr", index)).string();

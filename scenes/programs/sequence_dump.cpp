@@ -96,7 +96,7 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
                        .camera = frames.scene().camera(frame.view.seconds),
                        .output = options.output,
                        .index = index,
-                       .reset = index == 0,
+                       .reset = frame.reset,
                        .fps = options.fps,
                        .linear_depth = dump.linear_depth};
     const Status status = writer.push(

@@ -40,7 +40,7 @@ std::vector<Attribute> attributes_of(const TargetFile& file) {
       {"quincunx:reset", file.reset ? 1 : 0},
       {"quincunx:near", file.camera.near_plane},
       {"quincunx:depthKind", std::string(file.linear_depth ? "linear" : "device-reversed")},
-      {"quincunx:dt", static_cast<float>(file.view.seconds - file.view.previous_seconds)},
+      {"quincunx:dt", static_cast<float>(1 / file.fps)},
       {"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))},
       {"worldToNDC", to_attribute(matrices.clip_from_world())},
       {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}},

@@ -185,7 +185,7 @@ Status LivePicture::resolve(bool reset) {
 Status LivePicture::dispatch(bool reset) {
   auto inputs = source_->acquire();
   if (!inputs.ok()) return inputs.status();
-  inputs->reset = reset;
+  inputs->reset |= reset;
   poll_timer();  // now, because the fall-back counts until it is asked
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
@@ -251,7 +251,7 @@ Status LivePicture::write(const std::string& base) const {
                            .camera = source_->scene().camera(kept_->view.seconds),
                            .output = size,
                            .index = kept_->index,
-                           .reset = kept_->index == 0,
+                           .reset = kept_->reset,
                            .fps = options_.fps};
   if (Status status = write_targets(base + "_targets.exr", file); !status.ok()) return status;
   std::vector<float> rgba(static_cast<std::size_t>(size.area()) * 4);

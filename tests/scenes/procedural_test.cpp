@@ -214,7 +214,12 @@ constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>({{"courtyard"
                                                                     {"wheel", true, false, false},
                                                                     {"occluders", true, false, false},
                                                                     {"particles", true, true, true},
-                                                                    {"flight", true, true, true}});
+                                                                    {"flight", true, true, true},
+                                                                    {"still", false, false, true},
+                                                                    {"zoom", false, true, false},
+                                                                    {"cut", false, true, false},
+                                                                    {"sparkles", true, true, false},
+                                                                    {"shadows", true, false, false}});
 
 // What moves within a frame, by looking, must be what the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
@@ -240,6 +245,22 @@ TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
   EXPECT_EQ(needs.moving_objects, expected->objects);
   EXPECT_EQ(needs.camera_motion, expected->camera);
   EXPECT_EQ(needs.transparents, expected->transparents);
+}
+
+TEST_P(BuiltInScene, CutsAreWhereItsCameraJumpsAndNowhereElse) {
+  constexpr float kJump = 0.5f;  // in any element of the camera's matrix; a frame of the fastest is 0.08
+  const Scene scene = open();
+  int cuts = 0;
+  const int frames = static_cast<int>(scene.duration / kFrame);
+  for (int frame = 0; frame < frames; ++frame) {
+    const double now = (frame + 0.5) * kFrame;
+    const float way =
+        largest_difference(scene.camera(now).world_from_camera, scene.camera(now - kFrame).world_from_camera);
+    EXPECT_EQ(is_cut(scene, now - kFrame, now), way > kJump) << now;
+    cuts += way > kJump ? 1 : 0;
+  }
+  EXPECT_EQ(cuts, static_cast<int>(scene.cuts.size()));
+  EXPECT_EQ(cuts > 0, scene.name == "cut");
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, BuiltInScene, ::testing::ValuesIn(list_scenes()),
@@ -268,6 +289,32 @@ TEST(SceneCatalog, AMissingFileIsAnIoFailure) {
     EXPECT_EQ(scene.status().code(), StatusCode::kIoFailure);
     EXPECT_NE(scene.status().message().find(path), std::string::npos) << scene.status().message();
   }
+}
+
+TEST(SceneCatalog, TheNextCutIsAtOrAfterATime) {
+  Scene scene;
+  scene.duration = 4;
+  EXPECT_FALSE(next_cut(scene, 1).has_value());
+  EXPECT_FALSE(is_cut(scene, 0, 100));
+  scene.cuts = {1, 3};
+  EXPECT_EQ(next_cut(scene, 0), 1);
+  EXPECT_EQ(next_cut(scene, 1), 1);
+  EXPECT_EQ(next_cut(scene, 3.5), 5);
+  EXPECT_EQ(next_cut(scene, -2), -1);
+  EXPECT_TRUE(is_cut(scene, 0.9, 1));
+  EXPECT_FALSE(is_cut(scene, 1, 2.9));
+  EXPECT_FALSE(is_cut(scene, 3.5, 4.5));
+  EXPECT_TRUE(is_cut(scene, -1.1, -0.9));
+  EXPECT_TRUE(is_cut(scene, 2, 0.5)) << "backwards, too";
+}
+
+TEST(SceneCatalog, ZoomGrowsByTwoPercentAFrame) {
+  const Scene scene = open_scene("zoom").value();
+  constexpr float kWall = -3;
+  const auto distance = [&](double seconds) { return scene.camera(seconds).world_from_camera[3].z - kWall; };
+  const float growth = distance(-kFrame) / distance(0);
+  EXPECT_GT(growth, 1.015f);
+  EXPECT_LT(growth, 1.025f);
 }
 
 TEST(SceneCatalog, OccludersPassTensOfPixelsAFrame) {
