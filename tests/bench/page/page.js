@@ -90,7 +90,7 @@ function showFacts() {
     ["machine", `${machine.processor}, ${machine.processors} processors, ${number(machine.memory_gib)} GiB; ${machine.system}`],
     ["load", `${number(machine.load_before)} before, ${number(machine.load_after)} after (processes that wanted to run, of the last minute)`],
     ["noise", `typical half width of a median's 95 % interval: ±${(100 * page.noise.cost).toFixed(1)} % of costs in copies, ±${(100 * page.noise.ms).toFixed(1)} % of milliseconds; ± in the tables is that of each`],
-    ["frames", `${conditions.frames} measured after ${conditions.warm_up} that warm up, in each of ${conditions.rounds} rounds after one that is not timed; ${conditions.fps} a second from ${conditions.start} s; seed ${conditions.seed}`],
+    ["frames", `${conditions.frames} measured after ${conditions.warm_up} that warm up, or ${conditions.history_warm_up ?? conditions.warm_up} of methods that accumulate; then ${conditions.rounds} timed rounds of ${conditions.frames} that follow on them; ${conditions.fps} a second from ${conditions.start} s, of a scene with cuts from its first one on; seed ${conditions.seed}`],
     ["order", "every frame is drawn once for each jitter, then each method resolves it, another going first each time, with one plain copy among them; truth and errors are computed outside of the timing"],
     ["truth", `${conditions.truth_samples}×${conditions.truth_samples} samples a pixel in a box, by the same renderer`],
     ["cost", `by ${page.cost_clock}, the steadier clock on this device, in copies of the picture: float4, read and written once`],

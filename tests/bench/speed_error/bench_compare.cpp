@@ -211,6 +211,8 @@ Status check_conditions(const Conditions& before, const Conditions& after) {
     return differ("--output", size_text(before.output), size_text(after.output));
   if (before.frames != after.frames) return differ("--frames", before.frames, after.frames);
   if (before.warm_up != after.warm_up) return differ("--warm-up", before.warm_up, after.warm_up);
+  if (before.history_warm_up && after.history_warm_up && before.history_warm_up != after.history_warm_up)
+    return differ("--history-warm-up", *before.history_warm_up, *after.history_warm_up);
   if (before.seed != after.seed) return differ("--seed", before.seed, after.seed);
   if (before.fps != after.fps) return differ("--fps", before.fps, after.fps);
   if (before.start != after.start) return differ("--start", before.start, after.start);

@@ -48,6 +48,16 @@ TEST(Compare, ErrorsCountFromTheirThreshold) {
   EXPECT_TRUE(compared(after).worse());
 }
 
+TEST(Compare, ALongerHistoryIsAnotherMeasurement) {
+  BenchResult other = sample_result();
+  other.conditions.history_warm_up = 6;
+  const auto refused = compare(sample_result(), other);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.status().message().find("--history-warm-up"), std::string::npos);
+  other.conditions.history_warm_up.reset();  // of before there were methods that accumulate
+  EXPECT_TRUE(compare(other, sample_result()).ok());
+}
+
 TEST(Compare, LosingAnInfiniteRatioIsWorse) {
   BenchResult after = sample_result();
   after.rows[1].quality.psnr = 90;

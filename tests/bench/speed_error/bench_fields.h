@@ -126,6 +126,7 @@ void fields(Archive& io, Conditions& value) {
   io("output", value.output);
   io("frames", value.frames);
   io("warm_up", value.warm_up);
+  io("history_warm_up", value.history_warm_up);
   io("rounds", value.rounds);
   io("truth_samples", value.truth_samples);
   io("seed", value.seed);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "bench_plan.h"
@@ -7,8 +8,8 @@
 
 namespace quincunx::bench {
 
-// In the order of growing effort that Method and TwoFrameForm have; of the names of one form only the
-// longest.
+// In the order of growing effort that Method, TwoFrameForm and TemporalPreset have; of the names of one form
+// only the longest.
 std::vector<BenchMethod> all_methods() {
   const std::string usual = tools::method_name(ResolveSettings{});
   std::vector<BenchMethod> methods;
@@ -18,12 +19,15 @@ std::vector<BenchMethod> all_methods() {
     if (tools::method_name(method.resolve) != name) continue;
     method.jitter = scenes::jitter_for(choice.method);
     method.lod_bias = scenes::lod_bias_for(choice.method, method.jitter);
+    method.accumulates = choice.method == Method::kTemporal;
     method.is_default = name == usual;
     methods.push_back(std::move(method));
   }
   std::stable_sort(methods.begin(), methods.end(), [](const BenchMethod& a, const BenchMethod& b) {
-    return std::pair(a.resolve.method, a.resolve.quincunx.form) <
-           std::pair(b.resolve.method, b.resolve.quincunx.form);
+    const auto effort = [](const ResolveSettings& settings) {
+      return std::tuple(settings.method, settings.quincunx.form, settings.temporal.preset);
+    };
+    return effort(a.resolve) < effort(b.resolve);
   });
   return methods;
 }

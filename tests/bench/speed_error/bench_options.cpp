@@ -48,11 +48,18 @@ void add_choice_options(CLI::App& app, BenchOptions& options) {
 }
 
 void add_measuring_options(CLI::App& app, BenchOptions& options) {
-  app.add_option("--frames", options.frames, "Measured frames of each round (default: 6)")
+  app.add_option("--frames", options.frames,
+                 "Frames whose errors are measured, and of each timed round (default: 6)")
       ->check(CLI::Range(1, 10000));
-  app.add_option("--warm-up", options.warm_up, "Frames before them that do not count (default: 2)")
+  app.add_option("--warm-up", options.warm_up,
+                 "Frames that do not count, before those that are measured and before the first timed round "
+                 "(default: 2)")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--rounds", options.rounds, "Rounds that are timed, after one that is not (default: 5)")
+  app.add_option("--history-warm-up", options.history_warm_up,
+                 "Of methods that accumulate, frames before those that are measured (default: 24; never "
+                 "fewer than --warm-up)")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--rounds", options.rounds, "Rounds that are timed, after those (default: 5)")
       ->check(CLI::Range(1, 10000));
   app.add_option("--truth", options.truth, "Truth has N x N samples a pixel (default: 8)")
       ->check(CLI::Range(1, 64))

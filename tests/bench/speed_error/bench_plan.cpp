@@ -8,6 +8,7 @@
 #include <set>
 
 #include "scene_catalog.h"
+#include "tools/method_names.h"
 
 namespace quincunx::bench {
 namespace {
@@ -16,13 +17,23 @@ constexpr double kSmallestScale = 0.02;
 constexpr double kLargestScale = 2;
 constexpr int kSmallestSide = 16;  // the worst window has 16 x 16 pixels
 
+// "temporal:balanced" for "temporal".
+std::string longest_name(const std::string& name) {
+  const auto choice = tools::method_choices().find(name);
+  if (choice == tools::method_choices().end()) return name;
+  ResolveSettings settings;
+  tools::choose(settings, choice->second);
+  return tools::method_name(settings);
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
+    const std::string longest = longest_name(name);
     const auto found = std::find_if(methods.begin(), methods.end(),
-                                    [&](const BenchMethod& method) { return method.name == name; });
+                                    [&](const BenchMethod& method) { return method.name == longest; });
     if (found == methods.end()) {
       std::string known;
       for (const BenchMethod& method : methods)
@@ -87,13 +98,15 @@ std::size_t frame_method_of(const std::vector<BenchMethod>& methods) {
 
 Result<BenchPlan> plan_from(const BenchOptions& options) {
   if (Status status = check_numbers(options); !status.ok()) return status;
-  for (const Status& status :
-       {check_once("--methods", options.methods), check_once("--scenes", options.scenes),
-        check_once("--scales", options.scales)}) {
-    if (!status.ok()) return status;
-  }
   auto methods = chosen_methods(options.methods);
   if (!methods.ok()) return methods.status();
+  std::vector<std::string> method_names;
+  for (const BenchMethod& method : methods.value())
+    method_names.push_back(method.name);
+  for (const Status& status : {check_once("--methods", method_names), check_once("--scenes", options.scenes),
+                               check_once("--scales", options.scales)}) {
+    if (!status.ok()) return status;
+  }
   auto names = chosen_scenes(options.scenes);
   if (!names.ok()) return names.status();
   BenchPlan plan;
@@ -105,6 +118,7 @@ Result<BenchPlan> plan_from(const BenchOptions& options) {
   plan.conditions = {.output = options.output,
                      .frames = static_cast<int>(options.frames),
                      .warm_up = options.warm_up,
+                     .history_warm_up = std::max(options.history_warm_up, options.warm_up),
                      .rounds = options.rounds,
                      .truth_samples = options.truth,
                      .seed = options.seed,
@@ -120,15 +134,32 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   const auto axis = static_cast<float>(scale);
   sequence.scale_path = scenes::ScalePath::fixed({axis, axis}).value();  // plan_from() has checked it
   sequence.jitter = method.jitter;
-  sequence.frames = conditions.warm_up + conditions.frames;
+  sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);
   sequence.fps = conditions.fps;
-  sequence.start_seconds = conditions.start;
+  sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));
   sequence.lod_bias = method.lod_bias;
   return sequence;
 }
 
-double seconds_of(const Conditions& conditions, int index) {
-  return conditions.start + index / conditions.fps;
+int first_frame_for(const Conditions& conditions, const BenchMethod& method) {
+  return method.accumulates ? conditions.warm_up - conditions.history_warm_up.value_or(conditions.warm_up)
+                            : 0;
+}
+
+int frames_of(const Conditions& conditions) {
+  return 2 * conditions.warm_up + (1 + conditions.rounds) * conditions.frames;
+}
+
+double seconds_of(const Conditions& conditions, int frame) {
+  return conditions.start + frame / conditions.fps;
+}
+
+// Half a frame after the cut, so that rounding cannot put the first frame before it.
+Conditions conditions_for(const Conditions& conditions, const scenes::Scene& scene) {
+  Conditions of_scene = conditions;
+  if (const auto cut = scenes::next_cut(scene, seconds_of(conditions, conditions.warm_up)))
+    of_scene.start = *cut + (0.5 - conditions.warm_up) / conditions.fps;
+  return of_scene;
 }
 
 }  // namespace quincunx::bench

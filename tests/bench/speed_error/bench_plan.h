@@ -10,6 +10,7 @@
 #include "frame_sequence.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
+#include "scene.h"
 
 namespace quincunx::bench {
 
@@ -19,7 +20,8 @@ struct BenchMethod {
   ResolveSettings resolve;
   scenes::Jitter jitter = scenes::Jitter::kNone;  // of the frames that it gets
   float lod_bias = 0;
-  bool is_default = false;  // what the programs take where no --method is given
+  bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
+  bool is_default = false;   // what the programs take where no --method is given
 };
 
 // Every method that there is.
@@ -36,11 +38,20 @@ struct BenchPlan {
 // Errors: kInvalidArgument, for a name or a number that is no good; the message says what would be.
 Result<BenchPlan> plan_from(const BenchOptions& options);
 
-// The frames of one scale as methods with this jitter and bias get them: those that warm up, then the
-// measured.
+// The frames of one scale as methods with this jitter and bias get them; their times are seconds_of().
 scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method);
 
-// Scene time of a frame of the sequence.
-double seconds_of(const Conditions& conditions, int index);
+// The frames of a case are numbered from 0: `warm_up` that warm up, those whose errors are measured, again
+// some that warm up, and those of the timed rounds. A method that accumulates begins with earlier ones, of
+// negative numbers.
+int first_frame_for(const Conditions& conditions, const BenchMethod& method);
+int frames_of(const Conditions& conditions);
+
+// Scene time of a frame.
+double seconds_of(const Conditions& conditions, int frame);
+
+// As they are, but for a scene with cuts: from the first cut on that would be measured, so that the first
+// measured frame is the first of a shot.
+Conditions conditions_for(const Conditions& conditions, const scenes::Scene& scene);
 
 }  // namespace quincunx::bench

@@ -73,8 +73,51 @@ TEST(Plan, KeepsTheGivenMethodsAndSortsScales) {
   EXPECT_EQ(plan->scales, (std::vector<double>{0.5, 1}));
   EXPECT_EQ(plan->frame_method, 1u);  // the default is not there: the last
   const auto sequence = sequence_for(plan.value(), 0.5, plan->methods[0]);
-  EXPECT_EQ(sequence.frames, plan->conditions.warm_up + plan->conditions.frames);
+  EXPECT_EQ(sequence.jitter, scenes::Jitter::kQuincunx);
   EXPECT_EQ(sequence.lod_bias, -0.5f);
+}
+
+TEST(Plan, ShortNamesStandForTheUsualForm) {
+  const auto plan = plan_from(parsed({"--methods", "quincunx,temporal"}));
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  EXPECT_EQ(plan->methods[0].name, "quincunx:velocity");
+  EXPECT_EQ(plan->methods[1].name, "temporal:balanced");
+  expect_refused({"--methods", "temporal,temporal:balanced"}, "twice");
+}
+
+TEST(Plan, WhatAccumulatesBeginsEarlierAndWithHaltonJitter) {
+  const auto plan = plan_from(parsed({"--methods", "temporal:fast,quincunx", "--start", "1", "--fps", "10"}));
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  const Conditions& conditions = plan->conditions;
+  EXPECT_EQ(plan->methods[0].jitter, scenes::Jitter::kHalton);
+  EXPECT_EQ(conditions.history_warm_up, 24);
+  EXPECT_EQ(first_frame_for(conditions, plan->methods[0]), conditions.warm_up - 24);
+  EXPECT_EQ(first_frame_for(conditions, plan->methods[1]), 0);
+  EXPECT_DOUBLE_EQ(seconds_of(conditions, -5), 0.5);
+  // Both draw the same moments, the last of them included.
+  EXPECT_DOUBLE_EQ(sequence_for(plan.value(), 1, plan->methods[0]).start_seconds, 1 - 2.2);
+  EXPECT_DOUBLE_EQ(sequence_for(plan.value(), 1, plan->methods[1]).start_seconds, 1);
+  EXPECT_EQ(sequence_for(plan.value(), 1, plan->methods[0]).frames, frames_of(conditions) + 22);
+  EXPECT_EQ(sequence_for(plan.value(), 1, plan->methods[1]).frames, frames_of(conditions));
+  // Never fewer than the others have.
+  const auto few = plan_from(parsed({"--history-warm-up", "3", "--warm-up", "7"}));
+  ASSERT_TRUE(few.ok());
+  EXPECT_EQ(few->conditions.history_warm_up, 7);
+}
+
+TEST(Plan, MeasuresASceneWithCutsFromTheFirstFrameOfAShot) {
+  const auto plan = plan_from(parsed({"--start", "1.5", "--fps", "60"}));
+  ASSERT_TRUE(plan.ok());
+  const scenes::Scene scene = scenes::open_scene("cut").value();
+  const Conditions conditions = conditions_for(plan->conditions, scene);
+  const int first = conditions.warm_up;
+  EXPECT_TRUE(scenes::is_cut(scene, seconds_of(conditions, first - 1), seconds_of(conditions, first)));
+  for (int frame = first - 24; frame < first + conditions.frames; ++frame) {
+    const bool cut = scenes::is_cut(scene, seconds_of(conditions, frame - 1), seconds_of(conditions, frame));
+    EXPECT_EQ(cut, frame == first) << frame;
+  }
+  EXPECT_GE(seconds_of(conditions, first), 1.5);
+  EXPECT_EQ(conditions_for(plan->conditions, scenes::open_scene("pan").value()), plan->conditions);
 }
 
 TEST(Plan, RefusesWhatIsNone) {

@@ -141,8 +141,10 @@ struct Machine {
 
 struct Conditions {
   Extent output;
-  int frames = 0;   // measured in each round
-  int warm_up = 0;  // frames before them, in each round
+  int frames = 0;   // whose errors are measured, and of each timed round
+  int warm_up = 0;  // frames before both
+  // Before those that are measured, of methods that accumulate; absent in results of before there were any.
+  std::optional<int> history_warm_up;
   int rounds = 0;
   int truth_samples = 0;  // along each side of a pixel
   std::uint64_t seed = 0;

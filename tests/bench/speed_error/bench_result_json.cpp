@@ -43,7 +43,10 @@ class Writer {
   }
   // An infinite PSNR has no place in JSON.
   static Json json_of(double& value) { return std::isfinite(value) ? Json(rounded(value)) : Json(nullptr); }
-  static Json json_of(std::optional<double>& value) { return value ? json_of(*value) : Json(nullptr); }
+  template <typename T>
+  static Json json_of(std::optional<T>& value) {
+    return value ? json_of(*value) : Json(nullptr);
+  }
 
   template <typename T>
   static Json json_of(std::vector<T>& values) {
@@ -56,13 +59,17 @@ class Writer {
   Json json_ = Json::object();
 };
 
-// Throws Json::exception where a field is missing or of another kind.
+// Throws Json::exception where a field is of another kind, or one that is not optional is missing.
 class Reader {
  public:
   explicit Reader(const Json& json) : json_(json) {}
 
   template <typename T>
   void operator()(const char* name, T& value) {
+    constexpr bool kMayBeMissing = requires {
+      value.reset();
+    };
+    if (kMayBeMissing && !json_.contains(name)) return;
     read(json_.at(name), value);
   }
 
@@ -79,11 +86,12 @@ class Reader {
   static void read(const Json& json, double& value) {
     value = json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
   }
-  static void read(const Json& json, std::optional<double>& value) {
+  template <typename T>
+  static void read(const Json& json, std::optional<T>& value) {
     if (json.is_null()) {
       value.reset();
     } else {
-      value = json.get<double>();
+      value = json.get<T>();
     }
   }
   template <typename T>

@@ -52,6 +52,14 @@ TEST(Result, RefusesWhatIsNone) {
   EXPECT_FALSE(read_result("/no/such/file.json").ok());
 }
 
+TEST(Result, ReadsOneOfBeforeThereWasHistory) {
+  nlohmann::json json = nlohmann::json::parse(to_json(sample_result()));
+  json["conditions"].erase("history_warm_up");
+  const auto old = from_json(json.dump(), "old.json");
+  ASSERT_TRUE(old.ok()) << old.status().message();
+  EXPECT_FALSE(old->conditions.history_warm_up.has_value());
+}
+
 TEST(Result, CsvHasALineARowAndQuotesItsText) {
   BenchResult result = sample_result();
   result.rows[0].scene = "a \"b\", c";

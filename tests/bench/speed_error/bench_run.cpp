@@ -53,21 +53,23 @@ class Runner {
     if (!stage.ok()) return stage.status();
     describe_machine(*stage.value(), result_.machine);
     const scenes::Scene& scene = stage.value()->scene();
-    auto truth = make_truth(stage.value()->renderer(), name, scene.exposure, result_.machine.gl_version,
-                            plan_.conditions);
+    BenchPlan plan = plan_;
+    plan.conditions = conditions_for(plan_.conditions, scene);
+    auto truth = make_truth(stage.value()->renderer(), scene, result_.machine.gl_version, plan.conditions);
     if (!truth.ok()) return truth.status();
     step(name + ": truth");
     result_.scenes.push_back({name, scene.summary, scene.reason, truth->flicker, truth->uncovered_part});
     gallery_.begin_scene(name, truth->pictures.back());
     for (const double scale : plan_.scales) {
-      if (Status status = run_case(*stage.value(), truth.value(), name, scale); !status.ok()) return status;
+      if (Status status = run_case(*stage.value(), plan, truth.value(), name, scale); !status.ok())
+        return status;
     }
     return gallery_.end_scene();
   }
 
-  Status run_case(const scenes::FrameSource& stage, const SceneTruth& truth, const std::string& scene,
-                  double scale) {
-    auto made = CaseRun::create(stage, plan_, truth, scale);
+  Status run_case(const scenes::FrameSource& stage, const BenchPlan& plan, const SceneTruth& truth,
+                  const std::string& scene, double scale) {
+    auto made = CaseRun::create(stage, plan, truth, scale);
     if (!made.ok()) return made.status();
     CaseRun& run = *made.value();
     if (Status status = run.run_quality(); !status.ok()) return status;

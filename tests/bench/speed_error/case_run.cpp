@@ -8,6 +8,7 @@
 #include <future>
 #include <map>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 namespace quincunx::bench {
@@ -51,9 +52,11 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   resolved_ = std::move(resolved).value();
   copy_stage_.add_copy(copy_);
 
-  std::map<std::pair<scenes::Jitter, float>, std::vector<std::size_t>> feeds;
-  for (std::size_t i = 0; i < plan_.methods.size(); ++i)
-    feeds[{plan_.methods[i].jitter, plan_.methods[i].lod_bias}].push_back(i);
+  std::map<std::tuple<scenes::Jitter, float, bool>, std::vector<std::size_t>> feeds;
+  for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
+    const BenchMethod& method = plan_.methods[i];
+    feeds[{method.jitter, method.lod_bias, method.accumulates}].push_back(i);
+  }
   entries_.resize(plan_.methods.size());
   for (const auto& [frames, methods] : feeds) {
     if (Status status = open_feed(stage, methods); !status.ok()) return status;
@@ -70,7 +73,8 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
   }
   const bool presents = std::find(methods.begin(), methods.end(), plan_.frame_method) != methods.end();
   if (presents) resolves.push_back(plan_.methods[plan_.frame_method].resolve);
-  auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, plan_.methods[methods.front()]), resolves);
+  const BenchMethod& any = plan_.methods[methods.front()];
+  auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, any), resolves);
   if (!feed.ok()) return feed.status();
   for (std::size_t i = 0; i < resolves.size(); ++i) {
     auto contender = Contender::create(device_, feed->plans()[i]);
@@ -82,22 +86,24 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
       presenter_feed_ = feeds_.size();
     }
   }
-  feeds_.push_back(std::move(feed).value());
+  feeds_.push_back({first_frame_for(plan_.conditions, any), std::move(feed).value()});
   return {};
 }
 
-Status CaseRun::draw(std::int64_t index) {
+Status CaseRun::draw(int frame) {
   for (std::size_t i = 0; i < feeds_.size(); ++i) {
-    auto inputs = feeds_[i].next(index);
+    if (!has_begun(i, frame)) continue;
+    auto inputs = feeds_[i].frames.next();
     if (!inputs.ok()) return inputs.status();
     inputs_[i] = inputs.value();
   }
   return {};
 }
 
-void CaseRun::release() {
-  for (FrameFeed& feed : feeds_)
-    feed.release();
+void CaseRun::release(int frame) {
+  for (std::size_t i = 0; i < feeds_.size(); ++i) {
+    if (has_begun(i, frame)) feeds_[i].frames.release();
+  }
 }
 
 Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
@@ -109,16 +115,16 @@ Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
   return rgba;
 }
 
-Status CaseRun::measure_frame(std::int64_t index) {
+Status CaseRun::measure_frame(int frame) {
   std::vector<std::vector<float>> pictures(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!has_begun(entries_[i]->feed, frame)) continue;
     auto rgba = resolve_and_read(*entries_[i]);
     if (!rgba.ok()) return rgba.status();
     pictures[i] = std::move(rgba).value();
   }
-  const std::int64_t frame = index - plan_.conditions.warm_up;
-  if (frame < 0) return {};
-  const auto at = static_cast<std::size_t>(frame);
+  if (frame < plan_.conditions.warm_up) return {};
+  const auto at = static_cast<std::size_t>(frame - plan_.conditions.warm_up);
   const tools::MeasuredPicture* previous = at > 0 ? &truth_.pictures[at - 1] : nullptr;
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
     entries_[i]->tally.add(
@@ -129,14 +135,21 @@ Status CaseRun::measure_frame(std::int64_t index) {
 }
 
 Status CaseRun::run_quality() {
-  for (std::int64_t index = 0; index < frames_of_a_round(); ++index) {
-    if (Status status = draw(index); !status.ok()) return status;
-    if (Status status = measure_frame(index); !status.ok()) return status;
-    if (Status status = time_whole_frame(false); !status.ok()) return status;
+  int first = 0;
+  for (const Feed& feed : feeds_)
+    first = std::min(first, feed.first_frame);
+  next_frame_ = plan_.conditions.warm_up + plan_.conditions.frames;
+  for (int frame = first; frame < next_frame_; ++frame) {
+    if (Status status = draw(frame); !status.ok()) return status;
+    if (Status status = measure_frame(frame); !status.ok()) return status;
+    if (has_begun(presenter_feed_, frame)) {
+      if (Status status = time_whole_frame(false); !status.ok()) return status;
+    }
     time_copy(false);
-    release();
+    release(frame);
   }
-  return {};
+  // Whatever the work on errors has driven out of the caches.
+  return time_frames(plan_.conditions.warm_up, false);
 }
 
 Status CaseRun::run_timed() {
@@ -148,20 +161,23 @@ Status CaseRun::run_timed() {
     frame_.ms[step].emplace_back();
     frame_.processor_ms[step].emplace_back();
   }
-  for (std::int64_t index = 0; index < frames_of_a_round(); ++index) {
-    if (Status status = draw(index); !status.ok()) return status;
-    if (Status status = time_frame(index); !status.ok()) return status;
-    release();
+  return time_frames(plan_.conditions.frames, true);
+}
+
+Status CaseRun::time_frames(int count, bool keep) {
+  for (const int end = next_frame_ + count; next_frame_ < end; ++next_frame_) {
+    if (Status status = draw(next_frame_); !status.ok()) return status;
+    if (Status status = time_frame(next_frame_, keep); !status.ok()) return status;
+    release(next_frame_);
   }
   return {};
 }
 
 // Each frame another method goes first, so that no place in the order is always the same method's.
-Status CaseRun::time_frame(std::int64_t index) {
-  const bool keep = index >= plan_.conditions.warm_up;
+Status CaseRun::time_frame(int frame, bool keep) {
   time_copy(keep);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    Entry& entry = *entries_[(i + static_cast<std::size_t>(index)) % entries_.size()];
+    Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
     auto time = entry.contender.dispatch(inputs_[entry.feed], {.resolved = resolved_.view()});
     if (!time.ok()) return time.status();
     if (keep) entry.contender.keep(time.value());
@@ -179,7 +195,7 @@ void CaseRun::time_copy(bool keep) {
 }
 
 Status CaseRun::time_whole_frame(bool keep) {
-  FrameFeed& feed = feeds_[presenter_feed_];
+  FrameFeed& feed = feeds_[presenter_feed_].frames;
   auto presented = feed.bridge().begin_present();
   if (!presented.ok()) return presented.status();
   auto time = presenter_->dispatch(inputs_[presenter_feed_], {.presented = presented.value()});
@@ -217,7 +233,7 @@ std::vector<Row> CaseRun::rows(const std::string& scene) const {
 }
 
 std::string CaseRun::interop() const {
-  const gl::Bridge& bridge = feeds_[presenter_feed_].bridge();
+  const gl::Bridge& bridge = feeds_[presenter_feed_].frames.bridge();
   return fmt::format("{}: {}", gl::name_of(bridge.kind()), bridge.reason());
 }
 

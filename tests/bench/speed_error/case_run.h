@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // CaseRun: one scene at one scale: every frame is drawn once for each jitter and resolved by every method
-// before the next is drawn.
+// before the next is drawn. All frames of a case follow on each other: those that warm up, those whose errors
+// are measured, those of the timed rounds. So no method ever loses its history.
 #pragma once
 
 #include <memory>
@@ -20,7 +21,7 @@ class CaseRun {
   static Result<std::unique_ptr<CaseRun>> create(const scenes::FrameSource& stage, const BenchPlan& plan,
                                                  const SceneTruth& truth, double scale);
 
-  // The round that warms up everything and whose pictures are measured.
+  // The frames whose pictures are measured, and those that warm up everything before and after them. First.
   Status run_quality();
 
   // A round whose times count.
@@ -36,6 +37,10 @@ class CaseRun {
   const tools::MeasuredPicture& picture(std::size_t index) const { return entries_[index]->tally.latest(); }
 
  private:
+  struct Feed {
+    int first_frame;  // of its methods
+    FrameFeed frames;
+  };
   struct Entry {
     std::size_t feed;
     Contender contender;
@@ -52,12 +57,13 @@ class CaseRun {
   Status open(const scenes::FrameSource& stage);
   Status open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods);
 
-  int frames_of_a_round() const { return plan_.conditions.warm_up + plan_.conditions.frames; }
-  Status draw(std::int64_t index);
-  void release();
+  bool has_begun(std::size_t feed, int frame) const { return frame >= feeds_[feed].first_frame; }
+  Status draw(int frame);
+  void release(int frame);
   Result<std::vector<float>> resolve_and_read(Entry& entry);
-  Status measure_frame(std::int64_t index);
-  Status time_frame(std::int64_t index);
+  Status measure_frame(int frame);
+  Status time_frames(int count, bool keep);
+  Status time_frame(int frame, bool keep);
   void time_copy(bool keep);
   Status time_whole_frame(bool keep);
 
@@ -69,13 +75,14 @@ class CaseRun {
   Image resolved_;
   Stage copy_stage_;
   std::vector<Case> copy_;  // the float4 copy alone
-  std::vector<FrameFeed> feeds_;
+  std::vector<Feed> feeds_;
   std::vector<FrameInputs> inputs_;              // of each feed, this frame
   std::vector<std::unique_ptr<Entry>> entries_;  // in the order of the plan's methods
   std::unique_ptr<Contender> presenter_;         // the frame method with its present pass
   std::size_t presenter_feed_ = 0;
   Rounds copy_ms_, copy_processor_ms_;
   FrameRounds frame_;
+  int next_frame_ = 0;
 };
 
 }  // namespace quincunx::bench

@@ -41,16 +41,16 @@ Result<FrameFeed> FrameFeed::create(const scenes::FrameSource& stage,
   return feed;
 }
 
-Result<FrameInputs> FrameFeed::next(std::int64_t index) {
+Result<FrameInputs> FrameFeed::next() {
   const StepClock draw;
-  if (Status status = source_->begin(index); !status.ok()) return status;
+  if (Status status = source_->begin(drawn_); !status.ok()) return status;
   glFinish();
   draw_ = draw.elapsed();
   const StepClock interop;
   if (Status status = source_->submit(); !status.ok()) return status;
   auto inputs = source_->acquire();
   interop_ = interop.elapsed();
-  if (inputs.ok()) inputs->reset = index == 0;
+  ++drawn_;
   return inputs;
 }
 

@@ -38,8 +38,8 @@ class FrameFeed {
 
   const std::vector<ResolvePlan>& plans() const { return plans_; }
 
-  // Draws frame `index` and waits until OpenCL can read it. `reset` is set in the first frame of a round.
-  Result<FrameInputs> next(std::int64_t index);
+  // Draws the next frame of the sequence and waits until OpenCL can read it.
+  Result<FrameInputs> next();
   void release() { source_->release(); }  // the frame of the last next()
 
   // Of the last next().
@@ -54,6 +54,7 @@ class FrameFeed {
 
   std::unique_ptr<scenes::FrameSource> source_;
   std::vector<ResolvePlan> plans_;
+  std::int64_t drawn_ = 0;  // frames
   StepTime draw_;
   StepTime interop_;
 };

@@ -20,8 +20,13 @@ inline bench::BenchResult sample_result() {
   result.machine.processor = "a processor";
   result.machine.processors = 2;
   result.machine.cl_on_processor = true;
-  result.conditions = {
-      .output = {64, 36}, .frames = 2, .warm_up = 1, .rounds = 3, .truth_samples = 4, .fps = 60};
+  result.conditions = {.output = {64, 36},
+                       .frames = 2,
+                       .warm_up = 1,
+                       .history_warm_up = 5,
+                       .rounds = 3,
+                       .truth_samples = 4,
+                       .fps = 60};
   result.scenes.push_back({"pan", "a \"pan\"", "tests </script> <!-- names", 0.01, 0.5});
   result.methods = {{"bilinear", "four samples", "none", 0}, {"quincunx:mean", "a, b", "quincunx", -0.5}};
   for (const double scale : {0.5, 0.7, 0.85, 1.0}) {

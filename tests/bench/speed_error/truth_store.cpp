@@ -93,20 +93,20 @@ tools::MeasuredPicture measured(Extent extent, std::vector<float> rgba, float ex
   return {extent, rgba};
 }
 
-Result<SceneTruth> make_truth(scenes::Renderer& renderer, const std::string& scene, float exposure,
+Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions) {
   SceneTruth truth;
   double change = 0;
   for (int frame = 0; frame < conditions.frames; ++frame) {
     const double seconds = seconds_of(conditions, conditions.warm_up + frame);
-    auto rgba = truth_of({renderer, scene, gl_version, conditions, seconds});
+    auto rgba = truth_of({renderer, scene.name, gl_version, conditions, seconds});
     if (!rgba.ok()) return rgba.status();
-    truth.pictures.push_back(measured(conditions.output, std::move(rgba).value(), exposure));
+    truth.pictures.push_back(measured(conditions.output, std::move(rgba).value(), scene.exposure));
     if (frame > 0) change += mean_change(truth.pictures.back(), *(truth.pictures.end() - 2));
-    spdlog::debug("truth of {} at {:.3f} s", scene, seconds);
+    spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
   }
   if (conditions.frames > 1) truth.flicker = change / (conditions.frames - 1);
-  auto uncovered = uncovered_pixels(renderer, conditions);
+  auto uncovered = uncovered_pixels(renderer, scene, conditions);
   if (!uncovered.ok()) return uncovered.status();
   truth.uncovered = std::move(uncovered).value();
   std::int64_t count = 0;

@@ -80,6 +80,7 @@ std::vector<std::uint8_t> uncovered_within_two(const Geometry& now, std::vector<
 }
 
 Result<std::vector<std::vector<std::uint8_t>>> uncovered_pixels(scenes::Renderer& renderer,
+                                                                const scenes::Scene& scene,
                                                                 const Conditions& conditions) {
   constexpr int kBack = 2;
   const gl::RenderTargets targets({.target = conditions.output, .velocity = true, .reactive = false});
@@ -88,11 +89,15 @@ Result<std::vector<std::vector<std::uint8_t>>> uncovered_pixels(scenes::Renderer
   std::vector<std::uint8_t> older;
   for (int frame = -kBack; frame < conditions.frames; ++frame) {
     const int index = conditions.warm_up + frame;
-    auto now =
-        geometry_at(renderer, targets, seconds_of(conditions, index), seconds_of(conditions, index - 1));
+    const double seconds = seconds_of(conditions, index);
+    const double previous = seconds_of(conditions, index - 1);
+    auto now = geometry_at(renderer, targets, seconds, previous);
     if (!now.ok()) return now.status();
     if (frame > -kBack) {
-      std::vector<std::uint8_t> newer = uncovered_since(now.value(), before);
+      const std::vector<std::uint8_t> none(now->depth.size(), 0);
+      const bool cut = scenes::is_cut(scene, previous, seconds);
+      if (cut) older = none;
+      std::vector<std::uint8_t> newer = cut ? none : uncovered_since(now.value(), before);
       if (frame >= 0) masks.push_back(uncovered_within_two(now.value(), newer, older));
       older = std::move(newer);
     }

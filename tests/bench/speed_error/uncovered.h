@@ -27,8 +27,9 @@ std::vector<std::uint8_t> uncovered_since(const Geometry& now, const Geometry& b
 std::vector<std::uint8_t> uncovered_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
                                                const std::vector<std::uint8_t>& older);
 
-// For each measured frame the mask of the last two frames, output extent.
+// For each measured frame the mask of the last two frames, output extent. A cut uncovers nothing: all is new.
 Result<std::vector<std::vector<std::uint8_t>>> uncovered_pixels(scenes::Renderer& renderer,
+                                                                const scenes::Scene& scene,
                                                                 const Conditions& conditions);
 
 }  // namespace quincunx::bench
