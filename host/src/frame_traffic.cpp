@@ -117,6 +117,10 @@ std::uint64_t motion_blur_bytes(const ResolveSettings& settings, Extent render) 
          bytes_of(render, PixelFormat::kR32F) + tiles_of(settings.output) * sizeof(TileBlur);
 }
 
+std::uint64_t sharpen_bytes(const ResolveSettings& settings) {
+  return 2 * bytes_of(settings.output, settings.resolved);
+}
+
 std::uint64_t present_bytes(const ResolveSettings& settings) {
   return bytes_of(settings.output, settings.resolved) + bytes_of(settings.output, PixelFormat::kRGBA8);
 }

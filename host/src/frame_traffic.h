@@ -20,6 +20,7 @@ std::uint64_t temporal_display_bytes(const ResolvePlan& plan, Extent render);
 std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render);
 std::uint64_t motion_neighbours_bytes(const ResolveSettings& settings);
 std::uint64_t motion_blur_bytes(const ResolveSettings& settings, Extent render);  // where everything moves
+std::uint64_t sharpen_bytes(const ResolveSettings& settings);
 std::uint64_t present_bytes(const ResolveSettings& settings);
 
 }  // namespace quincunx

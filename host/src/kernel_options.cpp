@@ -109,6 +109,10 @@ std::string temporal_display_options(const ResolvePlan& plan) {
                      scale_options(plan.settings), history(plan.settings));
 }
 
+std::string sharpen_options(const ResolveSettings& settings) {
+  return fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", resolved(settings));
+}
+
 std::string present_options(const ResolveSettings& settings) {
   return fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
                      curve(settings.tone_map), settings.dither ? 1 : 0, resolved(settings),

@@ -20,6 +20,7 @@ std::string reprojected_options(const ResolvePlan& plan);  // resolve_reprojecte
 std::string temporal_tiles_options(const ResolvePlan& plan);
 std::string temporal_options(const ResolvePlan& plan);  // resolve_temporal
 std::string temporal_display_options(const ResolvePlan& plan);
+std::string sharpen_options(const ResolveSettings& settings);
 std::string present_options(const ResolveSettings& settings);
 std::string clear_options(Storage storage, PixelFormat format);
 

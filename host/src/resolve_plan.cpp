@@ -14,6 +14,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_sharpen.h"
 #include "pass_temporal.h"
 
 namespace quincunx {
@@ -70,6 +71,9 @@ Status check(const ResolveSettings& settings) {
   }
   if (!(settings.blur.shutter >= 0 && settings.blur.shutter <= 2)) {
     complaints.add(fmt::format("settings.blur.shutter is {}; it must lie in [0, 2]", settings.blur.shutter));
+  }
+  if (!(settings.sharpness >= 0 && settings.sharpness <= 1)) {
+    complaints.add(fmt::format("settings.sharpness is {}; it must lie in [0, 1]", settings.sharpness));
   }
   const int samples = settings.blur.samples;
   if (samples < 4 || samples > 64 || !std::has_single_bit(static_cast<unsigned>(samples))) {
@@ -196,6 +200,11 @@ void plan_passes(ResolvePlan& plan) {
                            quincunx_bytes(plan, settings.target, settings.target)});
   }
   if (!plan.accumulates() || plan.is_dense(settings.target)) plan_scale(plan);
+  if (plan.sharpens()) {
+    plan.passes.push_back({SharpenPass::kernel_name(), sharpen_options(settings),
+                           "sharpness is wanted: contrast between neighbours, within their range",
+                           sharpen_bytes(settings)});
+  }
   if (plan.blurs()) plan_blur(plan);
   if (settings.present) {
     plan.passes.push_back(
@@ -244,6 +253,7 @@ void plan_buffers(ResolvePlan& plan) {
           {name, temporal_tiles(settings.output), PixelFormat::kNone, Scaling::kFixed, bytes, true});
   }
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
+  if (plan.sharpens()) add_buffer(plan, "unsharpened", settings.resolved, Scaling::kFixed, true);
   if (plan.blurs()) add_buffer(plan, "blurred", settings.resolved, Scaling::kFixed, true);
   if (settings.present) add_buffer(plan, "presented", PixelFormat::kRGBA8, Scaling::kFixed);
 }
@@ -266,6 +276,9 @@ void note_left_out(ResolvePlan& plan) {
   }
   if (!plan.reads_depth) note("depth", "no pass reads it");
   if (several && !needs.transparents) note("reactive values", "the scene has no transparents");
+  if (!plan.sharpens()) {
+    note("sharpen", plan.settings.sharpness > 0 ? "the view is no picture" : "sharpness is 0");
+  }
   if (!plan.blurs()) {
     note("motion blur", plan.settings.blur.shutter > 0 ? "nothing moves" : "the shutter opens for no time");
   }
@@ -317,6 +330,10 @@ bool ResolvePlan::judges_history() const {
 
 bool ResolvePlan::weighs_residual() const {
   return velocity != VelocitySource::kNone && reprojects() && settings.quincunx.residual_weight > 0;
+}
+
+bool ResolvePlan::sharpens() const {
+  return settings.sharpness > 0 && (!accumulates() || settings.temporal.view == TemporalView::kPicture);
 }
 
 bool ResolvePlan::blurs() const {

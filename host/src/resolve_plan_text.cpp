@@ -127,11 +127,12 @@ std::string ResolvePlan::explain() const {
   std::string form;
   if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
   if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
-  fmt::format_to(out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, tone map {}, dither {}\n",
-                 name_of(settings.method), form, settings.output.width, settings.output.height,
-                 settings.target.width, settings.target.height,
-                 settings.storage == Storage::kImage ? "image" : "buffer", name_of(settings.tone_map),
-                 yes(settings.dither));
+  fmt::format_to(
+      out,
+      "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, tone map {}, dither {}\n",
+      name_of(settings.method), form, settings.output.width, settings.output.height, settings.target.width,
+      settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
+      name_of(settings.tone_map), yes(settings.dither));
   fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
                  name_of(velocity));
   for (const PlannedPass& pass : passes) {

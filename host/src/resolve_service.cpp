@@ -15,6 +15,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_sharpen.h"
 #include "pass_temporal.h"
 #include "pass_velocity.h"
 #include "program_cache.h"
@@ -31,6 +32,8 @@ struct ResolveService::Impl {
                    cl::Event* events);
   int accumulate(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
                  cl::Event* events);
+  void show(const FrameInputs& inputs, const FrameOutputs& outputs, const ImageView& sharp, Counter count,
+            FrameRing::Slot& slot, cl::Event* event);
   void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
   Status check_history(const FrameInputs& inputs) const;
   FrameInputs with_velocity(FrameInputs inputs) const;
@@ -47,11 +50,13 @@ struct ResolveService::Impl {
   std::optional<ResolvePass> resolve;  // of the two-frame forms one
   std::optional<ReprojectPass> reproject;
   std::optional<TemporalPass> temporal;
+  std::optional<SharpenPass> sharpen;
   std::optional<MotionBlurPass> blur;
   std::optional<PresentPass> present;
   std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
   Image resolved;                                         // where the caller gives none
-  Image blurred;                                          // the same
+  Image unsharpened;                                      // where the plan sharpens
+  Image blurred;                                          // as resolved
   std::array<Image, 2> velocities;  // of VelocityPass: this frame's and the previous one's
   std::size_t next_velocity = 0;
   cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
@@ -76,6 +81,7 @@ ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
   } else if (plan.keeps_previous_frame()) {
     resolve.emplace(impl, plan);
   }
+  if (plan.sharpens()) sharpen.emplace(impl, plan.settings);
   if (plan.blurs()) blur.emplace(impl, plan.settings);
   if (plan.settings.present) present.emplace(impl, plan.settings);
   for (const PixelFormat format : plan.clears()) {
@@ -90,10 +96,9 @@ Status ResolveService::Impl::allocate() {
     if (made.ok()) image = std::move(made).value();
     return made.status();
   };
-  if (Status status = make(resolved, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
-    return status;
-  if (blur) {
-    if (Status status = make(blurred, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
+  for (Image* image : {&resolved, sharpen ? &unsharpened : nullptr, blur ? &blurred : nullptr}) {
+    if (image == nullptr) continue;
+    if (Status status = make(*image, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
       return status;
   }
   for (Image& image : velocities) {
@@ -111,6 +116,7 @@ void ResolveService::Impl::warm_up() {
   if (resolve) resolve->warm_up(queue);
   if (reproject) reproject->warm_up(queue);
   if (temporal) temporal->warm_up(queue);
+  if (sharpen) sharpen->warm_up(queue);
   if (blur) blur->warm_up(queue);
   if (present) present->warm_up(queue);
   for (auto& [format, pass] : clears)
@@ -188,6 +194,27 @@ int ResolveService::Impl::accumulate(const FrameInputs& inputs, const ImageView&
   return slot.report.pass_count - first;
 }
 
+// The optional outputs, from the resolved picture.
+void ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs,
+                                const ImageView& sharp, Counter count, FrameRing::Slot& slot,
+                                cl::Event* event) {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  const ResolveSettings& settings = plan.settings;
+  const ImageView* picture = &sharp;
+  if (blur && (outputs.blurred || outputs.presented)) {
+    picture = outputs.blurred ? &outputs.blurred : &blurred.view();
+    blur->enqueue(queue, tables, inputs, sharp, *picture, event);
+    event += MotionBlurPass::kKernels.size();
+    add_pass(slot, MotionBlurPass::kKernels[0], motion_tiles_bytes(settings, inputs.render));
+    add_pass(slot, MotionBlurPass::kKernels[1], motion_neighbours_bytes(settings));
+    add_pass(slot, MotionBlurPass::kKernels[2], motion_blur_bytes(settings, inputs.render));
+  }
+  if (outputs.presented) {
+    present->enqueue(queue, *picture, inputs.exposure, outputs.presented, count, event++);
+    add_pass(slot, PresentPass::kernel_name(), present_bytes(settings));
+  }
+}
+
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
                                    FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
@@ -197,7 +224,8 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
   const cl_uint zero = 0;
   queue.enqueueFillBuffer(counter, zero, index * sizeof(zero), sizeof(zero));
 
-  const ImageView& target = outputs.resolved ? outputs.resolved : resolved.view();
+  const ImageView& resolved_view = outputs.resolved ? outputs.resolved : resolved.view();
+  const ImageView& target = sharpen ? unsharpened.view() : resolved_view;
   cl::Event* event = slot.passes.data();
   if (velocity) {
     velocity->enqueue(queue, inputs, inputs.velocity, event++);
@@ -212,19 +240,11 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs
     scale->enqueue(queue, tables, inputs, target, count, event++);
     add_pass(slot, scale->kernel_name(inputs.render), scale_bytes(settings, inputs.render));
   }
-  const ImageView* picture = &target;
-  if (blur && (outputs.blurred || outputs.presented)) {
-    picture = outputs.blurred ? &outputs.blurred : &blurred.view();
-    blur->enqueue(queue, tables, inputs, target, *picture, event);
-    event += MotionBlurPass::kKernels.size();
-    add_pass(slot, MotionBlurPass::kKernels[0], motion_tiles_bytes(settings, inputs.render));
-    add_pass(slot, MotionBlurPass::kKernels[1], motion_neighbours_bytes(settings));
-    add_pass(slot, MotionBlurPass::kKernels[2], motion_blur_bytes(settings, inputs.render));
+  if (sharpen) {
+    sharpen->enqueue(queue, target, resolved_view, event++);
+    add_pass(slot, SharpenPass::kernel_name(), sharpen_bytes(settings));
   }
-  if (outputs.presented) {
-    present->enqueue(queue, *picture, inputs.exposure, outputs.presented, count, event++);
-    add_pass(slot, PresentPass::kernel_name(), present_bytes(settings));
-  }
+  show(inputs, outputs, resolved_view, count, slot, event);
   queue.enqueueReadBuffer(counter, CL_FALSE, index * sizeof(zero), sizeof(slot.non_finite), &slot.non_finite,
                           nullptr, &slot.done);
   queue.flush();

@@ -5,6 +5,16 @@
 #include "tools/option_choice.h"
 
 namespace quincunx::tools {
+namespace {
+
+// CLI::Range takes NaN for a number of any range.
+std::string complain_beyond_one(const std::string& text) {
+  float part = 0;
+  if (CLI::detail::lexical_cast(text, part) && part >= 0 && part <= 1) return {};
+  return fmt::format("'{}' is no number from 0 to 1", text);
+}
+
+}  // namespace
 
 void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
   static const std::map<std::string, ToneMap> kToneMaps = {
@@ -40,10 +50,14 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
       ->check(CLI::IsMember({4, 8, 16, 32, 64}).description(""))
       ->capture_default_str()
       ->type_name("N");
+  app.add_option("--sharpen", settings.sharpness, "How far the resolved picture is sharpened: 0 (not) to 1")
+      ->check(complain_beyond_one)
+      ->capture_default_str()
+      ->type_name("AMOUNT");
   app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
                "Let catmull-rom and lanczos2 overshoot at edges");
   app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(complain_beyond_one)
       ->capture_default_str()
       ->type_name("A");
   app.add_flag("!--still-noise", settings.noise_moves, "The same noise in every frame");
@@ -52,11 +66,11 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
-  return fmt::format("{}, view {}, velocity weight {}, ringing {}, grain {}, noise {}, blur {} of {} samples",
-                     method_name(settings), name_of(settings.temporal.view),
-                     settings.quincunx.velocity_weight, settings.clamp_ringing ? "clamped" : "free",
-                     settings.grain, settings.noise_moves ? "moves" : "still", settings.blur.shutter,
-                     settings.blur.samples);
+  return fmt::format(
+      "{}, view {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness {}, blur {} of {} samples",
+      method_name(settings), name_of(settings.temporal.view), settings.quincunx.velocity_weight,
+      settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
+      settings.sharpness, settings.blur.shutter, settings.blur.samples);
 }
 
 }  // namespace quincunx::tools

@@ -299,6 +299,16 @@ typedef struct MotionParams {
 } MotionParams;
 QUINCUNX_CHECK_SIZE(MotionParams, 68);
 
+typedef struct SharpenParams {
+  int width;
+  int height;
+  TexelLayout source;
+  TexelLayout output;
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  float sharpness;       // in [0, 1]
+} SharpenParams;
+QUINCUNX_CHECK_SIZE(SharpenParams, 32);
+
 typedef struct PresentParams {
   int width;
   int height;

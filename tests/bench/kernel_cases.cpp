@@ -12,6 +12,7 @@
 #include "pass_reproject.h"
 #include "pass_resolve.h"
 #include "pass_scale.h"
+#include "pass_sharpen.h"
 #include "pass_temporal.h"
 #include "pass_velocity.h"
 
@@ -182,6 +183,21 @@ void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
   add_blur(cases, stage, scene, 0, " mixed", [](int x, int) { return x / 24 % 2 == 0 ? 24 : -8; });
 }
 
+void add_sharpens(std::vector<Case>& cases, Stage& stage) {
+  for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
+    const ResolveSettings settings{.output = stage.output(), .resolved = resolved, .sharpness = .5f};
+    auto pass = std::make_shared<SharpenPass>(stage.impl(), settings);
+    Stage::add(cases,
+               {.name = fmt::format("sharpen {}", resolved == PixelFormat::kRGBA32F ? "float" : "half"),
+                .wanted = 2,
+                .bytes = sharpen_bytes(settings)},
+               [pass, &stage, source = stage.noise(stage.output(), resolved, 0),
+                sharpened = stage.noise(stage.output(), resolved, 1)](cl::Event* event) {
+                 pass->enqueue(stage.impl().queue, source, sharpened, event);
+               });
+  }
+}
+
 void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
@@ -257,6 +273,7 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
 }
 
 void add_output_cases(std::vector<Case>& cases, Stage& stage) {
+  add_sharpens(cases, stage);
   add_presents(cases, stage);
   add_clears(cases, stage);
 }

@@ -36,7 +36,7 @@ check("" "AxisTables.*" "Clear*"
   "*Velocity.ATight*" "*Velocity.Poison*")
 # Optimised, the first stops oclgrind at hints about memory that its compiler puts in where it inlines, and of the other it
 # computes the minimum of int8 wrongly.
-check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*"
+check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"
   "*Temporal.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F"

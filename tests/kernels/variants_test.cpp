@@ -54,8 +54,8 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                                            "scale_noise", "scale_noise_offset", "resolve_quincunx",
                                            "reproject", "resolve_reprojected", "temporal_tiles",
                                            "temporal_light", "resolve_temporal", "temporal_display",
-                                           "motion_tiles", "motion_neighbours", "motion_blur", "present",
-                                           "velocity_from_depth"),
+                                           "motion_tiles", "motion_neighbours", "motion_blur", "sharpen",
+                                           "present", "velocity_from_depth"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -86,6 +86,7 @@ TEST(Variants, EveryOptionStringOfTheHostIsARow) {
         plan.settings = {.colour = colour, .resolved = resolved, .storage = storage};
         expect_row("scale_point", scale_options(plan.settings));
         expect_row("scale_bilinear", scale_options(plan.settings));
+        expect_row("sharpen", sharpen_options(plan.settings));
         for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
           plan.settings.tone_map = tone_map;
           for (const bool dither : {false, true}) {

@@ -74,6 +74,8 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--scale 0.5 --scale-path sweep", 2, "--scale");
   expect_refused("--method magic", 2, "magic");
   expect_refused("--method quincunx:median", 2, "quincunx:mean");
+  for (const char* amount : {"-0.1", "1.1", "nan", "much"})
+    expect_refused(std::string("--scene chart --sharpen ") + amount, 2, "--sharpen");
   expect_refused("--velocity-weight -1", 2, "--velocity-weight");
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");

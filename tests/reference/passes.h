@@ -25,6 +25,10 @@ enum class Weight { kMean, kVelocity };
 Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool nearest,
                          bool reactive, double k, int output_width, int output_height);
 
+// Each colour channel moves away from the mean of its four neighbours and stays in the range of the
+// five. `largest` is of all five.
+Picture sharpen(const Picture& picture, double sharpness);
+
 enum class Curve { kClamp, kReinhard, kAces };
 
 // 255 * the sRGB encoding of tone-mapped colour, and 255 * alpha, before rounding.

@@ -38,6 +38,8 @@ TEST_F(Refusal, WrongUsage) {
   expect_refused(kRun + "--no-such-option", 2, "--no-such-option");
   expect_refused(kRun + "--output 640", 2, "WIDTHxHEIGHT");
   expect_refused(kRun + "--method magic", 2, "'magic' is none of");
+  for (const char* amount : {"-0.1", "1.1", "nan", "much"})
+    expect_refused(kRun + "--sharpen " + amount, 2, "--sharpen");
   expect_refused(kRun + "--frames 5-1", 2, "'5-1'");
   expect_refused(kRun + "--frames 1-x", 2, "'1-x'");
   expect_refused(kRun + "--velocity u", 2, "'u'");

@@ -270,6 +270,18 @@ TEST_F(Run, BlurIsOfTheLinearPicture) {
   EXPECT_NE(result.err.find("nothing is blurred"), std::string::npos) << result.err;
 }
 
+TEST_F(Run, SharpeningIsOfTheLinearPictureAndNamedInIt) {
+  write_frames(1, 2);
+  resolve_to("plain", "");
+  resolve_to("off", "--sharpen 0");
+  resolve_to("sharp", "--sharpen 0.5");
+  EXPECT_EQ(channel(output(2, "off"), "R"), channel(output(2, "plain"), "R"));
+  EXPECT_NE(channel(output(2, "sharp"), "R"), channel(output(2, "plain"), "R"));
+  const std::string how =
+      std::get<std::string>(image(output(2, "sharp")).attribute("quincunx:resolve")->value);
+  EXPECT_NE(how.find("sharpness 0.5"), std::string::npos) << how;
+}
+
 TEST_F(Run, AttributesOfTheResultSayWhatItIs) {
   testing::FrameFile file = frame(7);
   file.attributes.push_back({"FramesPerSecond", tools::Rational{24, 1}});

@@ -107,6 +107,34 @@ TEST(ResolvePlan, PresentIsThereOnlyWhenWanted) {
   EXPECT_FALSE(has_buffer(plan({}, wanted), "presented"));
 }
 
+TEST(ResolvePlan, SharpenIsThereOnlyWhenWanted) {
+  ResolveSettings wanted = settings(Method::kTemporal);
+  const ResolvePlan without = plan({}, wanted);
+  EXPECT_FALSE(has_pass(without, "sharpen"));
+  EXPECT_FALSE(has_buffer(without, "unsharpened"));
+  EXPECT_TRUE(leaves_out(without, "sharpen"));
+  wanted.sharpness = .25f;
+  const ResolvePlan with = plan({}, wanted);
+  EXPECT_TRUE(has_pass(with, "sharpen"));
+  EXPECT_TRUE(has_buffer(with, "unsharpened"));
+  EXPECT_FALSE(leaves_out(with, "sharpen"));
+  EXPECT_NE(with.explain().find("sharpness 0.25"), std::string::npos) << with.explain();
+  wanted.temporal.view = TemporalView::kConfidence;
+  EXPECT_FALSE(has_pass(plan({}, wanted), "sharpen")) << "what is known is no picture";
+  EXPECT_TRUE(leaves_out(plan({}, wanted), "sharpen"));
+}
+
+TEST(ResolvePlan, SharpnessBeyondZeroToOneIsRefused) {
+  for (const float bad : {-.01f, 1.01f, std::nanf(""), INFINITY}) {
+    ResolveSettings wanted = settings(Method::kBilinear);
+    wanted.sharpness = bad;
+    const auto result = plan_for({}, wanted);
+    ASSERT_FALSE(result.ok()) << bad;
+    EXPECT_NE(result.status().message().find("settings.sharpness"), std::string::npos);
+    EXPECT_NE(result.status().message().find("[0, 1]"), std::string::npos);
+  }
+}
+
 TEST(ResolvePlan, EachBufferSaysHowItFollowsTheResolution) {
   ResolveSettings wanted = settings(Method::kQuincunx);
   wanted.target = {2560, 1440};

@@ -182,10 +182,11 @@ TEST(SteadyFrame, QuincunxWithCameraVelocity) {
   run_steady_frames({.moving_objects = false, .transparents = false}, {.method = Method::kQuincunx});
 }
 
-TEST(SteadyFrame, ReprojectedWithMotionBlur) {
+TEST(SteadyFrame, ReprojectedSharpenedWithMotionBlur) {
   run_steady_frames({}, {.method = Method::kQuincunx,
                          .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
-                         .blur = {.shutter = .5f}});
+                         .blur = {.shutter = .5f},
+                         .sharpness = .5f});
 }
 TEST(SteadyFrame, TemporalWithVelocityTarget) {
   run_steady_frames({}, {.method = Method::kTemporal});

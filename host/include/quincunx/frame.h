@@ -42,7 +42,7 @@ struct FrameInputs {
 
 // Where the results go. At least one is needed; each has the plan's output extent.
 struct FrameOutputs {
-  ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent
+  ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent; sharpened as planned
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
   ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
 };

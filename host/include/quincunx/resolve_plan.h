@@ -113,6 +113,7 @@ struct ResolveSettings {
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
+  float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
 };
 
 // Where the resolve finds velocity.
@@ -174,6 +175,7 @@ struct ResolvePlan {
   bool reprojects() const;                  // kReprojected, whether something moves or not
   bool follows() const;                     // where each sample was in the previous frame is computed
   bool weighs_residual() const;             // kReprojected reads the previous frame's velocity too
+  bool sharpens() const;                    // sharpness is wanted, and of a picture
   bool blurs() const;                       // motion blur is wanted, and something moves
   std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ
   std::string explain() const;              // a page of plain text
