@@ -53,15 +53,12 @@ static inline float16 sharpened(Cross cross, float16 contrast, float sharpness) 
   return select(moved, cross.centre, (int16)(alpha, alpha, alpha, alpha));
 }
 
-static inline void store_block(OUTPUT_TEXELS output, const SharpenParams* params, int x, int y, int end, float16 colour) {
-  const FourPixels pixels = {colour.s0123, colour.s4567, colour.s89ab, colour.scdef};
-  store_four(output, params->output, x, y, end, pixels);
-}
-
 static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output, const SharpenParams* params, int x, int y,
                                    int end) {
   const Cross cross = load_careful_cross(source, params, x, y);
-  store_block(output, params, x, y, end, sharpened(cross, contrast_of(cross), params->sharpness));
+  const float16 colour = sharpened(cross, contrast_of(cross), params->sharpness);
+  const FourPixels pixels = {colour.s0123, colour.s4567, colour.s89ab, colour.scdef};
+  store_four(output, params->output, x, y, end, pixels);
 }
 
 __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output) {
@@ -84,7 +81,7 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
                          load_resolved4(source, layout, x, below)};
     const float16 contrast = contrast_of(cross);
     largest = max(largest, as_int16(contrast) & 0x7fffffff);
-    store_block(output, &params, x, y, end, sharpened(cross, contrast, params.sharpness));
+    store_output4(output, params.output, x, y, sharpened(cross, contrast, params.sharpness));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;

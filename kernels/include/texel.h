@@ -311,3 +311,19 @@ static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout,
   return vload16(0, texels + 4 * index);
 #endif
 }
+
+// The same texels of an output; none beyond the largest half. Halves go through private memory, as they come.
+static inline void store_output4(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, float16 value) {
+  const int index = texel_index(layout, x, y);
+  WILL_WRITE(texels + 4 * (index + kOutputAhead));
+#if OUTPUT_FORMAT == HALF
+  uint4 lower, upper;
+  vstore_half8(value.lo, 0, (__private half*)&lower);
+  vstore_half8(value.hi, 0, (__private half*)&upper);
+  __global uint* words = (__global uint*)texels + 2 * index;
+  vstore4(lower, 0, words);
+  vstore4(upper, 1, words);
+#else
+  vstore16(value, 0, texels + 4 * index);
+#endif
+}
