@@ -11,6 +11,6 @@ source scripts/packages.sh
 ensure_packages "${build_packages[@]}" "${run_packages[@]}"
 configure_and_build release quincunx-bench
 mkdir -p build/report docs/report
-build/release/bin/quincunx-bench --output 480x270 --frames 3 --rounds 4 --truth 6 "$@" --out build/report
+build/release/bin/quincunx-bench --output 480x270 --scales 0.5,0.71,1 --frames 3 --rounds 4 --truth 6 "$@" --out build/report
 cp build/report/bench.json build/report/bench.svg docs/report/
 say "docs/report is new; the page with all plots, tables and pictures: build/report/bench.html"

@@ -53,10 +53,12 @@ void add_stage_options(CLI::App& app, DumpOptions& options) {
                  "Supersampled truth, N x N samples a pixel (default: 8 where a stage needs it)")
       ->check(CLI::Range(1, 64))
       ->type_name("N");
-  app.add_option("--warm-up", options.warm_up,
-                 "Frames resolved before the one that is shown, for its history")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  app.add_option(
+         "--warm-up", options.warm_up,
+         fmt::format("Frames resolved before the one that is shown, for its history (default: 1; {} of "
+                     "methods that accumulate)",
+                     kAccumulatedFrames))
+      ->check(CLI::NonNegativeNumber);
   auto* sequence =
       app.add_option("--sequence", options.sequence,
                      "Instead: write the whole run in the exchange format, and its truth with --truth")
@@ -90,6 +92,8 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? tools::kDone : tools::kUsage;
   }
+  if (app.count("--warm-up") == 0 && options.resolve.method == Method::kTemporal)
+    options.warm_up = kAccumulatedFrames;
   return std::nullopt;
 }
 

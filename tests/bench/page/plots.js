@@ -26,10 +26,10 @@ const kMarks = [
   (r) => `M${-r},${-r}H${r}V${r}H${-r}Z`,
   (r) => `M0,${-r * 1.2}L${r * 1.15},${r * 0.9}H${-r * 1.15}Z`,
 ];
-// One mark for each family: what stands before a colon.
-const families = unique(methodNames.map((name) => name.split(":")[0]));
-const familyOf = (name) => (name.includes(":") ? 1 + (families.indexOf(name.split(":")[0]) % 1) : 0);
-const markOf = (name, r) => kMarks[(familyOf(name) + 2 * Math.floor(methodNames.indexOf(name) / kColours)) % kMarks.length](r);
+// One mark for each family, what stands before a colon, and one for all methods that have none.
+const families = unique(methodNames.map((name) => (name.includes(":") ? name.split(":")[0] : "")).filter(Boolean));
+const familyOf = (name) => 1 + families.indexOf(name.split(":")[0]);
+const markOf = (name, r) => kMarks[familyOf(name) % kMarks.length](r);
 
 // Where labels go: the first place that touches neither a point nor a label, nearest places first.
 function placeLabels(points, x, y, area) {

@@ -18,8 +18,9 @@ struct BenchOptions : scenes::PictureOptions {
   std::vector<std::string> scenes;   // empty: all that are built in
   std::vector<std::string> methods;  // empty: all
   std::vector<double> scales = {0.35, 0.5, 0.71, 0.85, 1};
-  int warm_up = 2;           // frames before the measured ones, and before the timed ones
-  int history_warm_up = 24;  // before the measured ones, of methods that accumulate; at least warm_up
+  int warm_up = 2;  // frames before the measured ones, and before the timed ones
+  // Before the measured ones, of methods that accumulate; at least warm_up.
+  int history_warm_up = scenes::kAccumulatedFrames;
   int rounds = 5;
   int truth = 8;  // samples along each side of a pixel
   bool quick = false;

@@ -28,11 +28,36 @@ struct Axis {
   double operator()(double value) const { return from + (value - low) / (high - low) * (to - from); }
 };
 
+// Of costs, which lie between one copy and some tens: equal quotients are equally far apart.
+struct CostAxis {
+  Axis logarithm;
+  double operator()(double cost) const { return logarithm(std::log(cost)); }
+};
+
 // Some room around the values, at the end more, for labels.
 Axis axis_of(const std::vector<double>& values, double from, double to, double room_at_end) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double span = std::max(*high - *low, 0.1 * *high + 1e-6);
   return {std::max(0.0, *low - 0.12 * span), *high + room_at_end * span, from, to};
+}
+
+CostAxis cost_axis_of(const std::vector<double>& costs, double from, double to) {
+  const auto [low, high] = std::minmax_element(costs.begin(), costs.end());
+  constexpr double kRoomBefore = 1.15;
+  constexpr double kRoomAfter = 2.2;  // for labels
+  return {{std::log(*low / kRoomBefore), std::log(*high * kRoomAfter), from, to}};
+}
+
+// 1, 2 or 5 times a power of ten, as far as the axis goes.
+std::vector<double> cost_ticks(const CostAxis& axis) {
+  std::vector<double> ticks;
+  for (double power = 0.01; power < 1e6; power *= 10) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const double tick = std::log(step * power);
+      if (tick >= axis.logarithm.low && tick <= axis.logarithm.high) ticks.push_back(step * power);
+    }
+  }
+  return ticks;
 }
 
 // The step of 1, 2 or 5 that gives about six ticks.
@@ -49,10 +74,10 @@ std::string text(double x, double y, const char* kind, const std::string& words)
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, kind, words);
 }
 
-std::string grid(const Axis& x, const Axis& y) {
+std::string grid(const CostAxis& x, const Axis& y) {
   std::string svg;
-  const double step_x = tick_step(x), step_y = tick_step(y);
-  for (double tick = std::ceil(x.low / step_x) * step_x; tick <= x.high; tick += step_x) {
+  const double step_y = tick_step(y);
+  for (const double tick : cost_ticks(x)) {
     svg += fmt::format("<path class=\"grid\" d=\"M{:.1f},{}V{}\"/>\n", x(tick), kTop, kBottom);
     svg += text(x(tick), kBottom + 18, "class=\"quiet\" text-anchor=\"middle\"", fmt::format("{:.3g}", tick));
   }
@@ -64,7 +89,7 @@ std::string grid(const Axis& x, const Axis& y) {
 }
 
 // Steps along the methods that nothing beats, cheapest first.
-std::string front(std::vector<MethodMean> means, const Axis& x, const Axis& y) {
+std::string front(std::vector<MethodMean> means, const CostAxis& x, const Axis& y) {
   std::erase_if(means, [](const MethodMean& mean) { return !mean.on_front; });
   std::sort(means.begin(), means.end(),
             [](const MethodMean& a, const MethodMean& b) { return a.cost < b.cost; });
@@ -74,7 +99,7 @@ std::string front(std::vector<MethodMean> means, const Axis& x, const Axis& y) {
   return fmt::format("<path class=\"front\" d=\"{}H{}\"/>\n", path, kRight);
 }
 
-std::string points(const std::vector<MethodMean>& means, const Axis& x, const Axis& y) {
+std::string points(const std::vector<MethodMean>& means, const CostAxis& x, const Axis& y) {
   std::string svg;
   std::vector<Box> taken;
   for (const MethodMean& mean : means)
@@ -119,7 +144,7 @@ std::string plot_of(const BenchResult& result) {
     costs.push_back(mean.cost);
     errors.push_back(mean.flip);
   }
-  const Axis x = axis_of(costs, kLeft, kRight, 0.3);
+  const CostAxis x = cost_axis_of(costs, kLeft, kRight);
   const Axis y = axis_of(errors, kBottom, kTop, 0.12);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
@@ -131,9 +156,9 @@ std::string plot_of(const BenchResult& result) {
       fmt::format("Error over cost at scale {}, {}x{}, mean of {} scenes", scale,
                   result.conditions.output.width, result.conditions.output.height, result.scenes.size()));
   svg += text(kRight, 24, "class=\"quiet\" text-anchor=\"end\"", "FLIP against truth: down is better");
-  svg +=
-      text(kRight, kHeight - 12, "class=\"quiet\" text-anchor=\"end\"",
-           fmt::format("cost in copies of the picture, by {}: left is better", cost_clock(result.machine)));
+  svg += text(kRight, kHeight - 12, "class=\"quiet\" text-anchor=\"end\"",
+              fmt::format("cost in copies of the picture, by {}, logarithmic: left is better",
+                          cost_clock(result.machine)));
   return svg + "</svg>\n";
 }
 
