@@ -55,17 +55,80 @@ static inline Display display_of(TemporalTile tile) {
   return display;
 }
 
-static inline float4 smooth_little_known(HISTORY_TEXELS history, const TemporalDisplayParams* params, int x, int y, float4 centre,
-                                         float confidence) {
-  const float other = NEIGHBOUR_WEIGHT * bell(2.0f * confidence);
-  float4 sum = centre * (confidence + CENTRE_WEIGHT);
-  for (int i = 0; i < 9; ++i) {
-    if (i == 4) continue;
-    const int column = clamp(x + i % 3 - 1, 0, params->output_width - 1), row = clamp(y + i / 3 - 1, 0, params->output_height - 1);
-    sum += other * load_history(history, row * params->output_width + column);
+// What history holds of eight pixels, and what is shown of it.
+typedef struct Pixels {
+  EightTexels own, shown;
+} Pixels;
+
+// Of the tile's pixels from (x, y) on, anywhere; beyond the edge the outermost once more.
+static inline Pixels gather_pixels(HISTORY_TEXELS history, const TemporalDisplayParams* params, const Display* display, int x, int y) {
+  const int width = params->output_width, height = params->output_height;
+  float4 own[8], shown[8];
+  for (int i = 0; i < 8; ++i) {
+    const int column = min(x + i, width - 1);
+    own[i] = load_history(history, y * width + column);
+    shown[i] = own[i];
+    if (display->apart)
+      shown[i] = sample_history(history, width, height, column - display->step_x, y - display->step_y, false, display->wx, display->wy);
   }
-  return sum / (confidence + CENTRE_WEIGHT + 8.0f * other);
+  const Pixels pixels = {{vload16(0, (const float*)own), vload16(1, (const float*)own)},
+                         {vload16(0, (const float*)shown), vload16(1, (const float*)shown)}};
+  return pixels;
 }
+
+// The same where all texels that it needs are inside.
+static inline Pixels load_pixels(HISTORY_TEXELS history, int width, const Display* display, int x, int y) {
+  const int index = y * width + x;
+  const EightTexels own = {load_history4(history, index), load_history4(history, index + 4)};
+  Pixels pixels = {own, own};
+  if (display->apart)
+    pixels.shown = sample_history_row(history, width, x - display->step_x, y - display->step_y, display->wx, display->wy);
+  return pixels;
+}
+
+#if SMOOTH
+// The sums of each pixel's eight neighbours.
+static inline EightTexels gather_around(HISTORY_TEXELS history, const TemporalDisplayParams* params, int x, int y) {
+  float4 sums[8];
+  for (int i = 0; i < 8; ++i) {
+    sums[i] = (float4)(0.0f);
+    for (int j = 0; j < 9; ++j) {
+      const int column = clamp(x + i + j % 3 - 1, 0, params->output_width - 1);
+      const int row = clamp(y + j / 3 - 1, 0, params->output_height - 1);
+      if (j != 4) sums[i] += load_history(history, row * params->output_width + column);
+    }
+  }
+  const EightTexels around = {vload16(0, (const float*)sums), vload16(1, (const float*)sums)};
+  return around;
+}
+
+// The same where all of them are inside.
+static inline EightTexels load_around(HISTORY_TEXELS history, int width, int x, int y) {
+  const int index = y * width + x - 1;
+  const TwelveTexels above = load_history12(history, index - width), same = load_history12(history, index);
+  const TwelveTexels below = load_history12(history, index + width);
+  const TwelveTexels both = {above.first + below.first, above.second + below.second, above.third + below.third};
+  const EightTexels middle = next_texels(both), right = second_texels(both), beside = second_texels(same);
+  const EightTexels around = {both.first + right.left + middle.left + (same.first + beside.left),
+                              both.second + right.right + middle.right + (same.second + beside.right)};
+  return around;
+}
+
+static inline float16 to_four_texels(float4 value) {
+  return (float16)((float4)(value.x), (float4)(value.y), (float4)(value.z), (float4)(value.w));
+}
+
+static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, float8 confidence) {
+  const float8 little = select((float8)(0.0f), (float8)(NEIGHBOUR_WEIGHT), confidence < LITTLE);
+  const float8 other = little * bell8(2.0f * confidence);
+  const float8 own = confidence + CENTRE_WEIGHT;
+  const float8 scale = 1.0f / (own + 8.0f * other);
+  const float8 own_part = select((float8)(1.0f), own * scale, other > 0.0f), other_part = other * scale;
+  const EightTexels smooth = {pixels.left * to_four_texels(own_part.lo) + around.left * to_four_texels(other_part.lo),
+                              pixels.right * to_four_texels(own_part.hi) + around.right * to_four_texels(other_part.hi)};
+  return smooth;
+}
+#endif
 
 #if ALPHA
 static inline Positions position_at(__global const int* positions, int texel, int fraction, int last) {
@@ -85,6 +148,13 @@ static inline float alpha_at(const TemporalDisplayParams* params, COLOUR_TEXELS 
 }
 #endif
 
+#define EIGHT(step)                                                                                             \
+  step(left.s0123, 0); step(left.s4567, 1); step(left.s89ab, 2); step(left.scdef, 3);                           \
+  step(right.s0123, 4); step(right.s4567, 5); step(right.s89ab, 6); step(right.scdef, 7)
+
+#define STORE(part, i) \
+  if (x + i < end) store_output(output, params.output, x + i, y, (float4)(pixels.shown.part.xyz, alphas[i]))
+
 __kernel void temporal_display(const TemporalDisplayParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const TemporalTile* tiles, HISTORY_TEXELS history, OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
@@ -97,29 +167,25 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
   const int rows = 2 * params.columns;
   const Positions row = position_at(positions, rows + y, rows + height + y, params.frame0.height - 1);
 #endif
-  for (int start = first; start < end; start += kTemporalTile) {
-    const Display display = display_of(tiles[y / kTemporalTile * params.tiles_x + start / kTemporalTile]);
+  for (int x = first; x < end; x += kTemporalTile) {
+    const Display display = display_of(tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile]);
     const int y0 = y - display.step_y;
-    for (int x = start; x < min(start + kTemporalTile, end); ++x) {
-      float4 pixel = load_history(history, y * width + x);
+    const bool inside = x >= display.step_x && y0 >= 0 && x + 11 <= width && y0 + 4 <= height;
+    Pixels pixels = inside ? load_pixels(history, width, &display, x, y) : gather_pixels(history, &params, &display, x, y);
 #if SMOOTH
-      const float confidence = pixel.w;
-#endif
-      const int x0 = x - display.step_x;
-      if (display.apart) {
-        const bool inside = x0 >= 0 && y0 >= 0 && x0 + 4 <= width && y0 + 4 <= height;
-        pixel = sample_history(history, width, height, x0, y0, inside, display.wx, display.wy);
-      }
-#if SMOOTH
-      if (confidence < LITTLE) pixel = smooth_little_known(history, &params, x, y, pixel, confidence);
-#endif
-#if ALPHA
-      const Positions column = position_at(positions, x, params.columns + x, params.frame0.width - 1);
-      const float alpha = alpha_at(&params, colour, row, column);
-#else
-      const float alpha = 1.0f;
-#endif
-      store_output(output, params.output, x, y, (float4)(pixel.xyz, alpha));
+    const float8 confidence = (float8)(pixels.own.left.s37bf, pixels.own.right.s37bf);
+    if (any_lane(confidence < LITTLE)) {
+      const EightTexels around = inside ? load_around(history, width, x, y) : gather_around(history, &params, x, y);
+      pixels.shown = smooth_little_known(pixels.shown, around, confidence);
     }
+#endif
+    float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+#if ALPHA
+    for (int i = 0; i < min(end - x, 8); ++i) {
+      const Positions column = position_at(positions, x + i, params.columns + x + i, params.frame0.width - 1);
+      alphas[i] = alpha_at(&params, colour, row, column);
+    }
+#endif
+    EIGHT(STORE);
   }
 }

@@ -80,6 +80,13 @@ static inline float4 rectify(float4 history, float confidence, float strength, c
 }
 
 // (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
+static inline float8 bell8(float8 t) {
+  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
+  const float8 square = rest * rest;
+  const float8 fourth = square * square;
+  return fourth * fourth;
+}
+
 static inline float bell(float t) {
   const float rest = max(1.0f - 0.125f * t, 0.0f);
   const float square = rest * rest;

@@ -92,3 +92,79 @@ static inline float4 sample_history(HISTORY_TEXELS texels, int width, int height
   return sample_neighbourhood(around, x, y);
 #endif
 }
+
+// Eight pixels of a row, in fours.
+typedef struct EightTexels {
+  float16 left, right;
+} EightTexels;
+
+// Texels of a row, blended or compared; of the last four only the first three count.
+typedef struct TwelveTexels {
+  float16 first, second, third;
+} TwelveTexels;
+
+static inline TwelveTexels load_history12(HISTORY_TEXELS texels, int index) {
+  const TwelveTexels row = {load_history4(texels, index), load_history4(texels, index + 4), load_history4(texels, index + 8)};
+  return row;
+}
+
+static inline EightTexels next_texels(TwelveTexels row) {
+  const EightTexels next = {(float16)(row.first.s456789ab, row.first.scdef, row.second.s0123),
+                            (float16)(row.second.s456789ab, row.second.scdef, row.third.s0123)};
+  return next;
+}
+
+static inline EightTexels second_texels(TwelveTexels row) {
+  const EightTexels next = {(float16)(row.first.s89abcdef, row.second.s01234567),
+                            (float16)(row.second.s89abcdef, row.third.s01234567)};
+  return next;
+}
+
+#if TAPS == 16
+static inline EightTexels third_texels(TwelveTexels row) {
+  const EightTexels next = {(float16)(row.first.scdef, row.second.s0123, row.second.s456789ab),
+                            (float16)(row.second.scdef, row.third.s0123, row.third.s456789ab)};
+  return next;
+}
+
+static inline float16 blend_outer(float16 row0, float16 row1, float16 row2, float16 row3, float4 y) {
+  const float16 outer = MULTIPLY_ADD(row0, (float16)(y.x), row3 * y.w);
+  return MULTIPLY_ADD(row1, (float16)(y.y), MULTIPLY_ADD(row2, (float16)(y.z), outer));
+}
+#endif
+
+static inline float16 blend_inner(float16 row1, float16 row2, float4 y) {
+  return MULTIPLY_ADD(row1, (float16)(y.y), row2 * y.z);
+}
+
+// What sample_history gives for eight places in a row that lie alike among their texels: the first from (x0, y0) on. All
+// twelve columns are inside.
+static inline EightTexels sample_history_row(HISTORY_TEXELS texels, int width, int x0, int y0, float4 x, float4 y) {
+  const int index = y0 * width + x0;
+  const TwelveTexels row1 = load_history12(texels, index + width), row2 = load_history12(texels, index + 2 * width);
+#if TAPS == 4
+  const TwelveTexels rows = {blend_inner(row1.first, row2.first, y), blend_inner(row1.second, row2.second, y),
+                             blend_inner(row1.third, row2.third, y)};
+  const EightTexels near = next_texels(rows), far = second_texels(rows);
+  const EightTexels sum = {MULTIPLY_ADD(near.left, (float16)(x.y), far.left * x.z),
+                           MULTIPLY_ADD(near.right, (float16)(x.y), far.right * x.z)};
+  return sum;
+#else
+  const TwelveTexels row0 = load_history12(texels, index), row3 = load_history12(texels, index + 3 * width);
+  const TwelveTexels rows = {blend_outer(row0.first, row1.first, row2.first, row3.first, y),
+                             blend_outer(row0.second, row1.second, row2.second, row3.second, y),
+                             blend_outer(row0.third, row1.third, row2.third, row3.third, y)};
+  const TwelveTexels low = {min(row1.first, row2.first), min(row1.second, row2.second), min(row1.third, row2.third)};
+  const TwelveTexels high = {max(row1.first, row2.first), max(row1.second, row2.second), max(row1.third, row2.third)};
+  const EightTexels at1 = next_texels(rows), at2 = second_texels(rows), at3 = third_texels(rows);
+  const EightTexels low1 = next_texels(low), low2 = second_texels(low);
+  const EightTexels high1 = next_texels(high), high2 = second_texels(high);
+  const float16 left = MULTIPLY_ADD(rows.first, (float16)(x.x), at2.left * x.z) +
+                       MULTIPLY_ADD(at1.left, (float16)(x.y), at3.left * x.w);
+  const float16 right = MULTIPLY_ADD(rows.second, (float16)(x.x), at2.right * x.z) +
+                        MULTIPLY_ADD(at1.right, (float16)(x.y), at3.right * x.w);
+  const EightTexels held = {min(max(left, min(low1.left, low2.left)), max(high1.left, high2.left)),
+                            min(max(right, min(low1.right, low2.right)), max(high1.right, high2.right))};
+  return held;
+#endif
+}

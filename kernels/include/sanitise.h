@@ -45,3 +45,10 @@ static inline bool any_reached_infinity(int4 largest) {
 static inline uint count_bits(uint bits, int count) {
   return popcount(bits & ((1u << min(count, 4)) - 1u));
 }
+
+// Of lanes that are 0 or -1 each.
+static inline bool any_lane(int8 lanes) {
+  const long4 longs = as_long4(lanes);
+  const long2 pairs = longs.lo | longs.hi;
+  return (pairs.x | pairs.y) != 0;
+}

@@ -48,12 +48,6 @@ typedef struct Evidence {
   float8 doubt;  // in [0, 1]: how far history is brought into the range of this frame
 } Evidence;
 
-static inline bool any_lane(int8 lanes) {
-  const long4 longs = as_long4(lanes);
-  const long2 pairs = longs.lo | longs.hi;
-  return (pairs.x | pairs.y) != 0;
-}
-
 #if MOTION
 #if TRUST == BILINEAR
 // Of sample (x, y) the trust; NaN is none.
