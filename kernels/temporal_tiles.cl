@@ -54,6 +54,8 @@ static inline float luma(float4 colour) {
   return max(0.25f * (colour.x + colour.z) + 0.5f * colour.y, 0.0f);
 }
 
+enum { kJudgedAhead = 4 * kTemporalTile };  // texels
+
 // What the sample (x, y) says of history.
 static inline void judge_sample(TemporalTile* tile, COLOUR_TEXELS colour, __global const float* moves,
                                 HISTORY_TEXELS history, __global const TemporalTile* previous,
@@ -76,7 +78,9 @@ static inline void judge_sample(TemporalTile* tile, COLOUR_TEXELS colour, __glob
     at_y -= tile->offset_y + (float)tile->step_y;
   }
   if (!(at_x >= 0.0f && at_y >= 0.0f && at_x < (float)params->output_width && at_y < (float)params->output_height)) return;
-  const float4 before = load_history(history, (int)at_y * params->output_width + (int)at_x);
+  const int index = (int)at_y * params->output_width + (int)at_x;
+  WILL_READ(history + 4 * (index + kJudgedAhead));
+  const float4 before = load_history(history, index);
   const float4 sample = sample_at(colour, &params->frame, x, y);
   if (before.w < KNOWN || !is_valid(sample)) return;
   const float4 around = 0.25f * (sample_at(colour, &params->frame, x - 1, y) + sample_at(colour, &params->frame, x + 1, y) +
@@ -149,7 +153,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 #endif
 #if JUDGE
   for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first.x + (first.x + y) % 2; x <= last.x; x += 2)  // every second one will do
+    for (int x = first.x + (-first.x - 2 * y & 3); x <= last.x; x += 4)  // every fourth one will do
       judge_sample(&tile, colour, moves, history, previous, &params, x, y);
   }
   // So that no total leaves an int.
