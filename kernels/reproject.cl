@@ -16,9 +16,10 @@
 //   moves         out  Move of each sample of frame n
 // Options: REACTIVE  0 (default) | 1
 //          RESIDUAL  0 (default) | 1: K is not 0
-//          CONTRAST  0 (default) | 1: the moves hold how much the velocity differs from the eight neighbours', at most; and
-//                    where something nearer was among the 2x2 previous depths and an edge of motion there, trust goes: what
-//                    was accumulated there is that thing's as well
+//          CONTRAST  0 (default) | 1: the moves hold how much the velocity differs from the eight neighbours', at most, or
+//                    that of frame n-1 where it was, negative, if that was more; and where something nearer was among the
+//                    2x2 previous depths and an edge of motion there, trust goes: what was accumulated there is that thing's
+//                    as well
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // A sample whose velocity or depth is not finite moves by 0, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
@@ -156,7 +157,9 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
 #if CONTRAST
     const float4 kept = 1.0f - edge_before(&params, previous_moves, nearest_x, nearest_y);
     trust *= select((float4)(1.0f), kept, before.most > limit);
-    const float4 contrast = contrast_of(&params, velocity0, x, y, velocity);
+    const float4 own = contrast_of(&params, velocity0, x, y, velocity);
+    const float4 earlier = contrast_before(&params, previous_moves, nearest_x, nearest_y);
+    const float4 contrast = select(own, -earlier, earlier > own);
 #else
     const float4 contrast = (float4)(0.0f);
 #endif

@@ -7,7 +7,7 @@
 //   m += (s - m) w / (W + w)  with the nearest sample s, w = (1 - d^2 / r^2)^2 / max(1, brightness / 2), d its distance in output
 //      pixels, r = 1.05, in still tiles down to .85 as W grows
 // Where history is doubtful it is brought into the range of the samples there; nowhere else, for that costs more than it
-// saves. What is hardly known begins with a Gaussian of this frame.
+// saves. What is hardly known begins with a Gaussian of this frame, which its first sample moves little.
 //
 //   params       in   extents, layouts, distances
 //   positions    in   of each output column, then row, in the viewport, as in resolve_reprojected
@@ -28,11 +28,13 @@
 // Reference: tests/reference/resolve_temporal.cpp
 #include "texel.h"
 
+#include "begin_history.h"
 #include "distance_weights.h"
 #include "history_sampling.h"
 #include "temporal_evidence.h"
 #include "temporal_view.h"
 
+#define INERTIA 0.85f      // of a whole Gaussian
 #define REACH 1.05f        // output pixels
 #define LEAST_REACH 0.85f
 #define NARROWING 0.1f     // output pixels for each unit of confidence
@@ -41,22 +43,25 @@
 typedef struct EightPixels {
   float4 history[8];
   float confidence[8], doubt[8], offset_x[8];
+  float inertia[8];  // that of what began anew, against this frame's sample
   int x[8];
 } EightPixels;
 
 // Brings doubtful history into the range of its surroundings, and begins anew what is hardly known.
-static inline void correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, EightPixels* pixels, int y, float offset_y) {
+static inline void correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const Surfaces* surfaces, EightPixels* pixels, int y, float offset_y) {
   for (int i = 0; i < 8; ++i) {
     float4 m = pixels->history[i];
     float w = pixels->confidence[i];
+    pixels->inertia[i] = 0.0f;
     if (pixels->doubt[i] > 0.0f) {
       const ToneBox box = tone_box(colour, frame, pixels->x[i], y);
       m = rectify(m, w, pixels->doubt[i], &box);
       w = m.w;
     }
     if (w < LEAST_CONFIDENCE) {
-      const float4 smooth = smooth_samples(colour, frame, pixels->x[i], y, pixels->offset_x[i], offset_y);
+      const float4 smooth = smooth_samples(colour, frame, surfaces, pixels->x[i], y, pixels->offset_x[i], offset_y);
       m += (smooth - m) * (1.0f - w / LEAST_CONFIDENCE);
+      pixels->inertia[i] = INERTIA * (1.0f - w / LEAST_CONFIDENCE);
       w = smooth.w > 0.0f ? LEAST_CONFIDENCE : 0.0f;
     }
     pixels->history[i] = m;
@@ -148,16 +153,19 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       const float8 gain = ramp(change0.y, change1.y);
       EIGHT(BRIGHTEN);
     }
+    float8 inertia = (float8)(0.0f);
     if (any_lane((evidence.doubt > 0.0f) | (evidence.confidence < LEAST_CONFIDENCE))) {
       EightPixels pixels = {.history = {m0, m1, m2, m3, m4, m5, m6, m7}};
       vstore8(evidence.confidence, 0, pixels.confidence);
       vstore8(evidence.doubt, 0, pixels.doubt);
       vstore8(now_x.fraction + convert_float8(now_x.texel - nearest_x), 0, pixels.offset_x);
       vstore8(nearest_x, 0, pixels.x);
-      correct_history(colour, &frame0, &pixels, nearest_y, now_y.fraction.s0 + (float)(now_y.texel.s0 - nearest_y));
+      const Surfaces surfaces = {moves, params.moves, params.move_x, params.move_y};
+      correct_history(colour, &frame0, &surfaces, &pixels, nearest_y, now_y.fraction.s0 + (float)(now_y.texel.s0 - nearest_y));
       m0 = pixels.history[0], m1 = pixels.history[1], m2 = pixels.history[2], m3 = pixels.history[3];
       m4 = pixels.history[4], m5 = pixels.history[5], m6 = pixels.history[6], m7 = pixels.history[7];
       evidence.confidence = vload8(0, pixels.confidence);
+      inertia = vload8(0, pixels.inertia);
     }
 
     const float8 away_x = (now_x.fraction + convert_float8(now_x.texel - nearest_x)) * params.spacing_x;
@@ -172,7 +180,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       EIGHT(WEIGH);
     }
     const float8 total = evidence.confidence + weight;
-    const float8 part = weight / max(total, LEAST_WEIGHT);
+    const float8 part = weight / max(total + inertia, LEAST_WEIGHT);
     const float8 confidence = min(total, MOST_CONFIDENCE);
     EIGHT(ADD);
     if (params.view != kViewPicture) {

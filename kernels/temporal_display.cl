@@ -15,7 +15,6 @@
 #include "texel.h"
 
 #include "distance_weights.h"
-#include "frame_samples.h"
 #include "history_sampling.h"
 
 #ifndef ALPHA
@@ -114,13 +113,21 @@ static inline EightTexels load_around(HISTORY_TEXELS history, int width, int x, 
   return around;
 }
 
+// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
+static inline float8 bell(float8 t) {
+  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
+  const float8 square = rest * rest;
+  const float8 fourth = square * square;
+  return fourth * fourth;
+}
+
 static inline float16 to_four_texels(float4 value) {
   return (float16)((float4)(value.x), (float4)(value.y), (float4)(value.z), (float4)(value.w));
 }
 
 static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, float8 confidence) {
   const float8 little = select((float8)(0.0f), (float8)(NEIGHBOUR_WEIGHT), confidence < LITTLE);
-  const float8 other = little * bell8(2.0f * confidence);
+  const float8 other = little * bell(2.0f * confidence);
   const float8 own = confidence + CENTRE_WEIGHT;
   const float8 scale = 1.0f / (own + 8.0f * other);
   const float8 own_part = select((float8)(1.0f), own * scale, other > 0.0f), other_part = other * scale;

@@ -37,7 +37,7 @@
 #error "JUDGE must be 0 or 1"
 #endif
 
-#define KNOWN 0.3f      // confidence from which a texel of history counts
+#define KNOWN 0.1f      // confidence from which a texel of history counts: one begun anew in the last frame, too
 #define TRUSTED 0.9f    // and the trust of a sample
 #define RIGID 0.05f     // output pixels
 #define STILL 1e-4f     // what velocity's rounding leaves

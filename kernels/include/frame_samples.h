@@ -9,7 +9,6 @@
 #define DARKEST_REST 0x1p-16f
 #define BOX_SIZE 0.75f       // standard deviations
 #define BOX_MARGIN 0.02f
-#define SMOOTH_FALLOFF 2.0f  // 1 / (2 sigma^2), sigma half a sample
 
 static inline bool is_valid(float4 sample) {
   const long2 hits = as_long2((as_int4(sample) & 0x7fffffff) >= INVALID_BITS);
@@ -77,45 +76,4 @@ static inline float4 rectify(float4 history, float confidence, float strength, c
   if (distance > 0.0f) result = from_tone(tone + step * strength);
   result.w = confidence * (1.0f - strength * min(1.0f, distance / (spread + BOX_MARGIN)));
   return result;
-}
-
-// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
-static inline float8 bell8(float8 t) {
-  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
-  const float8 square = rest * rest;
-  const float8 fourth = square * square;
-  return fourth * fourth;
-}
-
-static inline float bell(float t) {
-  const float rest = max(1.0f - 0.125f * t, 0.0f);
-  const float square = rest * rest;
-  const float fourth = square * square;
-  return fourth * fourth;
-}
-
-// The weighted mean of the 3x3 samples around (x, y), the nearest to a place that lies (offset_x, offset_y) samples further.
-// In w whether any sample is valid; where none is, the mean of what stands in for them.
-static inline float4 smooth_samples(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y, float offset_x,
-                                    float offset_y) {
-  float4 sum = (float4)(0.0f), stand_in = (float4)(0.0f);
-  float weights = 0.0f;
-  for (int row = -1; row <= 1; ++row) {
-    const float away_y = (float)row - offset_y;
-    for (int column = -1; column <= 1; ++column) {
-      const float away_x = (float)column - offset_x;
-      const float4 sample = sample_at(texels, frame, x + column, y + row);
-      const float near = bell((away_x * away_x + away_y * away_y) * SMOOTH_FALLOFF);
-      if (is_valid(sample)) {
-        const float weight = near * worth_of(sample);
-        sum += sample * weight;
-        weights += weight;
-      } else {
-        stand_in += sanitise4(sample) * (1.0f / 9.0f);
-      }
-    }
-  }
-  const bool any = weights > 0.0f;
-  const float4 mean = any ? sum / weights : stand_in;
-  return (float4)(mean.xyz, any ? 1.0f : 0.0f);
 }

@@ -28,10 +28,14 @@ static inline float4 contrast_of(const ReprojectParams* params, VELOCITY_TEXELS 
   return sqrt(min(largest, LARGEST_MOVE));
 }
 
+static inline float4 contrast_before(const ReprojectParams* params, __global const float* moves, int4 x, int4 y) {
+  const int4 at = 4 * (params->moves.offset + y * params->moves.pitch + x) + 3;
+  return fmax((float4)(moves[at.s0], moves[at.s1], moves[at.s2], moves[at.s3]), (float4)(0.0f));
+}
+
 // How much of an edge of motion there was at four samples of the previous frame: 0 to 1.
 static inline float4 edge_before(const ReprojectParams* params, __global const float* moves, int4 x, int4 y) {
-  const int4 at = 4 * (params->moves.offset + y * params->moves.pitch + x) + 3;
-  const float4 contrast = (float4)(moves[at.s0], moves[at.s1], moves[at.s2], moves[at.s3]);
+  const float4 contrast = contrast_before(params, moves, x, y);
   const float4 t = clamp((contrast - EDGE_BEGINS) * (1.0f / (EDGE_ENDS - EDGE_BEGINS)), 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
 }

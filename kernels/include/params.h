@@ -131,7 +131,9 @@ typedef struct Move {
   float x;
   float y;
   float trust;  // in [0, 1]: what the previous frame counts there; NaN: the sample's velocity or depth is not finite
-  float contrast;  // the largest difference of velocity to the eight neighbours, output pixels; 0 where not asked for
+  // The largest difference of velocity to the eight neighbours, output pixels; negative: that of the previous frame there,
+  // which is more. 0 where not asked for.
+  float contrast;
 } Move;
 QUINCUNX_CHECK_SIZE(Move, 16);
 

@@ -67,7 +67,7 @@ static inline Motion motion_of(const TemporalParams* params, __global const floa
   Motion motion;
   motion.move_x = (float8)(v0.x, v1.x, v2.x, v3.x, v4.x, v5.x, v6.x, v7.x) * params->move_x;
   motion.move_y = (float8)(v0.y, v1.y, v2.y, v3.y, v4.y, v5.y, v6.y, v7.y) * params->move_y;
-  motion.contrast = (float8)(v0.w, v1.w, v2.w, v3.w, v4.w, v5.w, v6.w, v7.w);
+  motion.contrast = fabs((float8)(v0.w, v1.w, v2.w, v3.w, v4.w, v5.w, v6.w, v7.w));
 #if TRUST == BILINEAR
   const int8 right = min(now_x.texel + 1, (int8)(params->frame0.width - 1));
   const int above = now_y.texel.s0, below = min(above + 1, params->frame0.height - 1);
@@ -112,7 +112,7 @@ static inline float8 edge_strength(float8 contrast) {
 
 // What may be kept with a trust in [0, 1].
 static inline float8 most_confidence(float8 trust) {
-  return LEAST_CONFIDENCE + trust / (1.0f + 1.0f / MOST_CONFIDENCE - trust);
+  return trust / (1.0f + 1.0f / MOST_CONFIDENCE - trust);
 }
 
 // Of confidences as they were, and the fractions of the way between texels at which they were read.
