@@ -30,6 +30,7 @@
 
 #include "begin_history.h"
 #include "distance_weights.h"
+#include "eight_samples.h"
 #include "history_sampling.h"
 #include "temporal_evidence.h"
 #include "temporal_view.h"
@@ -69,40 +70,17 @@ static inline void correct_history(COLOUR_TEXELS colour, const SourceFrame* fram
   }
 }
 
-// Of a sample that is not valid, which becomes black, nothing.
-static inline float worth_or_none(float4* sample) {
-  if (is_valid(*sample)) return worth_of(*sample);
-  *sample = (float4)(0.0f);
-  return 0.0f;
-}
-
 #define EIGHT(step) step(s0, 0); step(s1, 1); step(s2, 2); step(s3, 3); step(s4, 4); step(s5, 5); step(s6, 6); step(s7, 7)
 
-#define COPY(i, n) m##n = load_history(history, source_y * params.output_width + source_x + n)
-
 #define RESAMPLE(i, n)                                                                                                  \
-  m##n = sample_history(history, params.output_width, params.output_height, from_x.texel.i, from_y.texel.i, inside,     \
-                        (float4)(wx.w0.i, wx.w1.i, wx.w2.i, wx.w3.i), (float4)(wy.w0.i, wy.w1.i, wy.w2.i, wy.w3.i))
+  const float4 m##n =                                                                                                   \
+      sample_history(history, params.output_width, params.output_height, from_x.texel.i, from_y.texel.i, inside,        \
+                     (float4)(wx.w0.i, wx.w1.i, wx.w2.i, wx.w3.i), (float4)(wy.w0.i, wy.w1.i, wy.w2.i, wy.w3.i))
 
-#define BRIGHTEN(i, n) m##n *= gain.i
-
-#define LOAD(i, n)                                                          \
-  float4 s##n = load_colour(colour, frame0.colour, nearest_x.i, nearest_y); \
-  bits |= as_int4(s##n)
-
-// Without bright and invalid samples each is worth 1.
-#define WEIGH(i, n)                                         \
-  if (x + n < end && any_non_finite4(s##n)) met_count += 1; \
-  weight.i *= worth_or_none(&s##n)
+#define LOAD(i, n) const float4 s##n = load_colour(colour, frame0.colour, nearest_x.i, nearest_y)
 
 #define SHOW(i, n) \
   if (x + n < end) store_view(output, &params, x + n, y, (float4)(shown.red.i, shown.green.i, shown.blue.i, 1.0f))
-
-#define ADD(i, n)                                                                                \
-  if (x + n < end) {                                                                             \
-    const float4 sum##n = m##n + (s##n - m##n) * part.i;                                         \
-    store_history(updated, y * params.output_width + x + n, (float4)(sum##n.xyz, confidence.i)); \
-  }
 
 __kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const float* moves, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
@@ -119,6 +97,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
   const float row_fraction = as_float(positions[2 * params.columns + params.output_height + y]);
   const Positions row = {(int8)(row_texel), (float8)(row_fraction)};
   uint met_count = 0;
+  float2 change1 = change_at(tiles, &params, first, y);
   for (int x = first; x < end; x += kTemporalTile) {
     const TemporalTile tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     const Positions column = {vload8(0, positions + x), as_float8(vload8(0, positions + params.columns + x))};
@@ -126,44 +105,59 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const Positions now_y = moved_positions(row, (float8)(tile.offset_y / params.spacing_y), frame0.height - 1);
     const int8 nearest_x = nearest_samples(now_x);
     const int nearest_y = nearest_samples(now_y).s0;
-#if MOTION
-    const Motion motion = motion_of(&params, moves, now_x, now_y, nearest_x, nearest_y);
-#else
-    const Motion motion = motion_of_still(&params, reactive0, reactive1, nearest_x, nearest_y);
-#endif
 
-    float4 m0, m1, m2, m3, m4, m5, m6, m7;
     const int source_x = x - tile.step_x, source_y = y - tile.step_y;
+    const bool copies = may_copy(previous, &params, tile, source_x, source_y);
+    Motion motion = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f), (float8)(0.0f)};
+#if MOTION
+    const bool plain = copies && tile.plain;
+    if (!plain) motion = motion_of(&params, moves, now_x, now_y, nearest_x, nearest_y);
+#elif REACTIVE
+    const bool plain = false;
+    motion.trust = trust_of_still(&params, reactive0, reactive1, nearest_x, nearest_y);
+#else
+    const bool plain = copies;
+#endif
+    EightTexels m;
     Positions from_x = {(int8)(source_x), (float8)(0.0f)}, from_y = {(int8)(source_y), (float8)(0.0f)};
-    if (may_copy(previous, &params, tile, source_x, source_y)) {
-      EIGHT(COPY);
+    if (copies) {
+      m = load_history8(history, source_y * params.output_width + source_x);
     } else {
       source_places(previous, &params, tile, &motion, x, y, &from_x, &from_y);
       const Cubic wx = cubic_weights(from_x.fraction, HISTORY_SHARPNESS), wy = cubic_weights(from_y.fraction, HISTORY_SHARPNESS);
       const bool inside = lie_inside(from_x.texel, from_y.texel, params.output_width, params.output_height);
+      will_read_rows(history, params.output_width, from_x.texel.s0 + kResampledAhead, from_y.texel.s0);
       EIGHT(RESAMPLE);
+      m.left = (float16)(m0, m1, m2, m3);
+      m.right = (float16)(m4, m5, m6, m7);
     }
-    const float8 known = (float8)(m0.w, m1.w, m2.w, m3.w, m4.w, m5.w, m6.w, m7.w);
-    Evidence evidence = weigh_history(known, from_x.fraction, from_y.fraction, &motion);
-    const float2 change0 = change_at(tiles, &params, x, y), change1 = change_at(tiles, &params, x + kTemporalTile, y);
+    Evidence evidence = {clamp(confidences(m), 0.0f, MOST_CONFIDENCE), (float8)(0.0f)};
+    if (!plain) evidence = weigh_history(evidence.confidence, from_x.fraction, from_y.fraction, &motion);
+    const float2 change0 = change1;
+    change1 = change_at(tiles, &params, x + kTemporalTile, y);
     const float8 changed = ramp(change0.x, change1.x);
-    evidence.doubt = max(evidence.doubt, changed);
-    evidence.confidence = min(evidence.confidence, most_confidence(1.0f - changed));
+    if (change0.x + change1.x > 0.0f) {
+      evidence.doubt = max(evidence.doubt, changed);
+      evidence.confidence = min(evidence.confidence, most_confidence(1.0f - changed));
+    }
     if (change0.y != 1.0f || change1.y != 1.0f) {
       const float8 gain = ramp(change0.y, change1.y);
-      EIGHT(BRIGHTEN);
+      m.left *= to_four_texels(gain.lo);
+      m.right *= to_four_texels(gain.hi);
     }
     float8 inertia = (float8)(0.0f);
     if (any_lane((evidence.doubt > 0.0f) | (evidence.confidence < LEAST_CONFIDENCE))) {
-      EightPixels pixels = {.history = {m0, m1, m2, m3, m4, m5, m6, m7}};
+      EightPixels pixels;
+      vstore16(m.left, 0, (float*)pixels.history);
+      vstore16(m.right, 1, (float*)pixels.history);
       vstore8(evidence.confidence, 0, pixels.confidence);
       vstore8(evidence.doubt, 0, pixels.doubt);
       vstore8(now_x.fraction + convert_float8(now_x.texel - nearest_x), 0, pixels.offset_x);
       vstore8(nearest_x, 0, pixels.x);
       const Surfaces surfaces = {moves, params.moves, params.move_x, params.move_y};
       correct_history(colour, &frame0, &surfaces, &pixels, nearest_y, now_y.fraction.s0 + (float)(now_y.texel.s0 - nearest_y));
-      m0 = pixels.history[0], m1 = pixels.history[1], m2 = pixels.history[2], m3 = pixels.history[3];
-      m4 = pixels.history[4], m5 = pixels.history[5], m6 = pixels.history[6], m7 = pixels.history[7];
+      m.left = vload16(0, (const float*)pixels.history);
+      m.right = vload16(1, (const float*)pixels.history);
       evidence.confidence = vload8(0, pixels.confidence);
       inertia = vload8(0, pixels.inertia);
     }
@@ -174,15 +168,16 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const float8 reach = is_still(tile) ? narrowed : (float8)(REACH);
     const float8 near = max(1.0f - (away_x * away_x + away_y * away_y) / (reach * reach), 0.0f);
     float8 weight = near * near;
-    int4 bits = (int4)(0);
     EIGHT(LOAD);
-    if (any_at_least_two(bits)) {
-      EIGHT(WEIGH);
-    }
+    EightTexels samples = {(float16)(s0, s1, s2, s3), (float16)(s4, s5, s6, s7)};
+    // Without bright and invalid samples each is worth 1.
+    if (may_be_bright(samples)) met_count += weigh_samples(&samples, &weight, end - x);
     const float8 total = evidence.confidence + weight;
     const float8 part = weight / max(total + inertia, LEAST_WEIGHT);
     const float8 confidence = min(total, MOST_CONFIDENCE);
-    EIGHT(ADD);
+    const EightTexels sum = {add_samples(m.left, samples.left, part.lo, confidence.lo),
+                             add_samples(m.right, samples.right, part.hi, confidence.hi)};
+    store_history8(updated, y * params.output_width + x, end - x, sum);
     if (params.view != kViewPicture) {
       const View shown = view_of(params.view, tile, &motion, confidence, changed, from_x.fraction, from_y.fraction);
       EIGHT(SHOW);

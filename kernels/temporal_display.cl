@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // temporal_display: the picture of a history: at the pixels' centres, and smoothed where little is known.
 //   A pixel of confidence W counts W + .02 and its eight neighbours .3 exp(-2 W) each. It is not fed back.
+//   A first frame is not smoothed: it would lose what it has of fine texture.
 //
 //   params     in   extents, layouts
 //   positions  in   ALPHA 1: of each output column, then row, in the viewport, as in resolve_reprojected
@@ -78,7 +79,7 @@ static inline Pixels gather_pixels(HISTORY_TEXELS history, const TemporalDisplay
 // The same where all texels that it needs are inside.
 static inline Pixels load_pixels(HISTORY_TEXELS history, int width, const Display* display, int x, int y) {
   const int index = y * width + x;
-  const EightTexels own = {load_history4(history, index), load_history4(history, index + 4)};
+  const EightTexels own = load_history8(history, index);
   Pixels pixels = {own, own};
   if (display->apart)
     pixels.shown = sample_history_row(history, width, x - display->step_x, y - display->step_y, display->wx, display->wy);
@@ -119,10 +120,6 @@ static inline float8 bell(float8 t) {
   const float8 square = rest * rest;
   const float8 fourth = square * square;
   return fourth * fourth;
-}
-
-static inline float16 to_four_texels(float4 value) {
-  return (float16)((float4)(value.x), (float4)(value.y), (float4)(value.z), (float4)(value.w));
 }
 
 static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, float8 confidence) {
@@ -180,8 +177,8 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
     const bool inside = x >= display.step_x && y0 >= 0 && x + 11 <= width && y0 + 4 <= height;
     Pixels pixels = inside ? load_pixels(history, width, &display, x, y) : gather_pixels(history, &params, &display, x, y);
 #if SMOOTH
-    const float8 confidence = (float8)(pixels.own.left.s37bf, pixels.own.right.s37bf);
-    if (any_lane(confidence < LITTLE)) {
+    const float8 confidence = confidences(pixels.own);
+    if (!params.first && any_lane(confidence < LITTLE)) {
       const EightTexels around = inside ? load_around(history, width, x, y) : gather_around(history, &params, x, y);
       pixels.shown = smooth_little_known(pixels.shown, around, confidence);
     }

@@ -14,6 +14,7 @@
 #include "params.h"
 
 #define COHERENT 0.75f      // how far tiles must agree
+#define AGREED 0.4f         // of samples: seven of ten say the same
 #define RELATIVE 0.05f      // the least change of light
 #define PERSISTENT 0.62f    // of two frames: .64
 #define MEMORY 0.6f         // of persistence
@@ -29,11 +30,11 @@
 #define CUT_FLOOR 0.03f     // of the light
 
 typedef struct Around {
-  float brightening, change, light, history_error, neighbour_error, count;
+  float brightening, change, light, history_error, neighbour_error, count, brighter;
 } Around;
 
 static inline Around sums_around(__global const TemporalTile* tiles, int tiles_x, int tiles_y, int x, int y) {
-  Around sums = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  Around sums = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
     for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
       __global const TemporalTile* tile = tiles + row * tiles_x + column;
@@ -43,6 +44,7 @@ static inline Around sums_around(__global const TemporalTile* tiles, int tiles_x
       sums.history_error += tile->history_error;
       sums.neighbour_error += tile->neighbour_error;
       sums.count += tile->count;
+      sums.brighter += tile->brighter;
     }
   }
   return sums;
@@ -59,15 +61,16 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TemporalTi
   const float coherence = fabs(sums.brightening) / max(sums.change, 1e-6f);
   const float direction = relative > 0.0f ? 1.0f : -1.0f;
   const float chance = sums.neighbour_error / sqrt(max(sums.count, 1.0f));  // what aliasing alone may give
-  const bool hit = coherence > COHERENT && fabs(relative) > RELATIVE && fabs(sums.brightening) > SURE * chance;
+  const bool agreed = sums.brighter * direction > AGREED * sums.count;
+  const bool hit = agreed && coherence > COHERENT && fabs(relative) > RELATIVE && fabs(sums.brightening) > SURE * chance;
   const float persistence = MEMORY * previous[y * tiles_x + x].persistence + (hit ? (1.0f - MEMORY) * direction : 0.0f);
   float gain = hit && persistence * direction > PERSISTENT ? 1.0f + relative : 1.0f;
 
   const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
   const bool relit = fabs(whole) > WHOLE_COHERENT * change && fabs(whole) > RELATIVE * light;
-  if (relit) {
+  if (relit && agreed && relative * whole > 0.0f) {
     const float everywhere = whole / light;  // surer than what one tile finds, unless that differs much
-    const bool own = coherence > 0.5f && relative * whole > 0.0f && fabs(relative - everywhere) > OWN * fabs(everywhere);
+    const bool own = coherence > 0.5f && fabs(relative - everywhere) > OWN * fabs(everywhere);
     gain = 1.0f + (own ? relative : everywhere);
   }
   tile->persistence = persistence;

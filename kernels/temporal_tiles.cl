@@ -2,6 +2,7 @@
 // temporal_tiles: how history is taken over in each tile of kTemporalTile^2 output pixels, and whether it is to be believed.
 // Rigid is a tile whose samples, and the next ones around it, move alike within .05 output pixels.
 //   brightening      sum k (s - h), over its samples s and the history h there, as luma
+//   brighter         how many samples are brighter than history, less those that are not
 //   light            sum k h
 //   history_error    sum k |s - h|
 //   neighbour_error  sum k |s - n|, n being the mean of the four neighbours
@@ -40,6 +41,7 @@
 #define KNOWN 0.1f      // confidence from which a texel of history counts: one begun anew in the last frame, too
 #define TRUSTED 0.9f    // and the trust of a sample
 #define RIGID 0.05f     // output pixels
+#define NO_EDGE 0.1f    // output pixels: the least that resolve_temporal looks at
 #define STILL 1e-4f     // what velocity's rounding leaves
 
 // The tile that holds output position (x, y), which may lie outside.
@@ -91,6 +93,7 @@ static inline void judge_sample(TemporalTile* tile, COLOUR_TEXELS colour, __glob
   tile->light += known * scale;
   tile->history_error += fabs(own - known) * scale;
   tile->neighbour_error += is_valid(around) ? fabs(own - luma(around)) * scale : 0.0f;
+  tile->brighter += (own > known ? 1.0f : 0.0f) - (own < known ? 1.0f : 0.0f);
   tile->count += 1.0f;
 }
 #endif
@@ -100,13 +103,14 @@ static inline void judge_sample(TemporalTile* tile, COLOUR_TEXELS colour, __glob
 static inline void follow(TemporalTile* tile, __global const float* moves, __global const TemporalTile* previous,
                           const TemporalTileParams* params, int2 first, int2 last, float middle_x, float middle_y) {
   float2 least = (float2)(65536.0f), most = (float2)(-65536.0f);
-  bool known = true;
+  bool known = true, plain = true;
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first.x; x <= last.x; ++x) {
       const float4 move = vload4(texel_index(params->moves, x, y), moves);
       least = min(least, move.xy);
       most = max(most, move.xy);
       known = known && move.z >= 0.0f;  // not NaN
+      plain = plain && move.z == 1.0f && fabs(move.w) <= NO_EDGE;
     }
   }
   const float2 scale = (float2)(params->move_x, params->move_y);
@@ -114,9 +118,8 @@ static inline void follow(TemporalTile* tile, __global const float* moves, __glo
   const float2 mean = 0.5f * (most + least) * scale;
   const float2 move = select(mean, (float2)(0.0f), fabs(mean) < (float2)(STILL));
   const float2 source = (float2)(middle_x, middle_y) + move;
-  if (!known || !(range.x <= RIGID && range.y <= RIGID) || !(source.x >= 0.0f && source.y >= 0.0f &&
-      source.x < (float)params->output_width && source.y < (float)params->output_height))
-    return;
+  if (!known || !(range.x <= RIGID && range.y <= RIGID)) return;
+  // What comes in from beyond the edges is laid out as the tiles there are.
   const int from = tile_index(params, source.x, source.y);
   tile->source_x = previous[from].offset_x;
   tile->source_y = previous[from].offset_y;
@@ -127,6 +130,7 @@ static inline void follow(TemporalTile* tile, __global const float* moves, __glo
   tile->step_x = (int)step.x;
   tile->step_y = (int)step.y;
   tile->rigid = 1;
+  tile->plain = plain ? 1 : 0;
 }
 #endif
 
@@ -150,6 +154,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   follow(&tile, moves, previous, &params, around_first, around_last, corner.x + half_side, corner.y + half_side);
 #else
   tile.rigid = 1;
+  tile.plain = 1;
 #endif
 #if JUDGE
   for (int y = first.y; y <= last.y; ++y) {

@@ -85,6 +85,7 @@ void TemporalPass::forget(const cl::CommandQueue& queue) {
                           static_cast<std::size_t>(view.extent.area()) * bytes_per_pixel(view.format));
   queue.enqueueFillBuffer(tiles_[newest_], cl_uint{0}, 0, tile_bytes(settings_.output));
   if (moves_) moves_->forget(queue);
+  is_first_ = true;
 }
 
 void TemporalPass::enqueue(const cl::CommandQueue& queue, const FrameInputs& current,
@@ -102,6 +103,7 @@ void TemporalPass::launch(const cl::CommandQueue& queue, PositionTables& tables,
   launch_resolve(queue, tables, frame, next());
   newest_ = 1 - newest_;
   if (display_kernel_) launch_display(queue, tables, frame, next());
+  is_first_ = false;
 }
 
 void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& frame, cl::Event* event) {
@@ -200,7 +202,8 @@ void TemporalPass::launch_display(const cl::CommandQueue& queue, PositionTables&
       .output = layout_of(frame.output),
       .tiles_x = temporal_tiles(output).width,
       .columns = tables.columns(),
-      .columns_per_item = columns_per_item(device_, output.width, kTemporalTile)};
+      .columns_per_item = columns_per_item(device_, output.width, kTemporalTile),
+      .first = is_first_ ? 1 : 0};
   display_kernel_->setArg(0, params);
   display_kernel_->setArg(1, tables.get(queue, render, frame.current.jitter));
   set_memory(*display_kernel_, 2, frame.current.colour.memory);

@@ -66,6 +66,7 @@ class TemporalPass {
   std::array<cl::Buffer, 2> tiles_;  // TemporalTile of each tile
   cl::Buffer total_;                 // TotalLight
   std::size_t newest_ = 0;           // of histories_ and tiles_
+  bool is_first_ = true;             // there is no history
 };
 
 // TemporalTiles of an output.

@@ -27,6 +27,17 @@ static inline Neighbourhood load_neighbourhood(HISTORY_TEXELS texels, int width,
   return around;
 }
 
+enum { kResampledAhead = 3 * kTemporalTile };  // texels
+
+// Four rows from (x, y) on, which may be anywhere.
+static inline void will_read_rows(HISTORY_TEXELS texels, int width, int x, int y) {
+  HISTORY_TEXELS first = texels + 4 * (y * width + x);
+  WILL_READ(first);
+  WILL_READ(first + 4 * width);
+  WILL_READ(first + 8 * width);
+  WILL_READ(first + 12 * width);
+}
+
 static inline float16 load_clamped4(HISTORY_TEXELS texels, int width, int height, int x, int y) {
   const int row = clamp(y, 0, height - 1) * width;
   const int last = width - 1;
@@ -92,11 +103,6 @@ static inline float4 sample_history(HISTORY_TEXELS texels, int width, int height
   return sample_neighbourhood(around, x, y);
 #endif
 }
-
-// Eight pixels of a row, in fours.
-typedef struct EightTexels {
-  float16 left, right;
-} EightTexels;
 
 // Texels of a row, blended or compared; of the last four only the first three count.
 typedef struct TwelveTexels {

@@ -209,15 +209,17 @@ typedef struct TemporalTile {
   float source_x, source_y;  // the same of the texels it takes
   int step_x, step_y;        // texel (x, y) takes (x - step_x, y - step_y)
   int rigid;                 // 0: offsets are 0
+  int plain;                 // 1: rigid, its moves trust all samples, and there is no edge of motion
   // Of its samples: how much brighter they are than history says, history's light, and the errors of history and of the
   // neighbours as forecasts; brightness as the eye has it, not light.
   float brightening, light, history_error, neighbour_error;
-  float count;  // of the samples that say so
+  float count;     // of the samples that say so
+  float brighter;  // how many of them are brighter, less those that are not
   float persistence;  // of a change of light, in [-1, 1], over frames
   float doubt;        // of history, in [0, 1]
   float gain;         // of history's light, to be this frame's
 } TemporalTile;
-QUINCUNX_CHECK_SIZE(TemporalTile, 60);
+QUINCUNX_CHECK_SIZE(TemporalTile, 68);
 
 // Of all tiles, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are very many: whether the light of the whole picture has changed.
 typedef struct TotalLight {
@@ -249,8 +251,9 @@ typedef struct TemporalDisplayParams {
   int tiles_x;
   int columns;           // of the position table
   int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
+  int first;             // 1: no frame came before
 } TemporalDisplayParams;
-QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 12);
+QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 16);
 
 // The motion blur looks at the output in tiles, and measures streaks in fixed point.
 enum {

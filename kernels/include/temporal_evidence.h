@@ -81,22 +81,18 @@ static inline Motion motion_of(const TemporalParams* params, __global const floa
 #endif
   return motion;
 }
-#else
+#elif REACTIVE
 // Where nothing moves.
-static inline Motion motion_of_still(const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                                     int8 nearest_x, int nearest_y) {
-  Motion motion = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f), (float8)(0.0f)};
-#if REACTIVE
+static inline float8 trust_of_still(const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                                    int8 nearest_x, int nearest_y) {
   const SourceFrame now = params->frame0, before = params->frame1;
   const float ratio_x = (float)before.width / (float)now.width, ratio_y = (float)before.height / (float)now.height;
   const int8 x = min(convert_int8((convert_float8(nearest_x) + 0.5f) * ratio_x), (int8)(before.width - 1));
   const int y = min((int)(((float)nearest_y + 0.5f) * ratio_y), before.height - 1);
-  motion.trust = (1.0f - (float8)(load_reactive4(reactive0, now.reactive, nearest_x.lo, nearest_y),
-                                  load_reactive4(reactive0, now.reactive, nearest_x.hi, nearest_y))) *
-                 (1.0f - (float8)(load_reactive4(reactive1, before.reactive, x.lo, y),
-                                  load_reactive4(reactive1, before.reactive, x.hi, y)));
-#endif
-  return motion;
+  return (1.0f - (float8)(load_reactive4(reactive0, now.reactive, nearest_x.lo, nearest_y),
+                          load_reactive4(reactive0, now.reactive, nearest_x.hi, nearest_y))) *
+         (1.0f - (float8)(load_reactive4(reactive1, before.reactive, x.lo, y),
+                          load_reactive4(reactive1, before.reactive, x.hi, y)));
 }
 #endif
 
@@ -115,11 +111,10 @@ static inline float8 most_confidence(float8 trust) {
   return trust / (1.0f + 1.0f / MOST_CONFIDENCE - trust);
 }
 
-// Of confidences as they were, and the fractions of the way between texels at which they were read.
+// Of confidences within [0, MOST_CONFIDENCE], and the fractions of the way between texels at which they were read.
 static inline Evidence weigh_history(float8 known, float8 fraction_x, float8 fraction_y, const Motion* motion) {
   const float8 between = min(4.0f * (fraction_x * (1.0f - fraction_x) + fraction_y * (1.0f - fraction_y)), 1.0f);
-  float8 w = clamp(known, 0.0f, MOST_CONFIDENCE);
-  w = w / (1.0f + RESAMPLING_COST * between * w);
+  float8 w = known / (1.0f + RESAMPLING_COST * between * known);
   w = select(w, min(w, RESAMPLED_CONFIDENCE), between > 0.01f);
   const float8 trust = motion->trust;
   w = min(w, most_confidence(trust));

@@ -312,17 +312,22 @@ static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout,
 #endif
 }
 
-// The same texels of an output; none beyond the largest half. Halves go through private memory, as they come.
+// Rounds to the nearest.
+static inline void store_half_texels4(__global half* texels, int index, float16 value) {
+  uint4 lower, upper;
+  vstore_half8_rte(value.lo, 0, (__private half*)&lower);
+  vstore_half8_rte(value.hi, 0, (__private half*)&upper);
+  __global uint* words = (__global uint*)texels + 2 * index;
+  vstore4(lower, 0, words);
+  vstore4(upper, 1, words);
+}
+
+// Four texels of an output, from (x, y) on; none beyond the largest half.
 static inline void store_output4(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, float16 value) {
   const int index = texel_index(layout, x, y);
   WILL_WRITE(texels + 4 * (index + kOutputAhead));
 #if OUTPUT_FORMAT == HALF
-  uint4 lower, upper;
-  vstore_half8(value.lo, 0, (__private half*)&lower);
-  vstore_half8(value.hi, 0, (__private half*)&upper);
-  __global uint* words = (__global uint*)texels + 2 * index;
-  vstore4(lower, 0, words);
-  vstore4(upper, 1, words);
+  store_half_texels4(texels, index, value);
 #else
   vstore16(value, 0, texels + 4 * index);
 #endif

@@ -105,9 +105,10 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, const Scene& scene,
       pass->moves() ? 2 : 1);
 }
 
-// Both kernels. `moves`: pixels that a surface of the case above moves.
+// All kernels; everything moves by `pixels`, or if surfaces move `apart`, those of the case above. As these
+// stay where they are, what flows through them has many offsets, more than surfaces that move would leave.
 void add_temporal(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
-                  const std::string& suffix, TemporalPreset preset, double pixels) {
+                  const std::string& suffix, TemporalPreset preset, double pixels, bool apart = false) {
   ResolvePlan plan = scene.plan;
   plan.settings.method = Method::kTemporal;
   plan.settings.temporal.preset = preset;
@@ -116,8 +117,8 @@ void add_temporal(std::vector<Case>& cases, Stage& stage, const Scene& scene, do
   pass->forget(stage.impl().queue);
   FrameInputs current = scene.current;
   current.velocity = stage.velocity(current.render, [&](int x, int y) {
-    const bool odd = (x / 97 + y / 83) % 2 != 0;
-    return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
+    const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
+    return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
   });
   plan.needs.background = true;
   // A wall of one colour: whatever moves, history agrees with the frame.
@@ -247,9 +248,11 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_velocity(cases, stage, scene);
     add_blurs(cases, stage, scene);
     add_reprojected(cases, stage, scene, 9, " still", 0);
-    add_temporal(cases, stage, scene, 10, "", TemporalPreset::kFast, 12);
-    add_temporal(cases, stage, scene, 18, "", TemporalPreset::kBalanced, 12);
-    add_temporal(cases, stage, scene, 35, "", TemporalPreset::kQuality, 12);
+    add_temporal(cases, stage, scene, 10, "", TemporalPreset::kFast, -3.6);
+    add_temporal(cases, stage, scene, 18, "", TemporalPreset::kBalanced, -3.6);
+    add_temporal(cases, stage, scene, 35, "", TemporalPreset::kQuality, -3.6);
+    add_temporal(cases, stage, scene, 10, " apart", TemporalPreset::kFast, -3.6, true);
+    add_temporal(cases, stage, scene, 18, " apart", TemporalPreset::kBalanced, -3.6, true);
     add_temporal(cases, stage, scene, 0, " still", TemporalPreset::kBalanced, 0);
     scene.plan.settings.quincunx.sampling = Sampling::kPoint;
     add_resolve(cases, stage, scene, 5, " point");

@@ -22,6 +22,8 @@ using Shape = Surface::Shape;
 constexpr Extent kOutput{160, 96};
 constexpr Extent kHalf{80, 48};
 
+constexpr double kGhost = 2. / 255;
+
 constexpr ResolveSettings kBilinear{.method = Method::kBilinear};
 
 TemporalScene still_scene() {
@@ -92,6 +94,78 @@ TEST(Temporal, StillPictureConvergesToItsLimit) {
   EXPECT_GE(before, limit - .5);
 }
 
+// Whether a pixel, with what a render pixel's neighbours reach, has been free of a surface in the last
+// frames.
+Mask free_of(const TemporalScene& scene, std::size_t which, int frame, int frames) {
+  constexpr double kReach =
+      5;  // output pixels: the 3x3 samples at one for every two pixels, and their jitter
+  const Surface surface = scene.surfaces[which];
+  return [=](int x, int y) {
+    bool was_held = false;
+    for (int i = 0; i <= 40; ++i) {
+      const Place local =
+          Place(x + .5, y + .5) - surface.centre - surface.velocity * static_cast<double>(frame - i);
+      const bool held = std::abs(local.real()) < surface.half_size.real() + kReach &&
+                        std::abs(local.imag()) < surface.half_size.imag() + kReach;
+      if (held && i < frames) return false;
+      was_held = was_held || held;
+    }
+    return was_held;
+  };
+}
+
+// What a pixel remembers of a thing that has gone is the difference that the thing's colour makes there. Over
+// a plain background: on a texture some would pass for a part of it.
+double trail_of(TemporalScene scene, std::size_t which, int free_frames) {
+  scene.surfaces[which].texture = testing::plain_texture(.02f, .02f, .02f);
+  TemporalRun dark(scene);
+  scene.surfaces[which].texture = testing::plain_texture(2, 2, 2);
+  TemporalRun bright(scene);
+  double most = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    const Pixels one = dark.next(), other = bright.next();
+    if (frame < 8) continue;
+    const Mask mask = free_of(scene, which, frame, free_frames);
+    most = std::max(most, testing::largest_difference(one, other, kOutput, mask));
+  }
+  return most;
+}
+
+TEST(Temporal, NoGhostBehindAnOccluder) {
+  for (const double speed : {.4, 1.3, 3.7, 11.3}) {
+    TemporalScene scene;
+    scene.surfaces = {{.shape = Shape::kRectangle,
+                       .half_size = {11, 17},
+                       .centre = {20, 50},
+                       .velocity = {speed, speed / 7},
+                       .distance = 3},
+                      {.texture = testing::plain_texture(.3f, .2f, .1f)}};
+    for (const Place pan : {Place(), Place(-.6, .3)}) {
+      scene.surfaces[1].velocity = pan;
+      const double ghost = trail_of(scene, 0, 3);
+      EXPECT_LE(ghost, kGhost) << speed << " pixels a frame, pan " << pan;
+    }
+  }
+}
+
+TEST(Temporal, TransparentsLeaveNoTrail) {
+  for (const double speed : {.4, 1.3, 3.7, 11.3}) {
+    TemporalScene scene;
+    scene.surfaces = {{.shape = Shape::kRectangle,
+                       .half_size = {11, 17},
+                       .centre = {20, 50},
+                       .velocity = {speed, speed / 7},
+                       .distance = 3,
+                       .reactive = true},
+                      {.texture = testing::plain_texture(.3f, .2f, .1f)}};
+    for (const Place pan : {Place(), Place(-.6, .3)}) {
+      scene.surfaces[1].velocity = pan;
+      const double trail = trail_of(scene, 0, 2);
+      EXPECT_LE(trail, kGhost) << speed << " pixels a frame, pan " << pan;
+    }
+  }
+}
+
 // Of wires over a background that moves otherwise, and over one that moves with them.
 TEST(Temporal, ThinWiresFlickerLittle) {
   for (const bool together : {false, true}) {
@@ -130,7 +204,7 @@ TEST(Temporal, ACutShowsNoOldPixel) {
   old.until(12);
   TemporalScene scene;
   scene.surfaces = {{.velocity = {1.7, -.6}, .texture = testing::noise_texture(6, 40)}};
-  TemporalRun fresh(scene);
+  TemporalRun fresh(scene), bilinear(scene, kBilinear);
   for (int i = 0; i < 3; ++i) {
     testing::HostFrame frame = scene.render(i, kHalf, testing::halton_jitter(i, 32));
     const Pixels expected = fresh.rig().resolve(frame);
@@ -138,6 +212,9 @@ TEST(Temporal, ACutShowsNoOldPixel) {
     const Pixels actual = old.rig().resolve(frame);
     EXPECT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0)
         << "frame " << i;
+    if (i > 0) continue;
+    const Pixels truth = scene.truth(0);
+    EXPECT_GE(testing::psnr(actual, truth), testing::psnr(bilinear.next(), truth));
   }
 }
 
