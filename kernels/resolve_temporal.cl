@@ -101,10 +101,14 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
   for (int x = first; x < end; x += kTemporalTile) {
     const TemporalTile tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     const Positions column = {vload8(0, positions + x), as_float8(vload8(0, positions + params.columns + x))};
-    const Positions now_x = moved_positions(column, (float8)(tile.offset_x / params.spacing_x), frame0.width - 1);
-    const Positions now_y = moved_positions(row, (float8)(tile.offset_y / params.spacing_y), frame0.height - 1);
+    const Positions place_x = shifted_positions(column, (float8)(tile.offset_x / params.spacing_x));
+    const Positions place_y = shifted_positions(row, (float8)(tile.offset_y / params.spacing_y));
+    const Positions now_x = held_positions(place_x, frame0.width - 1), now_y = held_positions(place_y, frame0.height - 1);
     const int8 nearest_x = nearest_samples(now_x);
     const int nearest_y = nearest_samples(now_y).s0;
+    // From the samples, which may be far from what lies beyond the outermost.
+    const float8 samples_x = place_x.fraction + convert_float8(place_x.texel - nearest_x);
+    const float samples_y = place_y.fraction.s0 + (float)(place_y.texel.s0 - nearest_y);
 
     const int source_x = x - tile.step_x, source_y = y - tile.step_y;
     const bool copies = may_copy(previous, &params, tile, source_x, source_y);
@@ -119,6 +123,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const bool plain = copies;
 #endif
     EightTexels m;
+    int8 lost = (int8)(0);
     Positions from_x = {(int8)(source_x), (float8)(0.0f)}, from_y = {(int8)(source_y), (float8)(0.0f)};
     if (copies) {
       m = load_history8(history, source_y * params.output_width + source_x);
@@ -130,9 +135,11 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       EIGHT(RESAMPLE);
       m.left = (float16)(m0, m1, m2, m3);
       m.right = (float16)(m4, m5, m6, m7);
+      if (!inside) lost = lie_outside(from_x, params.output_width) | lie_outside(from_y, params.output_height);
     }
-    Evidence evidence = {clamp(confidences(m), 0.0f, MOST_CONFIDENCE), (float8)(0.0f)};
-    if (!plain) evidence = weigh_history(evidence.confidence, from_x.fraction, from_y.fraction, &motion);
+    const float8 known = select(clamp(confidences(m), 0.0f, MOST_CONFIDENCE), (float8)(0.0f), lost);
+    Evidence evidence = {known, (float8)(0.0f)};
+    if (!plain) evidence = weigh_history(known, from_x.fraction, from_y.fraction, &motion);
     const float2 change0 = change1;
     change1 = change_at(tiles, &params, x + kTemporalTile, y);
     const float8 changed = ramp(change0.x, change1.x);
@@ -152,18 +159,18 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       vstore16(m.right, 1, (float*)pixels.history);
       vstore8(evidence.confidence, 0, pixels.confidence);
       vstore8(evidence.doubt, 0, pixels.doubt);
-      vstore8(now_x.fraction + convert_float8(now_x.texel - nearest_x), 0, pixels.offset_x);
+      vstore8(samples_x, 0, pixels.offset_x);
       vstore8(nearest_x, 0, pixels.x);
       const Surfaces surfaces = {moves, params.moves, params.move_x, params.move_y};
-      correct_history(colour, &frame0, &surfaces, &pixels, nearest_y, now_y.fraction.s0 + (float)(now_y.texel.s0 - nearest_y));
+      correct_history(colour, &frame0, &surfaces, &pixels, nearest_y, samples_y);
       m.left = vload16(0, (const float*)pixels.history);
       m.right = vload16(1, (const float*)pixels.history);
       evidence.confidence = vload8(0, pixels.confidence);
       inertia = vload8(0, pixels.inertia);
     }
 
-    const float8 away_x = (now_x.fraction + convert_float8(now_x.texel - nearest_x)) * params.spacing_x;
-    const float away_y = (now_y.fraction.s0 + (float)(now_y.texel.s0 - nearest_y)) * params.spacing_y;
+    const float8 away_x = samples_x * params.spacing_x;
+    const float away_y = samples_y * params.spacing_y;
     const float8 narrowed = max(REACH - NARROWING * evidence.confidence, LEAST_REACH);
     const float8 reach = is_still(tile) ? narrowed : (float8)(REACH);
     const float8 near = max(1.0f - (away_x * away_x + away_y * away_y) / (reach * reach), 0.0f);

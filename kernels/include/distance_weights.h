@@ -39,18 +39,27 @@ typedef struct FourPairs {
   float8 now0, now1, before0, before1;
 } FourPairs;
 
-// Moves positions, by less than 2^24, into an axis of last + 1 samples: what leaves it stands at its outermost sample. Then
-// texel + 1 exists too, unless last is 0.
-static inline Positions moved_positions(Positions at, float8 by, int last) {
+// Moves positions, by less than 2^24, anywhere.
+static inline Positions shifted_positions(Positions at, float8 by) {
   const float8 sum = at.fraction + by;
   int8 step = convert_int8(sum);
   step += convert_float8(step) > sum;  // towards minus infinity
-  const int8 wanted = at.texel + step;
-  Positions moved;
-  moved.texel = clamp(wanted, (int8)(0), (int8)(max(last - 1, 0)));
-  moved.fraction = select(sum - convert_float8(step), (float8)(0.0f), wanted < 0);
-  moved.fraction = select(moved.fraction, (float8)(last > 0 ? 1.0f : 0.0f), wanted >= last);
-  return moved;
+  const Positions shifted = {at.texel + step, sum - convert_float8(step)};
+  return shifted;
+}
+
+// Brings positions into an axis of last + 1 samples: what lies beyond stands at its outermost sample. Then texel + 1 exists,
+// too, unless last is 0.
+static inline Positions held_positions(Positions at, int last) {
+  Positions held;
+  held.texel = clamp(at.texel, (int8)(0), (int8)(max(last - 1, 0)));
+  held.fraction = select(at.fraction, (float8)(0.0f), at.texel < 0);
+  held.fraction = select(held.fraction, (float8)(last > 0 ? 1.0f : 0.0f), at.texel >= last);
+  return held;
+}
+
+static inline Positions moved_positions(Positions at, float8 by, int last) {
+  return held_positions(shifted_positions(at, by), last);
 }
 
 // The samples nearest to positions; of two equally near ones the upper/left.

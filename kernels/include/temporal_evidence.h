@@ -128,6 +128,12 @@ static inline bool lie_inside(int8 x, int8 y, int width, int height) {
   return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) >> 31);
 }
 
+// On one axis, whether pictures were beyond the edges.
+static inline int8 lie_outside(Positions from, int size) {
+  const float8 at = convert_float8(from.texel + 1) + from.fraction;
+  return (at < -0.5f) | (at > (float)size - 0.5f);
+}
+
 static inline bool is_still(TemporalTile tile) {
   return tile.rigid && tile.offset_x == 0.0f && tile.offset_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
 }
