@@ -163,16 +163,22 @@ Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions
   const double limit = 1.02 * depth + 2 * slope_at(current, x, y);
   const DepthRange before = depths_around(previous, at_x, at_y);
   if (!(before.least <= limit) && !std::isnan(move.trust)) move.trust = 0;
-  if (!options.contrast_before.empty() && before.most > limit)
-    move.trust *= left_by_edge(options.contrast_before[texel_before]);
+  const double earlier =
+      options.contrast_before.empty() ? 0 : std::fmax(options.contrast_before[texel_before], 0);
+  if (before.most > limit) move.trust *= left_by_edge(earlier);
   if (lost) move.trust = std::numeric_limits<double>::quiet_NaN();
-  if (accumulates) move.contrast = contrast_at(current, options, x, y);
+  if (accumulates) {
+    move.contrast = contrast_at(current, options, x, y);
+    if (earlier > 0 && std::abs(earlier - move.contrast) <= kDoubt * earlier) move.undecided = true;
+    if (earlier > move.contrast) move.contrast = -earlier;
+  }
 
   const double doubt = kDoubt * move.reach;
   // The nearest texel changes half-way between two.
   const double steps = options.residual_weight > 0 || options.reactive || accumulates ? 2 : 1;
-  move.undecided = close_to_integer(at_x * steps, doubt) || close_to_integer(at_y * steps, doubt) ||
-                   close_depths(before.least, limit) || (accumulates && close_depths(before.most, limit));
+  move.undecided = move.undecided || close_to_integer(at_x * steps, doubt) ||
+                   close_to_integer(at_y * steps, doubt) || close_depths(before.least, limit) ||
+                   (accumulates && close_depths(before.most, limit));
   return move;
 }
 

@@ -12,11 +12,14 @@ namespace quincunx::reference {
 struct Move {
   double x = 0;
   double y = 0;
-  double trust = 0;        // NaN: the sample's velocity or depth is not finite
-  double speed = 0;        // |sqrt(K) v0| + |sqrt(K) v1|, for error bounds
-  double reach = 0;        // largest texel coordinate that went into its place, likewise
-  bool undecided = false;  // a rounding may decide which texels are compared, or whether they hide the sample
-  double contrast = 0;     // the largest difference of velocity to the eight neighbours, output pixels
+  double trust = 0;  // NaN: the sample's velocity or depth is not finite
+  double speed = 0;  // |sqrt(K) v0| + |sqrt(K) v1|, for error bounds
+  double reach = 0;  // largest texel coordinate that went into its place, likewise
+  // A rounding may decide which texels are compared, whether they hide the sample, or whose contrast is more.
+  bool undecided = false;
+  // The largest difference of velocity to the eight neighbours, output pixels; negative: that of the previous
+  // frame, which is more.
+  double contrast = 0;
 };
 
 struct ReprojectOptions {

@@ -3,20 +3,20 @@
 #include <cmath>
 #include <cstddef>
 
-#include "temporal.h"
+#include "history_sampling.h"
 
 namespace quincunx::reference {
 namespace {
 
-constexpr double kHistoryCubic = -1;  // Keys' a
 constexpr double kMost = 32;          // confidence that is ever kept
 constexpr double kMostResampled = 8;  // and once resampled
 constexpr double kStart = .15;        // confidence of what a frame alone shows
 constexpr double kReach = 1.05;       // output pixels, from where on a sample counts nothing
 constexpr double kLeastReach = .85;   // in a still tile
-constexpr double kSameOffset = .02;   // output pixels that offsets of copied texels may differ by
 constexpr double kBoxSize = .75;      // standard deviations
-constexpr double kSigma = .5;         // of the Gaussian, samples
+constexpr double kFalloff = 2.5;      // of the Gaussian: 1 / (2 sigma^2), samples
+constexpr double kSameMotion = .15;   // output pixels a frame
+constexpr double kInertia = .85;      // of a Gaussian alone
 constexpr double kBoxMargin = .02;    // of confidence
 
 struct Place {
@@ -45,92 +45,32 @@ Bounded largest_colour(const BoundedPixel& c) {
   return max(max(c[0], c[1]), max(c[2], 0));
 }
 
-BoundedPixel exact(const Pixel& pixel) {
-  return {pixel[0], pixel[1], pixel[2], pixel[3]};
-}
-
 const Pixel& sample_at(const Frame& frame, int x, int y) {
   return texel_at(frame, std::clamp(x, 0, frame.width - 1), std::clamp(y, 0, frame.height - 1));
+}
+
+// How far the sample (x, y) may show the same surface as the sample (own_x, own_y), by its motion.
+Bounded similarity(const TemporalInputs& in, int own_x, int own_y, int x, int y) {
+  if (in.moves.empty()) return 1;
+  const Move& own = in.move_of(own_x, own_y);
+  const Move& other = in.move_of(std::clamp(x, 0, in.frame.width - 1), std::clamp(y, 0, in.frame.height - 1));
+  const auto apart = [&](double from, double to, int axis) {
+    return (Bounded(to) - Bounded(from)) * rounded(in.move_scale(axis)) * (Bounded(1) / rounded(kSameMotion));
+  };
+  const Bounded across = apart(own.x, other.x, 0);
+  const Bounded down = apart(own.y, other.y, 1);
+  return max(Bounded(1) - across * across - down * down, 0x1p-10);
 }
 
 struct Pixels {
   BoundedPixel colour;  // of history; its fourth is not used
   Bounded confidence;
   Bounded doubt;
+  Bounded inertia;  // of what began anew, against this frame's sample
 };
-
-// Whether the eight texels that a block of a rigid tile takes are all there, at one offset.
-bool copies(const TemporalInputs& in, const Tile& tile, int x, int y) {
-  const int first = x - tile.step[0];
-  const int row = y - tile.step[1];
-  if (!tile.rigid || first < 0 || row < 0 || first + 8 > in.output_width || row >= in.output_height)
-    return false;
-  for (const int column : {first, first + 7}) {
-    const Tile& from = in.tile_before(column / kTile, row / kTile);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      if (std::abs(from.offset[axis].value - tile.source[axis]) > kSameOffset) return false;
-    }
-  }
-  return true;
-}
-
-BoundedPixel sample_linear(const TemporalInputs& in, int x, int y, const Bounded& fx, const Bounded& fy) {
-  const auto texel = [&](int column, int row) {
-    return exact(in.history_at(std::clamp(x + column, 0, in.output_width - 1),
-                               std::clamp(y + row, 0, in.output_height - 1)));
-  };
-  const BoundedPixel t00 = texel(0, 0), t10 = texel(1, 0), t01 = texel(0, 1), t11 = texel(1, 1);
-  BoundedPixel result;
-  for (std::size_t c = 0; c < 4; ++c) {
-    const Bounded upper = t00[c] + (t10[c] - t00[c]) * fx;
-    const Bounded lower = t01[c] + (t11[c] - t01[c]) * fx;
-    result[c] = upper + (lower - upper) * fy;
-  }
-  return result;
-}
-
-// History where the pixel's picture was, and how far between texels that is.
-struct Taken {
-  BoundedPixel value;
-  Bounded between;
-};
-
-Taken take_history(const TemporalInputs& in, const Tile& tile, const Move& move, int x, int y,
-                   const TemporalOptions& options, bool& undecided) {
-  if (copies(in, tile, x / 8 * 8, y)) return {exact(in.history_at(x - tile.step[0], y - tile.step[1])), 0};
-  const std::array<int, 2> texel = {x, y};
-  const std::array<double, 2> moves = {move.x, move.y};
-  std::array<Bounded, 2> at;
-  std::array<int, 2> from;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const Bounded by = Bounded(moves[axis]) * rounded(in.move_scale(static_cast<int>(axis)));
-    at[axis] = clamp(by, -65536, 65536) + tile.offset[axis];
-    const int last = axis == 0 ? in.output_width - 1 : in.output_height - 1;
-    from[axis] = decide(
-        at[axis] + .5,
-        [&](double place) { return std::clamp(static_cast<int>(place) + texel[axis], 0, last) / kTile; },
-        undecided);
-  }
-  const Tile& source = in.tile_before(from[0], from[1]);
-  std::array<int, 2> step;
-  std::array<Bounded, 2> fraction;
-  Bounded between = 0;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    at[axis] = at[axis] - source.offset[axis];
-    // The cubic is continuous, but from one texel to the next what it is held in is not.
-    step[axis] = floor_of(at[axis], undecided);
-    fraction[axis] = {at[axis].value - step[axis], at[axis].error};
-    between = between + fraction[axis] * (Bounded(1) - fraction[axis]);
-  }
-  const auto sample = [&] {
-    if (options.taps == 4) return sample_linear(in, x + step[0], y + step[1], fraction[0], fraction[1]);
-    return sample_cubic(in, x + step[0], y + step[1], fraction[0], fraction[1], kHistoryCubic);
-  };
-  return {sample(), min(Bounded(4) * between, 1)};
-}
 
 Bounded most_confidence(const Bounded& trust) {
-  return rounded(kStart) + trust / (Bounded(1 + 1 / kMost) - trust);
+  return trust / (Bounded(1 + 1 / kMost) - trust);
 }
 
 Bounded weigh(const Taken& taken, const Bounded& trust, const Bounded& contrast, bool& undecided) {
@@ -226,36 +166,52 @@ void rectify(Pixels& pixel, const Box& box) {
     pixel.colour[c] = tone[c] / rest;
 }
 
-// The less confident, the more of a Gaussian of the frame.
-void start(Pixels& pixel, const Frame& frame, const Place& column, const Place& row, bool& undecided) {
-  if (pixel.confidence.value - pixel.confidence.error >= kStart) return;
+struct Smooth {
+  BoundedPixel colour;
+  bool any = false;  // valid sample is near enough
+};
+
+// A Gaussian of the frame's samples that move alike.
+Smooth smooth_at(const TemporalInputs& in, const Place& column, const Place& row, bool& undecided) {
   BoundedPixel sum, stand_in;
   Bounded weights = 0;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const Pixel& sample = sample_at(frame, column.nearest + dx, row.nearest + dy);
-      const Bounded across = Bounded(dx) - column.past;
-      const Bounded down = Bounded(dy) - row.past;
-      const Bounded near = bell((across * across + down * down) * (.5 / (kSigma * kSigma)));
-      if (!is_valid(sample)) {
-        for (std::size_t c = 0; c < 3; ++c)
-          stand_in[c] = stand_in[c] + Bounded(sanitised(sample[c])) * rounded(1. / 9);
-        continue;
-      }
-      const Bounded weight = near / max(1, Bounded(.5) * largest_colour(exact(sample)));
-      weights = weights + weight;
+  Smooth smooth;
+  for (int i = 0; i < 9; ++i) {
+    const int dx = i % 3 - 1;
+    const int dy = i / 3 - 1;
+    const int x = column.nearest + dx;
+    const int y = row.nearest + dy;
+    const Pixel& sample = sample_at(in.frame, x, y);
+    if (!is_valid(sample)) {
       for (std::size_t c = 0; c < 3; ++c)
-        sum[c] = sum[c] + Bounded(sample[c]) * weight;
+        stand_in[c] = stand_in[c] + Bounded(sanitised(sample[c])) * rounded(1. / 9);
+      continue;
     }
+    const Bounded across = Bounded(dx) - column.past;
+    const Bounded down = Bounded(dy) - row.past;
+    const Bounded near = bell((across * across + down * down) * kFalloff);
+    const Bounded weight = near / max(1, Bounded(.5) * largest_colour(exact(sample))) *
+                           similarity(in, column.nearest, row.nearest, x, y);
+    weights = weights + weight;
+    for (std::size_t c = 0; c < 3; ++c)
+      sum[c] = sum[c] + Bounded(sample[c]) * weight;
   }
-  const bool any = less(0, weights, undecided);
+  smooth.any = less(0, weights, undecided);
+  for (std::size_t c = 0; c < 3; ++c)
+    smooth.colour[c] = smooth.any ? sum[c] / weights : stand_in[c];
+  return smooth;
+}
+
+// The less confident, the more of a Gaussian of the frame.
+void start(Pixels& pixel, const TemporalInputs& in, const Place& column, const Place& row, bool& undecided) {
+  if (pixel.confidence.value - pixel.confidence.error >= kStart) return;
+  const Smooth smooth = smooth_at(in, column, row, undecided);
   const Bounded share = max(Bounded(1) - pixel.confidence / rounded(kStart), 0);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Bounded smooth = any ? sum[c] / weights : stand_in[c];
-    pixel.colour[c] = pixel.colour[c] + (smooth - pixel.colour[c]) * share;
-  }
-  if (!any) less(pixel.confidence, rounded(kStart), undecided);
-  pixel.confidence = any ? max(pixel.confidence, rounded(kStart)) : Bounded(0);
+  for (std::size_t c = 0; c < 3; ++c)
+    pixel.colour[c] = pixel.colour[c] + (smooth.colour[c] - pixel.colour[c]) * share;
+  pixel.inertia = rounded(kInertia) * share;
+  if (!smooth.any) less(pixel.confidence, rounded(kStart), undecided);
+  pixel.confidence = smooth.any ? max(pixel.confidence, rounded(kStart)) : Bounded(0);
 }
 
 HistoryTexel add_sample(const Pixels& pixel, const Pixel& sample, bool still,
@@ -269,7 +225,8 @@ HistoryTexel add_sample(const Pixels& pixel, const Pixel& sample, bool still,
     weight = near * near / max(1, Bounded(.5) * largest_colour(exact(sample)));
   }
   const Bounded total = pixel.confidence + weight;
-  const Bounded part = weight.value == 0 && weight.error == 0 ? Bounded(0) : weight / max(total, 1e-30);
+  const Bounded part =
+      weight.value == 0 && weight.error == 0 ? Bounded(0) : weight / max(total + pixel.inertia, 1e-30);
   for (std::size_t c = 0; c < 3; ++c) {
     const Bounded& before = pixel.colour[c];
     texel.value[c] = is_valid(sample) ? before + (Bounded(sample[c]) - before) * part : before;
@@ -329,9 +286,10 @@ HistoryTexel resolve(const TemporalInputs& in, const std::vector<Tile>& tiles, c
   if (!in.moves.empty()) move = in.move_of(column.nearest, row.nearest);
   const Bounded trust = trust_at(in, options, column, row, undecided);
 
+  const double contrast = std::abs(move.contrast);
   const Taken taken = take_history(in, tile, move, x, y, options, undecided);
-  Pixels pixel{taken.value, weigh(taken, trust, move.contrast, undecided),
-               max(Bounded(1) - trust, smooth_step(move.contrast, .15, .6))};
+  Pixels pixel{taken.value, weigh(taken, trust, contrast, undecided),
+               max(Bounded(1) - trust, smooth_step(contrast, .15, .6)), 0};
   const Bounded changed = between_tiles(in, tiles, x, y, &Tile::doubt);
   pixel.doubt = max(pixel.doubt, changed);
   pixel.confidence = min(pixel.confidence, most_confidence(Bounded(1) - changed));
@@ -339,7 +297,7 @@ HistoryTexel resolve(const TemporalInputs& in, const std::vector<Tile>& tiles, c
   for (Bounded& value : pixel.colour)
     value = value * gain;
   if (pixel.doubt.value + pixel.doubt.error > 0) rectify(pixel, box_at(frame, column.nearest, row.nearest));
-  start(pixel, frame, column, row, undecided);
+  start(pixel, in, column, row, undecided);
 
   const bool still = tile.rigid && tile.offset[0].value == 0 && tile.offset[1].value == 0 &&
                      tile.step[0] == 0 && tile.step[1] == 0;
@@ -356,37 +314,6 @@ Bounded bell(const Bounded& t) {
   const Bounded square = rest * rest;
   const Bounded fourth = square * square;
   return fourth * fourth;
-}
-
-BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,
-                          const Bounded& fraction_y, double a) {
-  const auto weights = [a](const Bounded& f) {
-    const Bounded rest = Bounded(1) - f;
-    const Bounded w0 = Bounded(a) * f * rest * rest;
-    const Bounded w1 = (Bounded(a + 2) * f - Bounded(a + 3)) * f * f + 1;
-    const Bounded w3 = Bounded(a) * rest * f * f;
-    return std::array<Bounded, 4>{w0, w1, Bounded(1) - w0 - w1 - w3, w3};
-  };
-  const auto wx = weights(fraction_x);
-  const auto wy = weights(fraction_y);
-  BoundedPixel result, least, most;
-  for (std::size_t c = 0; c < 4; ++c) {
-    for (int row = 0; row < 4; ++row) {
-      for (int column = 0; column < 4; ++column) {
-        const Bounded texel = in.history_at(std::clamp(x + column - 1, 0, in.output_width - 1),
-                                            std::clamp(y + row - 1, 0, in.output_height - 1))[c];
-        const auto i = static_cast<std::size_t>(column);
-        const auto j = static_cast<std::size_t>(row);
-        result[c] = result[c] + texel * wx[i] * wy[j];
-        if (row % 3 == 0 || column % 3 == 0) continue;
-        const bool first = row == 1 && column == 1;
-        least[c] = first ? texel : min(least[c], texel);
-        most[c] = first ? texel : max(most[c], texel);
-      }
-    }
-    result[c] = clamp(result[c], least[c], most[c]);
-  }
-  return result;
 }
 
 std::vector<HistoryTexel> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,

@@ -15,6 +15,10 @@ constexpr int kTile = 8;  // output pixels
 
 using BoundedPixel = std::array<Bounded, 4>;
 
+inline BoundedPixel exact(const Pixel& pixel) {
+  return {pixel[0], pixel[1], pixel[2], pixel[3]};
+}
+
 // How the texels of a tile take history over, and what is known of it. Given to a stage the numbers are
 // exact.
 struct Tile {
@@ -98,11 +102,6 @@ struct DisplayOptions {
 
 std::vector<HistoryTexel> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
                                            const DisplayOptions& options);
-
-// The cubic (Keys 1981) at `fraction` past the second of four texels on either axis, held in the range of the
-// middle four; beyond the edges the outermost texel once more. (x, y): the first of the middle four.
-BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,
-                          const Bounded& fraction_y, double a);
 
 // (1 - t / 8)^8
 Bounded bell(const Bounded& t);

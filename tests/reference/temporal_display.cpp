@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "temporal.h"
+#include "history_sampling.h"
 
 namespace quincunx::reference {
 namespace {

@@ -11,7 +11,7 @@ namespace {
 constexpr double kRigid = .05;   // output pixels that the samples of a rigid tile may differ by
 constexpr double kStill = 1e-4;  // output pixels that count as none
 constexpr double kTrusted = .9;  // samples less sure of their history do not judge it
-constexpr double kKnown = .3;    // nor do they judge history of less confidence
+constexpr double kKnown = .1;    // nor do they judge history of less confidence
 constexpr double kLargestHalf = 65504;
 
 struct Range {
@@ -167,7 +167,7 @@ std::vector<Tile> temporal_tiles(const TemporalInputs& in) {
       }
       for (int y = rows.first; y <= rows.last; ++y) {
         for (int x = columns.first; x <= columns.last; ++x) {
-          if ((x + y) % 2 == 0) judge(tile, in, x, y);  // every second one
+          if ((x + 2 * y) % 4 == 0) judge(tile, in, x, y);  // every fourth one
         }
       }
       tiles.push_back(tile);
