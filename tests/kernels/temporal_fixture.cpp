@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 
+#include "kernel_options.h"
 #include "program_cache.h"
 
 namespace quincunx::testing {
@@ -52,10 +54,13 @@ std::vector<reference::Move> make_moves(const reference::TemporalInputs& in, uns
       const auto& motion = kZoneMoves[zone() % std::size(kZoneMoves)];
       reference::Move move{.x = motion[0], .y = motion[1], .trust = 1};
       if (!rigid) {
-        move = {.x = 12 * uniform(random) - 6, .y = 8 * uniform(random) - 4, .trust = uniform(random)};
+        const double spread = zone() % 2 == 0 ? 1 : .02;  // little enough to show one surface
+        move = {.x = spread * (12 * uniform(random) - 6),
+                .y = spread * (8 * uniform(random) - 4),
+                .trust = uniform(random)};
         if (random() % 2 == 0) move.trust = 1;
         if (random() % 20 == 0) move.trust = 0;
-        if (random() % 2 == 0) move.contrast = as_float(1.5 * uniform(random));
+        if (random() % 2 == 0) move.contrast = as_float(3 * uniform(random) - 1.5);
         if (random() % 50 == 0) move = {.trust = kNan};
       }
       move.x = as_float(move.x / in.move_scale(0));
@@ -201,17 +206,29 @@ std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsign
   return made;
 }
 
-cl::Kernel TemporalStages::kernel(const std::string& name, const std::string& options) const {
-  const auto format = [](PixelFormat f) { return f == PixelFormat::kRGBA16F ? "HALF" : "FLOAT"; };
-  return build_kernel(
-      impl(), name,
-      fmt::format(
-          "-D MOTION={} -D REACTIVE={} -D SOURCE_STORAGE={} -D SOURCE_FORMAT={} -D OUTPUT_FORMAT={} -D "
-          "HISTORY_FORMAT={} {}",
-          variant_.moves ? 1 : 0, variant_.reactive ? 1 : 0,
-          variant_.storage == Storage::kImage ? "IMAGE" : "BUFFER", format(variant_.colour),
-          format(variant_.resolved), format(variant_.history), options));
+ResolvePlan TemporalStages::plan(TemporalPreset preset) const {
+  ResolvePlan plan;
+  plan.settings = {.method = Method::kTemporal,
+                   .colour = variant_.colour,
+                   .resolved = variant_.resolved,
+                   .storage = variant_.storage};
+  plan.settings.temporal = {.preset = preset, .history = variant_.history};
+  plan.velocity = variant_.moves ? VelocitySource::kTarget : VelocitySource::kNone;
+  plan.reads_reactive = variant_.reactive;
+  return plan;
 }
+
+namespace {
+
+// Built once for all sizes and inputs.
+cl::Kernel kernel(const std::string& name, const std::string& options) {
+  static std::map<std::string, cl::Kernel> built;
+  const auto found = built.find(name + options);
+  if (found != built.end()) return found->second;
+  return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
+}
+
+}  // namespace
 
 cl::Buffer TemporalStages::history(const StageInputs& in) const {
   return to_device(encode(variant_.history, in.reference.history));
@@ -259,7 +276,7 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   const cl::Buffer before = tiles_to_device(r.before);
   const cl::Buffer now = to_device(std::vector<TemporalTile>(r.before.size()));
   const cl::Buffer total = to_device(std::vector<TotalLight>(1));
-  cl::Kernel tiles = kernel("temporal_tiles", "");
+  cl::Kernel tiles = kernel("temporal_tiles", temporal_tiles_options(plan(TemporalPreset::kBalanced)));
   tiles.setArg(0, params);
   set_memory(tiles, 1, in.frame.colour.memory);
   set_memory(tiles, 2, variant_.moves ? in.moves.memory : before());
@@ -290,7 +307,7 @@ std::vector<TemporalTile> TemporalStages::run_light(Extent tiles, const std::vec
 
 TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& in,
                                                    const std::vector<reference::Tile>& tiles,
-                                                   const std::string& options) const {
+                                                   TemporalPreset preset) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent output{r.output_width, r.output_height};
   PositionTables tables(impl(), output);
@@ -321,7 +338,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const std::size_t bytes = r.history.size() * bytes_per_pixel(variant_.history);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
   const cl::Buffer before = tiles_to_device(r.before);
-  cl::Kernel resolve = kernel("resolve_temporal", options);
+  cl::Kernel resolve = kernel("resolve_temporal", temporal_options(plan(preset)));
   resolve.setArg(0, params);
   resolve.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(resolve, 2, in.frame.colour.memory);
@@ -344,7 +361,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
 
 TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& in,
                                                    const std::vector<reference::Tile>& tiles,
-                                                   const std::string& options) const {
+                                                   TemporalPreset preset, bool background) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent output{r.output_width, r.output_height};
   PositionTables tables(impl(), output);
@@ -357,7 +374,9 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.tiles_x = r.tiles_x();
   params.columns = tables.columns();
   params.columns_per_item = columns_per_item(impl(), output.width, kTemporalTile);
-  cl::Kernel display = kernel("temporal_display", options);
+  ResolvePlan display_plan = plan(preset);
+  display_plan.needs.background = background;
+  cl::Kernel display = kernel("temporal_display", temporal_display_options(display_plan));
   display.setArg(0, params);
   display.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(display, 2, in.frame.colour.memory);

@@ -91,12 +91,13 @@ class TemporalStages {
     std::int64_t non_finite = 0;
   };
   Result run_resolve(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
-                     const std::string& options = "") const;
+                     TemporalPreset preset = TemporalPreset::kBalanced) const;
+  // `background`: alpha is 1.
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
-                     const std::string& options = "") const;
+                     TemporalPreset preset = TemporalPreset::kBalanced, bool background = false) const;
 
  private:
-  cl::Kernel kernel(const std::string& name, const std::string& options) const;
+  ResolvePlan plan(TemporalPreset preset) const;
   cl::Buffer history(const StageInputs& in) const;
 
   StageVariant variant_;

@@ -257,8 +257,38 @@ TEST(TemporalMoves, ContrastMatchesTheReference) {
   }
 }
 
-TEST(TemporalMoves, TrustGoesWhereAnEdgeOfMotionWas) {
-  std::int64_t decided = 0, compared = 0, gone = 0;
+// An edge of motion in the first frame is known to the second, with a minus, and to no third.
+TEST(TemporalMoves, ContrastOfThePreviousFrameIsNotFedOn) {
+  const Extent render{12, 8};
+  Rig rig;
+  const auto frame = [&](double speed) {
+    TestFrame made = make_frame(rig, {.with_velocity = true, .with_depth = true}, {.render = render});
+    std::vector<Pixel> velocity;
+    for (int i = 0; i < static_cast<int>(render.area()); ++i)
+      velocity.push_back({i % render.width < 6 ? speed : 0, 0, 0, 0});
+    made.inputs.velocity = rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, velocity, 0);
+    made.inputs.velocity_scale = {1, 1};
+    return made;
+  };
+  const cl::CommandQueue& queue = testing::impl().queue;
+  MovePass pass(testing::impl(), plan_for_test({24, 16}));
+  pass.forget(queue);
+  TestFrame before = frame(.0625);  // 1.5 output pixels
+  const double expected[] = {1.5, -1.5, 0, 0};
+  for (const double contrast : expected) {
+    const TestFrame now = frame(contrast > 0 ? .0625 : 0);
+    pass.enqueue(queue, now.inputs, before.inputs, nullptr);
+    const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+    for (std::size_t i = 0; i < moves.size(); ++i) {
+      const std::size_t x = i % 12;
+      EXPECT_EQ(moves[i][3], x == 5 || x == 6 ? contrast : 0) << i;
+    }
+    before = now;
+  }
+}
+
+TEST(TemporalMoves, AnEdgeOfMotionThatWasTakesTrustAndStaysOneFrame) {
+  std::int64_t decided = 0, compared = 0, gone = 0, earlier = 0;
   unsigned seed = 40;
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
@@ -295,11 +325,16 @@ TEST(TemporalMoves, TrustGoesWhereAnEdgeOfMotionWas) {
         // each factor rounds a few times.
         const double allowed = (16 * expected[i].reach + 64) * kRounding;
         ASSERT_NEAR(moves[i][2], expected[i].trust, allowed) << render.width << " " << i;
+        earlier += expected[i].contrast < 0 ? 1 : 0;
+        // Of this frame it rounds as above, that of the previous one is copied.
+        ASSERT_NEAR(moves[i][3], expected[i].contrast, 24 * kRounding * std::abs(expected[i].contrast))
+            << render.width << " " << i;
       }
     }
   }
   EXPECT_GT(decided, compared * 3 / 4);
   EXPECT_GT(gone, 0);
+  EXPECT_GT(earlier, 0);
 }
 
 }  // namespace

@@ -170,14 +170,15 @@ TEST_P(Temporal, ResolveMatchesTheReferenceAtEverySizeScaleAndInput) {
 TEST_P(Temporal, BilinearHistoryAndTrustMatchToo) {
   const StageVariant& v = GetParam();
   const TemporalStages stages(v);
-  for (const reference::TemporalOptions options : {reference::TemporalOptions{4, false}, {16, true}}) {
-    if (options.bilinear_trust && !v.moves) continue;
+  if (!v.moves) return;  // they change nothing
+  for (const TemporalPreset preset : {TemporalPreset::kFast, TemporalPreset::kQuality}) {
+    const bool fast = preset == TemporalPreset::kFast;
+    const reference::TemporalOptions options{fast ? 4 : 16, !fast};
     for (const StageSpec& spec : all_specs({Pattern::kNoise})) {
       Rig rig;
       const StageInputs in = stages.inputs(rig, spec);
       const auto tiles = stages.tiles(in, spec.seed);
-      const auto actual =
-          stages.run_resolve(rig, in, tiles, options.bilinear_trust ? "-D TRUST=BILINEAR" : "-D TAPS=4");
+      const auto actual = stages.run_resolve(rig, in, tiles, preset);
       compare(reference::resolve_temporal(in.reference, tiles, options), actual.pixels, spec.output.width,
               v.history, what_of(spec));
       if (HasFatalFailure()) return;
@@ -197,7 +198,7 @@ TEST_P(Temporal, PoisonOutsideTheViewportChangesNoBit) {
       const StageInputs in = stages.inputs(rig, spec);
       auto all = stages.run_resolve(rig, in, stages.tiles(in, 1)).bytes;
       const auto tiles = testing::bytes_of(stages.run_tiles(in).tiles);
-      const auto shown = stages.run_display(rig, in, in.reference.before, "-D ALPHA=1").bytes;
+      const auto shown = stages.run_display(rig, in, in.reference.before).bytes;
       all.insert(all.end(), tiles.begin(), tiles.end());
       all.insert(all.end(), shown.begin(), shown.end());
       return all;
@@ -246,7 +247,8 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
     const StageInputs in = stages.inputs(rig, spec);
     for (const reference::DisplayOptions options : {reference::DisplayOptions{}, {false, false}}) {
       const auto actual = stages.run_display(
-          rig, in, in.reference.before, options.smooth ? "-D SMOOTH=1 -D ALPHA=1" : "-D SMOOTH=0 -D ALPHA=0");
+          rig, in, in.reference.before, options.smooth ? TemporalPreset::kBalanced : TemporalPreset::kFast,
+          !options.alpha);
       compare(reference::temporal_display(in.reference, in.reference.before, options), actual.pixels,
               spec.output.width, v.resolved, what_of(spec));
       if (HasFatalFailure()) return;
