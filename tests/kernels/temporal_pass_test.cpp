@@ -222,6 +222,59 @@ TEST(TemporalStill, AFrameAloneIsAGaussianAndItsNearestSample) {
   }
 }
 
+// Left of its middle the frame is red and moves, right of it it is green and stands.
+testing::StageInputs two_surfaces(Rig& rig, const testing::TemporalStages& stages, double speed,
+                                  double trust) {
+  constexpr Extent kRender{12, 8};
+  testing::StageInputs in = stages.inputs(rig, {.output = {24, 16}, .render = kRender, .previous = kRender});
+  std::vector<Pixel> colour, moves;
+  in.reference.moves.clear();
+  for (int i = 0; i < static_cast<int>(kRender.area()); ++i) {
+    const bool left = i % kRender.width < kRender.width / 2;
+    colour.push_back(left ? Pixel{1, 0, 0, 1} : Pixel{0, 1, 0, 1});
+    moves.push_back({left ? speed / 2 : 0, 0, trust, 0});
+  }
+  in.frame.colour = rig.image(PixelFormat::kRGBA16F, Storage::kBuffer, kRender, colour, 0);
+  in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, kRender, moves, 0);
+  in.reference.before.assign(in.reference.before.size(), {});
+  return in;
+}
+
+// Of samples that move otherwise a fresh pixel takes next to nothing, of all others what a Gaussian has.
+TEST(TemporalStill, AFreshPixelShowsOneSurface) {
+  const testing::TemporalStages stages({});
+  Rig rig;
+  double largest[2] = {};
+  for (const bool apart : {false, true}) {
+    testing::StageInputs in = two_surfaces(rig, stages, apart ? 3 : .01, 1);
+    in.reference.history.assign(in.reference.history.size(), {});
+    for (const Pixel& pixel : stages.run_resolve(rig, in, in.reference.before).pixels) {
+      EXPECT_NEAR(pixel[0] + pixel[1], 1, 32 * kRounding);
+      largest[apart ? 1 : 0] = std::max(largest[apart ? 1 : 0], std::min(pixel[0], pixel[1]));
+    }
+  }
+  // Three of the nine samples are the other surface's, and nearer than the own three of the far side.
+  EXPECT_GT(largest[0], .05);
+  // Each of those counts 2^-10 of what it did, of a sum that is more than half of what it was.
+  EXPECT_LT(largest[1], largest[0] / 0x1p9);
+}
+
+// Whatever history holds, and however sure of it, without trust the pixel is what it is without history.
+TEST(TemporalStill, WithoutTrustNothingOfHistoryIsLeft) {
+  const testing::TemporalStages stages({});
+  Rig rig;
+  testing::StageInputs in = two_surfaces(rig, stages, 3, 0);
+  const auto with = stages.run_resolve(rig, in, in.reference.before).pixels;
+  in.reference.history.assign(in.reference.history.size(), {});
+  const auto without = stages.run_resolve(rig, in, in.reference.before).pixels;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      // What replaces history is added to it as a difference: of values below 4, once each.
+      EXPECT_NEAR(with[i][c], without[i][c], 2 * 4 * kRounding) << i << " " << c;
+    }
+  }
+}
+
 TEST(TemporalMoves, ContrastMatchesTheReference) {
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
