@@ -53,6 +53,8 @@ std::vector<reference::Move> make_moves(const reference::TemporalInputs& in, uns
       const bool rigid = zone() % 4 != 0;
       const auto& motion = kZoneMoves[zone() % std::size(kZoneMoves)];
       reference::Move move{.x = motion[0], .y = motion[1], .trust = 1};
+      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.trust = .75;
+      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.contrast = as_float(uniform(random) - .5);
       if (!rigid) {
         const double spread = zone() % 2 == 0 ? 1 : .02;  // little enough to show one surface
         move = {.x = spread * (12 * uniform(random) - 6),
@@ -123,6 +125,7 @@ TemporalTile to_kernel(const reference::Tile& tile) {
           .step_x = tile.step[0],
           .step_y = tile.step[1],
           .rigid = tile.rigid ? 1 : 0,
+          .plain = tile.plain ? 1 : 0,
           .brightening = number(tile.brightening),
           .light = number(tile.light),
           .history_error = number(tile.history_error),
@@ -140,6 +143,7 @@ reference::Tile to_reference(const TemporalTile& tile) {
   made.source = {number(tile.source_x), number(tile.source_y)};
   made.step = {tile.step_x, tile.step_y};
   made.rigid = tile.rigid != 0;
+  made.plain = tile.plain != 0;
   made.brightening = number(tile.brightening);
   made.light = number(tile.light);
   made.history_error = number(tile.history_error);

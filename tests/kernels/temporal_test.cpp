@@ -86,6 +86,7 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     ++compared_;
     if (expected.undecided) return;
     ASSERT_EQ(expected.rigid, actual.rigid != 0) << what;
+    ASSERT_EQ(expected.plain, actual.plain != 0) << what;
     ASSERT_EQ(expected.step[0], actual.step_x) << what;
     ASSERT_EQ(expected.step[1], actual.step_y) << what;
     ASSERT_EQ(expected.source[0], static_cast<double>(actual.source_x)) << what;
@@ -93,6 +94,7 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     expect_near(expected.offset[0], static_cast<double>(actual.offset_x), what + " offset_x");
     expect_near(expected.offset[1], static_cast<double>(actual.offset_y), what + " offset_y");
     rigid_ += expected.rigid ? 1 : 0;
+    plain_ += expected.plain ? 1 : 0;
     if (expected.unsure) return;
     ++decided_;
     expect_near(expected.brightening, static_cast<double>(actual.brightening), what + " brightening");
@@ -105,6 +107,7 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
   std::int64_t rigid_ = 0;
+  std::int64_t plain_ = 0;
 };
 
 // Each tile's part of a total is cut to an integer.
@@ -147,6 +150,10 @@ TEST_P(Temporal, TilesMatchTheReferenceAtEverySizeAndScale) {
   }
   EXPECT_GE(decided_, compared_ * 3 / 4);
   EXPECT_GE(rigid_, compared_ / 4);
+  EXPECT_GE(plain_, compared_ / 8);
+  if (GetParam().moves) {
+    EXPECT_GE(rigid_ - plain_, compared_ / 32);
+  }
   EXPECT_GT(totals, 20);
 }
 
@@ -164,6 +171,20 @@ TEST_P(Temporal, ResolveMatchesTheReferenceAtEverySizeScaleAndInput) {
   }
   // Moves by whole pixels leave it to a rounding which texels hold the cubic in.
   EXPECT_GE(decided_, compared_ * 3 / 4);
+}
+
+// What is copied without looking at each sample is what looking at them gives.
+TEST_P(Temporal, PlainTilesGiveTheSameBits) {
+  const TemporalStages stages(GetParam());
+  for (const StageSpec& spec : all_specs({Pattern::kNoise})) {
+    Rig rig;
+    const StageInputs in = stages.inputs(rig, spec);
+    auto tiles = stages.tiles(in, spec.seed);
+    const auto plain = stages.run_resolve(rig, in, tiles);
+    for (reference::Tile& tile : tiles)
+      tile.plain = false;
+    EXPECT_EQ(plain.bytes, stages.run_resolve(rig, in, tiles).bytes) << what_of(spec);
+  }
 }
 
 // What the presets change.

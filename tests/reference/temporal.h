@@ -26,6 +26,7 @@ struct Tile {
   std::array<double, 2> source = {};
   std::array<int, 2> step = {};
   bool rigid = false;
+  bool plain = false;  // rigid, all samples are trusted, and there is no edge of motion
   Bounded brightening, light, history_error, neighbour_error;
   Bounded persistence, doubt;
   Bounded gain = 1;

@@ -9,6 +9,7 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kRigid = .05;   // output pixels that the samples of a rigid tile may differ by
+constexpr double kNoEdge = .1;   // output pixels of contrast that change nothing
 constexpr double kStill = 1e-4;  // output pixels that count as none
 constexpr double kTrusted = .9;  // samples less sure of their history do not judge it
 constexpr double kKnown = .1;    // nor do they judge history of less confidence
@@ -47,10 +48,12 @@ bool on_screen(const std::array<Bounded, 2>& at, const TemporalInputs& in, bool&
 void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int tile_x, int tile_y) {
   std::array<double, 2> least = {1e9, 1e9};
   std::array<double, 2> most = {-1e9, -1e9};
+  bool plain = true;
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
       const Move& move = in.move_of(x, y);
       if (std::isnan(move.trust)) return;
+      plain = plain && move.trust == 1 && std::abs(move.contrast) <= kNoEdge;
       least = {std::min(least[0], move.x), std::min(least[1], move.y)};
       most = {std::max(most[0], move.x), std::max(most[1], move.y)};
     }
@@ -68,6 +71,7 @@ void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int
   const Tile& from = in.tile_before(tile_of(source[0], in.tiles_x(), tile.undecided),
                                     tile_of(source[1], in.tiles_y(), tile.undecided));
   tile.rigid = true;
+  tile.plain = plain;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     tile.source[axis] = from.offset[axis].value;
     const Bounded place = tile.source[axis] - move[axis];
@@ -160,7 +164,7 @@ std::vector<Tile> temporal_tiles(const TemporalInputs& in) {
       const Range columns = samples_in(tile_x, in.spacing(0), in.frame.jitter_x, width, tile.undecided);
       const Range rows = samples_in(tile_y, in.spacing(1), in.frame.jitter_y, height, tile.undecided);
       if (in.moves.empty()) {
-        tile.rigid = true;
+        tile.rigid = tile.plain = true;
       } else {
         follow(tile, in, {std::max(columns.first - 1, 0), std::min(columns.last + 1, width - 1)},
                {std::max(rows.first - 1, 0), std::min(rows.last + 1, height - 1)}, tile_x, tile_y);
