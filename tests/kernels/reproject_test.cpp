@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "../reference/reproject.h"
 #include "kernel_fixture.h"
@@ -74,6 +75,16 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
                 .with_reactive = v.reactive};
   }
 
+  // One for all frames of an output, up to twice its size.
+  ReprojectPass& pass_for(Extent output) {
+    if (!pass_ || plan_.settings.output != output) {
+      plan_.settings.output = output;
+      plan_.settings.target = {2 * output.width + 3, 2 * output.height};
+      pass_.emplace(testing::impl(), plan_);
+    }
+    return *pass_;
+  }
+
   struct Run {
     std::vector<unsigned char> bytes;
     std::vector<Pixel> pixels;
@@ -82,10 +93,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   };
 
   Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
-    plan_.settings.output = output;
-    plan_.settings.target = {std::max(current.inputs.render.width, previous.inputs.render.width) + 3,
-                             std::max(current.inputs.render.height, previous.inputs.render.height)};
-    ReprojectPass pass(testing::impl(), plan_);
+    ReprojectPass& pass = pass_for(output);
     const ImageView view = rig.output(plan_.settings.resolved, output);
     const Counter counter = rig.counter();
     pass.enqueue(testing::impl().queue, current.inputs, previous.inputs, view, counter, nullptr);
@@ -159,6 +167,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   }
 
   ResolvePlan plan_;
+  std::optional<ReprojectPass> pass_;
   FrameFormats formats_;
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
