@@ -226,7 +226,8 @@ namespace {
 
 // Built once for all sizes and inputs.
 cl::Kernel kernel(const std::string& name, const std::string& options) {
-  static std::map<std::string, cl::Kernel> built;
+  // Never destroyed: some OpenCL layers are gone before static objects are.
+  static auto& built = *new std::map<std::string, cl::Kernel>;
   const auto found = built.find(name + options);
   if (found != built.end()) return found->second;
   return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
