@@ -131,6 +131,7 @@ TemporalTile to_kernel(const reference::Tile& tile) {
           .history_error = number(tile.history_error),
           .neighbour_error = number(tile.neighbour_error),
           .count = static_cast<float>(tile.samples),
+          .brighter = static_cast<float>(tile.brighter),
           .persistence = number(tile.persistence),
           .doubt = number(tile.doubt),
           .gain = number(tile.gain)};
@@ -149,6 +150,7 @@ reference::Tile to_reference(const TemporalTile& tile) {
   made.history_error = number(tile.history_error);
   made.neighbour_error = number(tile.neighbour_error);
   made.samples = static_cast<int>(tile.count);
+  made.brighter = static_cast<int>(tile.brighter);
   made.persistence = number(tile.persistence);
   made.doubt = number(tile.doubt);
   made.gain = number(tile.gain);
@@ -222,6 +224,10 @@ ResolvePlan TemporalStages::plan(TemporalPreset preset) const {
   return plan;
 }
 
+cl::Buffer TemporalStages::history(const StageInputs& in) const {
+  return to_device(encode(variant_.history, in.reference.history));
+}
+
 namespace {
 
 // Built once for all sizes and inputs.
@@ -232,14 +238,6 @@ cl::Kernel kernel(const std::string& name, const std::string& options) {
   if (found != built.end()) return found->second;
   return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
 }
-
-}  // namespace
-
-cl::Buffer TemporalStages::history(const StageInputs& in) const {
-  return to_device(encode(variant_.history, in.reference.history));
-}
-
-namespace {
 
 cl::Buffer tiles_to_device(const std::vector<reference::Tile>& tiles) {
   std::vector<TemporalTile> made;
@@ -366,7 +364,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
 
 TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& in,
                                                    const std::vector<reference::Tile>& tiles,
-                                                   TemporalPreset preset, bool background) const {
+                                                   const Shown& shown) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent output{r.output_width, r.output_height};
   PositionTables tables(impl(), output);
@@ -379,8 +377,9 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.tiles_x = r.tiles_x();
   params.columns = tables.columns();
   params.columns_per_item = columns_per_item(impl(), output.width, kTemporalTile);
-  ResolvePlan display_plan = plan(preset);
-  display_plan.needs.background = background;
+  ResolvePlan display_plan = plan(shown.preset);
+  display_plan.needs.background = shown.background;
+  params.first = shown.first ? 1 : 0;
   cl::Kernel display = kernel("temporal_display", temporal_display_options(display_plan));
   display.setArg(0, params);
   display.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));

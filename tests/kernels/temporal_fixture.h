@@ -92,9 +92,13 @@ class TemporalStages {
   };
   Result run_resolve(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      TemporalPreset preset = TemporalPreset::kBalanced) const;
-  // `background`: alpha is 1.
+  struct Shown {
+    TemporalPreset preset = TemporalPreset::kBalanced;
+    bool background = false;  // alpha is 1
+    bool first = false;       // of all frames
+  };
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
-                     TemporalPreset preset = TemporalPreset::kBalanced, bool background = false) const;
+                     const Shown& shown) const;
 
  private:
   ResolvePlan plan(TemporalPreset preset) const;

@@ -97,6 +97,7 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     plain_ += expected.plain ? 1 : 0;
     if (expected.unsure) return;
     ++decided_;
+    ASSERT_EQ(expected.brighter, static_cast<int>(actual.brighter)) << what;
     expect_near(expected.brightening, static_cast<double>(actual.brightening), what + " brightening");
     expect_near(expected.light, static_cast<double>(actual.light), what + " light");
     expect_near(expected.history_error, static_cast<double>(actual.history_error), what + " history_error");
@@ -220,7 +221,7 @@ TEST_P(Temporal, PoisonOutsideTheViewportChangesNoBit) {
       const StageInputs in = stages.inputs(rig, spec);
       auto all = stages.run_resolve(rig, in, stages.tiles(in, 1)).bytes;
       const auto tiles = testing::bytes_of(stages.run_tiles(in).tiles);
-      const auto shown = stages.run_display(rig, in, in.reference.before).bytes;
+      const auto shown = stages.run_display(rig, in, in.reference.before, {}).bytes;
       all.insert(all.end(), tiles.begin(), tiles.end());
       all.insert(all.end(), shown.begin(), shown.end());
       return all;
@@ -254,7 +255,7 @@ TEST_P(Temporal, ATightFrameIsReadWithinItsEdges) {
       for (const double value : pixel)
         EXPECT_TRUE(std::isfinite(value));
     }
-    for (const Pixel& pixel : stages.run_display(rig, in, in.reference.before).pixels) {
+    for (const Pixel& pixel : stages.run_display(rig, in, in.reference.before, {}).pixels) {
       for (const double value : pixel)
         EXPECT_TRUE(std::isfinite(value));
     }
@@ -267,10 +268,11 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
   for (const StageSpec& spec : all_specs({Pattern::kNoise})) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
-    for (const reference::DisplayOptions options : {reference::DisplayOptions{}, {false, false}}) {
-      const auto actual = stages.run_display(
-          rig, in, in.reference.before, options.smooth ? TemporalPreset::kBalanced : TemporalPreset::kFast,
-          !options.alpha);
+    using Shown = TemporalStages::Shown;
+    for (const Shown& shown : {Shown{}, {TemporalPreset::kFast, true}, {.first = true}}) {
+      const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first,
+                                              !shown.background};
+      const auto actual = stages.run_display(rig, in, in.reference.before, shown);
       compare(reference::temporal_display(in.reference, in.reference.before, options), actual.pixels,
               spec.output.width, v.resolved, what_of(spec));
       if (HasFatalFailure()) return;
@@ -296,6 +298,8 @@ TEST(TemporalLight, MatchesTheReference) {
       tile.history_error = static_cast<float>((round % 2 == 0 ? 10 : 30) * uniform(random));
       tile.neighbour_error = static_cast<float>(6 * uniform(random));
       tile.count = static_cast<float>(1 + static_cast<int>(15 * uniform(random)));
+      tile.brighter = static_cast<float>(std::lround(static_cast<double>(tile.count) *
+                                                     std::clamp(2 * lean + uniform(random) - .5, -1.0, 1.0)));
       tile.brightening = tile.history_error * static_cast<float>(lean + .5 * uniform(random) - .25);
       total.brightening += static_cast<int>(tile.brightening * 40);
       total.change += static_cast<int>(std::abs(tile.brightening) * 40);

@@ -31,6 +31,7 @@ struct Tile {
   Bounded persistence, doubt;
   Bounded gain = 1;
   int samples = 0;         // that were judged
+  int brighter = 0;        // how many are brighter than history, less those that are not
   bool undecided = false;  // a rounding may decide how history is taken over
   bool unsure = false;     // or which texels, or what to believe
 };

@@ -11,6 +11,7 @@ namespace {
 struct Sums {
   Bounded brightening, change, light, history_error, neighbour_error;
   double samples = 0;
+  double brighter = 0;
 };
 
 Sums sums_around(const std::vector<Tile>& tiles, int tiles_x, int tiles_y, int x, int y) {
@@ -24,6 +25,7 @@ Sums sums_around(const std::vector<Tile>& tiles, int tiles_x, int tiles_y, int x
       sums.history_error = sums.history_error + tile.history_error;
       sums.neighbour_error = sums.neighbour_error + tile.neighbour_error;
       sums.samples += tile.samples;
+      sums.brighter += tile.brighter;
     }
   }
   return sums;
@@ -46,20 +48,21 @@ void judge_light(Tile& tile, const Sums& sums, const Tile& before, const TotalLi
   bool sign_unsure = false;
   const double sign = less(0, relative, sign_unsure) ? 1 : -1;
   const Bounded chance = sums.neighbour_error / sqrt(Bounded(std::max(sums.samples, 1.0)));
-  const bool hit = less(rounded(.75), coherence, tile.unsure) &&
+  const bool agreed = less(rounded(.4) * sums.samples, sums.brighter * sign, tile.unsure);
+  const bool hit = agreed && less(rounded(.75), coherence, tile.unsure) &&
                    less(rounded(.05), abs(relative), tile.unsure) &&
                    less(Bounded(3) * chance, abs(sums.brightening), tile.unsure);
   tile.persistence = rounded(.6) * before.persistence;
   if (hit) tile.persistence = tile.persistence + rounded(.4) * sign;
   Bounded gain = 1;
   if (hit && less(rounded(.62), tile.persistence * sign, tile.unsure)) gain = Bounded(1) + relative;
-  if (whole_changes(total, tile.unsure)) {
-    const Bounded whole = exact_count(total.brightening);
+  const Bounded whole = exact_count(total.brightening);
+  const bool same_sign = relative.value * whole.value > 0;
+  if (whole_changes(total, tile.unsure)) tile.unsure = tile.unsure || sign_unsure;
+  if (whole_changes(total, tile.unsure) && agreed && same_sign) {
     const Bounded everywhere = whole / exact_count(total.light);
-    const bool own = less(.5, coherence, tile.unsure) && (relative.value > 0) == (whole.value > 0) &&
-                     relative.value != 0 &&
+    const bool own = less(.5, coherence, tile.unsure) &&
                      less(rounded(.3) * abs(everywhere), abs(relative - everywhere), tile.unsure);
-    tile.unsure = tile.unsure || sign_unsure;
     gain = Bounded(1) + (own ? relative : everywhere);
   }
   tile.gain = clamp(gain, .25, 4);

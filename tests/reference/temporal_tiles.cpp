@@ -44,7 +44,7 @@ bool on_screen(const std::array<Bounded, 2>& at, const TemporalInputs& in, bool&
          less(at[0], in.output_width, undecided) && less(at[1], in.output_height, undecided);
 }
 
-// Makes a tile rigid if all samples in both ranges move alike, and what they show was on screen.
+// Makes a tile rigid if all samples in both ranges move alike.
 void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int tile_x, int tile_y) {
   std::array<double, 2> least = {1e9, 1e9};
   std::array<double, 2> most = {-1e9, -1e9};
@@ -67,7 +67,6 @@ void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int
     if (less(abs(move[axis]), rounded(kStill), tile.undecided)) move[axis] = 0;
     source[axis] = Bounded((axis == 0 ? tile_x : tile_y) * kTile + kTile / 2) + move[axis];
   }
-  if (!on_screen(source, in, tile.undecided)) return;
   const Tile& from = in.tile_before(tile_of(source[0], in.tiles_x(), tile.undecided),
                                     tile_of(source[1], in.tiles_y(), tile.undecided));
   tile.rigid = true;
@@ -138,6 +137,8 @@ void judge(Tile& tile, const TemporalInputs& in, int x, int y) {
   tile.light = tile.light + known * scale;
   tile.history_error = tile.history_error + abs(own - known) * scale;
   tile.neighbour_error = tile.neighbour_error + neighbour_difference(in, x, y, own) * scale;
+  if (less(known, own, tile.unsure)) ++tile.brighter;
+  if (less(own, known, tile.unsure)) --tile.brighter;
   ++tile.samples;
 }
 
