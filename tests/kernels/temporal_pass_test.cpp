@@ -192,13 +192,14 @@ TEST(TemporalStill, AFrameAloneIsAGaussianAndItsNearestSample) {
   in.reference.before = tiles;
   const auto actual = stages.run_resolve(rig, in, tiles).pixels;
   const auto place = [](int x, int size, int samples, double jitter) {
-    return std::clamp((x + .5) * samples / size - .5 - jitter, 0.0, samples - 1.0);
+    return (x + .5) * samples / size - .5 - jitter;
   };
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
       const double u = place(x, output.width, 11, in.reference.frame.jitter_x);
       const double v = place(y, output.height, 9, in.reference.frame.jitter_y);
-      const int column = static_cast<int>(std::lround(u)), row = static_cast<int>(std::lround(v));
+      const int column = static_cast<int>(std::clamp(std::lround(u), 0l, 10l));
+      const int row = static_cast<int>(std::clamp(std::lround(v), 0l, 8l));
       double sum = 0, weights = 0;
       for (int i = 0; i < 9; ++i) {
         const int sx = column + i % 3 - 1, sy = row + i / 3 - 1;

@@ -63,18 +63,24 @@ Taken take_history(const TemporalInputs& in, const Tile& tile, const Move& move,
   std::array<int, 2> step;
   std::array<Bounded, 2> fraction;
   Bounded between = 0;
+  bool lost = false;  // beyond the edges
   for (std::size_t axis = 0; axis < 2; ++axis) {
     at[axis] = at[axis] - source.offset[axis];
     // The cubic is continuous, but from one texel to the next what it is held in is not.
     step[axis] = floor_of(at[axis], undecided);
     fraction[axis] = {at[axis].value - step[axis], at[axis].error};
+    const Bounded place = Bounded(texel[axis] + step[axis]) + fraction[axis];
+    const int size = axis == 0 ? in.output_width : in.output_height;
+    lost = lost || less(place, -.5, undecided) || less(size - .5, place, undecided);
     between = between + fraction[axis] * (Bounded(1) - fraction[axis]);
   }
   const auto sample = [&] {
     if (options.taps == 4) return sample_linear(in, x + step[0], y + step[1], fraction[0], fraction[1]);
     return sample_cubic(in, x + step[0], y + step[1], fraction[0], fraction[1], kHistoryCubic);
   };
-  return {sample(), min(Bounded(4) * between, 1)};
+  Taken taken{sample(), min(Bounded(4) * between, 1)};
+  if (lost) taken.value[3] = 0;
+  return taken;
 }
 
 BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,

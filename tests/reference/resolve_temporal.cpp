@@ -22,18 +22,19 @@ constexpr double kBoxMargin = .02;    // of confidence
 struct Place {
   int nearest = 0;  // sample
   Bounded past;     // how far the place lies past it, in samples
-  Bounded at;
+  Bounded at;       // the place, held among the samples
 };
 
-// Where an output pixel's picture lies among the samples; what lies outside stands at the outermost one.
+// Where an output pixel's picture lies among the samples; of what lies outside the nearest is the outermost.
 Place place_of(int x, int output, int render, double jitter, const Bounded& offset, bool& undecided) {
   const double u = (x + .5) * render / output - .5 - jitter;
   const double whole = std::floor(u);
   const Bounded sum = rounded(u - whole) + offset / rounded(static_cast<double>(output) / render);
-  const Bounded at = clamp({sum.value + whole, sum.error}, 0, render - 1);
+  const Bounded place{sum.value + whole, sum.error};
+  const Bounded at = clamp(place, 0, render - 1);
   const int nearest = decide(
-      at, [](double place) { return static_cast<int>(std::ceil(place - .5)); }, undecided);
-  return {nearest, at - nearest, at};
+      at, [](double held) { return static_cast<int>(std::ceil(held - .5)); }, undecided);
+  return {nearest, place - nearest, at};
 }
 
 Bounded smooth_step(const Bounded& x, double low, double high) {
