@@ -84,7 +84,7 @@ const char* name_of(TemporalView view);      // "confidence"
 struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;
   TemporalView view = TemporalView::kPicture;
-  PixelFormat history = PixelFormat::kRGBA32F;  // RGBA32F or RGBA16F
+  PixelFormat history = PixelFormat::kRGBA16F;  // RGBA16F or RGBA32F
 };
 
 // Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
