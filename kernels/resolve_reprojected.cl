@@ -24,19 +24,7 @@
 #include "texel.h"
 
 #include "distance_weights.h"
-
-#ifndef MOTION
-#define MOTION 1
-#endif
-#ifndef REACTIVE
-#define REACTIVE 0
-#endif
-#if MOTION < 0 || MOTION > 1
-#error "MOTION must be 0 or 1"
-#endif
-#if REACTIVE < 0 || REACTIVE > 1
-#error "REACTIVE must be 0 or 1"
-#endif
+#include "motion_options.h"
 
 #define BRIGHT 2.0f  // see any_at_least_two
 

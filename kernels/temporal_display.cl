@@ -114,14 +114,6 @@ static inline EightTexels load_around(HISTORY_TEXELS history, int width, int x, 
   return around;
 }
 
-// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
-static inline float8 bell(float8 t) {
-  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
-  const float8 square = rest * rest;
-  const float8 fourth = square * square;
-  return fourth * fourth;
-}
-
 static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, float8 confidence) {
   const float8 little = select((float8)(0.0f), (float8)(NEIGHBOUR_WEIGHT), confidence < LITTLE);
   const float8 other = little * bell(2.0f * confidence);

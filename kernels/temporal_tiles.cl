@@ -23,13 +23,8 @@
 
 #include "frame_samples.h"
 #include "history.h"
-
-#ifndef MOTION
-#define MOTION 1
-#endif
-#if MOTION < 0 || MOTION > 1
-#error "MOTION must be 0 or 1"
-#endif
+#include "motion_contrast.h"
+#include "motion_options.h"
 
 #ifndef JUDGE
 #define JUDGE 1
@@ -41,7 +36,6 @@
 #define KNOWN 0.1f      // confidence from which a texel of history counts: one begun anew in the last frame, too
 #define TRUSTED 0.9f    // and the trust of a sample
 #define RIGID 0.05f     // output pixels
-#define NO_EDGE 0.1f    // output pixels: the least that resolve_temporal looks at
 #define STILL 1e-4f     // what velocity's rounding leaves
 
 // The tile that holds output position (x, y), which may lie outside.
@@ -110,7 +104,7 @@ static inline void follow(TemporalTile* tile, __global const float* moves, __glo
       least = min(least, move.xy);
       most = max(most, move.xy);
       known = known && move.z >= 0.0f;  // not NaN
-      plain = plain && move.z == 1.0f && fabs(move.w) <= NO_EDGE;
+      plain = plain && move.z == 1.0f && fabs(move.w) <= EDGE_COSTS_FROM;
     }
   }
   const float2 scale = (float2)(params->move_x, params->move_y);

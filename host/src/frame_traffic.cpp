@@ -2,6 +2,7 @@
 #include "frame_traffic.h"
 
 #include "params.h"
+#include "pass_temporal.h"
 
 namespace quincunx {
 namespace {
@@ -25,12 +26,6 @@ std::uint64_t tiles_of(Extent output) {
     return static_cast<std::uint64_t>((pixels + kTileSide - 1) / kTileSide);
   };
   return side(output.width) * side(output.height);
-}
-
-std::uint64_t temporal_tile_bytes(const ResolveSettings& settings) {
-  const auto tiles = [](int side) { return (side + kTemporalTile - 1) / kTemporalTile; };
-  return static_cast<std::uint64_t>(tiles(settings.output.width)) *
-         static_cast<std::uint64_t>(tiles(settings.output.height)) * sizeof(TemporalTile);
 }
 
 }  // namespace
@@ -73,7 +68,7 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
 
 std::uint64_t temporal_tiles_bytes(const ResolvePlan& plan, Extent render) {
   const ResolveSettings& settings = plan.settings;
-  std::uint64_t bytes = 2 * temporal_tile_bytes(settings);
+  std::uint64_t bytes = 2 * temporal_tile_bytes(settings.output);
   if (plan.follows()) bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
   if (plan.judges_history())
     bytes += bytes_of(render, settings.colour) + bytes_of(settings.output, settings.temporal.history);
@@ -81,12 +76,12 @@ std::uint64_t temporal_tiles_bytes(const ResolvePlan& plan, Extent render) {
 }
 
 std::uint64_t temporal_light_bytes(const ResolvePlan& plan) {
-  return 3 * temporal_tile_bytes(plan.settings);
+  return 3 * temporal_tile_bytes(plan.settings.output);
 }
 
 std::uint64_t temporal_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
   const ResolveSettings& settings = plan.settings;
-  std::uint64_t bytes = bytes_of(render, settings.colour) + 2 * temporal_tile_bytes(settings) +
+  std::uint64_t bytes = bytes_of(render, settings.colour) + 2 * temporal_tile_bytes(settings.output) +
                         2 * bytes_of(settings.output, settings.temporal.history);
   if (plan.follows()) {
     bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
@@ -100,7 +95,7 @@ std::uint64_t temporal_bytes(const ResolvePlan& plan, Extent render, Extent prev
 std::uint64_t temporal_display_bytes(const ResolvePlan& plan, Extent render) {
   const ResolveSettings& settings = plan.settings;
   const std::uint64_t alpha = plan.needs.background ? 0 : bytes_of(render, settings.colour);
-  return alpha + temporal_tile_bytes(settings) + bytes_of(settings.output, settings.temporal.history) +
+  return alpha + temporal_tile_bytes(settings.output) + bytes_of(settings.output, settings.temporal.history) +
          bytes_of(settings.output, settings.resolved);
 }
 

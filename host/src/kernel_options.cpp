@@ -87,15 +87,13 @@ std::string reprojected_options(const ResolvePlan& plan) {
 }
 
 std::string temporal_tiles_options(const ResolvePlan& plan) {
-  const bool judges = plan.settings.temporal.preset != TemporalPreset::kFast;
-  return fmt::format("-D MOTION={} -D JUDGE={} {} -D HISTORY_FORMAT={}",
-                     plan.velocity != VelocitySource::kNone ? 1 : 0, judges ? 1 : 0, source(plan.settings),
-                     history(plan.settings));
+  return fmt::format("-D MOTION={} -D JUDGE={} {} -D HISTORY_FORMAT={}", plan.follows() ? 1 : 0,
+                     plan.judges_history() ? 1 : 0, source(plan.settings), history(plan.settings));
 }
 
 std::string temporal_options(const ResolvePlan& plan) {
   const TemporalPreset preset = plan.settings.temporal.preset;
-  const bool moves = plan.velocity != VelocitySource::kNone;
+  const bool moves = plan.follows();
   return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} {} -D HISTORY_FORMAT={}",
                      moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0,
                      moves && preset == TemporalPreset::kFast ? 4 : 16,

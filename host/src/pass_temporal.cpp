@@ -33,15 +33,15 @@ int view_code(TemporalView view) {
   return kViewPicture;
 }
 
-std::size_t tile_bytes(Extent output) {
-  return sizeof(TemporalTile) * static_cast<std::size_t>(temporal_tiles(output).area());
-}
-
 }  // namespace
 
 Extent temporal_tiles(Extent output) {
   return {(output.width + kTemporalTile - 1) / kTemporalTile,
           (output.height + kTemporalTile - 1) / kTemporalTile};
+}
+
+std::size_t temporal_tile_bytes(Extent output) {
+  return sizeof(TemporalTile) * static_cast<std::size_t>(temporal_tiles(output).area());
 }
 
 TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
@@ -52,7 +52,7 @@ TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
       tiles_kernel_(build_kernel(device, kKernels[1], temporal_tiles_options(plan))),
       resolve_kernel_(build_kernel(device, kKernels[3], temporal_options(plan))),
       total_(device.context, CL_MEM_READ_WRITE, sizeof(TotalLight)) {
-  if (plan.velocity != VelocitySource::kNone) moves_.emplace(device, plan);
+  if (plan.follows()) moves_.emplace(device, plan);
   if (plan.judges_history()) light_kernel_ = build_kernel(device, kKernels[2], "");
   if (settings_.temporal.view == TemporalView::kPicture)
     display_kernel_ = build_kernel(device, kKernels[4], temporal_display_options(plan));
@@ -62,7 +62,7 @@ TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
                          static_cast<std::size_t>(settings_.output.area()) * texel);
   }
   for (cl::Buffer& tiles : tiles_)
-    tiles = cl::Buffer(device.context, CL_MEM_READ_WRITE, tile_bytes(settings_.output));
+    tiles = cl::Buffer(device.context, CL_MEM_READ_WRITE, temporal_tile_bytes(settings_.output));
 }
 
 ImageView TemporalPass::history() const {
@@ -83,7 +83,7 @@ void TemporalPass::forget(const cl::CommandQueue& queue) {
   const ImageView view = history();
   queue.enqueueFillBuffer(histories_[newest_], cl_uint{0}, 0,
                           static_cast<std::size_t>(view.extent.area()) * bytes_per_pixel(view.format));
-  queue.enqueueFillBuffer(tiles_[newest_], cl_uint{0}, 0, tile_bytes(settings_.output));
+  queue.enqueueFillBuffer(tiles_[newest_], cl_uint{0}, 0, temporal_tile_bytes(settings_.output));
   if (moves_) moves_->forget(queue);
   is_first_ = true;
 }

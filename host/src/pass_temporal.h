@@ -69,7 +69,8 @@ class TemporalPass {
   bool is_first_ = true;             // there is no history
 };
 
-// TemporalTiles of an output.
+// TemporalTiles of an output, and their memory.
 Extent temporal_tiles(Extent output);
+std::size_t temporal_tile_bytes(Extent output);
 
 }  // namespace quincunx

@@ -246,8 +246,7 @@ void plan_buffers(ResolvePlan& plan) {
     if (plan.accumulates()) add_buffer(plan, name, settings.temporal.history, Scaling::kFixed, true);
   }
   if (plan.accumulates()) {
-    const std::uint64_t bytes =
-        static_cast<std::uint64_t>(temporal_tiles(settings.output).area()) * sizeof(TemporalTile);
+    const std::uint64_t bytes = temporal_tile_bytes(settings.output);
     for (const char* name : {"tiles", "updated tiles"})
       plan.buffers.push_back(
           {name, temporal_tiles(settings.output), PixelFormat::kNone, Scaling::kFixed, bytes, true});

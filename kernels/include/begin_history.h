@@ -3,11 +3,9 @@
 // it has moved on.
 #pragma once
 
+#include "distance_weights.h"
 #include "frame_samples.h"
-
-#ifndef MOTION
-#define MOTION 1
-#endif
+#include "motion_options.h"
 
 #define SMOOTH_FALLOFF 2.5f  // 1 / (2 sigma^2), sigma .45 samples
 #define SAME_MOTION 0.15f    // output pixels a frame
@@ -18,14 +16,6 @@ typedef struct Surfaces {
   TexelLayout layout;
   float scale_x, scale_y;
 } Surfaces;
-
-// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
-static inline float bell(float t) {
-  const float rest = max(1.0f - 0.125f * t, 0.0f);
-  const float square = rest * rest;
-  const float fourth = square * square;
-  return fourth * fourth;
-}
 
 // How far sample (other_x, other_y) may show the same surface as (x, y), by its motion: 1 to 0.
 static inline float similarity(const Surfaces* surfaces, const SourceFrame* frame, int x, int y, int other_x, int other_y) {
@@ -51,7 +41,7 @@ static inline float4 smooth_samples(COLOUR_TEXELS texels, const SourceFrame* fra
     for (int column = -1; column <= 1; ++column) {
       const float away_x = (float)column - offset_x;
       const float4 sample = sample_at(texels, frame, x + column, y + row);
-      const float near = bell((away_x * away_x + away_y * away_y) * SMOOTH_FALLOFF);
+      const float near = bell((float8)((away_x * away_x + away_y * away_y) * SMOOTH_FALLOFF)).s0;
       if (is_valid(sample)) {
         const float weight = near * worth_of(sample) * similarity(surfaces, frame, x, y, x + column, y + row);
         sum += sample * weight;

@@ -73,6 +73,14 @@ static inline float8 distance_weight(float8 distance, float falloff) {
   return rest * rest * rest;
 }
 
+// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
+static inline float8 bell(float8 t) {
+  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
+  const float8 square = rest * rest;
+  const float8 fourth = square * square;
+  return fourth * fourth;
+}
+
 static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, float8 now_y, float8 before_x, float8 before_y,
                                  float8 trust) {
   const float8 rest = 1.0f - trust;

@@ -7,6 +7,18 @@
 #define LARGEST_MOVE 65504.0f  // pixels: beyond any viewport
 #define EDGE_BEGINS 0.15f      // output pixels
 #define EDGE_ENDS 0.6f
+#define EDGE_COSTS_FROM 0.1f   // output pixels, too: where an edge begins to cost history
+#define EDGE_COSTS_ALL 1.0f
+
+static inline float8 smooth_step(float8 x, float low, float high) {
+  const float8 t = clamp((x - low) * (1.0f / (high - low)), 0.0f, 1.0f);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+// How much an edge of motion makes history doubtful.
+static inline float8 edge_strength(float8 contrast) {
+  return smooth_step(contrast, EDGE_BEGINS, EDGE_ENDS);
+}
 
 // The largest squared distance so far, or that of four velocities to their neighbours if it is larger; a NaN does not count.
 static inline float4 larger_distance(const ReprojectParams* params, float4 largest, float8 velocity, float8 neighbour) {
@@ -36,6 +48,5 @@ static inline float4 contrast_before(const ReprojectParams* params, __global con
 // How much of an edge of motion there was at four samples of the previous frame: 0 to 1.
 static inline float4 edge_before(const ReprojectParams* params, __global const float* moves, int4 x, int4 y) {
   const float4 contrast = contrast_before(params, moves, x, y);
-  const float4 t = clamp((contrast - EDGE_BEGINS) * (1.0f / (EDGE_ENDS - EDGE_BEGINS)), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
+  return edge_strength((float8)(contrast, contrast)).lo;
 }

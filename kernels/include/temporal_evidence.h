@@ -5,19 +5,7 @@
 #include "distance_weights.h"
 #include "frame_samples.h"
 #include "motion_contrast.h"
-
-#ifndef MOTION
-#define MOTION 1
-#endif
-#ifndef REACTIVE
-#define REACTIVE 0
-#endif
-#if MOTION < 0 || MOTION > 1
-#error "MOTION must be 0 or 1"
-#endif
-#if REACTIVE < 0 || REACTIVE > 1
-#error "REACTIVE must be 0 or 1"
-#endif
+#include "motion_options.h"
 
 #define NEAREST 1
 #define BILINEAR 2
@@ -96,16 +84,6 @@ static inline float8 trust_of_still(const TemporalParams* params, REACTIVE_TEXEL
 }
 #endif
 
-static inline float8 smooth_step(float8 x, float low, float high) {
-  const float8 t = clamp((x - low) * (1.0f / (high - low)), 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-
-// How much an edge of motion makes history doubtful.
-static inline float8 edge_strength(float8 contrast) {
-  return smooth_step(contrast, EDGE_BEGINS, EDGE_ENDS);
-}
-
 // What may be kept with a trust in [0, 1].
 static inline float8 most_confidence(float8 trust) {
   return trust / (1.0f + 1.0f / MOST_CONFIDENCE - trust);
@@ -118,7 +96,7 @@ static inline Evidence weigh_history(float8 known, float8 fraction_x, float8 fra
   w = select(w, min(w, RESAMPLED_CONFIDENCE), between > 0.01f);
   const float8 trust = motion->trust;
   w = min(w, most_confidence(trust));
-  w = w / (1.0f + EDGE_COST * smooth_step(motion->contrast, 0.1f, 1.0f) * w);
+  w = w / (1.0f + EDGE_COST * smooth_step(motion->contrast, EDGE_COSTS_FROM, EDGE_COSTS_ALL) * w);
   const Evidence evidence = {w, max(1.0f - trust, edge_strength(motion->contrast))};
   return evidence;
 }

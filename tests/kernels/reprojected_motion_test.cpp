@@ -13,14 +13,19 @@ using testing::TestFrame;
 
 constexpr double kRounding = 0x1p-24;
 
+ResolvePlan reprojected_plan(Extent output, Extent target) {
+  ResolvePlan plan;
+  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
+  plan.settings.output = output;
+  plan.settings.target = target;
+  plan.velocity = VelocitySource::kTarget;
+  return plan;
+}
+
 // A picture that moves by whole and broken pixels, seen through two viewports with opposite jitter, comes
 // back in place: a wrong sign of velocity or of a jitter would show.
 TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
-  ResolvePlan plan;
-  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
-  plan.settings.output = {128, 64};
-  plan.settings.target = {128, 64};
-  plan.velocity = VelocitySource::kTarget;
+  const ResolvePlan plan = reprojected_plan({128, 64}, {128, 64});
   const FrameFormats formats{.with_velocity = true, .with_depth = true};
   const Pixel motion = {.03125, -.046875, 0, 0};  // uv a frame
   Rig rig;
@@ -61,11 +66,7 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
 
 // A bright surface in front of a still background has moved on: what it uncovered shows none of it.
 TEST(ReprojectedMotion, WhatWasHiddenLeavesNoGhost) {
-  ResolvePlan plan;
-  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
-  plan.settings.output = {96, 48};
-  plan.settings.target = {64, 32};
-  plan.velocity = VelocitySource::kTarget;
+  const ResolvePlan plan = reprojected_plan({96, 48}, {64, 32});
   const FrameFormats formats{.with_velocity = true, .with_depth = true};
   const Extent render{64, 32};
   Rig rig;
