@@ -6,7 +6,7 @@
 //            d1 <= 1.02 d0 + 2 (the smaller difference of d0 to left and right + that to above and below); one-sided, so
 //            that thin things that fall between samples are not lost; d is reversed depth, near / distance
 //   v0, v1, reactive0, 1: of the sample and of the previous one nearest to where it was, reactive with CONTRAST the largest of
-//            3x3; v in render pixels a frame
+//            3x3 and, in the previous frame, 5x5; v in render pixels a frame
 //
 //   params        in   viewports, layouts, scales
 //   velocity0, 1  in   RG16F or RG32F, viewports of frame n and n-1; velocity1 is not read where RESIDUAL is 0

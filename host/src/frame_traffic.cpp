@@ -68,10 +68,9 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
 
 std::uint64_t temporal_tiles_bytes(const ResolvePlan& plan, Extent render) {
   const ResolveSettings& settings = plan.settings;
-  std::uint64_t bytes = 2 * temporal_tile_bytes(settings.output);
+  std::uint64_t bytes = 2 * temporal_tile_bytes(settings.output) + bytes_of(render, settings.colour) +
+                        bytes_of(settings.output, settings.temporal.history);
   if (plan.follows()) bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
-  if (plan.judges_history())
-    bytes += bytes_of(render, settings.colour) + bytes_of(settings.output, settings.temporal.history);
   return bytes;
 }
 

@@ -87,8 +87,8 @@ std::string reprojected_options(const ResolvePlan& plan) {
 }
 
 std::string temporal_tiles_options(const ResolvePlan& plan) {
-  return fmt::format("-D MOTION={} -D JUDGE={} {} -D HISTORY_FORMAT={}", plan.follows() ? 1 : 0,
-                     plan.judges_history() ? 1 : 0, source(plan.settings), history(plan.settings));
+  return fmt::format("-D MOTION={} {} -D HISTORY_FORMAT={}", plan.follows() ? 1 : 0, source(plan.settings),
+                     history(plan.settings));
 }
 
 std::string temporal_options(const ResolvePlan& plan) {

@@ -50,10 +50,10 @@ TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
       reads_reactive_(plan.reads_reactive),
       tables_(device, plan.settings.output),
       tiles_kernel_(build_kernel(device, kKernels[1], temporal_tiles_options(plan))),
+      light_kernel_(build_kernel(device, kKernels[2], "")),
       resolve_kernel_(build_kernel(device, kKernels[3], temporal_options(plan))),
       total_(device.context, CL_MEM_READ_WRITE, sizeof(TotalLight)) {
   if (plan.follows()) moves_.emplace(device, plan);
-  if (plan.judges_history()) light_kernel_ = build_kernel(device, kKernels[2], "");
   if (settings_.temporal.view == TemporalView::kPicture)
     display_kernel_ = build_kernel(device, kKernels[4], temporal_display_options(plan));
   const std::size_t texel = bytes_per_pixel(settings_.temporal.history);
@@ -99,7 +99,7 @@ void TemporalPass::launch(const cl::CommandQueue& queue, PositionTables& tables,
   const auto next = [&events] { return events != nullptr ? events++ : nullptr; };
   if (moves_) moves_->enqueue(queue, frame.current, frame.previous, next());
   launch_tiles(queue, frame, next());
-  if (light_kernel_) launch_light(queue, next());
+  launch_light(queue, next());
   launch_resolve(queue, tables, frame, next());
   newest_ = 1 - newest_;
   if (display_kernel_) launch_display(queue, tables, frame, next());
@@ -125,7 +125,7 @@ void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& fram
       .start_y = (.5f + frame.current.jitter.y) * spacing.y,
       .move_x = move.x,
       .move_y = move.y};
-  if (light_kernel_) queue.enqueueFillBuffer(total_, cl_uint{0}, 0, sizeof(TotalLight));
+  queue.enqueueFillBuffer(total_, cl_uint{0}, 0, sizeof(TotalLight));
   tiles_kernel_.setArg(0, params);
   set_memory(tiles_kernel_, 1, frame.current.colour.memory);
   // What a variant does not read may be any buffer.
@@ -139,12 +139,12 @@ void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& fram
 
 void TemporalPass::launch_light(const cl::CommandQueue& queue, cl::Event* event) {
   const Extent tiles = temporal_tiles(settings_.output);
-  light_kernel_->setArg(0, tiles.width);
-  light_kernel_->setArg(1, tiles.height);
-  light_kernel_->setArg(2, tiles_[newest_]);
-  light_kernel_->setArg(3, total_);
-  light_kernel_->setArg(4, tiles_[1 - newest_]);
-  enqueue_rows(device_, queue, *light_kernel_, tiles, 1, event);
+  light_kernel_.setArg(0, tiles.width);
+  light_kernel_.setArg(1, tiles.height);
+  light_kernel_.setArg(2, tiles_[newest_]);
+  light_kernel_.setArg(3, total_);
+  light_kernel_.setArg(4, tiles_[1 - newest_]);
+  enqueue_rows(device_, queue, light_kernel_, tiles, 1, event);
 }
 
 void TemporalPass::launch_resolve(const cl::CommandQueue& queue, PositionTables& tables, const Frame& frame,

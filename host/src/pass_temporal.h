@@ -17,8 +17,8 @@ class TemporalPass {
  public:
   TemporalPass(const Device::Impl& device, const ResolvePlan& plan);
 
-  // In the order in which they run. Without velocity the first is left out, with preset kFast temporal_light,
-  // with a view other than the picture the last.
+  // In the order in which they run. Without velocity the first is left out, with a view other than the
+  // picture the last.
   static constexpr std::array<const char*, 5> kKernels = {"reproject", "temporal_tiles", "temporal_light",
                                                           "resolve_temporal", "temporal_display"};
 
@@ -59,7 +59,7 @@ class TemporalPass {
   PositionTables tables_;
   std::optional<MovePass> moves_;
   cl::Kernel tiles_kernel_;
-  std::optional<cl::Kernel> light_kernel_;
+  cl::Kernel light_kernel_;
   cl::Kernel resolve_kernel_;
   std::optional<cl::Kernel> display_kernel_;
   std::array<cl::Buffer, 2> histories_;

@@ -160,10 +160,8 @@ void plan_temporal(ResolvePlan& plan) {
   }
   plan.passes.push_back({kernels[1], temporal_tiles_options(plan), "the method: which tiles move as a whole",
                          temporal_tiles_bytes(plan, largest)});
-  if (plan.judges_history()) {
-    plan.passes.push_back(
-        {kernels[2], "", "the method: where the light has changed", temporal_light_bytes(plan)});
-  }
+  plan.passes.push_back(
+      {kernels[2], "", "the method: where the light has changed", temporal_light_bytes(plan)});
   plan.passes.push_back({kernels[3], temporal_options(plan), "the method: this frame added to the history",
                          temporal_bytes(plan, largest, largest)});
   if (settings.temporal.view == TemporalView::kPicture) {
@@ -321,10 +319,6 @@ bool ResolvePlan::is_dense(Extent render) const {
   constexpr double kDense = .64;  // output pixels a sample
   return accumulates() &&
          static_cast<double>(settings.output.area()) < kDense * static_cast<double>(render.area());
-}
-
-bool ResolvePlan::judges_history() const {
-  return accumulates() && settings.temporal.preset != TemporalPreset::kFast;
 }
 
 bool ResolvePlan::weighs_residual() const {

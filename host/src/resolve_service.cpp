@@ -187,7 +187,7 @@ int ResolveService::Impl::accumulate(const FrameInputs& inputs, const ImageView&
   const auto& kernels = TemporalPass::kKernels;
   if (plan.follows()) add_pass(slot, kernels[0], reproject_bytes(plan, inputs.render, before.render));
   add_pass(slot, kernels[1], temporal_tiles_bytes(plan, inputs.render));
-  if (plan.judges_history()) add_pass(slot, kernels[2], temporal_light_bytes(plan));
+  add_pass(slot, kernels[2], temporal_light_bytes(plan));
   add_pass(slot, kernels[3], temporal_bytes(plan, inputs.render, before.render));
   if (plan.settings.temporal.view == TemporalView::kPicture)
     add_pass(slot, kernels[4], temporal_display_bytes(plan, inputs.render));

@@ -210,16 +210,18 @@ typedef struct TemporalTile {
   int step_x, step_y;        // texel (x, y) takes (x - step_x, y - step_y)
   int rigid;                 // 0: offsets are 0
   int plain;                 // 1: rigid, its moves trust all samples, and there is no edge of motion
+  int torn;                  // 1: there is an edge of motion that makes history doubtful, or was one in the previous frame
   // Of its samples: how much brighter they are than history says, history's light, and the errors of history and of the
   // neighbours as forecasts; brightness as the eye has it, not light.
   float brightening, light, history_error, neighbour_error;
   float count;     // of the samples that say so
-  float brighter;  // how many of them are brighter, less those that are not
+  float brighter;  // how many of them are brighter by more than noise, less those that are darker
   float persistence;  // of a change of light, in [-1, 1], over frames
+  float flicker;      // how far a sample's brightening goes to and fro from frame to frame: aliasing
   float doubt;        // of history, in [0, 1]
   float gain;         // of history's light, to be this frame's
 } TemporalTile;
-QUINCUNX_CHECK_SIZE(TemporalTile, 68);
+QUINCUNX_CHECK_SIZE(TemporalTile, 76);
 
 // Of all tiles, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are very many: whether the light of the whole picture has changed.
 typedef struct TotalLight {

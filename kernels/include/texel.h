@@ -96,6 +96,13 @@ static inline float4 load_colour(COLOUR_TEXELS texels, TexelLayout layout, int x
 #endif
 }
 
+// The texels around (x, y), which may lie anywhere, are read soon.
+static inline void will_read_colour(COLOUR_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_STORAGE == BUFFER
+  WILL_READ(texels + 4 * texel_index(layout, x, y));
+#endif
+}
+
 // A row of colour to read pairs from.
 #if SOURCE_STORAGE == IMAGE
 #define COLOUR_ROW int

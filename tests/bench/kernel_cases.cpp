@@ -140,7 +140,7 @@ void add_temporal(std::vector<Case>& cases, Stage& stage, const Scene& scene, do
        resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* events) {
         pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
       },
-      plan.judges_history() ? 5 : 4);
+      5);
 }
 
 void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {

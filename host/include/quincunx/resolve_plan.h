@@ -170,7 +170,6 @@ struct ResolvePlan {
   bool accumulates() const { return settings.method == Method::kTemporal; }
   // kTemporal: whether samples are so dense, from 1.56 a pixel on, that a frame alone is the better picture.
   bool is_dense(Extent render) const;
-  bool judges_history() const;              // accumulates, and looks for changes of light and cuts
   bool weighs_velocity() const;             // kVelocity, and something moves
   bool reprojects() const;                  // kReprojected, whether something moves or not
   bool follows() const;                     // where each sample was in the previous frame is computed
