@@ -126,6 +126,7 @@ TemporalTile to_kernel(const reference::Tile& tile) {
           .step_y = tile.step[1],
           .rigid = tile.rigid ? 1 : 0,
           .plain = tile.plain ? 1 : 0,
+          .torn = tile.torn ? 1 : 0,
           .brightening = number(tile.brightening),
           .light = number(tile.light),
           .history_error = number(tile.history_error),
@@ -133,28 +134,29 @@ TemporalTile to_kernel(const reference::Tile& tile) {
           .count = static_cast<float>(tile.samples),
           .brighter = static_cast<float>(tile.brighter),
           .persistence = number(tile.persistence),
+          .flicker = number(tile.flicker),
           .doubt = number(tile.doubt),
           .gain = number(tile.gain)};
 }
 
 reference::Tile to_reference(const TemporalTile& tile) {
   const auto number = [](float value) { return static_cast<double>(value); };
-  reference::Tile made;
-  made.offset = {number(tile.offset_x), number(tile.offset_y)};
-  made.source = {number(tile.source_x), number(tile.source_y)};
-  made.step = {tile.step_x, tile.step_y};
-  made.rigid = tile.rigid != 0;
-  made.plain = tile.plain != 0;
-  made.brightening = number(tile.brightening);
-  made.light = number(tile.light);
-  made.history_error = number(tile.history_error);
-  made.neighbour_error = number(tile.neighbour_error);
-  made.samples = static_cast<int>(tile.count);
-  made.brighter = static_cast<int>(tile.brighter);
-  made.persistence = number(tile.persistence);
-  made.doubt = number(tile.doubt);
-  made.gain = number(tile.gain);
-  return made;
+  return {.offset = {number(tile.offset_x), number(tile.offset_y)},
+          .source = {number(tile.source_x), number(tile.source_y)},
+          .step = {tile.step_x, tile.step_y},
+          .rigid = tile.rigid != 0,
+          .plain = tile.plain != 0,
+          .torn = tile.torn != 0,
+          .brightening = number(tile.brightening),
+          .light = number(tile.light),
+          .history_error = number(tile.history_error),
+          .neighbour_error = number(tile.neighbour_error),
+          .persistence = number(tile.persistence),
+          .flicker = number(tile.flicker),
+          .doubt = number(tile.doubt),
+          .gain = number(tile.gain),
+          .samples = static_cast<int>(tile.count),
+          .brighter = static_cast<int>(tile.brighter)};
 }
 
 StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {

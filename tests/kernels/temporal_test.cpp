@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "error_table.h"
 #include "temporal_fixture.h"
@@ -87,6 +86,7 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     if (expected.undecided) return;
     ASSERT_EQ(expected.rigid, actual.rigid != 0) << what;
     ASSERT_EQ(expected.plain, actual.plain != 0) << what;
+    ASSERT_EQ(expected.torn, actual.torn != 0) << what;
     ASSERT_EQ(expected.step[0], actual.step_x) << what;
     ASSERT_EQ(expected.step[1], actual.step_y) << what;
     ASSERT_EQ(expected.source[0], static_cast<double>(actual.source_x)) << what;
@@ -95,6 +95,8 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     expect_near(expected.offset[1], static_cast<double>(actual.offset_y), what + " offset_y");
     rigid_ += expected.rigid ? 1 : 0;
     plain_ += expected.plain ? 1 : 0;
+    torn_ += expected.torn ? 1 : 0;
+    rigid_and_torn_ += expected.rigid && expected.torn ? 1 : 0;
     if (expected.unsure) return;
     ++decided_;
     ASSERT_EQ(expected.brighter, static_cast<int>(actual.brighter)) << what;
@@ -109,6 +111,8 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
   std::int64_t decided_ = 0;
   std::int64_t rigid_ = 0;
   std::int64_t plain_ = 0;
+  std::int64_t torn_ = 0;
+  std::int64_t rigid_and_torn_ = 0;
 };
 
 // Each tile's part of a total is cut to an integer.
@@ -154,6 +158,9 @@ TEST_P(Temporal, TilesMatchTheReferenceAtEverySizeAndScale) {
   EXPECT_GE(plain_, compared_ / 8);
   if (GetParam().moves) {
     EXPECT_GE(rigid_ - plain_, compared_ / 32);
+    EXPECT_GE(rigid_and_torn_, compared_ / 64);
+    EXPECT_GE(torn_ - rigid_and_torn_, compared_ / 32);
+    EXPECT_GE(compared_ - torn_, compared_ / 4);
   }
   EXPECT_GT(totals, 20);
 }
@@ -279,63 +286,6 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
     }
   }
   EXPECT_EQ(decided_, compared_);
-}
-
-// Tiles of any findings, given to both.
-TEST(TemporalLight, MatchesTheReference) {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  const TemporalStages stages({});
-  int compared = 0, decided = 0, brighter = 0, doubted = 0;
-  for (int round = 0; round < 60; ++round) {
-    const Extent count = round % 3 == 0 ? Extent{1, 1} : round % 3 == 1 ? Extent{5, 3} : Extent{33, 17};
-    const double lean = round % 4 == 0 ? 1 : uniform(random) - .5;  // how far changes agree
-    std::vector<reference::Tile> before, tiles;
-    TotalLight total{};
-    for (int i = 0; i < count.width * count.height; ++i) {
-      TemporalTile tile{};
-      tile.light = static_cast<float>(30 * uniform(random));
-      tile.history_error = static_cast<float>((round % 2 == 0 ? 10 : 30) * uniform(random));
-      tile.neighbour_error = static_cast<float>(6 * uniform(random));
-      tile.count = static_cast<float>(1 + static_cast<int>(15 * uniform(random)));
-      tile.brighter = static_cast<float>(std::lround(static_cast<double>(tile.count) *
-                                                     std::clamp(2 * lean + uniform(random) - .5, -1.0, 1.0)));
-      tile.brightening = tile.history_error * static_cast<float>(lean + .5 * uniform(random) - .25);
-      total.brightening += static_cast<int>(tile.brightening * 40);
-      total.change += static_cast<int>(std::abs(tile.brightening) * 40);
-      total.light += static_cast<int>(tile.light * 40);
-      // A cut would hide what single tiles doubt.
-      total.history_error += static_cast<int>(tile.history_error * (round % 4 < 2 ? 40 : 4));
-      total.neighbour_error += static_cast<int>(tile.neighbour_error * 40);
-      tiles.push_back(testing::to_reference(tile));
-      tile.persistence = static_cast<float>(2 * uniform(random) - 1);
-      before.push_back(testing::to_reference(tile));
-    }
-    if (round % 5 == 0) total.brightening = 0;
-    const std::vector<TemporalTile> actual = stages.run_light(count, before, total, tiles);
-    const auto number = [](int value) { return static_cast<double>(value); };
-    reference::temporal_light(count.width, count.height, before,
-                              {number(total.brightening), number(total.change), number(total.light),
-                               number(total.history_error), number(total.neighbour_error)},
-                              tiles);
-    for (std::size_t i = 0; i < tiles.size(); ++i) {
-      ++compared;
-      if (tiles[i].unsure) continue;
-      ++decided;
-      ASSERT_NEAR(tiles[i].gain.value, static_cast<double>(actual[i].gain), tiles[i].gain.error)
-          << round << " " << i;
-      ASSERT_NEAR(tiles[i].doubt.value, static_cast<double>(actual[i].doubt), tiles[i].doubt.error)
-          << round << " " << i;
-      ASSERT_NEAR(tiles[i].persistence.value, static_cast<double>(actual[i].persistence),
-                  tiles[i].persistence.error)
-          << round << " " << i;
-      brighter += tiles[i].gain.value != 1 ? 1 : 0;
-      doubted += tiles[i].doubt.value > 0 ? 1 : 0;
-    }
-  }
-  EXPECT_GE(decided, compared * 9 / 10);
-  EXPECT_GT(brighter, compared / 20);
-  EXPECT_GT(doubted, compared / 20);
 }
 
 std::vector<StageVariant> variants() {

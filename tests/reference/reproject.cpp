@@ -105,13 +105,12 @@ double contrast_at(const Frame& current, const ReprojectOptions& options, int x,
   return std::sqrt(std::min(largest, kLargestMove));
 }
 
-// Of the 3x3 texels around (x, y).
-double largest_reactive(const Frame& frame, int x, int y) {
+// Of the texels around (x, y), to `reach` on each side.
+double largest_reactive(const Frame& frame, int x, int y, int reach) {
   double largest = 0;
-  for (int i = 0; i < 9; ++i) {
-    const int column = std::clamp(x + i % 3 - 1, 0, frame.width - 1);
-    const int row = std::clamp(y + i / 3 - 1, 0, frame.height - 1);
-    largest = std::max(largest, frame.reactive[static_cast<std::size_t>(row * frame.width + column)]);
+  for (int row = std::max(y - reach, 0); row <= std::min(y + reach, frame.height - 1); ++row) {
+    for (int column = std::max(x - reach, 0); column <= std::min(x + reach, frame.width - 1); ++column)
+      largest = std::max(largest, frame.reactive[static_cast<std::size_t>(row * frame.width + column)]);
   }
   return largest;
 }
@@ -123,8 +122,8 @@ double reactive_trust(const Frame& current, const Frame& previous, bool around, 
     return (1 - current.reactive[static_cast<std::size_t>(y * current.width + x)]) *
            (1 - previous.reactive[texel_before]);
   }
-  return (1 - largest_reactive(current, x, y)) *
-         (1 - largest_reactive(previous, before % previous.width, before / previous.width));
+  return (1 - largest_reactive(current, x, y, 1)) *
+         (1 - largest_reactive(previous, before % previous.width, before / previous.width, 2));
 }
 
 // What is left of trust where something nearer was at an edge of motion.

@@ -27,11 +27,12 @@ struct Tile {
   std::array<int, 2> step = {};
   bool rigid = false;
   bool plain = false;  // rigid, all samples are trusted, and there is no edge of motion
+  bool torn = false;   // there is an edge of motion that makes history doubtful
   Bounded brightening, light, history_error, neighbour_error;
-  Bounded persistence, doubt;
+  Bounded persistence, flicker, doubt;
   Bounded gain = 1;
-  int samples = 0;         // that were judged
-  int brighter = 0;        // how many are brighter than history, less those that are not
+  int samples = 0;   // that were judged
+  int brighter = 0;  // how many are brighter than history by more than noise, less those that are darker
   bool undecided = false;  // a rounding may decide how history is taken over
   bool unsure = false;     // or which texels, or what to believe
 };

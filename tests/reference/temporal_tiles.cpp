@@ -10,9 +10,11 @@ namespace {
 
 constexpr double kRigid = .05;   // output pixels that the samples of a rigid tile may differ by
 constexpr double kNoEdge = .1;   // output pixels of contrast that change nothing
+constexpr double kEdge = .15;    // and that begin to make history doubtful
 constexpr double kStill = 1e-4;  // output pixels that count as none
 constexpr double kTrusted = .9;  // samples less sure of their history do not judge it
 constexpr double kKnown = .1;    // nor do they judge history of less confidence
+constexpr double kNoise = .01;   // of brightness, that says nothing
 constexpr double kLargestHalf = 65504;
 
 struct Range {
@@ -44,33 +46,50 @@ bool on_screen(const std::array<Bounded, 2>& at, const TemporalInputs& in, bool&
          less(at[0], in.output_width, undecided) && less(at[1], in.output_height, undecided);
 }
 
-// Makes a tile rigid if all samples in both ranges move alike.
-void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int tile_x, int tile_y) {
+// Of the samples in both ranges.
+struct Moves {
   std::array<double, 2> least = {1e9, 1e9};
   std::array<double, 2> most = {-1e9, -1e9};
-  bool plain = true;
+  double contrast = 0;
+  bool known = true;
+  bool trusted = true;  // wholly
+};
+
+Moves moves_in(const TemporalInputs& in, Range columns, Range rows) {
+  Moves moves;
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
       const Move& move = in.move_of(x, y);
-      if (std::isnan(move.trust)) return;
-      plain = plain && move.trust == 1 && std::abs(move.contrast) <= kNoEdge;
-      least = {std::min(least[0], move.x), std::min(least[1], move.y)};
-      most = {std::max(most[0], move.x), std::max(most[1], move.y)};
+      moves.known = moves.known && !std::isnan(move.trust);
+      moves.trusted = moves.trusted && move.trust == 1;
+      moves.contrast = std::max(moves.contrast, std::abs(move.contrast));
+      moves.least = {std::min(moves.least[0], move.x), std::min(moves.least[1], move.y)};
+      moves.most = {std::max(moves.most[0], move.x), std::max(moves.most[1], move.y)};
     }
   }
+  return moves;
+}
+
+// Makes a tile rigid if all samples in both ranges move alike.
+void follow(Tile& tile, const TemporalInputs& in, Range columns, Range rows, int tile_x, int tile_y) {
+  const Moves found = moves_in(in, columns, rows);
+  tile.torn = less(rounded(kEdge), found.contrast, tile.undecided);
+  if (!found.known) return;
   std::array<Bounded, 2> move;
   std::array<Bounded, 2> source;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Bounded scale = rounded(in.move_scale(static_cast<int>(axis)));
-    if (less(rounded(kRigid), (Bounded(most[axis]) - Bounded(least[axis])) * scale, tile.undecided)) return;
-    move[axis] = Bounded(.5) * (Bounded(most[axis]) + Bounded(least[axis])) * scale;
+    if (less(rounded(kRigid), (Bounded(found.most[axis]) - Bounded(found.least[axis])) * scale,
+             tile.undecided))
+      return;
+    move[axis] = Bounded(.5) * (Bounded(found.most[axis]) + Bounded(found.least[axis])) * scale;
     if (less(abs(move[axis]), rounded(kStill), tile.undecided)) move[axis] = 0;
     source[axis] = Bounded((axis == 0 ? tile_x : tile_y) * kTile + kTile / 2) + move[axis];
   }
   const Tile& from = in.tile_before(tile_of(source[0], in.tiles_x(), tile.undecided),
                                     tile_of(source[1], in.tiles_y(), tile.undecided));
   tile.rigid = true;
-  tile.plain = plain;
+  tile.plain = found.trusted && !less(rounded(kNoEdge), found.contrast, tile.undecided);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     tile.source[axis] = from.offset[axis].value;
     const Bounded place = tile.source[axis] - move[axis];
@@ -133,12 +152,13 @@ void judge(Tile& tile, const TemporalInputs& in, int x, int y) {
   const Bounded own = luma(sample);
   const Bounded known = luma(before);
   const Bounded scale = Bounded(1) / (Bounded(1) + own + known);
-  tile.brightening = tile.brightening + (own - known) * scale;
+  const Bounded change = (own - known) * scale;
+  tile.brightening = tile.brightening + change;
   tile.light = tile.light + known * scale;
-  tile.history_error = tile.history_error + abs(own - known) * scale;
+  tile.history_error = tile.history_error + abs(change);
   tile.neighbour_error = tile.neighbour_error + neighbour_difference(in, x, y, own) * scale;
-  if (less(known, own, tile.unsure)) ++tile.brighter;
-  if (less(own, known, tile.unsure)) --tile.brighter;
+  if (less(rounded(kNoise), change, tile.unsure)) ++tile.brighter;
+  if (less(change, -rounded(kNoise), tile.unsure)) --tile.brighter;
   ++tile.samples;
 }
 

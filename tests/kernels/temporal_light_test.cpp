@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// temporal_light against its reference, on tiles of any findings.
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "temporal_fixture.h"
+
+namespace quincunx {
+namespace {
+
+using reference::Bounded;
+using reference::Tile;
+
+struct Findings {
+  Extent count;
+  std::vector<Tile> before, tiles;
+  TotalLight total{};
+};
+
+class Finder {
+ public:
+  Findings find(int round) {
+    Findings found;
+    found.count = round % 3 == 0 ? Extent{1, 1} : round % 3 == 1 ? Extent{5, 3} : Extent{33, 17};
+    const double lean = round % 4 == 0 ? 1 : uniform() - .5;  // how far changes agree
+    for (int i = 0; i < found.count.width * found.count.height; ++i)
+      add_tile(found, round, lean);
+    if (round % 5 == 0) found.total.brightening = 0;
+    return found;
+  }
+
+ private:
+  double uniform() { return uniform_(random_); }
+  float below(double limit) { return static_cast<float>(limit * uniform()); }
+
+  void add_tile(Findings& found, int round, double lean) {
+    TemporalTile tile{};
+    tile.light = below(30);
+    tile.history_error = below(round % 4 == 1 ? 30 : 10);
+    tile.neighbour_error = below(6);
+    tile.count = static_cast<float>(1 + static_cast<int>(15 * uniform()));
+    tile.brighter = static_cast<float>(
+        std::lround(static_cast<double>(tile.count) * std::clamp(2 * lean + uniform() - .5, -1.0, 1.0)));
+    tile.brightening = tile.history_error * static_cast<float>(lean + .5 * uniform() - .25);
+    if (uniform() < .2) {  // changes on its own, all over
+      tile.brighter = std::copysign(tile.count, tile.brighter);
+      tile.brightening = std::copysign(tile.history_error, tile.brighter);
+    }
+    tile.torn = round % 7 < 3 && uniform() < .06 ? 1 : 0;
+    add_to_total(found.total, tile, round);
+    found.tiles.push_back(testing::to_reference(tile));
+    tile.persistence = static_cast<float>(2 * uniform() - 1);
+    tile.flicker = uniform() < .5 ? below(.01) : below(.2);
+    if (uniform() < .5) tile.brightening *= static_cast<float>(-2 * uniform());
+    found.before.push_back(testing::to_reference(tile));
+  }
+
+  static void add_to_total(TotalLight& total, const TemporalTile& tile, int round) {
+    total.brightening += static_cast<int>(tile.brightening * 40);
+    total.change += static_cast<int>(std::abs(tile.brightening) * 40);
+    total.light += static_cast<int>(tile.light * 40);
+    // A cut would hide what single tiles doubt.
+    total.history_error += static_cast<int>(tile.history_error * (round % 4 == 1 ? 40 : 4));
+    total.neighbour_error += static_cast<int>(tile.neighbour_error * 40);
+  }
+
+  std::mt19937 random_{11};
+  std::uniform_real_distribution<double> uniform_{0, 1};
+};
+
+std::vector<Tile> completed(const Findings& found) {
+  const auto number = [](int value) { return static_cast<double>(value); };
+  const TotalLight& total = found.total;
+  std::vector<Tile> tiles = found.tiles;
+  reference::temporal_light(found.count.width, found.count.height, found.before,
+                            {number(total.brightening), number(total.change), number(total.light),
+                             number(total.history_error), number(total.neighbour_error)},
+                            tiles);
+  return tiles;
+}
+
+// The same, had there been another flicker.
+std::vector<Tile> with_flicker(Findings found, double flicker) {
+  for (Tile& tile : found.before)
+    tile.flicker = flicker;
+  return completed(found);
+}
+
+std::vector<Tile> without_edges(Findings found) {
+  for (Tile& tile : found.tiles)
+    tile.torn = false;
+  return completed(found);
+}
+
+// How many tiles meet what: each finding is taken away to see what it changes.
+struct Met {
+  int tiles = 0, decided = 0, relit = 0, doubted = 0;
+  int gain_held_back = 0, gain_of_the_whole = 0;  // by an edge of motion
+  int reversed = 0, changed = 0, hidden_by_flicker = 0;
+
+  void add(const Findings& found, const std::vector<Tile>& expected) {
+    const std::vector<Tile> joined = without_edges(found), calm = with_flicker(found, 0),
+                            wild = with_flicker(found, 1e6);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const double gain = expected[i].gain.value, doubt = expected[i].doubt.value;
+      ++tiles;
+      if (expected[i].unsure) continue;
+      ++decided;
+      relit += gain != 1 ? 1 : 0;
+      doubted += doubt > 0 ? 1 : 0;
+      gain_held_back += gain == 1 && joined[i].gain.value != 1 ? 1 : 0;
+      gain_of_the_whole += gain != 1 && joined[i].gain.value != gain ? 1 : 0;
+      reversed += calm[i].flicker.value > 0 ? 1 : 0;
+      changed += doubt > wild[i].doubt.value ? 1 : 0;
+      hidden_by_flicker += doubt < calm[i].doubt.value ? 1 : 0;
+    }
+  }
+};
+
+void expect_near(const Bounded& expected, float actual, const char* what, int round, std::size_t tile) {
+  ASSERT_NEAR(expected.value, static_cast<double>(actual), expected.error)
+      << what << ", round " << round << ", tile " << tile;
+}
+
+TEST(TemporalLight, MatchesTheReference) {
+  const testing::TemporalStages stages({});
+  Finder finder;
+  Met met;
+  for (int round = 0; round < 84; ++round) {
+    const Findings found = finder.find(round);
+    const std::vector<Tile> expected = completed(found);
+    const auto actual = stages.run_light(found.count, found.before, found.total, found.tiles);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expect_near(expected[i].flicker, actual[i].flicker, "flicker", round, i);
+      if (expected[i].unsure) continue;
+      expect_near(expected[i].gain, actual[i].gain, "gain", round, i);
+      expect_near(expected[i].doubt, actual[i].doubt, "doubt", round, i);
+      expect_near(expected[i].persistence, actual[i].persistence, "persistence", round, i);
+      if (HasFatalFailure()) return;
+    }
+    met.add(found, expected);
+  }
+  EXPECT_GE(met.decided, met.tiles * 9 / 10);
+  EXPECT_GT(met.relit, met.tiles / 20);
+  EXPECT_GT(met.doubted, met.tiles / 20);
+  EXPECT_GT(met.gain_held_back, met.tiles / 100);
+  EXPECT_GT(met.gain_of_the_whole, met.tiles / 100);
+  EXPECT_GT(met.reversed, met.tiles / 20);
+  EXPECT_GT(met.changed, met.tiles / 100);
+  EXPECT_GT(met.hidden_by_flicker, met.tiles / 100);
+}
+
+}  // namespace
+}  // namespace quincunx
