@@ -2,6 +2,7 @@
 // What must hold for the pictures of kTemporal, on analytic sequences with exact velocity and truth.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -25,6 +26,10 @@ constexpr Extent kHalf{80, 48};
 constexpr double kGhost = 2. / 255;
 
 constexpr ResolveSettings kFast{.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kFast}};
+constexpr struct {
+  const char* name;
+  ResolveSettings settings;
+} kPresets[] = {{"balanced", {.method = Method::kTemporal}}, {"fast", kFast}};
 constexpr ResolveSettings kBilinear{.method = Method::kBilinear};
 
 TemporalScene still_scene() {
@@ -78,8 +83,7 @@ Pixels limit_of(const TemporalScene& scene, Extent render) {
 }
 
 TEST(Temporal, StillPictureConvergesToItsLimit) {
-  TemporalRun run(still_scene(),
-                  {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kFast}});
+  TemporalRun run(still_scene(), kFast);
   const Pixels truth = run.scene().truth(0);
   const double limit = testing::psnr(limit_of(run.scene(), kHalf), truth);
   double before = 0;
@@ -115,14 +119,12 @@ Mask free_of(const TemporalScene& scene, std::size_t which, int frame, int frame
   };
 }
 
-// What a pixel remembers of a thing that has gone is the difference that the thing's colour makes there. Over
-// a plain background: on a texture some would pass for a part of it. Without judging, whose gain of light is
-// another thing.
-double trail_of(TemporalScene scene, std::size_t which, int free_frames) {
+// What a pixel remembers of a thing that has gone is the difference that the thing's colour makes there.
+double trail_of(TemporalScene scene, const ResolveSettings& settings, std::size_t which, int free_frames) {
   scene.surfaces[which].texture = testing::plain_texture(.02f, .02f, .02f);
-  TemporalRun dark(scene, kFast);
+  TemporalRun dark(scene, settings);
   scene.surfaces[which].texture = testing::plain_texture(2, 2, 2);
-  TemporalRun bright(scene, kFast);
+  TemporalRun bright(scene, settings);
   double most = 0;
   for (int frame = 0; frame < 40; ++frame) {
     const Pixels one = dark.next(), other = bright.next();
@@ -133,21 +135,35 @@ double trail_of(TemporalScene scene, std::size_t which, int free_frames) {
   return most;
 }
 
-TEST(Temporal, NoGhostBehindAnOccluder) {
-  for (const double speed : {.4, 1.3, 3.7, 11.3}) {
-    TemporalScene scene;
-    scene.surfaces = {{.shape = Shape::kRectangle,
-                       .half_size = {11, 17},
-                       .centre = {20, 50},
-                       .velocity = {speed, speed / 7},
-                       .distance = 3},
-                      {.texture = testing::plain_texture(.3f, .2f, .1f)}};
-    for (const Place pan : {Place(), Place(-.6, .3)}) {
-      scene.surfaces[1].velocity = pan;
-      const double ghost = trail_of(scene, 0, 3);
-      EXPECT_LE(ghost, kGhost) << speed << " pixels a frame, pan " << pan;
+// Of a rectangle that moves at all speeds, over a background that pans and one that does not.
+void expect_no_trail(bool reactive, const testing::Texture& background, int free_frames) {
+  for (const auto& [preset, settings] : kPresets) {
+    for (const double speed : {.4, 1.3, 3.7, 11.3}) {
+      TemporalScene scene;
+      scene.surfaces = {{.shape = Shape::kRectangle,
+                         .half_size = {11, 17},
+                         .centre = {20, 50},
+                         .velocity = {speed, speed / 7},
+                         .distance = 3,
+                         .reactive = reactive},
+                        {.texture = background}};
+      for (const Place pan : {Place(), Place(-.6, .3)}) {
+        scene.surfaces[1].velocity = pan;
+        EXPECT_LE(trail_of(scene, settings, 0, free_frames), kGhost)
+            << preset << ", " << speed << " pixels a frame, pan " << pan;
+      }
     }
   }
+}
+
+// Over a plain background: on a texture some would pass for a part of it.
+TEST(Temporal, NoGhostBehindAnOccluder) {
+  expect_no_trail(false, testing::plain_texture(.3f, .2f, .1f), 3);
+}
+
+TEST(Temporal, TransparentsLeaveNoTrail) {
+  expect_no_trail(true, testing::plain_texture(.3f, .2f, .1f), 2);
+  expect_no_trail(true, testing::noise_texture(9), 2);
 }
 
 // Of wires over a background that moves otherwise, and over one that moves with them.
@@ -241,48 +257,59 @@ TEST(Temporal, AScaleThatAlwaysChangesCostsLittle) {
   compare("pan", true, moving_scene({2.3, -1.1}));
 }
 
-TEST(Temporal, AStepOfLightRecoversInTwoFramesWhileMoving) {
-  for (const double factor : {.5, 1.6, 3.}) {
-    for (const Place velocity : {Place(.7, -.4), Place(1.3, .4)}) {
-      TemporalScene scene = moving_scene(velocity);
-      constexpr int kStep = 24;
+TEST(Temporal, AStepOfLightRecoversInTwoFrames) {
+  constexpr int kStep = 24;
+  for (TemporalScene scene : {still_scene(), moving_scene({.7, -.4}), moving_scene({1.3, .4})}) {
+    for (const double factor : {.5, 1.6, 3.}) {
+      TemporalScene constant = scene;
       scene.light = [=](Place, int frame) { return frame < kStep ? 1 : factor; };
-      TemporalRun run(scene);
-      scene.light = [=](Place, int) { return factor; };
-      TemporalRun constant(scene);
-      run.until(kStep + 2), constant.until(kStep + 2);
-      const Pixels after = run.next(), expected = constant.next();
-      const Pixels truth = run.truth();
-      const double own = testing::psnr(after, truth), reference = testing::psnr(expected, truth);
-      EXPECT_GE(own, reference - 1) << factor << ", " << velocity;
+      constant.light = [=](Place, int) { return factor; };
+      const Pixels truth = constant.truth(kStep + 2);
+      for (const auto& [preset, settings] : kPresets) {
+        TemporalRun run(scene, settings), reference(constant, settings);
+        const double own = testing::psnr(run.until(kStep + 3), truth);
+        const double unchanged = testing::psnr(reference.until(kStep + 3), truth);
+        EXPECT_GE(own, unchanged - 1) << preset << ", " << factor << ", " << scene.surfaces.back().velocity;
+      }
     }
   }
 }
 
-// A highlight and a shadow of 12 pixels move, the shadow also over a plane that moves: the error around them
-// is not above that of one frame alone.
+// Squared error around a spot of light of 12 pixels that moves, over that of one frame alone, of each preset.
+std::array<double, 2> smear_of(TemporalScene scene, double speed, double strength) {
+  const auto spot_at = [=](int frame) { return Place(24 + speed * (frame % 24), 48); };
+  scene.light = [=](Place place, int frame) {
+    const double near = std::max(0., 1 - std::norm(place - spot_at(frame)) / 144);
+    return 1 + strength * near * near;
+  };
+  TemporalRun runs[] = {TemporalRun(scene, kPresets[0].settings), TemporalRun(scene, kPresets[1].settings)};
+  TemporalRun single(scene, kBilinear);
+  std::array<double, 2> own = {};
+  double bilinear = 0;
+  for (int i = 0; i < 24; ++i) {
+    const Pixels pixels[] = {runs[0].next(), runs[1].next()}, alone = single.next();
+    if (i < 8) continue;
+    const Mask around = [=](int x, int y) { return std::abs(Place(x + .5, y + .5) - spot_at(i)) < 24; };
+    const Pixels truth = single.truth();
+    for (std::size_t preset = 0; preset < 2; ++preset)
+      own[preset] += testing::squared_error(pixels[preset], truth, kOutput, around);
+    bilinear += testing::squared_error(alone, truth, kOutput, around);
+  }
+  return {own[0] / bilinear, own[1] / bilinear};
+}
+
+// A highlight and a shadow move over a plane that is still or moves: the error around them is not above that
+// of one frame alone. It is where the fastest highlight crosses the plane that moves, by 6 % with preset
+// balanced and by 10 % with fast; that case is left out.
 TEST(Temporal, HighlightAndShadowDoNotSmear) {
   for (const double speed : {.7, 2., 5.}) {
     for (const double strength : {4., -.8}) {
       for (const Place velocity : {Place(), Place(1.3, .4)}) {
-        if (strength > 0 && velocity != Place()) continue;
-        TemporalScene scene = moving_scene(velocity);
-        const auto spot_at = [=](int frame) { return Place(24 + speed * (frame % 24), 48); };
-        scene.light = [=](Place place, int frame) {
-          const double near = std::max(0., 1 - std::norm(place - spot_at(frame)) / 144);
-          return 1 + strength * near * near;
-        };
-        TemporalRun run(scene), single(scene, kBilinear);
-        double own = 0, bilinear = 0;
-        for (int i = 0; i < 24; ++i) {
-          const Pixels one = run.next(), other = single.next();
-          if (i < 8) continue;
-          const Mask around = [=](int x, int y) { return std::abs(Place(x + .5, y + .5) - spot_at(i)) < 24; };
-          const Pixels truth = run.truth();
-          own += testing::squared_error(one, truth, kOutput, around);
-          bilinear += testing::squared_error(other, truth, kOutput, around);
-        }
-        EXPECT_LE(own, bilinear) << speed << ", " << strength << ", " << velocity;
+        if (strength > 0 && speed == 5 && velocity != Place()) continue;
+        const auto smear = smear_of(moving_scene(velocity), speed, strength);
+        for (std::size_t preset = 0; preset < 2; ++preset)
+          EXPECT_LE(smear[preset], 1)
+              << kPresets[preset].name << ", " << speed << ", " << strength << ", " << velocity;
       }
     }
   }
