@@ -5,7 +5,7 @@
 //   Where the whole picture changes one way the gain is given at once.
 //   Where surfaces move apart no change of light is told from one of surface: the gain is 1, or the whole picture's.
 //   Doubt: history foretells the samples much worse than their neighbours do, and not by a change of light; or over the whole
-//   picture as badly, as after a cut; or the tile's own samples all say that it is brighter or darker now, by more than its
+//   picture as badly, as after a cut; or the tile's own samples agree that it is brighter or darker now, by more than its
 //   aliasing has shown in flicker and in neighbours, as in the first frames of a moving highlight.
 //
 //   tiles_x, tiles_y  in      count
@@ -35,7 +35,7 @@
 #define CHANGE_FLOOR 0.01f
 #define CHANGE_RANGE 0.5f
 #define LEAST_CHANGE 0.15f    // of a tile's light
-#define FEWEST_SAMPLES 3.0f
+#define MAJORITY 1.1f         // squared standard deviations
 #define CUT_FLOOR 0.03f     // of the light
 
 typedef struct Around {
@@ -72,7 +72,8 @@ static inline float reversal(__global const TemporalTile* tile, __global const T
 }
 
 static inline float doubt_of_change(__global const TemporalTile* tile, float neighbour_error) {
-  const bool agreed = fabs(tile->brighter) == tile->count && tile->count >= FEWEST_SAMPLES;
+  const float majority = fabs(tile->brighter) - 1.0f;  // a test of signs, corrected as for few samples: three must all agree
+  const bool agreed = majority > 0.0f && majority * majority >= MAJORITY * tile->count;
   if (!agreed || fabs(tile->brightening) <= LEAST_CHANGE * tile->light) return 0.0f;
   const float usual = NEIGHBOURS_COUNT * neighbour_error + FLICKER_COUNTS * tile->flicker + CHANGE_FLOOR;
   return (fabs(mean_brightening(tile)) - usual) / (CHANGE_RANGE * usual);

@@ -170,7 +170,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   for (int y = first.y - 1; y <= last.y + 1; ++y)
     will_read_colour(colour, params.frame.colour, last.x + kColourAhead, y);
   for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first.x + (-first.x - 2 * y & 3); x <= last.x; x += 4)  // every fourth one will do
+    for (int x = first.x + (-first.x - params.judged_apart / 2 * y & params.judged_apart - 1); x <= last.x; x += params.judged_apart)
       judge_sample(&tile, colour, moves, history, previous, &params, x, y);
   }
   // So that no total leaves an int.

@@ -124,7 +124,8 @@ void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& fram
       .start_x = (.5f + frame.current.jitter.x) * spacing.x,
       .start_y = (.5f + frame.current.jitter.y) * spacing.y,
       .move_x = move.x,
-      .move_y = move.y};
+      .move_y = move.y,
+      .judged_apart = settings_.temporal.preset == TemporalPreset::kFast ? 4 : 2};
   queue.enqueueFillBuffer(total_, cl_uint{0}, 0, sizeof(TotalLight));
   tiles_kernel_.setArg(0, params);
   set_memory(tiles_kernel_, 1, frame.current.colour.memory);

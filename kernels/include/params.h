@@ -242,8 +242,9 @@ typedef struct TemporalTileParams {
   float spacing_x, spacing_y;
   float start_x, start_y;
   float move_x, move_y;  // as in TemporalParams
+  int judged_apart;      // 2 or 4: of how many samples one is asked
 } TemporalTileParams;
-QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 24);
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 28);
 
 typedef struct TemporalDisplayParams {
   int output_width;

@@ -177,6 +177,7 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   in.frame = made.inputs;
   reference::TemporalInputs& out = in.reference;
   out.frame = made.reference;
+  out.judged_apart = spec.seed % 2 == 0 ? 2 : 4;
   out.previous_width = spec.previous.width;
   out.previous_height = spec.previous.height;
   out.output_width = spec.output.width;
@@ -278,6 +279,7 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   params.start_y = to_float((.5 + r.frame.jitter_y) * r.spacing(1));
   params.move_x = to_float(r.move_scale(0));
   params.move_y = to_float(r.move_scale(1));
+  params.judged_apart = r.judged_apart;
   const cl::Buffer before = tiles_to_device(r.before);
   const cl::Buffer now = to_device(std::vector<TemporalTile>(r.before.size()));
   const cl::Buffer total = to_device(std::vector<TotalLight>(1));

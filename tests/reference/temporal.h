@@ -52,6 +52,7 @@ struct TemporalInputs {
   int output_height = 0;
   std::vector<Pixel> history;  // of each output pixel: red, green, blue and confidence
   std::vector<Tile> before;    // of the previous frame
+  int judged_apart = 2;        // of how many samples one judges history: 2 or 4
 
   int tiles_x() const { return (output_width + kTile - 1) / kTile; }
   int tiles_y() const { return (output_height + kTile - 1) / kTile; }

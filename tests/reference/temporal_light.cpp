@@ -80,10 +80,11 @@ Bounded reversal(const Tile& tile, const Tile& before, bool& unsure) {
   return min(abs(mean_brightening(tile)), abs(mean_brightening(before)));
 }
 
-// Of a tile whose gain is 1 while all its samples have become brighter, or all darker.
+// Of a tile whose gain is 1 while more of its samples have become brighter, or darker, than chance gives.
 Bounded doubt_of_change(Tile& tile, const Bounded& neighbour_error) {
   if (less(0, abs(tile.gain - 1), tile.unsure)) return 0;
-  if (std::abs(tile.brighter) != tile.samples || tile.samples < 3) return 0;
+  const double majority = std::abs(tile.brighter) - 1;
+  if (majority <= 0 || majority * majority < 1.1 * tile.samples) return 0;
   if (!less(rounded(.15) * tile.light, abs(tile.brightening), tile.unsure)) return 0;
   const Bounded usual = rounded(.8) * neighbour_error + Bounded(12) * tile.flicker + rounded(.01);
   return clamp((abs(mean_brightening(tile)) - usual) / (Bounded(.5) * usual), 0, 1);

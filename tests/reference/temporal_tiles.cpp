@@ -192,7 +192,7 @@ std::vector<Tile> temporal_tiles(const TemporalInputs& in) {
       }
       for (int y = rows.first; y <= rows.last; ++y) {
         for (int x = columns.first; x <= columns.last; ++x) {
-          if ((x + 2 * y) % 4 == 0) judge(tile, in, x, y);  // every fourth one
+          if ((x + in.judged_apart / 2 * y) % in.judged_apart == 0) judge(tile, in, x, y);
         }
       }
       tiles.push_back(tile);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <random>
 
 #include "temporal_scene.h"
 
@@ -83,20 +84,23 @@ Pixels limit_of(const TemporalScene& scene, Extent render) {
 }
 
 TEST(Temporal, StillPictureConvergesToItsLimit) {
-  TemporalRun run(still_scene(), kFast);
-  const Pixels truth = run.scene().truth(0);
-  const double limit = testing::psnr(limit_of(run.scene(), kHalf), truth);
-  double before = 0;
-  for (const int end : {4, 8, 16, 32, 64, 96, 128, 160}) {
-    double sum = 0;
-    const int first = run.frame();
-    while (run.frame() < end)
-      sum += testing::psnr(run.next(), truth);
-    const double mean = sum / (end - first);
-    EXPECT_GE(mean, before - .001) << "before frame " << end;
-    before = mean;
+  const TemporalScene scene = still_scene();
+  const Pixels truth = scene.truth(0);
+  const double limit = testing::psnr(limit_of(scene, kHalf), truth);
+  for (const auto& [preset, settings] : kPresets) {
+    TemporalRun run(scene, settings);
+    double before = 0;
+    for (const int end : {4, 8, 16, 32, 64, 96, 128, 160}) {
+      double sum = 0;
+      const int first = run.frame();
+      while (run.frame() < end)
+        sum += testing::psnr(run.next(), truth);
+      const double mean = sum / (end - first);
+      EXPECT_GE(mean, before - .001) << preset << ", before frame " << end;
+      before = mean;
+    }
+    EXPECT_GE(before, limit - .5) << preset;
   }
-  EXPECT_GE(before, limit - .5);
 }
 
 // Whether a pixel, with what a render pixel's neighbours reach, has been free of a surface in the last
@@ -225,36 +229,34 @@ TemporalScene moving_scene(Place velocity, Place turn = {1, 0}) {
   return scene;
 }
 
-// Mean over frames of the error of the picture.
-template <typename NextRender>
-double mean_psnr(TemporalRun& run, int first, int end, const NextRender& render) {
-  double sum = 0;
-  while (run.frame() < end) {
-    const Pixels pixels = run.next(render(run.frame()));
-    if (run.frame() > first) sum += testing::squared_error(pixels, run.truth(), kOutput);
-  }
-  return testing::psnr(sum / (end - first));
-}
-
+// Over all frames once history is full; before that even phases at a fixed scale are worth more.
 TEST(Temporal, AScaleThatAlwaysChangesCostsLittle) {
-  // Widths and heights from .5 to .67, the mean of both orders .585. Where samples alone decide, at .37
-  // pixels a frame and less, even phases at a fixed scale are worth more than that; history must survive all
-  // the same.
-  const auto changing = [](int frame) { return Extent{80 + frame * 11 % 28, 48 + frame * 7 % 17}; };
-  const auto fixed = [](int) { return Extent{94, 56}; };
-  const auto compare = [&](const char* name, bool held, const TemporalScene& scene) {
-    TemporalRun one(scene), other(scene), single(scene, kBilinear);
-    const double varied = mean_psnr(one, 24, 40, changing), constant = mean_psnr(other, 24, 40, fixed);
-    const double bilinear = mean_psnr(single, 24, 40, changing);
-    if (held) {
-      EXPECT_GE(varied, constant - .3) << name;
+  constexpr int kFirst = 88, kEnd = 136;
+  const TemporalScene scenes[] = {still_scene(), moving_scene({}, std::polar(1., .01)),
+                                  moving_scene({.37, .21}), moving_scene({2.3, -1.1})};
+  for (const TemporalScene& scene : scenes) {
+    TemporalRun changing(scene), fixed(scene), single(scene, kBilinear);
+    // Widths and heights from .5 to .67, the mean of both .585, in no step with the jitter: sizes that come
+    // back with the same phases leave places without samples.
+    std::minstd_rand random(5);
+    double varied = 0, constant = 0, bilinear = 0;
+    for (int frame = 0; frame < kEnd; ++frame) {
+      const int width = 80 + static_cast<int>(random() % 28), height = 48 + static_cast<int>(random() % 17);
+      const Pixels one = changing.next({width, height}), other = fixed.next({94, 56});
+      if (frame < kFirst) {
+        single.skip();
+        continue;
+      }
+      const Pixels alone = single.next({width, height}), truth = changing.truth();
+      varied += testing::squared_error(one, truth, kOutput);
+      constant += testing::squared_error(other, truth, kOutput);
+      bilinear += testing::squared_error(alone, truth, kOutput);
     }
-    EXPECT_GE(varied, bilinear + 1) << name << ": the history is lost";
-  };
-  compare("still", false, still_scene());
-  compare("rotation", true, moving_scene({}, std::polar(1., .01)));
-  compare("slow pan", false, moving_scene({.37, .21}));
-  compare("pan", true, moving_scene({2.3, -1.1}));
+    const Surface& ground = scene.surfaces.back();
+    EXPECT_GE(testing::psnr(varied), testing::psnr(constant) - .3) << ground.velocity << ", " << ground.turn;
+    EXPECT_GE(testing::psnr(varied), testing::psnr(bilinear) + 1)
+        << ground.velocity << ", " << ground.turn << ": the history is lost";
+  }
 }
 
 TEST(Temporal, AStepOfLightRecoversInTwoFrames) {
@@ -299,15 +301,15 @@ std::array<double, 2> smear_of(TemporalScene scene, double speed, double strengt
 }
 
 // A highlight and a shadow move over a plane that is still or moves: the error around them is not above that
-// of one frame alone. It is where the fastest highlight crosses the plane that moves, by 6 % with preset
-// balanced and by 10 % with fast; that case is left out.
+// of one frame alone. Where the fastest highlight crosses the plane that moves, it is so with preset fast, by
+// 10 %; that case is left out.
 TEST(Temporal, HighlightAndShadowDoNotSmear) {
   for (const double speed : {.7, 2., 5.}) {
     for (const double strength : {4., -.8}) {
       for (const Place velocity : {Place(), Place(1.3, .4)}) {
-        if (strength > 0 && speed == 5 && velocity != Place()) continue;
+        const bool hardest = strength > 0 && speed == 5 && velocity != Place();
         const auto smear = smear_of(moving_scene(velocity), speed, strength);
-        for (std::size_t preset = 0; preset < 2; ++preset)
+        for (std::size_t preset = 0; preset < (hardest ? 1 : 2); ++preset)
           EXPECT_LE(smear[preset], 1)
               << kPresets[preset].name << ", " << speed << ", " << strength << ", " << velocity;
       }
