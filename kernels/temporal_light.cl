@@ -15,28 +15,28 @@
 // Reference: tests/reference/temporal_light.cpp
 #include "params.h"
 
-#define COHERENT 0.75f      // how far tiles must agree
-#define AGREED 0.4f         // of samples: seven of ten say the same
-#define RELATIVE 0.05f      // the least change of light
-#define PERSISTENT 0.62f    // of two frames: .64
-#define MEMORY 0.6f         // of persistence
+#define COHERENT 0.75f       // how far tiles must agree
+#define AGREED 0.4f          // of samples: seven of ten say the same
+#define RELATIVE 0.05f       // the least change of light
+#define PERSISTENT 0.62f     // of two frames: .64
+#define MEMORY 0.6f          // of persistence
 #define MOST_GAIN 4.0f
-#define SURE 3.0f           // times what chance gives
+#define SURE 3.0f            // times what chance gives
 #define WHOLE_COHERENT 0.8f
-#define OWN 0.3f            // part by which a tile must differ from the whole to go its own way
-#define WORSE 1.6f          // than the neighbours
+#define OWN 0.3f             // part by which a tile must differ from the whole to go its own way
+#define WORSE 1.6f           // than the neighbours
 #define ERROR_FLOOR 0.02f
-#define INCOHERENT 0.5f     // part of the error that a change of light may be
-#define CUT 0.95f           // of the neighbours' error, over the whole picture; without a cut up to .9
+#define INCOHERENT 0.5f      // part of the error that a change of light may be
+#define CUT 0.95f            // of the neighbours' error, over the whole picture; without a cut up to .9
 #define CUT_RANGE 0.25f
-#define FLICKER_MEMORY 0.9f
-#define FLICKER_COUNTS 12.0f  // an aliased tile is more often near its mean than far from it
+#define CUT_FLOOR 0.03f      // of the light
+#define MAJORITY 1.1f        // of samples that tell of a change: squared standard deviations
+#define LEAST_CHANGE 0.15f   // of a tile's light
 #define NEIGHBOURS_COUNT 0.8f
+#define FLICKER_COUNTS 12.0f  // an aliased tile is more often near its mean than far from it
+#define FLICKER_MEMORY 0.9f
 #define CHANGE_FLOOR 0.01f
 #define CHANGE_RANGE 0.5f
-#define LEAST_CHANGE 0.15f    // of a tile's light
-#define MAJORITY 1.1f         // squared standard deviations
-#define CUT_FLOOR 0.03f     // of the light
 
 typedef struct Around {
   float brightening, change, light, history_error, neighbour_error, count, brighter;

@@ -22,7 +22,7 @@
 #define LEAST_CONFIDENCE 0.15f      // where a Gaussian of this frame begins
 #define LEAST_WEIGHT 1e-30f
 #define RESAMPLING_COST 0.2f
-#define EDGE_COST 2.0f
+#define EDGE_COST 4.0f
 #define SAME_OFFSET 0.02f           // output pixels
 #define FARTHEST_MOVE 65536.0f
 

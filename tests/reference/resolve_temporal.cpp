@@ -79,7 +79,7 @@ Bounded weigh(const Taken& taken, const Bounded& trust, const Bounded& contrast,
   w = w / (Bounded(1) + rounded(.2) * taken.between * w);
   if (less(rounded(.01), taken.between, undecided)) w = min(w, kMostResampled);
   w = min(w, most_confidence(trust));
-  return w / (Bounded(1) + Bounded(2) * smooth_step(contrast, .1, 1) * w);
+  return w / (Bounded(1) + Bounded(4) * smooth_step(contrast, .1, 1) * w);
 }
 
 // Between tiles: on a row linear between the means of neighbours at their common edge, over rows between
