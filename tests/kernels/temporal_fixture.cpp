@@ -3,111 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
 #include <map>
-#include <random>
 
 #include "kernel_options.h"
 #include "program_cache.h"
 
 namespace quincunx::testing {
-namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-double as_float(double value) {
-  return static_cast<double>(static_cast<float>(value));
-}
-
-Extent tile_count(const reference::TemporalInputs& in) {
-  return {in.tiles_x(), in.tiles_y()};
-}
-
-// A random number of each zone of the picture, and of each sample in it.
-class Zones {
- public:
-  explicit Zones(unsigned seed) : seed_(seed) {}
-  std::mt19937 of(int x, int y) const {
-    return std::mt19937(seed_ + static_cast<unsigned>(7919 * x + 104729 * y));
-  }
-
- private:
-  unsigned seed_;
-};
-
-// Output pixels a frame; thresholds of the kernels lie well between them.
-constexpr double kZoneMoves[][2] = {{0, 0},     {0, 0},       {-.37, 0},   {3, -2},
-                                    {.25, 1.8}, {-9.3, 14.6}, {2.6, -700}, {.3, .45}};
-
-// Zones of 40 x 24 output pixels: three of four move as one.
-std::vector<reference::Move> make_moves(const reference::TemporalInputs& in, unsigned seed) {
-  const Zones zones(seed);
-  std::mt19937 random(seed + 1);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<reference::Move> moves;
-  for (int y = 0; y < in.frame.height; ++y) {
-    for (int x = 0; x < in.frame.width; ++x) {
-      std::mt19937 zone =
-          zones.of(static_cast<int>(x * in.spacing(0) / 40), static_cast<int>(y * in.spacing(1) / 24));
-      const bool rigid = zone() % 4 != 0;
-      const auto& motion = kZoneMoves[zone() % std::size(kZoneMoves)];
-      reference::Move move{.x = motion[0], .y = motion[1], .trust = 1};
-      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.trust = .75;
-      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.contrast = as_float(uniform(random) - .5);
-      if (!rigid) {
-        const double spread = zone() % 2 == 0 ? 1 : .02;  // little enough to show one surface
-        move = {.x = spread * (12 * uniform(random) - 6),
-                .y = spread * (8 * uniform(random) - 4),
-                .trust = uniform(random)};
-        if (random() % 2 == 0) move.trust = 1;
-        if (random() % 20 == 0) move.trust = 0;
-        if (random() % 2 == 0) move.contrast = as_float(3 * uniform(random) - 1.5);
-        if (random() % 50 == 0) move = {.trust = kNan};
-      }
-      move.x = as_float(move.x / in.move_scale(0));
-      move.y = as_float(move.y / in.move_scale(1));
-      move.trust = as_float(move.trust);
-      moves.push_back(move);
-    }
-  }
-  return moves;
-}
-
-std::vector<reference::Tile> make_tiles_before(const reference::TemporalInputs& in, bool moves,
-                                               unsigned seed) {
-  const Zones zones(seed);
-  std::vector<reference::Tile> tiles;
-  for (int y = 0; y < in.tiles_y(); ++y) {
-    for (int x = 0; x < in.tiles_x(); ++x) {
-      std::mt19937 zone = zones.of(x / 4, y / 3);
-      std::uniform_real_distribution<double> uniform(-.5, .5);
-      reference::Tile tile;
-      if (moves && zone() % 2 == 0) tile.offset = {as_float(uniform(zone)), as_float(uniform(zone))};
-      tile.persistence = as_float(uniform(zone));
-      tiles.push_back(tile);
-    }
-  }
-  return tiles;
-}
-
-std::vector<Pixel> make_history(const reference::TemporalInputs& in, PixelFormat format, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<Pixel> history;
-  for (int i = 0; i < in.output_width * in.output_height; ++i) {
-    Pixel texel = {3 * uniform(random), uniform(random), 2 * uniform(random), 32 * uniform(random)};
-    if (random() % 4 == 0) texel[3] = 2 * uniform(random);
-    if (random() % 8 == 0) texel[3] = .3 * uniform(random);
-    if (random() % 32 == 0) texel = {};
-    for (double& value : texel)
-      value = stored_value(format, value);
-    history.push_back(texel);
-  }
-  return history;
-}
-
-}  // namespace
 
 std::string name_of(const StageVariant& v) {
   return fmt::format("{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
@@ -159,62 +60,6 @@ reference::Tile to_reference(const TemporalTile& tile) {
           .brighter = static_cast<int>(tile.brighter)};
 }
 
-StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
-  std::vector<Pixel> colour = pattern_pixels(spec.colour, spec.render, spec.seed);
-  for (Pixel& pixel : colour) {
-    for (double& value : pixel)
-      value = std::abs(value);  // light
-  }
-  const TestFrame made = make_frame(
-      rig, {.storage = variant_.storage, .colour = variant_.colour, .with_reactive = variant_.reactive},
-      {.render = spec.render,
-       .jitter = spec.jitter,
-       .seed = spec.seed,
-       .outside = spec.outside,
-       .tight = spec.tight},
-      colour);
-  StageInputs in;
-  in.frame = made.inputs;
-  reference::TemporalInputs& out = in.reference;
-  out.frame = made.reference;
-  out.judged_apart = spec.seed % 2 == 0 ? 2 : 4;
-  out.previous_width = spec.previous.width;
-  out.previous_height = spec.previous.height;
-  out.output_width = spec.output.width;
-  out.output_height = spec.output.height;
-  out.history = make_history(out, variant_.history, spec.seed + 1000);
-  out.before = make_tiles_before(out, variant_.moves, spec.seed + 2000);
-  if (variant_.reactive) {
-    const TestFrame previous = make_frame(
-        rig, {.storage = variant_.storage, .with_reactive = true},
-        {.render = spec.previous, .seed = spec.seed + 500, .outside = spec.outside, .tight = spec.tight});
-    in.reactive_before = previous.inputs.reactive;
-    out.reactive_before = previous.reference.reactive;
-  }
-  if (!variant_.moves) return in;
-  out.moves = make_moves(out, spec.seed + 3000);
-  std::vector<Pixel> moves;
-  for (const reference::Move& move : out.moves)
-    moves.push_back({move.x, move.y, move.trust, move.contrast});
-  in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
-  return in;
-}
-
-std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsigned seed) const {
-  const Zones zones(seed);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<reference::Tile> made;
-  for (const reference::Tile& tile : reference::temporal_tiles(in.reference)) {
-    reference::Tile exact = to_reference(to_kernel(tile));
-    const int i = static_cast<int>(made.size());
-    std::mt19937 zone = zones.of(i % in.reference.tiles_x() / 5, i / in.reference.tiles_x() / 4);
-    if (zone() % 3 == 0) exact.doubt = as_float(uniform(zone));
-    if (zone() % 3 == 0) exact.gain = as_float(.25 + 2 * uniform(zone));
-    made.push_back(exact);
-  }
-  return made;
-}
-
 ResolvePlan TemporalStages::plan(TemporalPreset preset) const {
   ResolvePlan plan;
   plan.settings = {.method = Method::kTemporal,
@@ -232,6 +77,10 @@ cl::Buffer TemporalStages::history(const StageInputs& in) const {
 }
 
 namespace {
+
+Extent tile_count(const reference::TemporalInputs& in) {
+  return {in.tiles_x(), in.tiles_y()};
+}
 
 // Built once for all sizes and inputs.
 cl::Kernel kernel(const std::string& name, const std::string& options) {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <iterator>
 #include <random>
 
 #include "temporal_scene.h"
@@ -230,13 +229,12 @@ TemporalScene moving_scene(Place velocity, Place turn = {1, 0}) {
   return scene;
 }
 
-// At most .3 dB in the mean of the scenes, once history is full; before that even phases at a fixed scale are
-// worth more. By the sizes that chance gives a still picture, a rotation or a slow pan may lose .4 dB.
+// Once history is full; before that even phases at a fixed scale are worth more. By other sizes that chance
+// may give, a slow pan loses up to .4 dB.
 TEST(Temporal, AScaleThatAlwaysChangesCostsLittle) {
-  constexpr int kFirst = 88, kEnd = 136;
+  constexpr int kFirst = 88, kEnd = 168;
   const TemporalScene scenes[] = {still_scene(), moving_scene({}, std::polar(1., .01)),
                                   moving_scene({.37, .21}), moving_scene({2.3, -1.1})};
-  double cost = 0;
   for (const TemporalScene& scene : scenes) {
     TemporalRun changing(scene), fixed(scene), single(scene, kBilinear);
     // Widths and heights from .5 to .67, the mean of both .585, in no step with the jitter: sizes that come
@@ -256,12 +254,10 @@ TEST(Temporal, AScaleThatAlwaysChangesCostsLittle) {
       bilinear += testing::squared_error(alone, truth, kOutput);
     }
     const Surface& ground = scene.surfaces.back();
-    EXPECT_GE(testing::psnr(varied), testing::psnr(constant) - .5) << ground.velocity << ", " << ground.turn;
-    cost += testing::psnr(constant) - testing::psnr(varied);
+    EXPECT_GE(testing::psnr(varied), testing::psnr(constant) - .3) << ground.velocity << ", " << ground.turn;
     EXPECT_GE(testing::psnr(varied), testing::psnr(bilinear) + 1)
         << ground.velocity << ", " << ground.turn << ": the history is lost";
   }
-  EXPECT_LE(cost / std::size(scenes), .3);
 }
 
 TEST(Temporal, AStepOfLightRecoversInTwoFrames) {
