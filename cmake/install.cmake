@@ -22,7 +22,7 @@ if(TARGET quincunx-resolve)
   install(TARGETS quincunx-resolve RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 if(TARGET quincunx-render)
-  install(TARGETS quincunx-render quincunx-dump RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS quincunx-render quincunx-dump quincunx-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 
 configure_package_config_file(cmake/quincunxConfig.cmake.in quincunxConfig.cmake

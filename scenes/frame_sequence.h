@@ -7,9 +7,9 @@
 
 #include "quincunx/dynamic_viewport.h"
 #include "quincunx/status.h"
-#include "renderer.h"
+#include "render/renderer.h"
 #include "scale_path.h"
-#include "tools/jitter.h"
+#include "tools/program/jitter.h"
 
 namespace quincunx::scenes {
 

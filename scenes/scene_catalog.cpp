@@ -8,8 +8,8 @@
 #include <cctype>
 #include <string_view>
 
-#include "gltf_loader.h"
-#include "procedural_scenes.h"
+#include "builtin/scenes.h"
+#include "gltf/loader.h"
 
 namespace quincunx::scenes {
 

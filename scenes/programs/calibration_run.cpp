@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "calibration_run.h"
+#include "programs/calibration_run.h"
 
 #include <fmt/format.h>
 
 #include <memory>
 #include <vector>
 
-#include "paced_loop.h"
+#include "programs/paced_loop.h"
 #include "quincunx/resolve_service.h"
-#include "tools/atomic_file.h"
-#include "tools/progress.h"
+#include "tools/program/atomic_file.h"
+#include "tools/program/progress.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -2,8 +2,8 @@
 // calibration_run: quincunx-render --calibrate: what a scene's frames cost, by resolution.
 #pragma once
 
+#include "programs/render_options.h"
 #include "quincunx/status.h"
-#include "render_options.h"
 
 namespace quincunx::scenes {
 

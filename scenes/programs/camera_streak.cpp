@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "camera_streak.h"
+#include "programs/camera_streak.h"
 
 #include <array>
 #include <cmath>

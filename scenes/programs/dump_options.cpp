@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "dump_options.h"
+#include "programs/dump_options.h"
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
-#include "tools/program.h"
+#include "tools/program/program.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "dump_stages.h"
-#include "picture_options.h"
+#include "programs/dump_stages.h"
+#include "programs/picture_options.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "dump_session.h"
+#include "programs/dump_session.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <cmath>
 #include <filesystem>
 
-#include "presenter.h"
-#include "target_file.h"
-#include "tools/flip.h"
-#include "tools/image_io.h"
-#include "tools/image_metrics.h"
-#include "truth.h"
+#include "programs/presenter.h"
+#include "programs/target_file.h"
+#include "render/truth.h"
+#include "tools/image/flip.h"
+#include "tools/image/image_io.h"
+#include "tools/image/image_metrics.h"
 
 namespace quincunx::scenes {
 namespace {

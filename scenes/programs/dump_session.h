@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "dump_options.h"
-#include "frame_source.h"
+#include "programs/dump_options.h"
+#include "programs/frame_source.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx::scenes {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "dump_stages.h"
+#include "programs/dump_stages.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
-#include "tools/false_colour.h"
+#include "tools/image/false_colour.h"
 
 namespace quincunx::scenes {
 namespace {

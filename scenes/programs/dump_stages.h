@@ -10,8 +10,8 @@
 
 #include "quincunx/image.h"
 #include "quincunx/status.h"
-#include "tools/image_io.h"
-#include "tools/text_painter.h"
+#include "tools/image/image_io.h"
+#include "tools/image/text_painter.h"
 
 namespace quincunx::scenes {
 

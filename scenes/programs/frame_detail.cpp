@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_detail.h"
+#include "programs/frame_detail.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "quincunx/detail_follower.h"
-#include "renderer.h"
+#include "render/renderer.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_meter.h"
+#include "programs/frame_meter.h"
 
 #include <algorithm>
 

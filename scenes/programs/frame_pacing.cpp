@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_pacing.h"
+#include "programs/frame_pacing.h"
 
 #include <fmt/format.h>
 

@@ -23,7 +23,7 @@
 
 #include "quincunx/predictive_controller.h"
 #include "quincunx/status.h"
-#include "tools/pacing_report.h"
+#include "tools/program/pacing_report.h"
 
 namespace quincunx::scenes {
 

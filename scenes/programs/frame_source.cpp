@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_source.h"
+#include "programs/frame_source.h"
 
 #include "scene_catalog.h"
 

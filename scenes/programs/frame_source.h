@@ -17,7 +17,7 @@
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/egl_context.h"
 #include "quincunx_gl/target_readback.h"
-#include "renderer.h"
+#include "render/renderer.h"
 #include "scene.h"
 
 namespace quincunx::scenes {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "paced_loop.h"
+#include "programs/paced_loop.h"
 
 #include <ctime>
 #include <thread>

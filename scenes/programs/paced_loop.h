@@ -16,8 +16,8 @@
 #include <deque>
 #include <optional>
 
-#include "frame_meter.h"
-#include "frame_pacing.h"
+#include "programs/frame_meter.h"
+#include "programs/frame_pacing.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pacing_options.h"
+#include "programs/pacing_options.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-#include "tools/option_choice.h"
+#include "tools/program/option_choice.h"
 
 namespace quincunx::scenes {
 namespace {

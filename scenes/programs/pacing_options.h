@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "frame_meter.h"
-#include "frame_pacing.h"
+#include "programs/frame_meter.h"
+#include "programs/frame_pacing.h"
 
 namespace quincunx::scenes {
 

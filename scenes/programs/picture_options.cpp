@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "picture_options.h"
+#include "programs/picture_options.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <map>
 
 #include "scene_catalog.h"
-#include "tools/option_choice.h"
-#include "tools/program.h"
-#include "tools/resolve_settings_options.h"
+#include "tools/program/option_choice.h"
+#include "tools/program/program.h"
+#include "tools/program/resolve_settings_options.h"
 
 namespace quincunx::scenes {
 namespace {

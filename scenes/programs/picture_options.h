@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "frame_source.h"
+#include "programs/frame_source.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "presenter.h"
+#include "programs/presenter.h"
 
 namespace quincunx::scenes {
 

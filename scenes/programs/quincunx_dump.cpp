@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "dump_options.h"
-#include "dump_session.h"
-#include "sequence_dump.h"
-#include "tools/program.h"
+#include "programs/dump_options.h"
+#include "programs/dump_session.h"
+#include "programs/sequence_dump.h"
+#include "tools/program/program.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -5,14 +5,14 @@
 #include <cstdio>
 #include <exception>
 
-#include "calibration_run.h"
-#include "render_options.h"
-#include "render_session.h"
+#include "programs/calibration_run.h"
+#include "programs/render_options.h"
+#include "programs/render_session.h"
+#include "programs/truth_run.h"
 #include "scene_catalog.h"
-#include "tools/program.h"
-#include "tools/run_report.h"
-#include "truth_run.h"
-#include "window_run.h"
+#include "tools/program/program.h"
+#include "tools/program/run_report.h"
+#include "window/window_run.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "pacing_options.h"
-#include "picture_options.h"
+#include "programs/pacing_options.h"
+#include "programs/picture_options.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render_session.h"
+#include "programs/render_session.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <chrono>
 #include <filesystem>
 
-#include "camera_streak.h"
-#include "target_file.h"
-#include "tools/image_io.h"
-#include "tools/method_names.h"
-#include "tools/progress.h"
+#include "programs/camera_streak.h"
+#include "programs/target_file.h"
+#include "tools/image/image_io.h"
+#include "tools/program/method_names.h"
+#include "tools/program/progress.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "frame_detail.h"
-#include "frame_source.h"
-#include "paced_loop.h"
+#include "programs/frame_detail.h"
+#include "programs/frame_source.h"
+#include "programs/paced_loop.h"
+#include "programs/render_options.h"
 #include "quincunx/resolve_service.h"
-#include "render_options.h"
-#include "tools/contact_sheet.h"
-#include "tools/frame_pattern.h"
-#include "tools/run_report.h"
-#include "tools/work_queue.h"
+#include "tools/image/contact_sheet.h"
+#include "tools/program/run_report.h"
+#include "tools/program/work_queue.h"
+#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::scenes {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "sequence_dump.h"
+#include "programs/sequence_dump.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "frame_source.h"
-#include "target_file.h"
-#include "tools/atomic_file.h"
-#include "tools/frame_pattern.h"
-#include "tools/progress.h"
-#include "tools/work_queue.h"
-#include "truth.h"
+#include "programs/frame_source.h"
+#include "programs/target_file.h"
+#include "render/truth.h"
+#include "tools/program/atomic_file.h"
+#include "tools/program/progress.h"
+#include "tools/program/work_queue.h"
+#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::scenes {
 namespace {

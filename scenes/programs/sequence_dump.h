@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "picture_options.h"
+#include "programs/picture_options.h"
 #include "quincunx/status.h"
 
 namespace quincunx::scenes {

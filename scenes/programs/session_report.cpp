@@ -2,9 +2,9 @@
 // The report of a session: what it did and what it cost.
 #include <fmt/format.h>
 
-#include "render_session.h"
-#include "tools/method_names.h"
-#include "tools/pass_statistics.h"
+#include "programs/render_session.h"
+#include "tools/program/method_names.h"
+#include "tools/program/pass_statistics.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "target_file.h"
+#include "programs/target_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <vector>
 
-#include "tools/exchange_format.h"
-#include "tools/image_io.h"
-#include "view_math.h"
+#include "render/view_math.h"
+#include "tools/image/image_io.h"
+#include "tools/sequence/exchange_format.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "quincunx/status.h"
 #include "quincunx_gl/target_readback.h"
-#include "renderer.h"
+#include "render/renderer.h"
 
 namespace quincunx::scenes {
 

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-#include "truth_run.h"
+#include "programs/truth_run.h"
 
 #include <fmt/format.h>
 
 #include <vector>
 
-#include "presenter.h"
+#include "programs/presenter.h"
+#include "programs/target_file.h"
+#include "render/truth.h"
 #include "scene_catalog.h"
-#include "target_file.h"
-#include "tools/frame_pattern.h"
-#include "tools/image_io.h"
-#include "tools/progress.h"
-#include "truth.h"
+#include "tools/image/image_io.h"
+#include "tools/program/progress.h"
+#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -2,8 +2,8 @@
 // truth_run: quincunx-render --truth: supersampled frames instead of resolved ones.
 #pragma once
 
+#include "programs/render_options.h"
 #include "quincunx/status.h"
-#include "render_options.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_graph.h"
+#include "window/frame_graph.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -2,7 +2,7 @@
 // The live graph: resolution above, times below, dropped frames as marks. By Dear ImGui, within its window.
 #pragma once
 
-#include "frame_trace.h"
+#include "window/frame_trace.h"
 
 namespace quincunx::scenes {
 

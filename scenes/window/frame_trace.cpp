@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_trace.h"
+#include "window/frame_trace.h"
 
 #include <algorithm>
 

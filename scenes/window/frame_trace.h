@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "live_picture.h"
+#include "window/live_picture.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "key_bindings.h"
+#include "window/key_bindings.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "scene_catalog.h"
-#include "tools/method_names.h"
+#include "tools/program/method_names.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include "window.h"
-#include "window_settings.h"
+#include "window/window.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

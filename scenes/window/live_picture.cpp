@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "live_picture.h"
+#include "window/live_picture.h"
 
 #include <algorithm>
 #include <chrono>
 
-#include "target_file.h"
-#include "tools/method_names.h"
-#include "truth.h"
+#include "programs/target_file.h"
+#include "render/truth.h"
+#include "tools/program/method_names.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -175,8 +175,11 @@ Status LivePicture::draw(std::int64_t index, const FrameView& view, Keep keep) {
 Status LivePicture::resolve(bool reset) {
   if (Status status = dispatch(reset); !status.ok()) return status;
   const FrameView view = source_->oldest().view;
-  kept_.reset();
-  if (keep_ == Keep::kForFiles) kept_ = std::move(source_->oldest());
+  if (keep_ == Keep::kForFiles) {
+    kept_.emplace(std::move(source_->oldest()));
+  } else {
+    kept_.reset();
+  }
   source_->release();
   collect_times();
   return bring_compared(view);

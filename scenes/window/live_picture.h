@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "frame_source.h"
-#include "picture_options.h"
-#include "presenter.h"
+#include "programs/frame_source.h"
+#include "programs/picture_options.h"
+#include "programs/presenter.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx_gl/frame_timer.h"
 #include "quincunx_gl/handle.h"
-#include "window_settings.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "window_run.h"
+#include "window/window_run.h"
 
 namespace quincunx::scenes {
 

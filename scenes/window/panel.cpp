@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "panel.h"
+#include "window/panel.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frame_graph.h"
-#include "key_bindings.h"
-#include "tools/method_names.h"
+#include "tools/program/method_names.h"
+#include "window/frame_graph.h"
+#include "window/key_bindings.h"
 
 namespace quincunx::scenes {
 namespace {

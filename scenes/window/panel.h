@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "frame_trace.h"
-#include "window_settings.h"
+#include "window/frame_trace.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

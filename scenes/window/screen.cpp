@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "screen.h"
+#include "window/screen.h"
 
 #include <epoxy/gl.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "gl_program.h"
+#include "render/gl_program.h"
 
 namespace quincunx::scenes {
 namespace {

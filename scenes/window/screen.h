@@ -8,7 +8,7 @@
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
-#include "window_settings.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

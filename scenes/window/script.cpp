@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "script.h"
+#include "window/script.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <iterator>
 #include <sstream>
 
-#include "key_bindings.h"
-#include "tools/program.h"
+#include "tools/program/program.h"
+#include "window/key_bindings.h"
 
 namespace quincunx::scenes {
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "quincunx/status.h"
-#include "window.h"
+#include "window/window.h"
 
 namespace quincunx::scenes {
 

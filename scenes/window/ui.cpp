@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "ui.h"
+#include "window/ui.h"
 
 #include <epoxy/gl.h>
 
@@ -11,7 +11,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include "tools/text_painter.h"
+#include "tools/image/text_painter.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <memory>
 
-#include "screen.h"
-#include "window_settings.h"
+#include "window/screen.h"
+#include "window/window_settings.h"
 
 struct GLFWwindow;
 

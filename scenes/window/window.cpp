@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "window.h"
+#include "window/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "lost_display.h"
+#include "window/lost_display.h"
 
 namespace quincunx::scenes {
 namespace {

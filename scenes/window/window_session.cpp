@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "window_session.h"
+#include "window/window_session.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -8,11 +8,11 @@
 #include <cmath>
 #include <filesystem>
 
-#include "key_bindings.h"
 #include "scene_catalog.h"
-#include "tools/image_io.h"
-#include "tools/method_names.h"
-#include "window_run.h"
+#include "tools/image/image_io.h"
+#include "tools/program/method_names.h"
+#include "window/key_bindings.h"
+#include "window/window_run.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -10,16 +10,16 @@
 #include <string>
 #include <utility>
 
-#include "frame_trace.h"
-#include "live_picture.h"
-#include "paced_loop.h"
-#include "panel.h"
-#include "render_options.h"
-#include "screen.h"
-#include "script.h"
-#include "ui.h"
-#include "window.h"
-#include "window_settings.h"
+#include "programs/paced_loop.h"
+#include "programs/render_options.h"
+#include "window/frame_trace.h"
+#include "window/live_picture.h"
+#include "window/panel.h"
+#include "window/screen.h"
+#include "window/script.h"
+#include "window/ui.h"
+#include "window/window.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

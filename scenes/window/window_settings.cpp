@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "window_settings.h"
+#include "window/window_settings.h"
 
 namespace quincunx::scenes {
 

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "frame_pacing.h"
+#include "programs/frame_pacing.h"
 #include "quincunx/resolve_plan.h"
-#include "tools/jitter.h"
+#include "tools/program/jitter.h"
 
 namespace quincunx::scenes {
 

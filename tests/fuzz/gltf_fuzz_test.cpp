@@ -10,7 +10,7 @@
 
 #include "../scenes/gltf_fixture.h"
 #include "../tools/temporary_folder.h"
-#include "gltf_loader.h"
+#include "gltf/loader.h"
 #include "random.h"
 #include "rounds.h"
 #include "scene_check.h"

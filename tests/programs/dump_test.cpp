@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "program_run.h"
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx {
 namespace {

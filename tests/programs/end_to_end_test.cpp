@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "program_run.h"
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx {
 namespace {

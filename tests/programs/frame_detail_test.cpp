@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What follows the resolution or limits it, without a device.
-#include "frame_detail.h"
+#include "programs/frame_detail.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "camera_streak.h"
+#include "programs/camera_streak.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The loop's logic with times that the tests make up.
-#include "frame_pacing.h"
+#include "programs/frame_pacing.h"
 
 #include <gtest/gtest.h>
 

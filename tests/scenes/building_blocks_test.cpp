@@ -7,12 +7,12 @@
 #include <cmath>
 #include <set>
 
-#include "ambient_occlusion.h"
-#include "glyphs.h"
-#include "mesh_builder.h"
-#include "procedural_textures.h"
+#include "builtin/ambient_occlusion.h"
+#include "builtin/glyphs.h"
+#include "builtin/mesh_builder.h"
+#include "builtin/scene_assembly.h"
+#include "builtin/textures.h"
 #include "random.h"
-#include "scene_assembly.h"
 
 namespace quincunx::scenes {
 namespace {

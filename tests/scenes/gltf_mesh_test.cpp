@@ -6,8 +6,8 @@
 #include <string>
 
 #include "../tools/temporary_folder.h"
+#include "gltf/loader.h"
 #include "gltf_fixture.h"
-#include "gltf_loader.h"
 
 namespace quincunx::testing {
 namespace {

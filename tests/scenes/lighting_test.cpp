@@ -5,9 +5,9 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 
-#include "mesh_parts.h"
+#include "render/mesh_parts.h"
+#include "render/scene_layout.h"
 #include "render_fixture.h"
-#include "scene_layout.h"
 
 namespace quincunx::scenes::testing {
 namespace {

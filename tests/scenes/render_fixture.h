@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "quincunx_gl/render_targets.h"
-#include "renderer.h"
+#include "render/renderer.h"
 
 namespace quincunx::scenes::testing {
 

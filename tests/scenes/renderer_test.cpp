@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The renderer: viewport, orientation, depth, jitter, transparents, determinism, refusals.
-#include "renderer.h"
+#include "render/renderer.h"
 
 #include <epoxy/gl.h>
 

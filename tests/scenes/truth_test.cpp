@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "truth.h"
+#include "render/truth.h"
 
 #include <algorithm>
 #include <cmath>

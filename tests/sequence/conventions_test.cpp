@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence_conventions.h"
+#include "tools/sequence/sequence_conventions.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "tools/sequence_camera.h"
+#include "tools/sequence/sequence_camera.h"
 
 namespace quincunx::tools {
 namespace {

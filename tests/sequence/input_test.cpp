@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a command line and the first frame come to: channels, attributes, jitter.
-#include "tools/sequence_input.h"
+#include "tools/sequence/sequence_input.h"
 
 #include <gtest/gtest.h>
 

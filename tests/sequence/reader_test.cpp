@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One file as the library wants it: which bits arrive.
-#include "tools/sequence_reader.h"
+#include "tools/sequence/sequence_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Which frames a run reads, and what it finds out about them beforehand.
-#include "tools/sequence_scan.h"
+#include "tools/sequence/sequence_scan.h"
 
 #include <gtest/gtest.h>
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "program_run.h"
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx::testing {
 

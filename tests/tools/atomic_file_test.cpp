@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/atomic_file.h"
+#include "tools/program/atomic_file.h"
 
 #include <fstream>
 #include <sstream>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "tools/contact_sheet.h"
+#include "tools/image/contact_sheet.h"
 
 #include <algorithm>
 
 #include "temporary_folder.h"
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx::tools {
 namespace {

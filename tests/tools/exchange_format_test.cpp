@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/exchange_format.h"
+#include "tools/sequence/exchange_format.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/image_reader.h"
+#include "tools/image/image_reader.h"
 
 namespace quincunx::testing {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/false_colour.h"
+#include "tools/image/false_colour.h"
 
 #include <gtest/gtest.h>
 

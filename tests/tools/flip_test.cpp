@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/flip.h"
+#include "tools/image/flip.h"
 
 #include <gtest/gtest.h>
 

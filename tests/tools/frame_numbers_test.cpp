@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/frame_numbers.h"
+#include "tools/sequence/frame_numbers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/frame_pattern.h"
+#include "tools/sequence/frame_pattern.h"
 
 #include <gtest/gtest.h>
 

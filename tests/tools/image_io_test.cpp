@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
 
 #include <cmath>
 #include <fstream>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/image_reader.h"
+#include "tools/image/image_reader.h"
 
 #include <gtest/gtest.h>
 

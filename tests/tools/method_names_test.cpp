@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/method_names.h"
+#include "tools/program/method_names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "tools/pacing_report.h"
+#include "tools/program/pacing_report.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tools/run_report.h"
+#include "tools/program/run_report.h"
 
 namespace quincunx::tools {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/progress.h"
+#include "tools/program/progress.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/run_report.h"
+#include "tools/program/run_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "temporary_folder.h"
-#include "tools/report_graph.h"
+#include "tools/program/report_graph.h"
 
 namespace quincunx::tools {
 namespace {

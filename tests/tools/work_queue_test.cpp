@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/work_queue.h"
+#include "tools/program/work_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <atomic>
 #include <future>
 
-#include "tools/read_ahead.h"
+#include "tools/program/read_ahead.h"
 
 namespace quincunx::tools {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Keys and what follows from them, without a window.
-#include "key_bindings.h"
+#include "window/key_bindings.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
-#include "frame_trace.h"
-#include "screen.h"
-#include "tools/method_names.h"
+#include "tools/program/method_names.h"
+#include "window/frame_trace.h"
+#include "window/screen.h"
 
 namespace quincunx::scenes {
 namespace {

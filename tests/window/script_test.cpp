@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "script.h"
+#include "window/script.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "display.h"
-#include "key_bindings.h"
-#include "tools/image_io.h"
+#include "tools/image/image_io.h"
+#include "window/key_bindings.h"
 
 namespace quincunx::testing {
 namespace {

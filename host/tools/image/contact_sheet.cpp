@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+#include "tools/image/contact_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "tools/image/image_io.h"
+#include "tools/image/text_painter.h"
+
+namespace quincunx::tools {
+
+namespace {
+
+// Dark and neutral, so that the pictures' colours are judged against grey; one warm accent.
+constexpr Rgb kBackground{24, 24, 26};
+constexpr Rgb kCardBackground{34, 34, 37};
+constexpr Rgb kBarTrack{52, 52, 56};
+constexpr Rgb kAccent{232, 163, 61};
+constexpr Rgb kBright{236, 236, 238};
+constexpr Rgb kDim{150, 150, 156};
+
+constexpr int kMargin = 40;
+constexpr int kGap = 20;
+constexpr int kTitleSize = 38;
+constexpr int kSubtitleSize = 19;
+constexpr int kCaptionSize = 16;
+constexpr int kHeaderHeight = 86;  // from the upper margin to the first row of thumbnails
+constexpr int kBarHeight = 4;
+constexpr int kCaptionHeight = 38;  // of the strip below the bar
+constexpr int kCaptionInset = 12;
+constexpr int kCaptionBaseline = 25;
+constexpr double kWantedAspect = 1.5;
+constexpr double kCostOfHoles =
+    0.25;  // a gap in the last row looks as bad as an aspect that is off by e^0.25
+
+double decode(int code) {
+  const double x = code / 255.0;
+  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
+}
+
+std::uint8_t encode(double x) {
+  const double y = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(std::clamp(y, 0.0, 1.0) * 255));
+}
+
+const std::array<float, 256>& linear_of_code() {
+  static const std::array<float, 256> table = [] {
+    std::array<float, 256> values{};
+    for (int i = 0; i < 256; ++i)
+      values[i] = static_cast<float>(decode(i));
+    return values;
+  }();
+  return table;
+}
+
+// Source pixels under one thumbnail pixel of an axis, and how much of the first and the last of them.
+struct Span {
+  int first = 0;
+  std::vector<float> weights;  // sum to 1
+};
+
+std::vector<Span> spans(int source, int thumbnail) {
+  std::vector<Span> result(thumbnail);
+  const double step = static_cast<double>(source) / thumbnail;
+  for (int i = 0; i < thumbnail; ++i) {
+    const double low = i * step;
+    const double high = (i + 1) * step;
+    result[i].first = static_cast<int>(low);
+    for (int j = result[i].first; j < source && j < high; ++j) {
+      const double part = std::min<double>(high, j + 1) - std::max<double>(low, j);
+      if (part > 0 || result[i].weights.empty()) result[i].weights.push_back(static_cast<float>(part / step));
+    }
+  }
+  return result;
+}
+
+std::vector<std::uint8_t> box_filter(Extent from, const std::uint8_t* rgba, std::size_t row_bytes,
+                                     Extent to) {
+  const std::array<float, 256>& linear = linear_of_code();
+  const std::vector<Span> columns = spans(from.width, to.width);
+  const std::vector<Span> rows = spans(from.height, to.height);
+  std::vector<std::uint8_t> rgb(static_cast<std::size_t>(to.area()) * 3);
+  for (int y = 0; y < to.height; ++y) {
+    for (int x = 0; x < to.width; ++x) {
+      std::array<float, 3> sum{};
+      for (std::size_t j = 0; j < rows[y].weights.size(); ++j) {
+        const std::uint8_t* row = rgba + (rows[y].first + j) * row_bytes;
+        for (std::size_t i = 0; i < columns[x].weights.size(); ++i) {
+          const std::uint8_t* texel = row + (columns[x].first + i) * 4;
+          const float weight = rows[y].weights[j] * columns[x].weights[i];
+          for (int c = 0; c < 3; ++c)
+            sum[c] += weight * linear[texel[c]];
+        }
+      }
+      for (int c = 0; c < 3; ++c) {
+        rgb[(static_cast<std::size_t>(y) * to.width + x) * 3 + c] = encode(sum[c]);
+      }
+    }
+  }
+  return rgb;
+}
+
+int columns_for(int count, Extent cell) {
+  int best = 1;
+  double best_distance = 1e30;
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double aspect = static_cast<double>(columns * cell.width) / (rows * cell.height + kHeaderHeight);
+    const int holes = rows * columns - count;
+    const double distance = std::abs(std::log(aspect / kWantedAspect)) +
+                            (holes > 0 ? kCostOfHoles + kCostOfHoles * holes / columns : 0);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = columns;
+    }
+  }
+  return best;
+}
+
+// Cuts the text until it fits, with an ellipsis; never inside a UTF-8 character.
+std::string fit(const TextPainter& painter, std::string text, int size_px, Face face, int width_px) {
+  if (painter.width(text, size_px, face) <= width_px) return text;
+  while (!text.empty() && painter.width(text + "…", size_px, face) > width_px) {
+    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U)
+      text.pop_back();
+    if (!text.empty()) text.pop_back();
+  }
+  return text + "…";
+}
+
+void copy_into(Canvas& canvas, int x, int y, Extent extent, const std::vector<std::uint8_t>& rgb) {
+  const std::size_t row = static_cast<std::size_t>(extent.width) * 3;
+  for (int j = 0; j < extent.height; ++j) {
+    std::copy_n(&rgb[j * row], row,
+                &canvas.rgb[(static_cast<std::size_t>(y + j) * canvas.extent.width + x) * 3]);
+  }
+}
+
+void draw_caption(Canvas& canvas, const TextPainter& painter, int x, int y, int width,
+                  const ContactSheetCaption& caption) {
+  const int inner = width - 2 * kCaptionInset;
+  const std::string right = fit(painter, caption.right, kCaptionSize, Face::kSans, inner);
+  const int left_width = inner - painter.width(right, kCaptionSize, Face::kSans) - kCaptionInset;
+  const std::string left = fit(painter, caption.left, kCaptionSize, Face::kSansBold, std::max(left_width, 0));
+  painter.draw(canvas, x + kCaptionInset, y + kCaptionBaseline, left, kCaptionSize, Face::kSansBold, kBright);
+  painter.draw(canvas, x + width - kCaptionInset, y + kCaptionBaseline, right, kCaptionSize, Face::kSans,
+               kDim, Align::kRight);
+}
+
+}  // namespace
+
+std::vector<int> evenly_spaced(int total, int count) {
+  std::vector<int> frames;
+  count = std::min(count, total);
+  for (int i = 0; i < count; ++i) {
+    frames.push_back(
+        count == 1 ? 0 : static_cast<int>(std::lround(static_cast<double>(i) * (total - 1) / (count - 1))));
+  }
+  return frames;
+}
+
+ContactSheet::ContactSheet(ContactSheetSettings settings) : settings_(std::move(settings)) {}
+
+Status ContactSheet::add(Extent extent, const std::uint8_t* rgba, const ContactSheetCaption& caption,
+                         std::size_t row_bytes) {
+  if (extent.width < 1 || extent.height < 1 || rgba == nullptr) {
+    return Status::invalid(fmt::format("contact sheet: a frame of {}x{} pixels{} cannot be shown",
+                                       extent.width, extent.height,
+                                       rgba == nullptr ? " without texels" : ""));
+  }
+  if (row_bytes == 0) row_bytes = static_cast<std::size_t>(extent.width) * 4;
+  Extent small = extent;
+  if (extent.width > settings_.thumbnail_width) {
+    small.width = std::max(settings_.thumbnail_width, 1);
+    small.height = std::max(
+        1, static_cast<int>(std::lround(static_cast<double>(extent.height) * small.width / extent.width)));
+  }
+  thumbnails_.push_back({small, box_filter(extent, rgba, row_bytes, small), caption});
+  return {};
+}
+
+Status ContactSheet::write(const std::string& path) const {
+  if (thumbnails_.empty()) return Status::invalid(fmt::format("'{}': a contact sheet needs a frame", path));
+  const TextPainter painter;
+  if (!painter.available()) {
+    spdlog::warn("contact sheet: no text, because DejaVu Sans is missing; install fonts-dejavu-core");
+  }
+  Extent picture;
+  for (const Thumbnail& thumbnail : thumbnails_) {
+    picture.width = std::max(picture.width, thumbnail.extent.width);
+    picture.height = std::max(picture.height, thumbnail.extent.height);
+  }
+  const int count = size();
+  const Extent cell = {picture.width + kGap, picture.height + kBarHeight + kCaptionHeight + kGap};
+  const int columns =
+      std::clamp(settings_.columns > 0 ? settings_.columns : columns_for(count, cell), 1, count);
+  const int rows = (count + columns - 1) / columns;
+  const int width = 2 * kMargin + columns * cell.width - kGap;
+  Canvas canvas({width, 2 * kMargin + kHeaderHeight + rows * cell.height - kGap}, kBackground);
+
+  const int inner = width - 2 * kMargin;
+  painter.draw(canvas, kMargin, kMargin + 30,
+               fit(painter, settings_.title, kTitleSize, Face::kSansBold, inner), kTitleSize, Face::kSansBold,
+               kBright);
+  painter.draw(canvas, kMargin, kMargin + 62,
+               fit(painter, settings_.subtitle, kSubtitleSize, Face::kSans, inner), kSubtitleSize,
+               Face::kSans, kDim);
+  for (int i = 0; i < count; ++i) {
+    const Thumbnail& thumbnail = thumbnails_[i];
+    const int x = kMargin + i % columns * cell.width;
+    const int y = kMargin + kHeaderHeight + i / columns * cell.height;
+    const int bar_y = y + picture.height;
+    canvas.fill(x, y, {picture.width, cell.height - kGap}, kCardBackground);
+    copy_into(canvas, x + (picture.width - thumbnail.extent.width) / 2, y, thumbnail.extent, thumbnail.rgb);
+    if (thumbnail.caption.bar >= 0) {
+      canvas.fill(x, bar_y, {picture.width, kBarHeight}, kBarTrack);
+      const float part = std::min(thumbnail.caption.bar, 1.0f);
+      canvas.fill(x, bar_y,
+                  {static_cast<int>(std::lround(part * static_cast<float>(picture.width))), kBarHeight},
+                  kAccent);
+    }
+    draw_caption(canvas, painter, x, bar_y + kBarHeight, picture.width, thumbnail.caption);
+  }
+  // write_png takes four channels.
+  std::vector<std::uint8_t> rgba(static_cast<std::size_t>(canvas.extent.area()) * 4, 255);
+  for (std::size_t i = 0; i < rgba.size() / 4; ++i)
+    std::copy_n(&canvas.rgb[i * 3], 3, &rgba[i * 4]);
+  return write_png(path, canvas.extent, rgba.data());
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "tools/program/atomic_file.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <regex>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace quincunx::tools {
+
+namespace {
+
+// Unique among processes (id) and threads (counter).
+std::string temporary_name(const std::filesystem::path& path) {
+  static std::atomic<unsigned> counter{0};
+  const std::string name =
+      fmt::format(".{}.{}-{}.part", path.filename().string(), ::getpid(), counter.fetch_add(1));
+  return (path.parent_path() / name).string();
+}
+
+Status cannot_write(const std::string& path, const std::string& reason) {
+  return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
+}
+
+}  // namespace
+
+Result<AtomicFile> AtomicFile::create(const std::string& path) {
+  const std::filesystem::path target(path);
+  std::error_code error;
+  if (!target.has_filename()) return cannot_write(path, "the path names no file");
+  if (std::filesystem::is_directory(target, error)) return cannot_write(path, "it is a folder");
+  if (target.has_parent_path()) {
+    std::filesystem::create_directories(target.parent_path(), error);
+    if (error) {
+      return cannot_write(path, fmt::format("folder '{}' cannot be made: {}", target.parent_path().string(),
+                                            error.message()));
+    }
+  }
+  // Opened once here so that a folder without write permission is reported before any work is done.
+  std::string temporary = temporary_name(target);
+  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) return cannot_write(path, std::strerror(errno));
+  ::close(descriptor);
+  return AtomicFile(path, std::move(temporary));
+}
+
+AtomicFile::AtomicFile(std::string path, std::string temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {}
+
+AtomicFile::~AtomicFile() {
+  discard();
+}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, std::string())) {}
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  if (this != &other) {
+    discard();
+    path_ = std::move(other.path_);
+    temporary_ = std::exchange(other.temporary_, std::string());
+  }
+  return *this;
+}
+
+Status AtomicFile::commit() {
+  std::error_code error;
+  std::filesystem::rename(temporary_, path_, error);
+  if (error) {
+    discard();
+    return cannot_write(path_, error.message());
+  }
+  temporary_.clear();
+  return {};
+}
+
+void AtomicFile::discard() noexcept {
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  temporary_.clear();
+}
+
+std::optional<std::string> abandoned_target(const std::string& name) {
+  // As temporary_name() makes it.
+  static const std::regex form(R"(\.(.+)\.(\d{1,9})-\d+\.part)");
+  std::smatch parts;
+  if (!std::regex_match(name, parts, form)) return std::nullopt;
+  const bool lives = ::kill(static_cast<pid_t>(std::stol(parts[2])), 0) == 0 || errno != ESRCH;
+  return lives ? std::nullopt : std::optional(parts[1].str());
+}
+
+Status write_text(const std::string& path, std::string_view text) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file.ok()) return file.status();
+  std::FILE* stream = std::fopen(file->temporary_path().c_str(), "wb");
+  if (stream == nullptr) return cannot_write(path, std::strerror(errno));
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  const int write_error = errno;
+  // fclose() is where a full disk shows for a short file.
+  if (std::fclose(stream) != 0) return cannot_write(path, std::strerror(errno));
+  if (!written) return cannot_write(path, std::strerror(write_error));
+  return file->commit();
+}
+
+}  // namespace quincunx::tools

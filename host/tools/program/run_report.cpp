@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "tools/program/run_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "tools/program/atomic_file.h"
+#include "tools/program/report_graph.h"
+
+namespace quincunx::tools {
+
+namespace {
+
+constexpr int kRowsShown = 12;
+constexpr int kLabelWidth = 12;
+
+void add_heading(std::string& text, const std::string& heading) {
+  text += fmt::format("\n{}\n", heading);
+}
+
+void add_line(std::string& text, const std::string& label, const std::string& value) {
+  if (!value.empty()) text += fmt::format("  {:<{}} {}\n", label, kLabelWidth, value);
+}
+
+std::string size_text(Extent extent) {
+  return fmt::format("{}x{}", extent.width, extent.height);
+}
+
+std::string joined(std::initializer_list<std::string> parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    if (part.empty()) continue;
+    if (!text.empty()) text += ", ";
+    text += part;
+  }
+  return text;
+}
+
+std::string ms_text(double ms) {
+  return ms >= 0 ? fmt::format("{:.3f}", ms) : "-";
+}
+
+std::string bytes_text(std::int64_t bytes) {
+  return bytes >= 0 ? fmt::format("{:.2f} MB", static_cast<double>(bytes) / 1e6) : "-";
+}
+
+void add_run(std::string& text, const RunReport& report) {
+  add_line(text, "scene",
+           report.scene_summary.empty() ? report.scene
+                                        : fmt::format("{}: {}", report.scene, report.scene_summary));
+  add_line(text, "method", report.method);
+  add_line(text, "output",
+           fmt::format("{}, inside targets of {}", size_text(report.output), size_text(report.target)));
+  if (report.seed) add_line(text, "seed", fmt::format("{}", *report.seed));
+  for (const auto& [name, value] : report.settings)
+    add_line(text, name, value);
+  add_line(text, "command", report.command_line);
+  if (report.wall_seconds >= 0 && !report.frames.empty()) {
+    add_line(
+        text, "took",
+        fmt::format("{:.1f} s for {} frames: {:.1f} a second, files included", report.wall_seconds,
+                    report.frames.size(), static_cast<double>(report.frames.size()) / report.wall_seconds));
+  }
+}
+
+void add_devices(std::string& text, const RunReport& report) {
+  add_heading(text, "Devices");
+  add_line(text, "OpenGL", joined({report.gl.renderer, report.gl.version}));
+  add_line(text, "EGL", report.gl.platform);
+  const std::string units =
+      report.cl.compute_units > 0 ? fmt::format("{} compute units", report.cl.compute_units) : "";
+  add_line(text, "OpenCL", joined({report.cl.device, units}));
+  add_line(text, "driver", joined({report.cl.platform, report.cl.version, report.cl.driver}));
+  add_line(text, "interop",
+           report.interop_reason.empty() ? report.interop
+                                         : fmt::format("{}: {}", report.interop, report.interop_reason));
+}
+
+void add_statistics(std::string& text, const std::string& heading, const std::vector<PassStatistics>& rows) {
+  if (rows.empty()) return;
+  text += fmt::format("\n{:<26} {:>9} {:>9} {:>9} {:>12}  {}\n", heading, "median ms", "p95 ms", "min ms",
+                      "bytes/frame", "timed by");
+  for (const PassStatistics& row : rows) {
+    text += fmt::format("  {:<24} {:>9} {:>9} {:>9} {:>12}  {}\n", row.name, ms_text(row.median_ms),
+                        ms_text(row.p95_ms), ms_text(row.min_ms), bytes_text(row.bytes), row.clock);
+  }
+}
+
+void add_frames(std::string& text, const std::vector<FrameRow>& frames) {
+  if (frames.empty()) return;
+  add_heading(text, fmt::format("Viewport and true ratio ({} frames)", frames.size()));
+  std::vector<double> ratios;
+  for (const FrameRow& frame : frames)
+    ratios.push_back(frame.ratio.x);
+  text += ratio_graph(ratios);
+  const int total = static_cast<int>(frames.size());
+  const int shown = std::min(total, kRowsShown);
+  text += fmt::format("  {:>6} {:>11} {:>8} {:>8} {:>10} {:>10} {:>8} {:>11}\n", "frame", "viewport",
+                      "ratio x", "ratio y", "frame ms", "OpenCL ms", "history", "non-finite");
+  for (int i = 0; i < shown; ++i) {
+    const FrameRow& frame = frames[shown == 1 ? 0 : static_cast<std::int64_t>(i) * (total - 1) / (shown - 1)];
+    text += fmt::format("  {:>6} {:>11} {:>8.4f} {:>8.4f} {:>10} {:>10} {:>8} {:>11}\n", frame.index,
+                        size_text(frame.render), frame.ratio.x, frame.ratio.y, ms_text(frame.frame_ms),
+                        ms_text(frame.device_ms), frame.used_previous ? "used" : "-",
+                        frame.non_finite_pixels >= 0 ? fmt::format("{}", frame.non_finite_pixels) : "-");
+  }
+}
+
+void add_busy(std::string& text, const RunReport& report) {
+  if (report.busy.empty() || report.wall_seconds < 0) return;
+  double sum = 0;
+  std::string parts;
+  for (const BusyTime& time : report.busy) {
+    parts += fmt::format("{}{} {:.2f} s", parts.empty() ? "" : ", ", time.what, time.seconds);
+    sum += time.seconds;
+  }
+  add_heading(text, "Overlap");
+  add_line(text, "busy", parts);
+  add_line(text, "together", fmt::format("{:.2f} s of work in {:.2f} s", sum, report.wall_seconds));
+}
+
+void add_score(std::string& text, const std::string& label, const ScoreRow& row) {
+  text += fmt::format("  {:>6} {:>9.2f} {:>9.2f} {:>7.4f} {:>7.4f} {:>8} {:>7.3f}\n", label, row.psnr_linear,
+                      row.psnr_tone_mapped, row.ssim, row.flip,
+                      row.flicker >= 0 ? fmt::format("{:.4f}", row.flicker) : "-", row.error_p99);
+}
+
+void add_scores(std::string& text, const std::vector<ScoreRow>& rows) {
+  if (rows.empty()) return;
+  add_heading(text, fmt::format("Against the truth ({} frames)", rows.size()));
+  text += fmt::format("  {:>6} {:>9} {:>9} {:>7} {:>7} {:>8} {:>7}\n", "frame", "PSNR-lin", "PSNR-tm", "SSIM",
+                      "FLIP", "flicker", "p99-tm");
+  const std::size_t shown = std::min<std::size_t>(rows.size(), kRowsShown);
+  for (std::size_t i = 0; i < shown; ++i) {
+    const ScoreRow& row = rows[shown == 1 ? 0 : i * (rows.size() - 1) / (shown - 1)];
+    add_score(text, fmt::format("{}", row.index), row);
+  }
+  add_score(text, "mean", mean_of(rows));
+}
+
+}  // namespace
+
+ScoreRow mean_of(std::span<const ScoreRow> rows) {
+  ScoreRow mean;
+  double flicker = 0;
+  int with_flicker = 0;
+  for (const ScoreRow& row : rows) {
+    mean.psnr_linear += row.psnr_linear;
+    mean.psnr_tone_mapped += row.psnr_tone_mapped;
+    mean.ssim += row.ssim;
+    mean.flip += row.flip;
+    mean.error_p99 += row.error_p99;
+    flicker += std::max(row.flicker, 0.0);
+    with_flicker += row.flicker >= 0 ? 1 : 0;
+  }
+  const auto count = static_cast<double>(std::max<std::size_t>(rows.size(), 1));
+  for (double* value : {&mean.psnr_linear, &mean.psnr_tone_mapped, &mean.ssim, &mean.flip, &mean.error_p99}) {
+    *value /= count;
+  }
+  if (with_flicker > 0) mean.flicker = flicker / with_flicker;
+  return mean;
+}
+
+PassStatistics statistics_of(std::string name, std::string clock, std::span<const double> samples_ms,
+                             std::span<const std::uint64_t> bytes) {
+  PassStatistics result;
+  result.name = std::move(name);
+  result.clock = std::move(clock);
+  std::vector<double> known;
+  std::copy_if(samples_ms.begin(), samples_ms.end(), std::back_inserter(known),
+               [](double ms) { return std::isfinite(ms) && ms >= 0; });
+  std::sort(known.begin(), known.end());
+  result.count = static_cast<int>(known.size());
+  if (!known.empty()) {
+    const std::size_t n = known.size();
+    result.median_ms = (known[(n - 1) / 2] + known[n / 2]) / 2;
+    result.p95_ms = known[(95 * n + 99) / 100 - 1];
+    result.min_ms = known.front();
+  }
+  if (!bytes.empty()) {
+    std::vector<std::uint64_t> sorted(bytes.begin(), bytes.end());
+    std::sort(sorted.begin(), sorted.end());
+    result.bytes = static_cast<std::int64_t>(sorted[(sorted.size() - 1) / 2]);
+  }
+  return result;
+}
+
+std::string to_text(const RunReport& report) {
+  std::string text = fmt::format("{} {}: run report\n\n", report.program, report.version);
+  add_run(text, report);
+  add_devices(text, report);
+  add_statistics(text, "OpenCL passes", report.passes);
+  add_statistics(text, "Around them", report.steps);
+  add_busy(text, report);
+  text += pacing_text(report.pacing);
+  add_frames(text, report.frames);
+  add_scores(text, report.scores);
+  if (!report.left_out.empty()) {
+    add_heading(text, "Left out, because this scene does not need it");
+    for (const LeftOut& item : report.left_out)
+      text += fmt::format("  {}: {}\n", item.what, item.why);
+  }
+  if (!report.files.empty()) {
+    add_heading(text, "Files");
+    for (const std::string& file : report.files)
+      text += fmt::format("  {}\n", file);
+  }
+  return text;
+}
+
+Status write_report(const std::string& base, const RunReport& report) {
+  if (Status status = write_text(base + ".txt", to_text(report)); !status.ok()) return status;
+  return write_text(base + ".json", to_json(report));
+}
+
+}  // namespace quincunx::tools

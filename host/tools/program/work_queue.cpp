@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#include "tools/program/work_queue.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace quincunx::tools {
+
+WorkQueue::WorkQueue(int threads, int depth) : depth_(static_cast<std::size_t>(std::max(depth, 1))) {
+  for (int i = 0; i < std::max(threads, 1); ++i)
+    threads_.emplace_back([this] { run(); });
+}
+
+WorkQueue::~WorkQueue() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  for (std::thread& thread : threads_)
+    thread.join();
+}
+
+Status WorkQueue::push(std::function<Status()> job) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return jobs_.size() < depth_ || !first_error_.ok(); });
+  if (!first_error_.ok()) return first_error_;
+  jobs_.push_back(std::move(job));
+  lock.unlock();
+  changed_.notify_all();
+  return {};
+}
+
+Status WorkQueue::finish() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return jobs_.empty() && busy_ == 0; });
+  return first_error_;
+}
+
+double WorkQueue::busy_seconds() const {
+  const std::lock_guard lock(mutex_);
+  return busy_seconds_;
+}
+
+void WorkQueue::run() {
+  using Clock = std::chrono::steady_clock;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return stop_ || !jobs_.empty(); });
+    if (jobs_.empty()) return;
+    std::function<Status()> job = std::move(jobs_.front());
+    jobs_.pop_front();
+    ++busy_;
+    lock.unlock();
+    const Clock::time_point start = Clock::now();
+    Status status = job();
+    job = nullptr;  // what it held goes before the next may come
+    const std::chrono::duration<double> took = Clock::now() - start;
+    lock.lock();
+    --busy_;
+    busy_seconds_ += took.count();
+    if (first_error_.ok() && !status.ok()) first_error_ = std::move(status);
+    changed_.notify_all();
+  }
+}
+
+}  // namespace quincunx::tools

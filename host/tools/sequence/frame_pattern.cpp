@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/frame_pattern.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace quincunx::tools {
+
+namespace {
+
+constexpr int kDigitsOfSingleHash = 4;
+constexpr int kMaxDigits = 18;
+
+bool is_mark(char c) {
+  return c == '#' || c == '@';
+}
+
+struct Field {
+  int digits = 0;
+  bool zero_padded = true;
+  std::size_t length = 0;  // characters of the pattern that it takes; 0: not a field
+};
+
+Field field_of_marks(std::string_view text) {
+  Field field;
+  while (field.length < text.size() && is_mark(text[field.length]))
+    ++field.length;
+  const std::string_view marks = text.substr(0, field.length);
+  const bool single_hash = std::count(marks.begin(), marks.end(), '#') == 1;
+  field.digits = static_cast<int>(marks.size()) + (single_hash ? kDigitsOfSingleHash - 1 : 0);
+  return field;
+}
+
+// "%04d", "%4d", "%d".
+Field field_of_printf(std::string_view text) {
+  std::size_t at = 1;
+  Field field;
+  field.zero_padded = at < text.size() && text[at] == '0';
+  while (at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0) {
+    field.digits = std::min(field.digits * 10 + (text[at] - '0'), kMaxDigits + 1);
+    ++at;
+  }
+  if (at < text.size() && text[at] == 'd') field.length = at + 1;
+  return field;
+}
+
+// Empty for anything but .png and .exr.
+std::optional<FileFormat> format_of(const std::string& extension) {
+  std::string lower = extension;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (lower == ".png") return FileFormat::kPng;
+  if (lower == ".exr") return FileFormat::kExr;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Status FramePattern::bad(const std::string& reason) const {
+  return Status::invalid(fmt::format("{} '{}' {}", what_, pattern_, reason));
+}
+
+Result<FramePattern> FramePattern::parse(const std::string& pattern, const std::string& what) {
+  if (pattern.empty()) return Status::invalid(fmt::format("the {} is empty; try 'out/frame.%04d.png'", what));
+  FramePattern result;
+  result.what_ = what;
+  result.pattern_ = pattern;
+  if (Status status = result.parse_fields(); !status.ok()) return status;
+  const std::string extension = std::filesystem::path(result.expand(0)).extension().string();
+  if (extension.empty()) return result.bad("has no extension; it must end in .png or .exr");
+  const std::optional<FileFormat> format = format_of(extension);
+  if (!format) return result.bad(fmt::format("ends in '{}'; it must end in .png or .exr", extension));
+  result.format_ = *format;
+  return result;
+}
+
+Status FramePattern::parse_fields() {
+  std::string literal;  // since the start or the number
+  for (std::size_t at = 0; at < pattern_.size();) {
+    const std::string_view rest = std::string_view(pattern_).substr(at);
+    Field field;
+    if (is_mark(rest[0])) {
+      field = field_of_marks(rest);
+    } else if (rest.substr(0, 2) == "%%") {
+      literal += '%';
+      at += 2;
+      continue;
+    } else if (rest[0] == '%') {
+      field = field_of_printf(rest);
+      if (field.length == 0) {
+        return bad("has a '%' that starts no frame number; write %04d, or %% for a percent sign");
+      }
+    } else {
+      literal += rest[0];
+      ++at;
+      continue;
+    }
+    if (has_number_) return bad("has two frame numbers; only one can be filled in");
+    if (field.digits > kMaxDigits) return bad(fmt::format("asks for more than {} digits", kMaxDigits));
+    has_number_ = true;
+    digits_ = field.digits;
+    zero_padded_ = field.zero_padded;
+    prefix_ = std::exchange(literal, std::string());
+    at += field.length;
+  }
+  suffix_ = literal;
+  return {};
+}
+
+std::string FramePattern::expand(std::int64_t frame) const {
+  if (!has_number_) return suffix_;
+  return zero_padded_ ? fmt::format("{}{:0{}d}{}", prefix_, frame, digits_, suffix_)
+                      : fmt::format("{}{:{}d}{}", prefix_, frame, digits_, suffix_);
+}
+
+std::optional<std::int64_t> FramePattern::number_in(std::string_view path) const {
+  if (!has_number_ || path.size() <= prefix_.size() + suffix_.size()) return std::nullopt;
+  if (path.substr(0, prefix_.size()) != prefix_ || path.substr(path.size() - suffix_.size()) != suffix_) {
+    return std::nullopt;
+  }
+  std::string_view digits = path.substr(prefix_.size(), path.size() - prefix_.size() - suffix_.size());
+  digits.remove_prefix(std::min(digits.find_first_not_of(' '), digits.size()));
+  std::int64_t number = -1;
+  const auto parsed = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (parsed.ec != std::errc() || number < 0 || expand(number) != path) return std::nullopt;
+  return number;
+}
+
+Result<std::vector<std::int64_t>> FramePattern::frames_on_disk() const {
+  const std::string any = expand(0);
+  const std::string folder = any.substr(0, any.rfind('/') + 1);
+  if (!has_number_ || prefix_.size() < folder.size()) {
+    return bad("has no frame number in the file's name; put %04d, # or @ there");
+  }
+  std::vector<std::int64_t> frames;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    if (const auto number = number_in(folder + entry->path().filename().string())) frames.push_back(*number);
+  }
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+Status FramePattern::check_count(std::int64_t frames) const {
+  if (has_number_ || frames <= 1) return {};
+  return bad(
+      fmt::format("has no frame number, so {} frames would overwrite one another; put %04d into it", frames));
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// quincunx-resolve: the resolve service over an EXR sequence of any renderer, without OpenGL.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+
+#include "tools/image/image_reader.h"
+#include "tools/program/program.h"
+#include "tools/program/progress.h"
+#include "tools/sequence/frame_numbers.h"
+#include "tools/sequence/resolve_report.h"
+
+namespace quincunx::tools {
+namespace {
+
+std::atomic<bool> stop_asked = false;
+
+// Ctrl-C and the farm's TERM end the run after the frame at hand; a second signal ends it at once.
+void stop_on_signals() {
+  struct sigaction action = {};
+  action.sa_handler = [](int) { stop_asked = true; };
+  action.sa_flags = SA_RESETHAND;
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+}
+
+int print_listing(const ResolveOptions& options, const ResolveTask& task) {
+  const Status status = task.check(options.skip_bad_frames);
+  const bool listed = !task.scan.problem().ok();
+  if (!status.ok() && !listed) return fail(status);
+  fmt::print("{}", options.json ? listing_json(task) : listing_text(task, options.verbosity > 0));
+  return status.ok() ? kDone : kFailed;
+}
+
+// What a careful user would want to know before the first frame.
+void say_first(const ResolveOptions& options, const ResolveTask& task) {
+  for (const ScannedFrame& frame : task.scan.frames) {
+    if (!frame.problem.empty()) spdlog::warn("{}; it is skipped", frame.problem);
+  }
+  if (!task.stale.empty()) {
+    spdlog::warn("{} frames are there, but made otherwise; they are made again: {}", task.stale.size(),
+                 frame_numbers_text(task.stale));
+  }
+  if (task.plan.keeps_previous_frame() && task.plan.velocity == VelocitySource::kNone) {
+    spdlog::warn("no motion is known (--velocity): frames are taken together as if nothing moved");
+  }
+  if (options.resolve.blur.shutter > 0 && !task.plan.blurs())
+    spdlog::warn("no motion is known (--velocity): nothing is blurred");
+  if (options.warm_up.value_or(0) > 0 && task.scan.frames.front().wanted) {
+    spdlog::info("the sequence begins with frame {}: it has no history", task.scan.frames.front().number);
+  }
+  spdlog::debug("{}", summary_of(task.format));
+}
+
+Status write_reports(const ResolveOptions& options, const RunReport& report) {
+  if (options.json) {
+    fmt::print("{}\n", to_json(report));
+  } else if (!options.quiet) {
+    fmt::print("{}", to_text(report));
+  }
+  return options.report.empty() ? Status() : write_report(options.report, report);
+}
+
+Status resolve(const ResolveOptions& options, const ResolveTask& task) {
+  const std::vector<std::int64_t> wanted = task.scan.wanted();
+  std::unique_ptr<SequenceScores> scores;
+  if (task.truth) {
+    auto created = SequenceScores::create(*task.truth, task.format.output, wanted);
+    if (!created.ok()) return created.status();
+    scores = std::move(created).value();
+  }
+  auto device = Device::open(options.device);
+  if (!device.ok()) return device.status();
+  if (task.output) {
+    if (Status status = task.output->check_folder(); !status.ok()) return status;
+    task.output->remove_leftovers(wanted);
+  }
+  auto resolver = SequenceResolver::create(device.value(), task.plan,
+                                           {.input = task.input,
+                                            .format = task.format,
+                                            .scan = task.scan,
+                                            .output = task.output,
+                                            .exposure = options.exposure,
+                                            .threads = options.threads,
+                                            .skip_bad_frames = options.skip_bad_frames,
+                                            .scores = scores.get()});
+  if (!resolver.ok()) return resolver.status();
+  {
+    using Show = Progress::Show;
+    Progress progress("resolving", static_cast<std::int64_t>(task.scan.frames.size()),
+                      options.quiet ? Show::kNever : Show::kOnTerminal);
+    const auto tell = [&progress](std::int64_t done) { progress.update(done); };
+    if (Status status = resolver.value()->run(tell, stop_asked); !status.ok()) return status;
+  }
+  const std::vector<ScoreRow> rows = scores ? scores->rows() : std::vector<ScoreRow>();
+  return write_reports(options,
+                       resolve_report(options, task, device->info(), resolver.value()->outcome(), rows));
+}
+
+int run(int argc, char** argv) {
+  ResolveOptions options;
+  if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
+  set_up_log(options.quiet, options.verbosity);
+  set_exr_threads(options.threads > 1 ? options.threads : 0);
+  if (options.list_devices) {
+    print_opencl_devices();
+    return kDone;
+  }
+  auto task = prepare(options);
+  if (!task.ok()) return fail(task.status());
+  if (options.dry_run) return print_listing(options, task.value());
+  if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
+  if (options.explain) {
+    fmt::print("{}", task->plan.explain());
+    return kDone;
+  }
+  if (task->scan.frames.empty()) {
+    spdlog::info("nothing to do: all {} frames are there", task->there.size());
+    return kDone;
+  }
+  say_first(options, task.value());
+  stop_on_signals();
+  const Status status = resolve(options, task.value());
+  return status.ok() ? kDone : fail(status);
+}
+
+}  // namespace
+}  // namespace quincunx::tools
+
+int main(int argc, char** argv) {
+  try {
+    return quincunx::tools::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "quincunx-resolve: internal error: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/resolve_task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/program/resolve_settings_options.h"
+
+namespace quincunx::tools {
+namespace {
+
+// An accumulated picture depends on all frames before it; still ones grow better for some 100, moving ones
+// for ten.
+constexpr int kAccumulatedFrames = 48;
+
+// Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
+int history_of(const ResolvePlan& plan) {
+  if (plan.accumulates()) return kAccumulatedFrames;
+  return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
+}
+
+Result<FramePattern> parse_input(const std::string& text, const std::string& what) {
+  auto pattern = FramePattern::parse(text, what);
+  if (!pattern.ok()) return pattern.status();
+  if (pattern->format() != FileFormat::kExr)
+    return Status::invalid(fmt::format("{} '{}' must end in .exr", what, text));
+  if (!pattern->has_number()) {
+    return Status::invalid(
+        fmt::format("{} '{}' has no frame number; put %04d, # or @ where it stands", what, text));
+  }
+  return pattern;
+}
+
+// The first frame that can be opened, or with bad frames the first at all, whose failure is the error.
+Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const ResolveTask& task,
+                                       const SequenceInput& input) {
+  Status first_error;
+  for (const std::int64_t number : task.asked) {
+    const std::string path = task.input.expand(number);
+    auto reader = ImageReader::open(path);
+    auto attributes =
+        reader.ok() ? frame_attributes(path, reader->header()) : Result<FrameAttributes>(reader.status());
+    if (attributes.ok()) return settle(input, path, reader->header(), attributes.value());
+    if (first_error.ok()) {
+      std::error_code error;
+      first_error = std::filesystem::exists(path, error)
+                        ? attributes.status()
+                        : Status::io(fmt::format("frame {} is missing: there is no '{}'", number, path));
+    }
+    if (!options.skip_bad_frames) break;
+  }
+  return first_error;
+}
+
+ResolveSettings settings_for(const ResolveOptions& options, const ResolveTask& task, Extent target,
+                             bool half_colour) {
+  ResolveSettings settings = options.resolve;
+  settings.output = task.format.output;
+  settings.target = target;
+  settings.colour = half_colour ? PixelFormat::kRGBA16F : PixelFormat::kRGBA32F;
+  settings.velocity = PixelFormat::kRG32F;
+  settings.resolved = PixelFormat::kRGBA32F;
+  settings.storage = Storage::kBuffer;
+  settings.present = task.output && task.output->pattern.format() == FileFormat::kPng;
+  settings.clear = false;
+  return settings;
+}
+
+Result<std::optional<SequenceOutput>> output_for(const ResolveOptions& options, const ResolveTask& task) {
+  if (options.out.empty()) return std::optional<SequenceOutput>();
+  auto pattern = FramePattern::parse(options.out);
+  if (!pattern.ok()) return pattern.status();
+  SequenceOutput output = {
+      .pattern = pattern.value(), .extent = task.format.output, .stored = options.stored};
+  output.settings = fmt::format("{}; output {}x{}; stored as {}", resolve_settings_text(options.resolve),
+                                task.format.output.width, task.format.output.height,
+                                options.stored == ChannelType::kHalf ? "half" : "float");
+  return std::optional(std::move(output));
+}
+
+// Sorts what is there already out of `asked`; what is left is returned.
+std::vector<std::int64_t> left_to_do(const ResolveOptions& options, ResolveTask& task) {
+  if (!options.resume) return task.asked;
+  std::vector<std::int64_t> left;
+  for (const std::int64_t number : task.asked) {
+    const Made made = task.output->made(number);
+    if (made == Made::kAsWanted) {
+      task.there.push_back(number);
+      continue;
+    }
+    left.push_back(number);
+    if (made == Made::kOtherwise) task.stale.push_back(number);
+  }
+  return left;
+}
+
+// Of the frames that an uninterrupted run reads, those that the frames left to do depend on.
+std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTask& task,
+                                  const std::vector<std::int64_t>& left, int history) {
+  const int warm_up = options.warm_up.value_or(history);
+  const std::int64_t first = first_in_reach(task.input, task.asked.front(), warm_up);
+  std::vector<std::int64_t> read = with_history(task.asked, warm_up, first);
+  const int reach = std::max(warm_up, history);
+  std::erase_if(read, [&](std::int64_t number) {
+    const auto next = std::lower_bound(left.begin(), left.end(), number);
+    return next == left.end() || *next - reach > number;
+  });
+  return read;
+}
+
+Status settle_plan(const ResolveOptions& options, ResolveTask& task, Extent target, bool half_colour) {
+  auto plan = plan_for(needs_of(task.format), settings_for(options, task, target, half_colour));
+  if (!plan.ok()) return plan.status();
+  task.plan = std::move(plan).value();
+  return {};
+}
+
+Status settle_frames(const ResolveOptions& options, ResolveTask& task) {
+  if (options.frames) {
+    task.asked = *options.frames;
+    return {};
+  }
+  auto frames = all_frames(task.input);
+  if (!frames.ok()) return frames.status();
+  task.asked = std::move(frames).value();
+  return {};
+}
+
+}  // namespace
+
+Status ResolveTask::check(bool skip_bad_frames) const {
+  if (Status status = scan.problem(); !status.ok() && !skip_bad_frames) return status;
+  if (!scan.frames.empty() && scan.target() == Extent{})
+    return Status::io(fmt::format("no frame can be used; {}", scan.problem().message()));
+  if (!output) return {};
+  std::vector<std::string> read;
+  for (const ScannedFrame& frame : scan.frames)
+    read.push_back(input.expand(frame.number));
+  for (const std::int64_t frame : asked) {
+    if (truth) read.push_back(truth->expand(frame));
+  }
+  return output->check_names(scan.wanted(), read);
+}
+
+Result<ResolveTask> prepare(const ResolveOptions& options) {
+  auto input = parse_input(options.input, "input pattern");
+  if (!input.ok()) return input.status();
+  ResolveTask task = {.input = std::move(input).value()};
+  if (!options.truth.empty()) {
+    auto truth = parse_input(options.truth, "truth pattern");
+    if (!truth.ok()) return truth.status();
+    task.truth = std::move(truth).value();
+  }
+  SequenceInput sequence = options.sequence;
+  auto jitter = JitterSource::parse(options.jitter);
+  if (!jitter.ok()) return jitter.status();
+  sequence.jitter = std::move(jitter).value();
+
+  if (Status status = settle_frames(options, task); !status.ok()) return status;
+  auto format = settle_by_first(options, task, sequence);
+  if (!format.ok()) return format.status();
+  task.format = std::move(format).value();
+  auto output = output_for(options, task);
+  if (!output.ok()) return output.status();
+  task.output = std::move(output).value();
+
+  // Which channels are read follows from a plan of any size.
+  if (Status status = settle_plan(options, task, task.format.output, true); !status.ok()) return status;
+  if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
+  const int history = history_of(task.plan);
+  if (task.output) {
+    task.output->settings += "; " + summary_of(task.format);
+    if (options.warm_up.value_or(history) < history) task.output->settings += "; begun without history";
+  }
+  const std::vector<std::int64_t> left = left_to_do(options, task);
+  const std::vector<std::int64_t> read = to_read(options, task, left, history);
+  task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
+  if (const Extent target = task.scan.target(); target != Extent{}) {
+    if (Status status = settle_plan(options, task, target, task.scan.half_colour()); !status.ok())
+      return status;
+  }
+  return task;
+}
+
+}  // namespace quincunx::tools

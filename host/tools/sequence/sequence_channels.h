@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Sequence channels: which channels of a file are colour, motion, depth and reactive values. Pure.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "tools/image/image_reader.h"
+
+namespace quincunx::tools {
+
+// By name. An empty name: this kind of value is not read.
+struct ChannelNames {
+  std::array<std::string, 4> colour = {"R", "G", "B", "A"};  // A may be missing in the file: 1
+  std::array<std::string, 2> velocity;                       // both or none
+  std::string depth;
+  std::string reactive;
+
+  bool has_velocity() const { return !velocity[0].empty(); }
+  bool has_depth() const { return !depth.empty(); }
+  bool has_reactive() const { return !reactive.empty(); }
+};
+
+// Those of the exchange format.
+inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
+inline const std::string kDepthChannel = "Z";
+inline const std::string kReactiveChannel = "reactive.mask";
+
+// "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A.
+std::array<std::string, 4> colour_channels_of(const std::string& layer);
+
+// Where they are in one file.
+struct ChannelPlaces {
+  std::array<std::optional<ChannelPlace>, 4> colour;  // only A may be absent
+  std::array<std::optional<ChannelPlace>, 2> velocity;
+  std::optional<ChannelPlace> depth;
+  std::optional<ChannelPlace> reactive;
+  ImageWindow display;  // of the parts in use
+  bool half_colour = true;
+};
+
+// Errors: kIoFailure, one sentence with `path` and the channel: one that is missing, deep, of integers, or
+// in a part of another size.
+Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
+                                    const ChannelNames& names);
+
+}  // namespace quincunx::tools

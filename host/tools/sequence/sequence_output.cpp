@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/sequence_output.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "tools/image/image_reader.h"
+#include "tools/program/atomic_file.h"
+
+namespace quincunx::tools {
+namespace {
+
+constexpr const char* kSettingsAttribute = "quincunx:resolve";
+constexpr const char* kColourNames[] = {"R", "G", "B", "A"};
+
+// The folder with its final slash, "" for the current one.
+std::string folder_of(const std::string& path) {
+  return path.substr(0, path.rfind('/') + 1);
+}
+
+// The same file, whatever its names.
+using FileIdentity = std::pair<dev_t, ino_t>;
+bool identify(const std::string& path, FileIdentity& identity) {
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0) return false;
+  identity = {status.st_dev, status.st_ino};
+  return true;
+}
+
+}  // namespace
+
+Made SequenceOutput::made(std::int64_t frame) const {
+  std::error_code error;
+  const std::string file = path(frame);
+  if (!std::filesystem::exists(file, error)) return Made::kNot;
+  if (pattern.format() == FileFormat::kPng) return Made::kAsWanted;
+  const auto reader = ImageReader::open(file);
+  if (!reader.ok()) return Made::kOtherwise;
+  const ImageHeader& header = reader->header();
+  const Attribute* made_with = header.attribute(kSettingsAttribute);
+  const auto* text = made_with != nullptr ? std::get_if<std::string>(&made_with->value) : nullptr;
+  const bool same = header.parts[0].data.extent == extent && text != nullptr && *text == settings;
+  return same ? Made::kAsWanted : Made::kOtherwise;
+}
+
+Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> rgba,
+                                    std::span<const Attribute> kept) const {
+  std::vector<Channel> channels;
+  for (std::size_t i = 0; i < 4; ++i) {
+    channels.push_back({.name = kColourNames[i],
+                        .type = ChannelType::kFloat,
+                        .data = rgba.data() + i,
+                        .pixel_stride = 4 * sizeof(float),
+                        .stored = stored});
+  }
+  std::vector<Attribute> attributes(kept.begin(), kept.end());
+  attributes.push_back({"quincunx:version", 1});
+  attributes.push_back({"quincunx:frameIndex", static_cast<int>(frame)});
+  attributes.push_back({kSettingsAttribute, settings});
+  return write_exr(path(frame), extent, channels, attributes);
+}
+
+Status SequenceOutput::write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba) const {
+  return write_png(path(frame), extent, rgba.data());
+}
+
+Status SequenceOutput::check_names(std::span<const std::int64_t> frames,
+                                   std::span<const std::string> inputs) const {
+  if (Status status = pattern.check_count(static_cast<std::int64_t>(frames.size())); !status.ok())
+    return status;
+  std::set<FileIdentity> identities;
+  std::set<std::string> names;
+  FileIdentity identity;
+  for (const std::string& input : inputs) {
+    names.insert(std::filesystem::path(input).lexically_normal().string());
+    if (identify(input, identity)) identities.insert(identity);
+  }
+  for (const std::int64_t frame : frames) {
+    const std::string file = path(frame);
+    const bool same_name = names.contains(std::filesystem::path(file).lexically_normal().string());
+    if (same_name || (identify(file, identity) && identities.contains(identity))) {
+      return Status::invalid(
+          fmt::format("'{}' would overwrite an input file; give --out another folder or name", file));
+    }
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error))
+      return Status::io(fmt::format("'{}' cannot be written: it is a folder", file));
+  }
+  return {};
+}
+
+Status SequenceOutput::check_folder() const {
+  return AtomicFile::create(path(0)).status();  // without commit() no file stays
+}
+
+void SequenceOutput::remove_leftovers(std::span<const std::int64_t> frames) const {
+  const std::string folder = folder_of(pattern.expand(0));
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
+       !error && entry != end; entry.increment(error)) {
+    const auto target = abandoned_target(entry->path().filename().string());
+    if (!target) continue;
+    const auto number = pattern.number_in(folder + *target);
+    if (!number || !std::binary_search(frames.begin(), frames.end(), *number)) continue;
+    std::error_code ignored;
+    std::filesystem::remove(entry->path(), ignored);
+    spdlog::debug("removed '{}', which an earlier run left behind", entry->path().string());
+  }
+}
+
+}  // namespace quincunx::tools

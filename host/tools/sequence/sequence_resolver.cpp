@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/sequence_resolver.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "tools/sequence/sequence_camera.h"
+
+namespace quincunx::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Inflating is several times cheaper than deflating, and inputs are smaller than outputs.
+int reading_threads(int threads) {
+  return std::max(threads / 4, 1);
+}
+
+int writing_threads(int threads) {
+  return std::max(threads / 2, 1);
+}
+
+}  // namespace
+
+SequenceResolver::SequenceResolver(const Device& device, ResolveService service, SequenceJob job)
+    : device_(device),
+      service_(std::move(service)),
+      job_(std::move(job)),
+      writers_(writing_threads(job_.threads), 1) {}
+
+Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device& device,
+                                                                   const ResolvePlan& plan, SequenceJob job) {
+  auto service = ResolveService::create(device, plan);
+  if (!service.ok()) return service.status();
+  auto resolver = std::unique_ptr<SequenceResolver>(
+      new SequenceResolver(device, std::move(service).value(), std::move(job)));
+  if (Status status = resolver->allocate(); !status.ok()) return status;
+  return resolver;
+}
+
+Status SequenceResolver::allocate() {
+  const ResolvePlan& plan = service_.plan();
+  const auto make = [&](Image& image, Extent extent, PixelFormat format) -> Status {
+    auto made = device_.allocate(extent, format);
+    if (made.ok()) image = std::move(made).value();
+    return made.status();
+  };
+  const Extent target = plan.settings.target;
+  for (DeviceFrame& frame : ring_) {
+    if (Status status = make(frame.colour, target, plan.settings.colour); !status.ok()) return status;
+    if (plan.velocity == VelocitySource::kTarget) {
+      if (Status status = make(frame.velocity, target, plan.settings.velocity); !status.ok()) return status;
+    }
+    if (plan.reads_depth) {
+      if (Status status = make(frame.depth, target, PixelFormat::kR32F); !status.ok()) return status;
+    }
+    if (plan.reads_reactive) {
+      if (Status status = make(frame.reactive, target, PixelFormat::kR8); !status.ok()) return status;
+    }
+  }
+  if (Status status = make(linear_, plan.settings.output, plan.settings.resolved); !status.ok())
+    return status;
+  return presents() ? make(presented_, plan.settings.output, PixelFormat::kRGBA8) : Status();
+}
+
+Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& to) const {
+  const auto copy = [&](const Image& image, const void* texels) {
+    return image ? device_.upload(image.view(), frame.render, texels) : Status();
+  };
+  if (Status status = copy(to.colour, frame.colour.data()); !status.ok()) return status;
+  if (Status status = copy(to.velocity, frame.velocity.data()); !status.ok()) return status;
+  if (Status status = copy(to.depth, frame.depth.data()); !status.ok()) return status;
+  return copy(to.reactive, frame.reactive.data());
+}
+
+Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inputs) const {
+  const bool moves = service_.plan().velocity == VelocitySource::kCamera && !inputs.reset;
+  if (!moves || !frame.world_to_ndc || !last_world_to_ndc_) return {};
+  const auto motion = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, job_.format.near_plane);
+  if (!motion) {
+    return Status::io(fmt::format("'{}' has an attribute 'worldToNDC' that cannot be inverted",
+                                  job_.input.expand(frame.number)));
+  }
+  inputs.camera = *motion;
+  return {};
+}
+
+Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const ScannedFrame& scanned) {
+  const DeviceFrame& device_frame = ring_[static_cast<std::size_t>(count_ % 2)];
+  const Clock::time_point start = Clock::now();
+  if (Status status = upload(frame, device_frame); !status.ok()) return status;
+  outcome_.upload_ms.push_back(since(start));
+  FrameInputs inputs;
+  inputs.colour = device_frame.colour.view();
+  inputs.velocity = device_frame.velocity.view();
+  inputs.depth = device_frame.depth.view();
+  inputs.reactive = device_frame.reactive.view();
+  inputs.render = frame.render;
+  inputs.jitter = scanned.jitter;
+  inputs.exposure = job_.exposure;
+  // A frame that turned out bad while it was read may be missing here, too.
+  inputs.reset = scanned.reset || last_ + 1 != frame.number;
+  inputs.frame_index = static_cast<std::uint64_t>(frame.number);
+  if (Status status = camera_of(frame, inputs); !status.ok()) return status;
+  FrameOutputs outputs{.presented = presented_.view()};
+  (service_.plan().blurs() ? outputs.blurred : outputs.resolved) = linear_.view();
+  FrameReport report = service_.dispatch(inputs, outputs);
+  if (!report.ok()) return report.status;
+  last_ = frame.number;
+  last_world_to_ndc_ = frame.world_to_ndc;
+  ++count_;
+  return report;
+}
+
+Status SequenceResolver::download(Picture& picture) const {
+  const Extent output = service_.plan().settings.output;
+  const auto texels = static_cast<std::size_t>(output.area()) * 4;
+  if (!presents() || job_.scores != nullptr) {
+    auto pixels = std::make_shared<std::vector<float>>(texels);
+    if (Status status = device_.download(linear_.view(), output, pixels->data()); !status.ok()) return status;
+    picture.linear = std::move(pixels);
+  }
+  if (!presents()) return {};
+  picture.presented.resize(texels);
+  return device_.download(presented_.view(), output, picture.presented.data());
+}
+
+// To those who write and measure; waits where they cannot keep up.
+Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) {
+  const std::int64_t number = frame.number;
+  if (presents()) {
+    const Status status = writers_.push([this, number, codes = std::move(picture.presented)] {
+      return job_.output->write_presented(number, codes);
+    });
+    if (!status.ok()) return status;
+  } else if (job_.output) {
+    const Status status = writers_.push([this, number, linear = picture.linear, kept = frame.kept] {
+      return job_.output->write_linear(number, *linear, kept);
+    });
+    if (!status.ok()) return status;
+  }
+  return job_.scores != nullptr ? job_.scores->add(number, std::move(picture.linear)) : Status();
+}
+
+Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
+  auto frame = ahead_->take();
+  if (!frame.ok()) {
+    if (!job_.skip_bad_frames) return frame.status();
+    spdlog::warn("{}; it is skipped", frame.status().message());
+    if (scanned.wanted) outcome_.skipped.push_back(scanned.number);
+    ahead_->release();
+    return {};
+  }
+  const Clock::time_point start = Clock::now();
+  const auto report = dispatch(*frame.value(), scanned);
+  if (!report.ok()) return report.status();
+  Picture picture;
+  if (scanned.wanted) {
+    if (Status status = download(picture); !status.ok()) return status;
+  }
+  outcome_.resolve_ms.push_back(since(start));
+  if (scanned.wanted) {
+    if (Status status = hand_over(*frame.value(), std::move(picture)); !status.ok()) return status;
+    outcome_.resolved.push_back(scanned.number);
+    outcome_.rows.push_back({.index = scanned.number,
+                             .render = scanned.render,
+                             .ratio = report->ratio,
+                             .jitter = scanned.jitter,
+                             .frame_ms = since(last_delivery_),
+                             .used_previous = report->used_previous});
+    last_delivery_ = Clock::now();
+  }
+  ahead_->release();
+  collect_reports();
+  return {};
+}
+
+void SequenceResolver::collect_reports() {
+  while (auto report = service_.next_completed())
+    outcome_.reports.push_back(*report);
+}
+
+Status SequenceResolver::finish() {
+  Status first = writers_.finish();
+  if (job_.scores != nullptr) {
+    Status scored = job_.scores->finish();
+    if (first.ok()) first = scored;
+  }
+  Status done = service_.finish();
+  collect_reports();
+  return first.ok() ? done : first;
+}
+
+Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
+                             const std::atomic<bool>& stop) {
+  std::vector<ScannedFrame> good;
+  for (const ScannedFrame& frame : job_.scan.frames) {
+    if (frame.problem.empty()) {
+      good.push_back(frame);
+    } else if (frame.wanted) {
+      outcome_.skipped.push_back(frame.number);
+    }
+  }
+  const Clock::time_point start = Clock::now();
+  last_delivery_ = start;
+  const int readers = reading_threads(job_.threads);
+  ahead_ = std::make_unique<ReadAhead<SequenceFrame>>(
+      good.size(), readers, readers + 1, [this, &good](std::size_t index, SequenceFrame& frame) {
+        return read_frame(job_.input.expand(good[index].number), job_.format, good[index],
+                          service_.plan().settings.colour, frame);
+      });
+  Status status;
+  for (std::size_t i = 0; i < good.size() && status.ok(); ++i) {
+    status = stop ? Status::io("stopped by a signal; the files are whole, and --resume goes on")
+                  : resolve_frame(good[i]);
+    progress(static_cast<std::int64_t>(i) + 1);
+  }
+  const Status finished = finish();
+  double resolving = 0;
+  for (const double ms : outcome_.resolve_ms)
+    resolving += ms / 1000;
+  outcome_.busy = {
+      {"reading", ahead_->busy_seconds()}, {"resolving", resolving}, {"writing", writers_.busy_seconds()}};
+  if (job_.scores != nullptr) outcome_.busy.push_back({"measuring", job_.scores->busy_seconds()});
+  outcome_.wall_seconds = since(start) / 1000;
+  ahead_.reset();  // it refers to `good`
+  return status.ok() ? finished : status;
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/sequence_scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include "tools/sequence/frame_numbers.h"
+
+namespace quincunx::tools {
+namespace {
+
+constexpr int kLargestSide = 32768;  // as plan_for() has it
+
+bool exists(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
+std::string missing_text(const ScannedFrame& frame, const std::string& path) {
+  if (frame.wanted) return fmt::format("frame {} is missing: there is no '{}'", frame.number, path);
+  return fmt::format(
+      "frame {} is missing, the history of the one after it: there is no '{}' (--warm-up 0 starts without)",
+      frame.number, path);
+}
+
+Status check_size(const std::string& path, Extent extent, const FrameAttributes& attributes) {
+  if (extent.width < 1 || extent.height < 1 || extent.width > kLargestSide || extent.height > kLargestSide) {
+    return Status::io(fmt::format("'{}' is {}x{} pixels; both sides must lie in [1, {}]", path, extent.width,
+                                  extent.height, kLargestSide));
+  }
+  if (attributes.render && *attributes.render != extent) {
+    return Status::io(fmt::format("'{}' is {}x{} pixels, but its attribute 'quincunx:renderSize' says {}x{}",
+                                  path, extent.width, extent.height, attributes.render->width,
+                                  attributes.render->height));
+  }
+  return {};
+}
+
+Status scan_frame(const std::string& path, const SequenceFormat& format, ScannedFrame& frame) {
+  auto reader = ImageReader::open(path);
+  if (!reader.ok()) return reader.status();
+  const auto places = find_channels(path, reader->header(), format.channels);
+  if (!places.ok()) return places.status();
+  const auto attributes = frame_attributes(path, reader->header());
+  if (!attributes.ok()) return attributes.status();
+  frame.render = places->display.extent;
+  frame.half_colour = places->half_colour;
+  frame.reset = attributes->reset;
+  if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
+  if (format.motion == MotionSource::kCamera && format.channels.has_depth() && !attributes->world_to_ndc)
+    return Status::io(fmt::format("'{}' has no attribute 'worldToNDC'", path));
+  const Vec2 ratio = {static_cast<float>(frame.render.width) / static_cast<float>(format.output.width),
+                      static_cast<float>(frame.render.height) / static_cast<float>(format.output.height)};
+  const auto jitter = format.jitter.at(path, frame.number, attributes.value(), ratio);
+  if (!jitter.ok()) return jitter.status();
+  frame.jitter = jitter.value();
+  return {};
+}
+
+template <typename Keep>
+std::vector<std::int64_t> numbers_of(const std::vector<ScannedFrame>& frames, Keep keep) {
+  std::vector<std::int64_t> numbers;
+  for (const ScannedFrame& frame : frames) {
+    if (keep(frame)) numbers.push_back(frame.number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::int64_t> SequenceScan::wanted() const {
+  return numbers_of(frames, [](const ScannedFrame& frame) { return frame.wanted; });
+}
+
+std::vector<std::int64_t> SequenceScan::history() const {
+  return numbers_of(frames, [](const ScannedFrame& frame) { return !frame.wanted; });
+}
+
+std::vector<std::int64_t> SequenceScan::bad() const {
+  return numbers_of(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
+}
+
+Extent SequenceScan::target() const {
+  Extent target;
+  for (const ScannedFrame& frame : frames) {
+    if (!frame.problem.empty()) continue;
+    target.width = std::max(target.width, frame.render.width);
+    target.height = std::max(target.height, frame.render.height);
+  }
+  return target;
+}
+
+bool SequenceScan::half_colour() const {
+  return std::all_of(frames.begin(), frames.end(),
+                     [](const ScannedFrame& frame) { return frame.half_colour || !frame.problem.empty(); });
+}
+
+Status SequenceScan::problem() const {
+  const auto first = std::find_if(frames.begin(), frames.end(),
+                                  [](const ScannedFrame& frame) { return !frame.problem.empty(); });
+  if (first == frames.end()) return {};
+  const std::size_t others = bad().size() - 1;
+  return Status::io(others == 0 ? first->problem
+                                : fmt::format("{}; so have {} more frames their problems: -n lists them",
+                                              first->problem, others));
+}
+
+Result<std::vector<std::int64_t>> all_frames(const FramePattern& pattern) {
+  auto found = pattern.frames_on_disk();
+  if (!found.ok()) return found.status();
+  if (found->empty()) {
+    return Status::io(fmt::format("no file is named as input pattern '{}' has it", pattern.text()));
+  }
+  if (found->back() - found->front() >= kMostFrames) {
+    return Status::io(fmt::format("the files of input pattern '{}' reach from frame {} to {}; say --frames",
+                                  pattern.text(), found->front(), found->back()));
+  }
+  std::vector<std::int64_t> frames;
+  for (std::int64_t number = found->front(); number <= found->back(); ++number)
+    frames.push_back(number);
+  return frames;
+}
+
+std::vector<std::int64_t> with_history(std::span<const std::int64_t> wanted, int warm_up,
+                                       std::int64_t first) {
+  std::vector<std::int64_t> read;
+  for (const std::int64_t frame : wanted) {
+    const std::int64_t next = read.empty() ? first : read.back() + 1;
+    for (std::int64_t number = std::max(frame - warm_up, next); number <= frame; ++number)
+      read.push_back(number);
+  }
+  return read;
+}
+
+std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up) {
+  const std::int64_t farthest = std::max<std::int64_t>(wanted - warm_up, 0);
+  const auto found = pattern.frames_on_disk();
+  if (found.ok() && !found->empty()) return std::clamp(found->front(), farthest, wanted);
+  std::int64_t first = farthest;
+  while (first < wanted && !exists(pattern.expand(first)))
+    ++first;
+  return first;
+}
+
+SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& format,
+                           std::span<const std::int64_t> read, std::span<const std::int64_t> wanted,
+                           int threads) {
+  SequenceScan scan;
+  for (const std::int64_t number : read)
+    scan.frames.push_back(
+        {.number = number, .wanted = std::binary_search(wanted.begin(), wanted.end(), number)});
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i; (i = next.fetch_add(1)) < scan.frames.size();) {
+      ScannedFrame& frame = scan.frames[i];
+      const std::string path = pattern.expand(frame.number);
+      if (!exists(path)) {
+        frame.problem = missing_text(frame, path);
+      } else if (Status status = scan_frame(path, format, frame); !status.ok()) {
+        frame.problem = status.message();
+      }
+    }
+  };
+  std::vector<std::thread> helpers;
+  for (int i = 1; i < threads; ++i)
+    helpers.emplace_back(work);
+  work();
+  for (std::thread& helper : helpers)
+    helper.join();
+  for (std::size_t i = 0; i < scan.frames.size(); ++i) {
+    ScannedFrame& frame = scan.frames[i];
+    const ScannedFrame* before = i > 0 ? &scan.frames[i - 1] : nullptr;
+    const bool follows = before != nullptr && before->number + 1 == frame.number && before->problem.empty();
+    frame.reset = frame.reset || !follows;
+  }
+  return scan;
+}
+
+}  // namespace quincunx::tools

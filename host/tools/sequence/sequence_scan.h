@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Sequence scan: looks at every file of a run before anything is read or written: which frames there are,
+// which of them only serve as history, how large they are, and what is wrong with them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/sequence/frame_pattern.h"
+#include "tools/sequence/sequence_input.h"
+
+namespace quincunx::tools {
+
+struct ScannedFrame {
+  std::int64_t number = 0;
+  bool wanted = false;  // else read as history only
+  Extent render = {};
+  bool half_colour = true;
+  Vec2 jitter = {};
+  bool reset = false;        // nothing of the frame before may be used: a cut, or it is not there
+  std::string problem = {};  // empty: none; else one sentence that names the file
+};
+
+struct SequenceScan {
+  std::vector<ScannedFrame> frames;  // to be read, ascending
+
+  std::vector<std::int64_t> wanted() const;   // good or not
+  std::vector<std::int64_t> history() const;  // read, but not wanted
+  std::vector<std::int64_t> bad() const;
+  Extent target() const;     // holds the largest good frame; empty: there is none
+  bool half_colour() const;  // of all good frames
+  Status problem() const;    // kIoFailure: the first one and how many more; ok: none
+};
+
+// What is asked for when no frames are named: from the first file of the pattern to the last, without gap.
+// Errors: kInvalidArgument as of FramePattern::frames_on_disk(), kIoFailure where there is no file.
+Result<std::vector<std::int64_t>> all_frames(const FramePattern& pattern);
+
+// The wanted frames and, before each, up to `warm_up` frames of history as far as the sequence reaches back.
+// Ascending. Pure.
+std::vector<std::int64_t> with_history(std::span<const std::int64_t> wanted, int warm_up, std::int64_t first);
+
+// The first frame of the sequence at or before `wanted`, which reaches back at most `warm_up` frames.
+std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up);
+
+// Reads the headers of `read` with so many threads. `wanted`: those to be resolved, ascending.
+SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& format,
+                           std::span<const std::int64_t> read, std::span<const std::int64_t> wanted,
+                           int threads);
+
+}  // namespace quincunx::tools

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/sequence_scores.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/image/image_io.h"
+
+namespace quincunx::tools {
+namespace {
+
+constexpr int kSmallestSide = 11;  // of SSIM's window
+
+Status check_size(const std::string& path, Extent found, Extent wanted) {
+  if (found == wanted) return {};
+  return Status::io(fmt::format("truth '{}' is {}x{} pixels; the output is {}x{}", path, found.width,
+                                found.height, wanted.width, wanted.height));
+}
+
+Result<std::vector<float>> read_truth(const std::string& path, Extent extent) {
+  auto image = read_image(path);
+  if (!image.ok()) return image.status();
+  if (Status status = check_size(path, image->extent, extent); !status.ok()) return status;
+  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4, 1.0f);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::string name(1, "RGB"[c]);
+    const int channel = image->channel(name);
+    if (channel < 0) return Status::io(fmt::format("truth '{}' has no channel '{}'", path, name));
+    const std::size_t step = image->channels.size();
+    for (std::size_t i = 0; i < static_cast<std::size_t>(extent.area()); ++i)
+      rgba[i * 4 + c] = image->pixels[i * step + static_cast<std::size_t>(channel)];
+  }
+  return rgba;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const FramePattern& truth, Extent extent,
+                                                               std::span<const std::int64_t> frames) {
+  if (extent.width < kSmallestSide || extent.height < kSmallestSide) {
+    return Status::invalid(fmt::format("--truth needs an output of at least {0}x{0} pixels; this is {1}x{2}",
+                                       kSmallestSide, extent.width, extent.height));
+  }
+  auto scores = std::unique_ptr<SequenceScores>(new SequenceScores(truth, extent));
+  for (const std::int64_t frame : frames) {
+    std::error_code error;
+    const std::string path = truth.expand(frame);
+    if (!std::filesystem::exists(path, error)) continue;
+    scores->known_.push_back(frame);
+    scores->files_.push_back(path);
+  }
+  if (!scores->known_.empty()) return scores;
+  return Status::io(
+      fmt::format("no file of truth pattern '{}' belongs to a frame of this run", truth.text()));
+}
+
+Status SequenceScores::add(std::int64_t frame, SharedPixels pixels) {
+  if (!std::binary_search(known_.begin(), known_.end(), frame)) return {};
+  return queue_.push([this, frame, pixels = std::move(pixels)] { return measure_frame(frame, *pixels); });
+}
+
+Status SequenceScores::finish() {
+  return queue_.finish();
+}
+
+Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float>& pixels) {
+  const auto truth = read_truth(truth_.expand(frame), extent_);
+  if (!truth.ok()) return truth.status();
+  Measured now = {frame, MeasuredPicture(extent_, pixels), MeasuredPicture(extent_, truth.value())};
+  const PictureScores scores = measure(now.picture, now.truth);
+  ScoreRow row = {.index = frame,
+                  .psnr_linear = scores.psnr_linear,
+                  .psnr_tone_mapped = scores.psnr_tone_mapped,
+                  .ssim = scores.ssim,
+                  .flip = scores.flip,
+                  .error_p99 = scores.error_p99};
+  if (before_ && before_->frame + 1 == frame)
+    row.flicker = flicker(now.picture, before_->picture, now.truth, before_->truth);
+  rows_.push_back(row);
+  before_ = std::move(now);
+  return {};
+}
+
+}  // namespace quincunx::tools

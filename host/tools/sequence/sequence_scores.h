@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// Sequence scores: how far resolved frames are from true ones in files, where there are any.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/image/image_metrics.h"
+#include "tools/program/run_report.h"
+#include "tools/program/work_queue.h"
+#include "tools/sequence/frame_pattern.h"
+
+namespace quincunx::tools {
+
+using SharedPixels = std::shared_ptr<const std::vector<float>>;  // linear RGBA
+
+// Measures on a thread of its own, a frame or two behind who adds them.
+class SequenceScores {
+ public:
+  // `frames`: those that will be added, ascending. Errors: kIoFailure where none of them has a true picture,
+  // or one is damaged or has another size than `extent`.
+  static Result<std::unique_ptr<SequenceScores>> create(const FramePattern& truth, Extent extent,
+                                                        std::span<const std::int64_t> frames);
+
+  // In ascending order. Frames without truth cost nothing. Errors: of an earlier frame's truth.
+  Status add(std::int64_t frame, SharedPixels pixels);
+  Status finish();
+
+  const std::vector<ScoreRow>& rows() const { return rows_; }  // after finish()
+  const std::vector<std::string>& files() const { return files_; }
+  double busy_seconds() const { return queue_.busy_seconds(); }
+
+ private:
+  SequenceScores(const FramePattern& truth, Extent extent) : truth_(truth), extent_(extent) {}
+  Status measure_frame(std::int64_t frame, const std::vector<float>& pixels);
+
+  struct Measured {
+    std::int64_t frame = 0;
+    MeasuredPicture picture;
+    MeasuredPicture truth;
+  };
+
+  FramePattern truth_;
+  Extent extent_;
+  std::vector<std::int64_t> known_;  // frames that have a truth
+  std::vector<std::string> files_;   // theirs
+  std::optional<Measured> before_;
+  std::vector<ScoreRow> rows_;
+  WorkQueue queue_{1, 1};  // last: its thread uses the rest
+};
+
+}  // namespace quincunx::tools

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "bench/harness/stage.h"
+
+#include <cstring>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "program_cache.h"
+
+namespace quincunx::bench {
+namespace {
+
+constexpr const char* kCopySource = R"(
+__kernel void copy(__global const float4* source, __global float4* output, int width, int height) {
+  const int x = get_global_id(0);
+  const int y = get_global_id(1);
+  if (x >= width || y >= height) return;
+  output[y * width + x] = source[y * width + x];
+})";
+
+double milliseconds(const cl::Event& event) {
+  event.wait();
+  const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+  return static_cast<double>(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - start) * 1e-6;
+}
+
+// Random bytes whose floats or halves have exponents of 2^-3 and 2^-2 or so.
+std::vector<unsigned char> noise_bytes(std::size_t count, PixelFormat format) {
+  const bool half = format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F;
+  const bool single =
+      format == PixelFormat::kRGBA32F || format == PixelFormat::kR32F || format == PixelFormat::kRG32F;
+  std::mt19937 random(1);
+  std::vector<unsigned char> bytes(count);
+  for (unsigned char& byte : bytes)
+    byte = static_cast<unsigned char>(random());
+  for (std::size_t i = 1; half && i < count; i += 2)
+    bytes[i] = static_cast<unsigned char>(0x34 + random() % 8);
+  for (std::size_t i = 3; single && i < count; i += 4)
+    bytes[i] = static_cast<unsigned char>(0x3e);
+  return bytes;
+}
+
+}  // namespace
+
+std::uint64_t bytes_of(Extent extent, PixelFormat format) {
+  return static_cast<std::uint64_t>(extent.area()) * bytes_per_pixel(format);
+}
+
+Extent scaled(Extent output, double scale) {
+  return {std::max(1, static_cast<int>(std::lround(output.width * scale))),
+          std::max(1, static_cast<int>(std::lround(output.height * scale)))};
+}
+
+Stage::Stage(Device device, Extent output)
+    : device_(std::move(device)),
+      output_(output),
+      tables_(*device_.impl(), output),
+      counter_(device_.impl()->context, CL_MEM_READ_WRITE, sizeof(cl_uint)) {}
+
+ImageView Stage::noise(Extent extent, PixelFormat format, int index) {
+  for (const Noise& noise : images_) {
+    if (noise.extent == extent && noise.format == format && noise.index == index) return noise.image.view();
+  }
+  Result<Image> image = device_.allocate(extent, format);
+  if (!image.ok()) throw std::runtime_error(image.status().message());
+  const std::vector<unsigned char> texels = noise_bytes(bytes_of(extent, format), format);
+  const Status status = device_.upload(image->view(), extent, texels.data());
+  if (!status.ok()) throw std::runtime_error(status.message());
+  images_.push_back({extent, format, index, std::move(image).value()});
+  return images_.back().image.view();
+}
+
+ImageView Stage::constant(Extent extent, PixelFormat format) {
+  Result<Image> image = device_.allocate(extent, format);
+  if (!image.ok()) throw std::runtime_error(image.status().message());
+  const bool half = format == PixelFormat::kRGBA16F;
+  std::vector<unsigned char> texels(bytes_of(extent, format));
+  const std::uint32_t bits = half ? 0x38003800u : 0x3f000000u;  // 0.5, twice as halves
+  for (std::size_t i = 0; i < texels.size(); i += sizeof(bits))
+    std::memcpy(texels.data() + i, &bits, sizeof(bits));
+  const Status status = device_.upload(image->view(), extent, texels.data());
+  if (!status.ok()) throw std::runtime_error(status.message());
+  constants_.push_back(std::move(image).value());
+  return constants_.back().view();
+}
+
+ImageView Stage::velocity(Extent extent, const std::function<float(int x, int y)>& value) {
+  Result<Image> image = device_.allocate(extent, PixelFormat::kRG32F);
+  if (!image.ok()) throw std::runtime_error(image.status().message());
+  std::vector<Vec2> texels;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x)
+      texels.push_back({value(x, y), 0});
+  }
+  const Status status = device_.upload(image->view(), extent, texels.data());
+  if (!status.ok()) throw std::runtime_error(status.message());
+  velocities_.push_back(std::move(image).value());
+  return velocities_.back().view();
+}
+
+FrameInputs Stage::frame(Extent render, PixelFormat colour, float jitter, int index) {
+  FrameInputs inputs;
+  inputs.colour = noise(render, colour, index);
+  inputs.velocity = noise(render, PixelFormat::kRG16F, index);
+  inputs.depth = noise(render, PixelFormat::kR32F, index);
+  inputs.reactive = noise(render, PixelFormat::kR8, index);
+  inputs.render = render;
+  inputs.jitter = {jitter, jitter};
+  return inputs;
+}
+
+void Stage::add(std::vector<Case>& cases, Case what, Enqueue enqueue, int kernels) {
+  what.run = [enqueue = std::move(enqueue), kernels] {
+    std::vector<cl::Event> events(static_cast<std::size_t>(kernels));
+    enqueue(events.data());
+    double ms = 0;
+    for (const cl::Event& event : events)
+      ms += milliseconds(event);
+    return ms;
+  };
+  cases.push_back(std::move(what));
+}
+
+void Stage::add_copy(std::vector<Case>& cases) {
+  cl::Program program(impl().context, kCopySource);
+  program.build(impl().device, kCommonBuildOptions);
+  cl::Kernel kernel(program, "copy");
+  set_memory(kernel, 0, noise(output_, PixelFormat::kRGBA32F, 0).memory);
+  set_memory(kernel, 1, noise(output_, PixelFormat::kRGBA32F, 1).memory);
+  kernel.setArg(2, output_.width);
+  kernel.setArg(3, output_.height);
+  add(cases, {.name = "copy", .bytes = 2 * bytes_of(output_, PixelFormat::kRGBA32F)},
+      [this, kernel](cl::Event* event) {
+        const auto groups = static_cast<std::size_t>((output_.width + 63) / 64);
+        impl().queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                                          cl::NDRange(groups * 64, static_cast<std::size_t>(output_.height)),
+                                          cl::NDRange(64, 1), nullptr, event);
+      });
+}
+
+}  // namespace quincunx::bench

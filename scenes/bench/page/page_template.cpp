@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "bench/page/page_template.h"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+
+namespace quincunx::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view file(std::string_view name) {
+  for (const EmbeddedFile& embedded : embedded_page_files()) {
+    if (embedded.name == name) return embedded.text;
+  }
+  throw std::out_of_range("page file " + std::string(name));
+}
+
+// JSON inside a script element: no "</script>" or "<!--" may end it, whatever a name holds.
+std::string safe_in_script(const std::string& json) {
+  std::string safe;
+  safe.reserve(json.size());
+  for (const char c : json) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+// Replaces the one place where `mark` stands.
+void put(std::string& page, std::string_view mark, std::string_view text) {
+  const std::size_t at = page.find(mark);
+  if (at == std::string::npos) throw std::out_of_range("page mark " + std::string(mark));
+  page.replace(at, mark.size(), text);
+}
+
+}  // namespace
+
+std::string page_from_template(const char* html, std::initializer_list<const char*> scripts,
+                               const Json& figures) {
+  std::string page{file(html)};
+  std::string script;
+  for (const char* name : scripts)
+    script += file(name);
+  put(page, "/*style*/", file("bench.css"));
+  put(page, "/*script*/", script);
+  put(page, "/*data*/", safe_in_script(figures.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return page;
+}
+
+}  // namespace quincunx::bench

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// What a benchmark ran on.
+#pragma once
+
+#include "bench/speed_error/bench_result.h"
+#include "programs/frame_source.h"
+
+namespace quincunx::bench {
+
+void describe_machine(const scenes::FrameSource& source, Machine& machine);
+
+double load_of_last_minute();  // processes that ran or wanted to; 0 where it is not known
+
+}  // namespace quincunx::bench

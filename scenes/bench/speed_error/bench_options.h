@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// BenchOptions: what the command line of quincunx-bench asks for.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/traces/trace_command.h"
+#include "programs/picture_options.h"
+#include "quincunx/image.h"
+
+namespace quincunx::bench {
+
+// Scene, scale and method of the base are of no use here: there are several of each.
+struct BenchOptions : scenes::PictureOptions {
+  std::vector<std::string> scenes;   // empty: all that are built in
+  std::vector<std::string> methods;  // empty: all
+  std::vector<double> scales = {0.35, 0.5, 0.71, 0.85, 1};
+  int warm_up = 2;  // frames before the measured ones, and before the timed ones
+  // Before the measured ones, of methods that accumulate; at least warm_up.
+  int history_warm_up = scenes::kAccumulatedFrames;
+  int rounds = 5;
+  int truth = 8;  // samples along each side of a pixel
+  bool quick = false;
+
+  std::string out;      // folder; empty: no files
+  std::string compare;  // an older bench.json; empty: none
+  std::string from;     // a bench.json instead of measuring; empty: measure
+  bool list_methods = false;
+  traces::TraceOptions traces;
+  bool json = false;
+
+  std::string command_line;
+};
+
+// Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
+// instead.
+std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& options);
+
+}  // namespace quincunx::bench

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "bench/speed_error/bench_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scene_catalog.h"
+#include "tools/program/method_names.h"
+
+namespace quincunx::bench {
+namespace {
+
+constexpr double kSmallestScale = 0.02;
+constexpr double kLargestScale = 2;
+constexpr int kSmallestSide = 16;  // the worst window has 16 x 16 pixels
+
+// "temporal:balanced" for "temporal".
+std::string longest_name(const std::string& name) {
+  const auto choice = tools::method_choices().find(name);
+  if (choice == tools::method_choices().end()) return name;
+  ResolveSettings settings;
+  tools::choose(settings, choice->second);
+  return tools::method_name(settings);
+}
+
+Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
+  std::vector<BenchMethod> methods = all_methods();
+  if (names.empty()) return methods;
+  std::vector<BenchMethod> chosen;
+  for (const std::string& name : names) {
+    const std::string longest = longest_name(name);
+    const auto found = std::find_if(methods.begin(), methods.end(),
+                                    [&](const BenchMethod& method) { return method.name == longest; });
+    if (found == methods.end()) {
+      std::string known;
+      for (const BenchMethod& method : methods)
+        known += (known.empty() ? "" : ", ") + method.name;
+      return Status::invalid(fmt::format("--methods: there is no method '{}'; there are {}", name, known));
+    }
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+bool is_file(const std::string& name) {
+  return name.ends_with(".gltf") || name.ends_with(".glb");
+}
+
+Result<std::vector<std::string>> chosen_scenes(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const scenes::SceneEntry& entry : scenes::list_scenes())
+    known.push_back(entry.name);
+  if (names.empty()) return known;
+  for (const std::string& name : names) {
+    if (is_file(name) || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    return Status::invalid(fmt::format(
+        "--scenes: there is no scene '{}'; the built-in ones are {}; a file must end in .gltf or .glb", name,
+        fmt::join(known, ", ")));
+  }
+  return names;
+}
+
+template <typename T>
+Status check_once(const char* option, const std::vector<T>& values) {
+  for (const T& value : values) {
+    if (std::count(values.begin(), values.end(), value) > 1) {
+      return Status::invalid(fmt::format("{}: '{}' is there twice", option, value));
+    }
+  }
+  return {};
+}
+
+Status check_numbers(const BenchOptions& options) {
+  for (const double scale : options.scales) {
+    if (scale >= kSmallestScale && scale <= kLargestScale) continue;
+    return Status::invalid(fmt::format("--scales: {} is no scale; it must lie between {} and {}", scale,
+                                       kSmallestScale, kLargestScale));
+  }
+  if (options.output.width < kSmallestSide || options.output.height < kSmallestSide) {
+    return Status::invalid(fmt::format("--output {}x{} is too small to measure; it must be at least {}x{}",
+                                       options.output.width, options.output.height, kSmallestSide,
+                                       kSmallestSide));
+  }
+  return {};
+}
+
+// The default method where it is measured, else the last.
+std::size_t frame_method_of(const std::vector<BenchMethod>& methods) {
+  const auto found = std::find_if(methods.begin(), methods.end(),
+                                  [](const BenchMethod& method) { return method.is_default; });
+  return found != methods.end() ? static_cast<std::size_t>(found - methods.begin()) : methods.size() - 1;
+}
+
+}  // namespace
+
+Result<BenchPlan> plan_from(const BenchOptions& options) {
+  if (Status status = check_numbers(options); !status.ok()) return status;
+  auto methods = chosen_methods(options.methods);
+  if (!methods.ok()) return methods.status();
+  std::vector<std::string> method_names;
+  for (const BenchMethod& method : methods.value())
+    method_names.push_back(method.name);
+  for (const Status& status : {check_once("--methods", method_names), check_once("--scenes", options.scenes),
+                               check_once("--scales", options.scales)}) {
+    if (!status.ok()) return status;
+  }
+  auto names = chosen_scenes(options.scenes);
+  if (!names.ok()) return names.status();
+  BenchPlan plan;
+  plan.methods = std::move(methods).value();
+  plan.frame_method = frame_method_of(plan.methods);
+  plan.scenes = std::move(names).value();
+  plan.scales = options.scales;
+  std::sort(plan.scales.begin(), plan.scales.end());
+  plan.conditions = {.output = options.output,
+                     .frames = static_cast<int>(options.frames),
+                     .warm_up = options.warm_up,
+                     .history_warm_up = std::max(options.history_warm_up, options.warm_up),
+                     .rounds = options.rounds,
+                     .truth_samples = options.truth,
+                     .seed = options.seed,
+                     .fps = options.fps,
+                     .start = options.start};
+  return plan;
+}
+
+scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method) {
+  const Conditions& conditions = plan.conditions;
+  scenes::SequenceSettings sequence;
+  sequence.output = conditions.output;
+  const auto axis = static_cast<float>(scale);
+  sequence.scale_path = scenes::ScalePath::fixed({axis, axis}).value();  // plan_from() has checked it
+  sequence.jitter = method.jitter;
+  sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);
+  sequence.fps = conditions.fps;
+  sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));
+  sequence.lod_bias = method.lod_bias;
+  return sequence;
+}
+
+int first_frame_for(const Conditions& conditions, const BenchMethod& method) {
+  return method.accumulates ? conditions.warm_up - conditions.history_warm_up.value_or(conditions.warm_up)
+                            : 0;
+}
+
+int frames_of(const Conditions& conditions) {
+  return 2 * conditions.warm_up + (1 + conditions.rounds) * conditions.frames;
+}
+
+double seconds_of(const Conditions& conditions, int frame) {
+  return conditions.start + frame / conditions.fps;
+}
+
+// Half a frame after the cut, so that rounding cannot put the first frame before it.
+Conditions conditions_for(const Conditions& conditions, const scenes::Scene& scene) {
+  Conditions of_scene = conditions;
+  if (const auto cut = scenes::next_cut(scene, seconds_of(conditions, conditions.warm_up)))
+    of_scene.start = *cut + (0.5 - conditions.warm_up) / conditions.fps;
+  return of_scene;
+}
+
+}  // namespace quincunx::bench

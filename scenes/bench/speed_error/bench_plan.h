@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// BenchPlan: what will be measured: methods, scenes and scales that the options choose. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/speed_error/bench_options.h"
+#include "bench/speed_error/bench_result.h"
+#include "frame_sequence.h"
+#include "quincunx/resolve_plan.h"
+#include "quincunx/status.h"
+#include "scene.h"
+
+namespace quincunx::bench {
+
+struct BenchMethod {
+  std::string name;  // as --method of quincunx-render takes it
+  std::string summary;
+  ResolveSettings resolve;
+  scenes::Jitter jitter = scenes::Jitter::kNone;  // of the frames that it gets
+  float lod_bias = 0;
+  bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
+  bool is_default = false;   // what the programs take where no --method is given
+};
+
+// Every method that there is.
+std::vector<BenchMethod> all_methods();
+
+struct BenchPlan {
+  std::vector<BenchMethod> methods;
+  std::size_t frame_method = 0;  // index: the one whose whole frames are timed
+  std::vector<std::string> scenes;
+  std::vector<double> scales;
+  Conditions conditions;
+};
+
+// Errors: kInvalidArgument, for a name or a number that is no good; the message says what would be.
+Result<BenchPlan> plan_from(const BenchOptions& options);
+
+// The frames of one scale as methods with this jitter and bias get them; their times are seconds_of().
+scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method);
+
+// The frames of a case are numbered from 0: `warm_up` that warm up, those whose errors are measured, again
+// some that warm up, and those of the timed rounds. A method that accumulates begins with earlier ones, of
+// negative numbers.
+int first_frame_for(const Conditions& conditions, const BenchMethod& method);
+int frames_of(const Conditions& conditions);
+
+// Scene time of a frame.
+double seconds_of(const Conditions& conditions, int frame);
+
+// As they are, but for a scene with cuts: from the first cut on that would be measured, so that the first
+// measured frame is the first of a shot.
+Conditions conditions_for(const Conditions& conditions, const scenes::Scene& scene);
+
+}  // namespace quincunx::bench

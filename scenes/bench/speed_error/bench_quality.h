@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// QualityTally: the errors of one method, gathered frame by frame.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bench/speed_error/bench_result.h"
+#include "tools/image/image_metrics.h"
+
+namespace quincunx::bench {
+
+// One thread at a time.
+class QualityTally {
+ public:
+  // The measured frames in order; `uncovered` has a value for each pixel.
+  void add(tools::MeasuredPicture picture, const tools::MeasuredPicture& truth,
+           const tools::MeasuredPicture* previous_truth, std::span<const std::uint8_t> uncovered);
+
+  // At least one frame.
+  Quality quality() const;
+
+  const tools::MeasuredPicture& latest() const { return *latest_; }
+
+ private:
+  int frames_ = 0;
+  Quality worst_;  // of its fields only those of the worst window
+  double error_ = 0, error_linear_ = 0, ssim_ = 0, flip_ = 0, p99_ = 0, relative_ = 0, flicker_ = 0;
+  double uncovered_error_ = 0;
+  std::int64_t uncovered_count_ = 0;
+  std::int64_t non_finite_ = 0;
+  std::optional<tools::MeasuredPicture> latest_;
+};
+
+}  // namespace quincunx::bench

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "bench/traces/trace_command.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "bench/traces/trace_page.h"
+#include "tools/program/atomic_file.h"
+
+namespace quincunx::traces {
+namespace {
+
+Result<LoadTrace> read_recorded(const std::string& path, const Recording& recording) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (!file) return Status::io(path + " cannot be read");
+  return recorded_trace(path, text.str(), recording);
+}
+
+std::vector<Display> displays_of(TraceOptions options) {
+  if (options.every_display) {
+    options.refresh_hz = {60, 30, 120};
+    options.buffers = {3, 2};
+    options.latencies = {1, 2, 3, 4};
+  }
+  std::vector<Display> displays;
+  for (const int buffers : options.buffers) {
+    for (const double hz : options.refresh_hz) {
+      for (const int latency : options.latencies)
+        displays.push_back({hz, buffers, latency});
+    }
+  }
+  return displays;
+}
+
+}  // namespace
+
+void add_trace_options(CLI::App& app, TraceOptions& options) {
+  auto* traces = app.add_flag("--traces", options.wanted,
+                              "Instead: resolution controllers over load traces, on a simulated display");
+  app.add_option("--hz", options.refresh_hz, "With --traces: refresh rates (default: 60)")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->delimiter(',')
+      ->needs(traces);
+  app.add_option("--buffers", options.buffers, "With --traces: buffers of the swap chain (default: 3)")
+      ->check(CLI::Range(2, 8))
+      ->delimiter(',')
+      ->needs(traces);
+  app.add_option("--latency", options.latencies,
+                 "With --traces: frames until a timer comes back (default: 1)")
+      ->check(CLI::Range(1, 8))
+      ->delimiter(',')
+      ->needs(traces);
+  app.add_flag("--every-display", options.every_display,
+               "With --traces: 30, 60, 120 Hz; 2 and 3 buffers; timers 1 to 4 frames late")
+      ->needs(traces);
+  app.add_option("--seeds", options.seeds, "With --traces: seeds of the scripted loads (default: 1,2,3)")
+      ->delimiter(',')
+      ->needs(traces);
+  app.add_option("--recorded", options.recorded,
+                 "With --traces: also replay these CSV files (columns gpu_ms, area_fraction, cpu_ms)")
+      ->needs(traces)
+      ->type_name("FILE");
+  app.add_option("--recorded-target-ms", options.recording.target_ms,
+                 "With --traces: target that recorded times are measured in")
+      ->needs(traces);
+  app.add_option("--recorded-fixed-part", options.recording.fixed_part,
+                 "With --traces: part of recorded costs that does not scale")
+      ->needs(traces);
+}
+
+Result<TraceRun> run_traces(const TraceOptions& options) {
+  TraceSettings settings{.displays = displays_of(options), .seeds = options.seeds};
+  std::vector<LoadTrace> recorded;
+  for (const std::string& path : options.recorded) {
+    auto trace = read_recorded(path, options.recording);
+    if (!trace.ok()) return trace.status();
+    recorded.push_back(std::move(trace).value());
+  }
+  if (!recorded.empty()) {
+    settings.lists.push_back({"recorded", [recorded](std::uint64_t) { return recorded; }});
+  }
+  return run_traces(settings);
+}
+
+Status write_files(const TraceRun& run, const std::string& folder, const std::string& command) {
+  const auto write = [&folder](const char* name, const std::string& text) {
+    return tools::write_text((std::filesystem::path(folder) / name).string(), text);
+  };
+  if (Status status = write("traces.json", json_of(run)); !status.ok()) return status;
+  if (Status status = write("traces.csv", csv_of(run)); !status.ok()) return status;
+  return write("traces.html", page_of(run, command));
+}
+
+}  // namespace quincunx::traces

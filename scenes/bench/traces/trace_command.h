@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// quincunx-bench --traces: its options, and what it does.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/traces/recorded_trace.h"
+#include "bench/traces/trace_run.h"
+#include "quincunx/status.h"
+
+namespace quincunx::traces {
+
+struct TraceOptions {
+  bool wanted = false;
+  std::vector<double> refresh_hz = {60};
+  std::vector<int> buffers = {3};
+  std::vector<int> latencies = {1};
+  bool every_display = false;
+  std::vector<std::uint64_t> seeds = {1, 2, 3};
+  std::vector<std::string> recorded;  // CSV files
+  Recording recording;
+};
+
+// --traces, and options that need it.
+void add_trace_options(CLI::App& app, TraceOptions& options);
+
+// Replays everything. Errors: of a recording that cannot be read.
+Result<TraceRun> run_traces(const TraceOptions& options);
+
+// traces.json, traces.csv and traces.html in `folder`. Errors: kIoFailure.
+Status write_files(const TraceRun& run, const std::string& folder, const std::string& command);
+
+}  // namespace quincunx::traces

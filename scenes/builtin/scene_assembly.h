@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// SceneAssembly: collects the parts of a procedural scene. And the motions that they share, all of which
+// repeat.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "builtin/mesh_builder.h"
+#include "builtin/textures.h"
+#include "scene.h"
+
+namespace quincunx::scenes {
+
+class SceneAssembly {
+ public:
+  Scene scene;
+
+  int add(Texture texture);  // the indices within the scene
+  int add(Material material);
+  int add(Mesh mesh);
+  // A dielectric with the colour of a surface and, where asked for, its relief and its own roughness; each is
+  // a texture more to sample.
+  enum class Detail { kColour, kRelief, kReliefAndRoughness };
+  int add_surface(const std::string& name, const Surface& surface, Detail detail = Detail::kRelief);
+
+  // What stands still is collected in one mesh per material and part of the scene; parts that lie apart let
+  // the renderer leave out what is not seen, and the lamps that do not reach.
+  MeshBuilder& still(int material, int part = 0);
+
+  void place(int mesh, const glm::mat4& transform);
+  void move(int mesh, Motion motion);
+
+  // Adds what was collected; call once, last.
+  Scene finish();
+
+ private:
+  std::map<std::pair<int, int>, MeshBuilder> still_;
+};
+
+Material plain_material(std::string name, glm::vec3 colour, float roughness, float metallic = 0);
+Material unlit_material(std::string name, glm::vec3 colour);  // shown as is; vertex colours multiply
+Material lamp_material(std::string name, glm::vec3 radiance);
+
+glm::mat4 moved_to(glm::vec3 position);
+glm::mat4 turned(float angle, glm::vec3 axis);            // about the origin
+glm::mat4 looking_from(glm::vec3 eye, glm::vec3 target);  // world from camera
+
+// The whole turns that `cycles` within `period` seconds make up to `seconds`, as an angle.
+float phase_at(double seconds, double period, int cycles = 1);
+
+// `rest` swinging about `axis` through its origin: amplitude in radians.
+Motion swinging(const glm::mat4& rest, glm::vec3 axis, float amplitude, double period, int cycles,
+                float phase);
+// `rest` turning about `axis` through its origin.
+Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles);
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: MIT
+#include "gltf/loader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "gltf/animation.h"
+#include "gltf/document.h"
+#include "gltf/lights.h"
+#include "gltf/materials.h"
+#include "gltf/mesh.h"
+#include "orbit_camera.h"
+
+namespace quincunx::scenes {
+namespace {
+
+// A small file can ask for a great deal by using the same data many times.
+constexpr std::size_t kMaxVertices = std::size_t{1} << 26;
+constexpr std::size_t kMaxInstances = std::size_t{1} << 20;
+
+// Squares and cubes of lengths stay finite in single precision.
+constexpr float kMaxCoordinate = 1e9f;
+
+// Moments of the animation that the orbit camera is made to fit.
+constexpr int kBoundsMoments = 16;
+
+Bounds bounds_of_mesh(const Mesh& mesh) {
+  Bounds box{mesh.vertices[0].position, mesh.vertices[0].position};
+  for (const Vertex& vertex : mesh.vertices) {
+    box.low = glm::min(box.low, vertex.position);
+    box.high = glm::max(box.high, vertex.position);
+  }
+  return box;
+}
+
+bool is_sane(const glm::mat4& matrix) {
+  for (int c = 0; c < 4; ++c) {
+    for (int r = 0; r < 4; ++r) {
+      if (!(std::abs(matrix[c][r]) <= kMaxCoordinate)) return false;
+    }
+  }
+  return true;
+}
+
+class SceneReader {
+ public:
+  explicit SceneReader(GltfDocument document)
+      : document_(std::move(document)),
+        model_(document_.model),
+        tree_(std::make_shared<NodeTree>(document_)) {}
+
+  Scene read() {
+    const std::vector<int> nodes = shown_nodes();
+    read_materials_into_scene();
+    for (const int node : nodes)
+      add_instances(node);
+    if (scene_.instances.empty()) {
+      throw GltfError(fmt::format("there is nothing to draw: none of the {} nodes in its scene has triangles",
+                                  nodes.size()));
+    }
+    const Bounds bounds = bounds_over_time();
+    read_lights(document_, *tree_, nodes, bounds, scene_);
+    find_camera(nodes, bounds);
+    describe();
+    return std::move(scene_);
+  }
+
+ private:
+  // Depth first, in the order of the file.
+  std::vector<int> shown_nodes() const {
+    std::vector<int> pending;
+    if (!model_.scenes.empty()) {
+      pending = model_.scenes[static_cast<std::size_t>(std::max(model_.defaultScene, 0))].nodes;
+    } else {
+      const std::vector<int> parents = parents_of(model_);
+      for (int i = 0; i < static_cast<int>(parents.size()); ++i) {
+        if (parents[static_cast<std::size_t>(i)] < 0) pending.push_back(i);
+      }
+    }
+    std::reverse(pending.begin(), pending.end());
+    std::vector<int> nodes;
+    while (!pending.empty()) {
+      nodes.push_back(pending.back());
+      pending.pop_back();
+      const auto& children = model_.nodes[static_cast<std::size_t>(nodes.back())].children;
+      pending.insert(pending.end(), children.rbegin(), children.rend());
+    }
+    return nodes;
+  }
+
+  void read_materials_into_scene() {
+    materials_ = read_materials(document_);
+    scene_.textures = std::move(materials_.textures);
+    scene_.materials = materials_.materials;
+  }
+
+  // The meshes of a scene for one of the file: each primitive is one.
+  const std::vector<int>& scene_meshes(int mesh) {
+    const auto [place, is_new] = meshes_.try_emplace(mesh);
+    if (!is_new) return place->second;
+    const auto& primitives = model_.meshes[static_cast<std::size_t>(mesh)].primitives;
+    for (int p = 0; p < static_cast<int>(primitives.size()); ++p) {
+      std::optional<Mesh> read = read_primitive(document_, mesh, p, materials_);
+      if (!read) continue;
+      vertices_ += read->vertices.size() + read->indices.size();
+      if (vertices_ > kMaxVertices) {
+        throw GltfError(fmt::format(
+            "the meshes have more than {} vertices and indices in all, which is the limit", kMaxVertices));
+      }
+      place->second.push_back(static_cast<int>(scene_.meshes.size()));
+      mesh_bounds_.push_back(bounds_of_mesh(*read));
+      check_extent(mesh_bounds_.back(),
+                   described("mesh", mesh, model_.meshes[static_cast<std::size_t>(mesh)].name));
+      scene_.meshes.push_back(std::move(*read));
+    }
+    return place->second;
+  }
+
+  static void check_extent(const Bounds& box, const std::string& who) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (box.low[axis] >= -kMaxCoordinate && box.high[axis] <= kMaxCoordinate) continue;
+      throw GltfError(
+          fmt::format("{} has positions beyond {:g} m, which cannot be drawn", who, kMaxCoordinate));
+    }
+  }
+
+  bool moves(int node) const { return tree_->duration() > 0 && tree_->is_animated(node); }
+
+  void add_instances(int node) {
+    const tinygltf::Node& source = model_.nodes[static_cast<std::size_t>(node)];
+    if (source.mesh < 0) return;
+    const std::string who = described("node", node, source.name);
+    if (source.skin >= 0) document_.warn(who + " is skinned; it stands in its bind pose");
+    for (const int mesh : scene_meshes(source.mesh)) {
+      if (scene_.instances.size() >= kMaxInstances) {
+        throw GltfError(
+            fmt::format("the nodes show more than {} primitives, which is the limit", kMaxInstances));
+      }
+      Instance instance;
+      instance.mesh = mesh;
+      instance.transform = tree_->world(node, 0);
+      if (!is_sane(instance.transform)) {
+        throw GltfError(fmt::format("{} has a transform with values beyond {:g}, which cannot be drawn", who,
+                                    kMaxCoordinate));
+      }
+      if (moves(node)) {
+        instance.motion = [tree = tree_, node](double seconds) { return tree->world(node, seconds); };
+      }
+      scene_.instances.push_back(std::move(instance));
+    }
+  }
+
+  Bounds bounds_over_time() const {
+    Bounds bounds;
+    bool first = true;
+    for (const Instance& instance : scene_.instances) {
+      const Bounds& box = mesh_bounds_[static_cast<std::size_t>(instance.mesh)];
+      const int moments = instance.motion ? kBoundsMoments : 1;
+      for (int moment = 0; moment < moments; ++moment) {
+        const double seconds = tree_->duration() * moment / moments;
+        const Bounds placed =
+            transformed(box, instance.motion ? instance.motion(seconds) : instance.transform);
+        bounds.low = first ? placed.low : glm::min(bounds.low, placed.low);
+        bounds.high = first ? placed.high : glm::max(bounds.high, placed.high);
+        first = false;
+      }
+    }
+    check_extent(bounds, "the scene");
+    return bounds;
+  }
+
+  void find_camera(const std::vector<int>& nodes, const Bounds& bounds) {
+    for (const int node : nodes) {
+      const int index = model_.nodes[static_cast<std::size_t>(node)].camera;
+      if (index < 0) continue;
+      const tinygltf::Camera& camera = model_.cameras[static_cast<std::size_t>(index)];
+      if (camera.type == "perspective" && use_camera(node, camera)) return;
+      document_.warn(described("camera", index, camera.name) +
+                     " is not a perspective camera with a rigid transform, and is left out");
+    }
+    scene_.camera = orbit_camera(bounds);
+    scene_.camera_moves = true;
+  }
+
+  bool use_camera(int node, const tinygltf::Camera& source) {
+    if (!rigid(tree_->world(node, 0))) return false;
+    Camera still;
+    still.vertical_fov = static_cast<float>(source.perspective.yfov);
+    still.near_plane = static_cast<float>(source.perspective.znear);
+    still.world_from_camera = *rigid(tree_->world(node, 0));
+    scene_.camera_moves = moves(node);
+    scene_.camera = [still](double) { return still; };
+    if (scene_.camera_moves) {
+      scene_.camera = [still, tree = tree_, node](double seconds) {
+        Camera camera = still;
+        if (const auto placed = rigid(tree->world(node, seconds))) camera.world_from_camera = *placed;
+        return camera;
+      };
+    }
+    return true;
+  }
+
+  // A camera sees through its place and direction only: scales above it in the tree mean nothing.
+  static std::optional<glm::mat4> rigid(const glm::mat4& world) {
+    const auto back = glm::vec3(world[2]);
+    const glm::vec3 right = glm::cross(glm::vec3(world[1]), back);
+    const float size = glm::length(right) * glm::length(back);
+    if (!is_sane(world) || !(size > 0) || !std::isfinite(size)) return std::nullopt;
+    const glm::vec3 z = glm::normalize(back);
+    const glm::vec3 x = glm::normalize(right);
+    return glm::mat4(glm::vec4(x, 0), glm::vec4(glm::cross(z, x), 0), glm::vec4(z, 0), world[3]);
+  }
+
+  void describe() {
+    std::size_t triangles = 0;
+    for (const Instance& instance : scene_.instances) {
+      triangles += scene_.meshes[static_cast<std::size_t>(instance.mesh)].indices.size() / 3;
+    }
+    scene_.name = document_.path.stem().string();
+    scene_.summary =
+        fmt::format("{}: {} triangles in {} instances, {} textures", document_.path.filename().string(),
+                    triangles, scene_.instances.size(), scene_.textures.size());
+    scene_.reason = "a user's own glTF 2.0 file";
+    const bool anything_moves = tree_->duration() > 0;
+    scene_.duration = anything_moves ? tree_->duration() : kOrbitSeconds;
+  }
+
+  GltfDocument document_;
+  const tinygltf::Model& model_;
+  std::shared_ptr<const NodeTree> tree_;
+  GltfMaterials materials_;
+  std::map<int, std::vector<int>> meshes_;  // of the scene, by mesh of the file
+  std::vector<Bounds> mesh_bounds_;         // by mesh of the scene
+  std::size_t vertices_ = 0;
+  Scene scene_;
+};
+
+}  // namespace
+
+Result<Scene> load_gltf(const std::string& path) {
+  try {
+    return SceneReader(open_gltf_document(path)).read();
+  } catch (const std::exception& error) {
+    return Status::io(fmt::format("cannot load '{}': {}", path, error.what()));
+  }
+}
+
+}  // namespace quincunx::scenes

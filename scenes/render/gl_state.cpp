@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+#include "render/gl_state.h"
+
+#include <epoxy/gl.h>
+
+namespace quincunx::scenes {
+namespace {
+
+constexpr GLuint kColour = 0;  // draw buffers of RenderTargets
+constexpr GLuint kVelocity = 1;
+constexpr GLuint kReactive = 2;
+
+void write_to(bool velocity, bool reactive) {
+  const auto mask = [](GLuint buffer, bool on) {
+    const GLboolean value = on ? GL_TRUE : GL_FALSE;
+    glColorMaski(buffer, value, value, value, value);
+  };
+  mask(kVelocity, velocity);
+  mask(kReactive, reactive);
+}
+
+}  // namespace
+
+DrawState::DrawState() {
+  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  glEnable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glFrontFace(GL_CCW);
+  glCullFace(GL_BACK);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+DrawState::~DrawState() {
+  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glDisable(GL_SCISSOR_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  glFrontFace(GL_CCW);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glUseProgram(0);
+  glBindVertexArray(0);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+}
+
+void clear_for_frame(const gl::RenderTargets& targets, Extent render) {
+  const float zero[] = {0, 0, 0, 0};
+  glDepthMask(GL_TRUE);
+  glDisable(GL_SCISSOR_TEST);
+  glClearNamedFramebufferfv(targets.framebuffer(), GL_DEPTH, 0, zero);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, render.width, render.height);
+  if (targets.reactive() != 0) glClearNamedFramebufferfv(targets.framebuffer(), GL_COLOR, kReactive, zero);
+}
+
+void set_opaque_state() {
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  write_to(true, false);
+}
+
+void set_sky_state() {
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_EQUAL);
+  write_to(true, false);
+}
+
+void set_blended_state() {
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  write_to(false, true);
+  glEnablei(GL_BLEND, kColour);
+  glEnablei(GL_BLEND, kReactive);
+  glBlendFunci(kColour, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  // r + a (1 - r): marks add up and never exceed 1.
+  glBlendFunci(kReactive, GL_ONE, GL_ONE_MINUS_SRC_COLOR);
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "render/renderer.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/gl_program.h"
+#include "render/gl_state.h"
+#include "render/renderer_impl.h"
+#include "render/truth_targets.h"
+#include "render/vertex_input.h"
+#include "scene_check.h"
+
+namespace quincunx::scenes {
+namespace {
+
+Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
+  const Extent extent = targets.extent();
+  const bool fits = view.render.width >= 1 && view.render.height >= 1 && view.render.width <= extent.width &&
+                    view.render.height <= extent.height;
+  if (!fits) {
+    return Status::invalid(
+        fmt::format("FrameView::render is {} x {}; it must lie between 1 x 1 and the targets' {} x {}",
+                    view.render.width, view.render.height, extent.width, extent.height));
+  }
+  const bool finite = std::isfinite(view.jitter.x) && std::isfinite(view.jitter.y) &&
+                      std::isfinite(view.seconds) && std::isfinite(view.previous_seconds) &&
+                      std::isfinite(view.lod_bias) && std::isfinite(view.aspect) && view.aspect >= 0 &&
+                      std::isfinite(view.least_size) && view.least_size >= 0 &&
+                      std::isfinite(view.shadow_age) && view.shadow_age >= 0;
+  if (!finite) {
+    return Status::invalid(
+        "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size and shadow_age must be "
+        "finite, and the last three not negative");
+  }
+  return {};
+}
+
+}  // namespace
+
+Renderer::Renderer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+Result<Renderer> Renderer::create(const Scene& scene) {
+  if (Status status = check_scene(scene); !status.ok()) return status;
+  auto impl = std::make_unique<Impl>(scene);
+  Result<GpuScene> gpu = GpuScene::upload(impl->scene, impl->layout);
+  if (!gpu.ok()) return gpu.status();
+  impl->gpu = std::move(gpu).value();
+  Result<ShadowMap> shadows = ShadowMap::create(impl->scene, impl->layout);
+  if (!shadows.ok()) return shadows.status();
+  impl->shadows = std::move(shadows).value();
+  if (Status status = impl->create_programs(); !status.ok()) return status;
+  impl->create_streams();
+  return Renderer(std::move(impl));
+}
+
+Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
+  if (Status status = check_view(targets, view); !status.ok()) return status;
+  const bool velocity = targets.velocity() != 0;
+  const Impl::View matrices = impl_->view_at(view);
+  impl_->place_instances(view, velocity);
+  impl_->make_lists(matrices, view);
+  impl_->upload_frame(impl_->frame_block(matrices, view));
+
+  const DrawState state;
+  glBindVertexArray(impl_->surface_array.get());
+  impl_->shadows.update(impl_->layout, impl_->gpu, impl_->placed, view.seconds, view.shadow_age);
+  clear_for_frame(targets, view.render);
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
+  glViewport(0, 0, view.render.width, view.render.height);
+  impl_->draw_opaque(velocity);
+  impl_->draw_sky(velocity);
+  impl_->draw_blended();
+  return {};
+}
+
+CameraMotion Renderer::camera_motion(const FrameView& view) const {
+  const Impl::View matrices = impl_->view_at(view);
+  return camera_motion_between(matrices.now, matrices.before);
+}
+
+void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) {
+  const SurfacePrograms& programs = surface_programs[static_cast<std::size_t>(batch.program)];
+  const MeshRange& part = layout.parts[static_cast<std::size_t>(batch.range)];
+  const Bound wanted{velocity ? programs.with_velocity.get() : programs.plain.get(), part.material,
+                     batch.light_set};
+  if (wanted.program != bound.program) glUseProgram(wanted.program);
+  if (wanted.material != bound.material) gpu.bind_material(wanted.material);
+  if (wanted.light_set != bound.light_set) gpu.bind_light_set(wanted.light_set);
+  bound = wanted;
+  glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
+  draw_mesh(part, batch.first, batch.count);
+}
+
+void Renderer::Impl::draw_opaque(bool velocity) {
+  set_opaque_state();
+  glBindVertexBuffer(kInstanceSlot, instance_stream.get(), instance_offset, sizeof(InstanceData));
+  glBindTextureUnit(kShadowUnit, shadows.texture());
+  bound = {};
+  for (const Batch& batch : list.opaque())
+    draw_batch(batch, velocity);
+}
+
+void Renderer::Impl::draw_sky(bool velocity) const {
+  set_sky_state();
+  glUseProgram(velocity ? sky_programs.with_velocity.get() : sky_programs.plain.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void Renderer::Impl::draw_blended() {
+  if (list.blended().empty()) return;
+  set_blended_state();
+  bound = {};
+  bool particles_bound = false;
+  for (const Batch& batch : list.blended()) {
+    if (batch.particles != particles_bound) {
+      glBindVertexArray(batch.particles ? particle_array.get() : surface_array.get());
+      particles_bound = batch.particles;
+    }
+    if (!batch.particles) {
+      draw_batch(batch, false);
+      continue;
+    }
+    glBindVertexBuffer(kInstanceSlot, particle_stream.get(), particle_offset, sizeof(Particle));
+    glUseProgram(particle_program.get());
+    glDisable(GL_CULL_FACE);
+    bound = {};
+    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count),
+                                      batch.first);
+  }
+}
+
+}  // namespace quincunx::scenes

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "render/shadow_map.h"
+
+#include <epoxy/gl.h>
+
+#include <cmath>
+
+#include "render/gl_program.h"
+#include "render/vertex_input.h"
+
+namespace quincunx::scenes {
+namespace {
+
+// Slope-scaled and constant depth bias, in units of the map; with the lift along the normal in surface.vert
+// it keeps surfaces out of their own shadow.
+constexpr float kSlopeBias = 1.5f;
+constexpr float kConstantBias = 2.0f;
+
+gl::Texture depth_texture() {
+  gl::Texture texture = gl::Texture::create();
+  const GLuint name = texture.get();
+  glTextureStorage2D(name, 1, GL_DEPTH_COMPONENT16, kShadowTexels, kShadowTexels);
+  glTextureParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+  glTextureParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
+  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  const float lit[] = {1, 1, 1, 1};
+  glTextureParameterfv(name, GL_TEXTURE_BORDER_COLOR, lit);
+  return texture;
+}
+
+Result<gl::Framebuffer> depth_framebuffer(GLuint texture) {
+  gl::Framebuffer framebuffer = gl::Framebuffer::create();
+  glNamedFramebufferTexture(framebuffer.get(), GL_DEPTH_ATTACHMENT, texture, 0);
+  glNamedFramebufferDrawBuffer(framebuffer.get(), GL_NONE);
+  if (glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    return Status::device(
+        "the driver refuses a framebuffer with only a 16-bit depth texture, which shadows need");
+  }
+  return framebuffer;
+}
+
+void clear_depth(GLuint framebuffer) {
+  const float infinity = 1;
+  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &infinity);
+}
+
+}  // namespace
+
+Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layout) {
+  ShadowMap map;
+  if (!layout.shadow.enabled) return map;
+  for (const Mesh& mesh : scene.meshes) {
+    const Material& material = scene.materials[static_cast<std::size_t>(mesh.material)];
+    map.mask_of_mesh_.push_back(material.alpha_mode == AlphaMode::kMask &&
+                                material.base_colour_texture.texture >= 0);
+  }
+  Result<gl::Program> solid = link_program("shadow.vert.glsl", "", {});
+  if (!solid.ok()) return solid.status();
+  map.solid_ = std::move(solid).value();
+  Result<gl::Program> cut_out = link_program("shadow.vert.glsl", "shadow.frag.glsl", {"MASK"});
+  if (!cut_out.ok()) return cut_out.status();
+  map.cut_out_ = std::move(cut_out).value();
+  map.texture_ = depth_texture();
+  Result<gl::Framebuffer> framebuffer = depth_framebuffer(map.texture_.get());
+  if (!framebuffer.ok()) return framebuffer.status();
+  map.framebuffer_ = std::move(framebuffer).value();
+  const std::size_t bytes = layout.instances.size() * sizeof(InstanceData);
+  map.still_instances_ = StreamBuffer(bytes);
+  if (!layout.shadow.moves) return map;
+  map.still_texture_ = depth_texture();
+  Result<gl::Framebuffer> still = depth_framebuffer(map.still_texture_.get());
+  if (!still.ok()) return still.status();
+  map.still_framebuffer_ = std::move(still).value();
+  map.moving_instances_ = StreamBuffer(bytes);
+  return map;
+}
+
+void ShadowMap::update(const SceneLayout& layout, const GpuScene& gpu,
+                       const std::vector<InstanceData>& placed, double seconds, double most_age) {
+  if (!texture_) return;
+  const bool first = drawn_seconds_ != drawn_seconds_;
+  if (!first && (!layout.shadow.moves || std::abs(seconds - drawn_seconds_) <= most_age)) return;
+  drawn_seconds_ = seconds;
+  glDisable(GL_SCISSOR_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  if (first) {
+    const GLuint framebuffer = layout.shadow.moves ? still_framebuffer_.get() : framebuffer_.get();
+    clear_depth(framebuffer);
+    list_.build_casters(layout, placed, false);
+    draw(layout, gpu, framebuffer, still_instances_);
+  }
+  if (!layout.shadow.moves) return;
+  glCopyImageSubData(still_texture_.get(), GL_TEXTURE_2D, 0, 0, 0, 0, texture_.get(), GL_TEXTURE_2D, 0, 0, 0,
+                     0, kShadowTexels, kShadowTexels, 1);
+  list_.build_casters(layout, placed, true);
+  draw(layout, gpu, framebuffer_.get(), moving_instances_);
+}
+
+void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint framebuffer,
+                     StreamBuffer& instances) {
+  const std::vector<InstanceData>& data = list_.instances();
+  const GLintptr offset = instances.write(data.data(), data.size() * sizeof(InstanceData));
+  glBindVertexBuffer(kInstanceSlot, instances.get(), offset, sizeof(InstanceData));
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
+  glViewport(0, 0, kShadowTexels, kShadowTexels);
+  glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(kSlopeBias, kConstantBias);
+  for (const Batch& batch : list_.opaque()) {
+    const auto mesh = static_cast<std::size_t>(batch.range);
+    glUseProgram(mask_of_mesh_[mesh] ? cut_out_.get() : solid_.get());
+    if (mask_of_mesh_[mesh]) gpu.bind_material(layout.meshes[mesh].material);
+    glDisable(GL_CULL_FACE);  // open meshes cast shadows from both sides
+    draw_mesh(layout.meshes[mesh], batch.first, batch.count);
+  }
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+}  // namespace quincunx::scenes

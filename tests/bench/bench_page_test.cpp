@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+// The page as a reader has it: opened in headless Chromium, where a probe script looks at what the page drew,
+// presses its buttons and leaves what it saw in the document.
+#include "bench/speed_error/bench_page.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "bench/page_fixture.h"
+#include "bench/sample_result.h"
+#include "skip.h"
+#include "tools/image/image_io.h"
+
+namespace quincunx::bench {
+namespace {
+
+using Json = nlohmann::json;
+
+using testing::kListener;
+using testing::PageInBrowser;
+using testing::with;
+
+constexpr Extent kCrop{16, 8};
+constexpr int kPictures = 3;  // truth and two methods
+
+constexpr const char* kProbe = R"(<script>
+(async () => {
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const pause = () => new Promise((done) => setTimeout(done, 20));
+  const frame = document.querySelector("#viewer .frame");
+  const canvases = all("#viewer canvas");
+  const pixels = () => canvases.map((c) => [...c.getContext("2d").getImageData(1, 1, 1, 1).data].slice(0, 3));
+  const button = (name) => all("#viewer button").find((b) => b.textContent === name);
+  // Waits until the pictures have changed; gives up where they do not.
+  const settled = async (before) => {
+    for (let i = 0; i < 100 && JSON.stringify(pixels()) === before; ++i) await pause();
+    return pixels();
+  };
+  const choose = async (select, index) => {
+    const before = JSON.stringify(pixels());
+    select.selectedIndex = index;
+    select.dispatchEvent(new Event("change"));
+    return settled(before);
+  };
+  for (let i = 0; i < 100 && !all("#viewer .stage[data-ready]").length; ++i) await pause();
+  await pause();
+  const seen = window.seen;
+  seen.points = all("#plot .point").map((p) => p.dataset.method);
+  seen.onFront = all("#plot .on-front").length;
+  seen.frontPath = all("#plot .front").length;
+  seen.pathsWithoutNumbers = all("svg path").filter((p) => /NaN|undefined|Infinity/.test(p.getAttribute("d"))).length;
+  seen.smallPlots = all("#small-plots svg").length;
+  seen.smallPoints = all("#small-plots svg path[fill]").length;
+  seen.frameBars = all("#frame-plot rect[width][x]").length;
+  seen.seventy = document.getElementById("seventy-plot").textContent;
+  seen.findings = all("#findings .finding").length;
+
+  const clock = document.getElementById("frame-clock");
+  const wall = document.getElementById("frame-plot").textContent;
+  clock.selectedIndex = 1;
+  clock.dispatchEvent(new Event("change"));
+  seen.clockChanges = wall !== document.getElementById("frame-plot").textContent;
+
+  const scale = document.getElementById("table-scale");
+  scale.selectedIndex = 0;
+  scale.dispatchEvent(new Event("change"));
+  const lines = () => all("#rows-table tbody tr").filter((r) => !r.hidden).map((r) => r.children[2].textContent + r.children[1].textContent);
+  seen.unsorted = lines();
+  const head = all("#rows-table th button").find((b) => b.textContent === "FLIP");
+  head.click();
+  seen.sorted = lines();
+  head.click();
+  seen.sortedBack = lines();
+
+  const [scene, at, left, right] = all("#viewer select");
+  seen.first = pixels();
+  seen.otherMethod = await choose(left, 1);
+  seen.truthLeft = await choose(left, 0);
+  seen.errorMap = await choose(left, 3);
+  seen.otherScene = await choose(scene, 1);
+  button("flip").click();
+  seen.flipped = [0, 1].map(() => { frame.dispatchEvent(new Event("pointerdown")); return getComputedStyle(canvases[0]).visibility; });
+  button("wipe").click();
+  const wipe = document.querySelector("#viewer .wipe");
+  seen.wiped = [10, 90].map((value) => { wipe.value = value; wipe.dispatchEvent(new Event("input")); return canvases[0].style.clipPath; });
+  const output = document.createElement("pre");
+  output.id = "probe";
+  output.textContent = JSON.stringify(seen);
+  document.body.append(output);
+})();
+</script>)";
+
+// Picture k of scene s at scale index z: every pixel of one colour.
+std::uint8_t level_of(int scene, int scale, int picture) {
+  return static_cast<std::uint8_t>(100 * scene + 40 * picture + scale);
+}
+
+std::vector<std::uint8_t> sheet_of(int scene, int scale, int channels) {
+  std::vector<std::uint8_t> texels;
+  for (int y = 0; y < kCrop.height; ++y) {
+    for (int picture = 0; picture < kPictures; ++picture) {
+      const std::uint8_t level = channels == 1 && picture == 0 ? 0 : level_of(scene, scale, picture);
+      texels.insert(texels.end(), static_cast<std::size_t>(kCrop.width * channels), level);
+    }
+  }
+  auto png = tools::encode_png({kCrop.width, kCrop.height * kPictures}, channels, texels);
+  EXPECT_TRUE(png.ok());
+  return png.value();
+}
+
+Gallery sample_gallery() {
+  Gallery gallery{.crop = kCrop, .frame = 1, .names = {"truth", "bilinear", "quincunx:mean"}, .scenes = {}};
+  for (int scene = 0; scene < 2; ++scene) {
+    gallery.scenes.push_back({.name = scene == 0 ? "pan" : "wires", .x = 3, .y = 4, .sheets = {}});
+    int index = 0;
+    for (const double scale : {0.5, 0.7, 0.85, 1.0}) {
+      gallery.scenes.back().sheets.push_back({scale, sheet_of(scene, index, 3), sheet_of(scene, index, 1)});
+      ++index;
+    }
+  }
+  return gallery;
+}
+
+BenchResult sample_of_two_scenes() {
+  BenchResult result = testing::sample_result();
+  const BenchResult one = result;
+  result.scenes.push_back({"wires", "wires", "thin lines", 0.02, 0.1});
+  const auto repeat = [](auto& rows, const auto& from) {
+    for (auto row : from) {
+      row.scene = "wires";
+      rows.push_back(row);
+    }
+  };
+  repeat(result.rows, one.rows);
+  repeat(result.copies, one.copies);
+  repeat(result.frames, one.frames);
+  for (Row& row : result.rows)
+    row.quality.flip += row.scene == "wires" ? 0.01 : 0;
+  return result;
+}
+
+Json grey(int scene, int scale, int picture) {
+  const int level = level_of(scene, scale, picture);
+  return {level, level, level};
+}
+
+TEST_F(PageInBrowser, DrawsItsPlotsSortsItsTablesAndSwitchesItsPictures) {
+  if (!there()) QUINCUNX_SKIP("there is no chromium");
+  std::string page = page_of(sample_of_two_scenes(), sample_gallery());
+  page = with(with(std::move(page), "<head>", kListener), "</body>", kProbe);
+  const std::string dom = browse(page, "--dump-dom");
+  const std::string mark = "<pre id=\"probe\">";
+  const std::size_t start = dom.find(mark);
+  ASSERT_NE(start, std::string::npos) << "the probe did not end\n" << text_of("err");
+  const std::size_t end = dom.find("</pre>", start);
+  const Json seen = Json::parse(dom.substr(start + mark.size(), end - start - mark.size()));
+
+  EXPECT_EQ(seen["errors"], Json::array());
+  EXPECT_EQ(seen["points"], (Json{"bilinear", "quincunx:mean"}));
+  EXPECT_EQ(seen["onFront"], 2);  // the one is quicker, the other better
+  EXPECT_EQ(seen["frontPath"], 1);
+  EXPECT_EQ(seen["pathsWithoutNumbers"], 0);
+  EXPECT_EQ(seen["smallPlots"], 2 * 4);
+  EXPECT_EQ(seen["smallPoints"], 2 * 4 * 2);
+  EXPECT_GE(seen["frameBars"], 4 * 3);
+  EXPECT_EQ(seen["clockChanges"], true);
+  EXPECT_NE(seen["seventy"].get<std::string>().find("70 %"), std::string::npos) << seen["seventy"];
+  EXPECT_GE(seen["findings"], 5);
+
+  EXPECT_EQ(seen["unsorted"].size(), 16u);
+  EXPECT_EQ(seen["sorted"][0], "quincunx:mean0.5");  // the least FLIP first
+  EXPECT_EQ(seen["sortedBack"][0], "bilinear0.5");
+  EXPECT_NE(seen["unsorted"], seen["sorted"]);
+
+  EXPECT_EQ(seen["first"], (Json{grey(0, 0, 2), grey(0, 0, 0)}));  // the last method beside truth
+  EXPECT_EQ(seen["otherMethod"], (Json{grey(0, 0, 1), grey(0, 0, 0)}));
+  EXPECT_EQ(seen["truthLeft"], (Json{grey(0, 0, 0), grey(0, 0, 0)}));
+  EXPECT_EQ(seen["errorMap"][1], grey(0, 0, 0));
+  EXPECT_NE(seen["errorMap"][0], grey(0, 0, 1));  // in false colour
+  EXPECT_EQ(seen["otherScene"][1], grey(1, 0, 0));
+  EXPECT_EQ(seen["flipped"], (Json{"hidden", "visible"}));
+  EXPECT_NE(seen["wiped"][0], seen["wiped"][1]);
+}
+
+TEST_F(PageInBrowser, ShowsSomething) {
+  if (!there()) QUINCUNX_SKIP("there is no chromium");
+  browse(page_of(sample_of_two_scenes(), sample_gallery()),
+         "--hide-scrollbars --window-size=900,1600 --screenshot='" + folder_.file("shot.png") + "'");
+  const auto shot = tools::read_image(folder_.file("shot.png"));
+  ASSERT_TRUE(shot.ok()) << shot.status().message();
+  EXPECT_EQ(shot->extent, (Extent{900, 1600}));
+  std::set<std::tuple<float, float, float>> colours;
+  for (int y = 0; y < 1600; ++y) {
+    for (int x = 0; x < 900; ++x)
+      colours.insert({shot->at(x, y, 0), shot->at(x, y, 1), shot->at(x, y, 2)});
+  }
+  EXPECT_EQ(text_of("err").find("CONSOLE"), std::string::npos) << text_of("err");
+  EXPECT_GT(colours.size(), 100u);  // text has some dozen levels of one colour; plots and bars add theirs
+}
+
+TEST_F(PageInBrowser, WithoutPicturesHasNoViewer) {
+  if (!there()) QUINCUNX_SKIP("there is no chromium");
+  const std::string dom =
+      browse(with(page_of(testing::sample_result(), {}), "<head>", kListener), "--dump-dom");
+  EXPECT_EQ(text_of("err").find("CONSOLE"), std::string::npos) << text_of("err");
+  EXPECT_EQ(dom.find("<a href=\"#pictures\""), std::string::npos);  // no link leads there
+  EXPECT_NE(dom.find("class=\"point"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace quincunx::bench

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Full against partial clears of a colour (RGBA16F) and a velocity (RG16F) target: what clearing less is
+// worth.
+#pragma once
+
+#include <vector>
+
+#include "bench/harness/stage.h"
+
+namespace quincunx::bench {
+
+// At scales from 0.3 to 1: clear_region of both targets' viewport and, where `opengl`, GL's scissored clear
+// of it; beside them GL's clear of the whole. Targets have the stage's output extent. With `opengl` a context
+// is current, now and whenever the cases run or end.
+void add_clear_cases(std::vector<Case>& cases, Stage& stage, bool opengl);
+
+}  // namespace quincunx::bench
