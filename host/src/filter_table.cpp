@@ -3,49 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "axis_table.h"
 
 namespace quincunx {
 namespace {
 
-// A cubic of the family of Mitchell and Netravali, 1988.
-double cubic(double d, double b, double c) {
-  if (d >= 2) return 0;
-  if (d < 1) return (((12 - 9 * b - 6 * c) * d + (-18 + 12 * b + 6 * c)) * d * d + 6 - 2 * b) / 6;
-  return (((-b - 6 * c) * d + (6 * b + 30 * c)) * d + (-12 * b - 48 * c)) * d / 6 + (8 * b + 24 * c) / 6;
-}
-
-double sinc(double x) {
-  const double angle = std::numbers::pi * x;
-  return x == 0 ? 1 : std::sin(angle) / angle;
-}
-
-double filter_at(Filter filter, double d) {
-  switch (filter) {
-    case Filter::kTent:
-      return std::max(1 - d, 0.0);
-    case Filter::kBSpline:
-      return cubic(d, 1, 0);
-    case Filter::kCatmullRom:
-      return cubic(d, 0, 0.5);
-    case Filter::kLanczos2:
-      return d < 2 ? sinc(d) * sinc(d / 2) : 0;
-  }
-  return 0;
-}
-
-int radius(Filter filter) {
-  return filter == Filter::kTent ? 1 : 2;
-}
-
 double widening(int render, int output) {
   return std::max(1.0, static_cast<double>(render) / output);
 }
 
 struct Axis {
-  Filter filter;
+  const Filter& filter;
   int render;
   int taps;
   int inner;
@@ -64,42 +33,44 @@ void fill_pixel(const Axis& axis, double u, FilterSpan& span, float* weights) {
 
   double sum = 0;
   for (int k = 0; k < axis.taps; ++k)
-    sum += filter_at(axis.filter, std::abs(ideal + k - u) / axis.widening);
+    sum += axis.filter.weight(std::abs(ideal + k - u) / axis.widening);
   std::fill_n(weights, axis.taps, 0.0f);
   // The taps of one texel follow one another, so each weight is rounded once.
   for (int k = 0; k < axis.taps;) {
     const int texel = std::clamp(ideal + k, 0, last);
     double weight = 0;
     for (; k < axis.taps && std::clamp(ideal + k, 0, last) == texel; ++k)
-      weight += filter_at(axis.filter, std::abs(ideal + k - u) / axis.widening) / sum;
+      weight += axis.filter.weight(std::abs(ideal + k - u) / axis.widening) / sum;
     weights[texel - span.base] = std::abs(weight) < kLeastWeight ? 0 : static_cast<float>(weight);
   }
 }
 
 }  // namespace
 
-Filter filter_of(Method method) {
-  switch (method) {
-    case Method::kBSpline:
-      return Filter::kBSpline;
-    case Method::kCatmullRom:
-      return Filter::kCatmullRom;
-    case Method::kLanczos2:
-      return Filter::kLanczos2;
-    default:
-      return Filter::kTent;
-  }
+const Filter* own_filter(Method method) {
+  const Filter& filter = methods()[static_cast<std::size_t>(method)].filter;
+  return filter.radius > 1 ? &filter : nullptr;
 }
 
-int filter_taps(Filter filter, int render, int output) {
-  return 2 * static_cast<int>(std::ceil(radius(filter) * widening(render, output)));
+bool skips_samples(Method method) {
+  return method == Method::kPoint || method == Method::kNoise || method == Method::kNoiseOffset;
+}
+
+const Filter& filter_of(Method method) {
+  const Filter* own = own_filter(method);
+  return own != nullptr ? *own : methods()[static_cast<std::size_t>(Method::kBilinear)].filter;
+}
+
+int filter_taps(const Filter& filter, int render, int output) {
+  return 2 * static_cast<int>(std::ceil(filter.radius * widening(render, output)));
 }
 
 int filter_inner(int render, int output) {
   return 2 * static_cast<int>(std::ceil(widening(render, output)));
 }
 
-void fill_filter(Filter filter, int render, int output, double jitter, FilterSpan* spans, float* weights) {
+void fill_filter(const Filter& filter, int render, int output, double jitter, FilterSpan* spans,
+                 float* weights) {
   const Axis axis{filter, render, filter_taps(filter, render, output), filter_inner(render, output),
                   widening(render, output)};
   for (int x = 0; x < output; ++x) {
@@ -116,7 +87,7 @@ std::size_t spans_of(Extent output) {
   return static_cast<std::size_t>(padded_columns(output)) + static_cast<std::size_t>(output.height);
 }
 
-std::size_t table_bytes(Filter filter, Extent render, Extent output) {
+std::size_t table_bytes(const Filter& filter, Extent render, Extent output) {
   const auto weights =
       static_cast<std::size_t>(padded_columns(output)) * filter_taps(filter, render.width, output.width) +
       static_cast<std::size_t>(output.height) * filter_taps(filter, render.height, output.height);
@@ -125,7 +96,7 @@ std::size_t table_bytes(Filter filter, Extent render, Extent output) {
 
 }  // namespace
 
-FilterTables::FilterTables(const Device::Impl& device, Filter filter, Extent target, Extent output)
+FilterTables::FilterTables(const Device::Impl& device, const Filter& filter, Extent target, Extent output)
     : filter_(filter), output_(output), ring_(device, table_bytes(filter, target, output)) {}
 
 const cl::Buffer& FilterTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {

@@ -18,18 +18,19 @@
 
 namespace quincunx {
 
-enum class Filter { kTent, kBSpline, kCatmullRom, kLanczos2 };
+using Filter = SeparableFilter;
 
-// The filter of a method; kTent for those that have none of their own.
-Filter filter_of(Method method);
+// The filter of a method that scale_filter serves at all scales, else null. Lives as long as the program.
+const Filter* own_filter(Method method);
 
-// Whether a viewport is larger than the output on an axis, so that filters widen.
-inline bool widens(Extent render, Extent output) {
-  return render.width > output.width || render.height > output.height;
-}
+// Whether a method reads single samples and skips the rest where a viewport is larger than the output.
+bool skips_samples(Method method);
 
-// Samples that an axis reads at most: an even number, 2 (tent) or 4 up to scale 1.
-int filter_taps(Filter filter, int render, int output);
+// The filter by which a method widens above scale 1: its own, else bilinear's tent.
+const Filter& filter_of(Method method);
+
+// Samples that an axis reads at most: an even number, twice the radius up to scale 1.
+int filter_taps(const Filter& filter, int render, int output);
 
 // Samples of an axis that bound the result where ringing is clamped: 2 up to scale 1.
 int filter_inner(int render, int output);
@@ -37,23 +38,24 @@ int filter_inner(int render, int output);
 // Fills spans[0, output) and weights[0, output * filter_taps()). Beyond the edges a filter sees the edge
 // texel, whose weight takes what falls there. A weight below 2^-25 is 0. `render` and `output` >= 1, |jitter|
 // <= 1. Pure, no allocation.
-void fill_filter(Filter filter, int render, int output, double jitter, FilterSpan* spans, float* weights);
+void fill_filter(const Filter& filter, int render, int output, double jitter, FilterSpan* spans,
+                 float* weights);
 
 // The tables of one filter and output extent on the device, for viewports up to `target`. Not thread-safe.
 // Throws cl::Error.
 class FilterTables {
  public:
-  FilterTables(const Device::Impl& device, Filter filter, Extent target, Extent output);
+  FilterTables(const Device::Impl& device, const Filter& filter, Extent target, Extent output);
 
   // FilterSpan of each output column, padded to whole blocks, then of each row; then the weights in the same
   // order. See TableRing::get().
   const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
 
-  Filter filter() const { return filter_; }
+  const Filter& filter() const { return filter_; }
   Extent output() const { return output_; }
 
  private:
-  Filter filter_;
+  const Filter& filter_;
   Extent output_;
   TableRing ring_;
 };

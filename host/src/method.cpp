@@ -2,17 +2,50 @@
 #include "quincunx/method.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <numbers>
 
 namespace quincunx {
 namespace {
 
+double tent(double d) {
+  return std::max(1 - d, 0.0);
+}
+
+// A cubic of the family of Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", 1988.
+double cubic(double d, double b, double c) {
+  if (d >= 2) return 0;
+  if (d < 1) return (((12 - 9 * b - 6 * c) * d + (-18 + 12 * b + 6 * c)) * d * d + 6 - 2 * b) / 6;
+  return (((-b - 6 * c) * d + (6 * b + 30 * c)) * d + (-12 * b - 48 * c)) * d / 6 + (8 * b + 24 * c) / 6;
+}
+
+double b_spline(double d) {
+  return cubic(d, 1, 0);
+}
+
+double catmull_rom(double d) {
+  return cubic(d, 0, .5);
+}
+
+double sinc(double x) {
+  const double angle = std::numbers::pi * x;
+  return x == 0 ? 1 : std::sin(angle) / angle;
+}
+
+// Duchon, "Lanczos Filtering in One and Two Dimensions", 1979.
+template <int Lobes>
+double lanczos(double d) {
+  return d < Lobes ? sinc(d) * sinc(d / Lobes) : 0;
+}
+
+// Every method. One that is a separable filter is complete with its row.
 constexpr MethodInfo kMethods[] = {
     {Method::kPoint, "point", "the nearest sample"},
-    {Method::kBilinear, "bilinear", "four samples"},
-    {Method::kBSpline, "b-spline", "16 samples, cubic: smooth, never rings"},
-    {Method::kCatmullRom, "catmull-rom", "16 samples, cubic: sharp"},
-    {Method::kLanczos2, "lanczos2", "16 samples, windowed sinc"},
+    {Method::kBilinear, "bilinear", "four samples", {1, tent}},
+    {Method::kBSpline, "b-spline", "16 samples, cubic: smooth, never rings", {2, b_spline}},
+    {Method::kCatmullRom, "catmull-rom", "16 samples, cubic: sharp", {2, catmull_rom, true}},
+    {Method::kLanczos2, "lanczos2", "16 samples, windowed sinc", {2, lanczos<2>, true}},
     {Method::kNoise, "noise", "the nearest sample with film grain"},
     {Method::kNoiseOffset, "noise-offset", "one of bilinear's samples, by chance"},
     {Method::kQuincunx, "quincunx", "both frames, the previous one less where anything moves"},

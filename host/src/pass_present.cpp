@@ -1,42 +1,65 @@
 // SPDX-License-Identifier: MIT
-#include "pass_present.h"
+// present: the picture as 8-bit sRGB: exposed, tone mapped, dithered.
+#include <fmt/format.h>
 
-#include "kernel_options.h"
-#include "program_cache.h"
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
 
 namespace quincunx {
+namespace {
 
-PresentPass::PresentPass(const Device::Impl& device, const ResolveSettings& settings)
-    : device_(device),
-      settings_(settings),
-      kernel_(build_kernel(device, kernel_name(), present_options(settings))) {}
+class PresentPass : public Pass {
+ public:
+  using Pass::Pass;
 
-void PresentPass::warm_up(const cl::CommandQueue& queue) {
-  Scratch scratch(device_);
-  launch(queue, scratch.view(Storage::kBuffer, settings_.resolved), {1, 1}, 1,
-         scratch.view(settings_.storage, PixelFormat::kRGBA8), scratch.counter(), nullptr);
-  queue.finish();
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const ImageView& source = frame[facts().blurs() ? Resource::kBlurred : Resource::kResolved];
+    const ImageView& presented = frame[Resource::kPresented];
+    const float exposure = frame.current.exposure;
+    const PresentParams params{
+        .width = frame.output.width,
+        .height = frame.output.height,
+        .source = layout_of(source),
+        .output = layout_of(presented),
+        .counter = frame.counter.index,
+        .columns_per_item = columns_per_item(device(), frame.output.width, kPresentBlock),
+        .exposure = exposure == 0 ? 1 : exposure};
+    bind(params, source, presented, frame.counter);
+    launch(frame, frame.output, params.columns_per_item, event);
+  }
+};
+
+const char* curve(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return "TONE_CLAMP";
+    case ToneMap::kReinhard:
+      return "TONE_REINHARD";
+    case ToneMap::kAces:
+      return "TONE_ACES";
+  }
+  return "TONE_CLAMP";
 }
 
-void PresentPass::enqueue(const cl::CommandQueue& queue, const ImageView& resolved, float exposure,
-                          const ImageView& presented, Counter counter, cl::Event* event) {
-  launch(queue, resolved, settings_.output, exposure, presented, counter, event);
-}
+}  // namespace
 
-void PresentPass::launch(const cl::CommandQueue& queue, const ImageView& resolved, Extent extent,
-                         float exposure, const ImageView& presented, Counter counter, cl::Event* event) {
-  const PresentParams params{.width = extent.width,
-                             .height = extent.height,
-                             .source = layout_of(resolved),
-                             .output = layout_of(presented),
-                             .counter = counter.index,
-                             .columns_per_item = columns_per_item(device_, extent.width, kPresentBlock),
-                             .exposure = exposure == 0 ? 1 : exposure};
-  kernel_.setArg(0, params);
-  set_memory(kernel_, 1, resolved.memory);
-  set_memory(kernel_, 2, presented.memory);
-  set_memory(kernel_, 3, counter.memory);
-  enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);
+void plan_present(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!settings.present) {
+    list.left_out.push_back({"present", "no 8-bit picture is wanted"});
+    return;
+  }
+  list.passes.push_back(
+      {.kernel = "present",
+       .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
+                              curve(settings.tone_map), settings.dither ? 1 : 0,
+                              precision_of(settings.resolved), storage_option(settings.storage)),
+       .reason = "an 8-bit sRGB picture is wanted",
+       .uses = {{facts.blurs() ? Resource::kBlurred : Resource::kResolved, Access::kRead, Area::kOutput,
+                 settings.resolved},
+                {Resource::kPresented, Access::kWrite, Area::kOutput, PixelFormat::kRGBA8}},
+       .make = make_pass<PresentPass>});
 }
 
 }  // namespace quincunx

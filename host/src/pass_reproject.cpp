@@ -1,88 +1,122 @@
 // SPDX-License-Identifier: MIT
-#include "pass_reproject.h"
+// reproject: where each sample of a frame was in the previous one, and whether it could be seen there.
+#include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 
-#include "kernel_options.h"
-#include "program_cache.h"
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
 
 namespace quincunx {
 namespace {
 
-float falloff(int render, int output) {
-  const double reach = sample_reach(render, output);
-  return static_cast<float>(1 / (reach * reach));
+// On one axis, from sample i of one frame to its place among the samples of another: i * step + start.
+struct Axis {
+  float step;
+  float start;
+};
+
+Axis axis_between(int from, double from_jitter, int to, double to_jitter) {
+  const double step = static_cast<double>(to) / from;
+  return {static_cast<float>(step), static_cast<float>((.5 + from_jitter) * step - .5 - to_jitter)};
 }
+
+void set_positions(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous) {
+  const Axis x =
+      axis_between(current.render.width, current.jitter.x, previous.render.width, previous.jitter.x);
+  const Axis y =
+      axis_between(current.render.height, current.jitter.y, previous.render.height, previous.jitter.y);
+  const VelocityScale to_previous = velocity_scale_to(current, previous.render);
+  params.step_x = x.step;
+  params.step_y = y.step;
+  params.start_x = x.start;
+  params.start_y = y.start;
+  params.move_x = static_cast<float>(-to_previous.x);
+  params.move_y = static_cast<float>(-to_previous.y);
+  params.edge_x = -.5f - previous.jitter.x;
+  params.edge_y = -.5f - previous.jitter.y;
+}
+
+void set_contrast(ReprojectParams& params, const FrameInputs& current, Extent output) {
+  const VelocityScale to_output = velocity_scale_to(current, output);
+  params.contrast_x = static_cast<float>(to_output.x);
+  params.contrast_y = static_cast<float>(to_output.y);
+}
+
+void set_speeds(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous,
+                float weight) {
+  const double root = std::sqrt(static_cast<double>(weight));
+  const VelocityScale now = velocity_scale_to(current, current.render);
+  const VelocityScale before = velocity_scale_to(previous, previous.render);
+  params.speed0_x = static_cast<float>(root * now.x);
+  params.speed0_y = static_cast<float>(root * now.y);
+  params.speed1_x = static_cast<float>(root * before.x);
+  params.speed1_y = static_cast<float>(root * before.y);
+}
+
+class ReprojectPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const FrameInputs& current = frame.current;
+    const FrameInputs& previous = frame.previous;
+    ReprojectParams params{};
+    params.width = current.render.width;
+    params.height = current.render.height;
+    params.previous_width = previous.render.width;
+    params.previous_height = previous.render.height;
+    params.velocity0 = layout_of(frame[Resource::kVelocity]);
+    params.velocity1 = layout_if_used(frame, Resource::kPreviousVelocity);
+    params.depth0 = layout_of(frame[Resource::kDepth]);
+    params.depth1 = layout_of(frame[Resource::kPreviousDepth]);
+    params.moves = layout_of(frame[Resource::kReprojection]);
+    params.columns_per_item = columns_per_item(device(), current.render.width);
+    params.reactive0 = layout_if_used(frame, Resource::kReactive);
+    params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
+    set_positions(params, current, previous);
+    set_contrast(params, current, frame.output);
+    if (facts().weighs_residual()) set_speeds(params, current, previous, settings().quincunx.residual_weight);
+    bind(params, frame[Resource::kVelocity], view_or(frame, Resource::kPreviousVelocity, Resource::kVelocity),
+         frame[Resource::kDepth], frame[Resource::kPreviousDepth],
+         view_or(frame, Resource::kReactive, Resource::kDepth),
+         view_or(frame, Resource::kPreviousReactive, Resource::kPreviousDepth),
+         view_or(frame, Resource::kPreviousReprojection, Resource::kReprojection),
+         frame[Resource::kReprojection]);
+    launch(frame, current.render, params.columns_per_item, event);
+  }
+};
 
 }  // namespace
 
-double sample_reach(int render, int output) {
-  return std::clamp(.7 + .35 * render / output, .875, 1.0);
-}
-
-ReprojectPass::ReprojectPass(const Device::Impl& device, const ResolvePlan& plan)
-    : device_(device),
-      settings_(plan.settings),
-      reads_reactive_(plan.reads_reactive),
-      tables_(device, plan.settings.output),
-      resolve_(build_kernel(device, kKernels[1], reprojected_options(plan))) {
-  if (plan.velocity != VelocitySource::kNone) moves_.emplace(device, plan);
-}
-
-void ReprojectPass::warm_up(const cl::CommandQueue& queue) {
-  Scratch scratch(device_);
-  PositionTables tables(device_, {1, 1});
-  const FrameInputs frame = scratch.frame(settings_);
-  launch(queue, tables, frame, frame, scratch.view(Storage::kBuffer, settings_.resolved), scratch.counter(),
-         nullptr);
-  queue.finish();
-}
-
-void ReprojectPass::enqueue(const cl::CommandQueue& queue, const FrameInputs& current,
-                            const FrameInputs& previous, const ImageView& output, Counter counter,
-                            cl::Event* events) {
-  launch(queue, tables_, current, previous, output, counter, events);
-}
-
-void ReprojectPass::launch(const cl::CommandQueue& queue, PositionTables& tables, const FrameInputs& current,
-                           const FrameInputs& previous, const ImageView& output, Counter counter,
-                           cl::Event* events) {
-  if (moves_) {
-    moves_->enqueue(queue, current, previous, events);
-    if (events != nullptr) ++events;
+void plan_reproject(const PlanFacts& facts, PassList& list) {
+  if (!facts.reprojects()) return;
+  const PixelFormat velocity = facts.settings.velocity;
+  PassSpec spec{
+      .kernel = "reproject",
+      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D CONTRAST={} {}",
+                             facts.reads_reactive() ? 1 : 0, facts.weighs_residual() ? 1 : 0,
+                             facts.accumulates() ? 1 : 0, velocity_options(facts.settings)),
+      .reason = "the method: where each sample was, and whether it could be seen",
+      .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, velocity},
+               {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+               {Resource::kPreviousDepth, Access::kRead, Area::kPreviousViewport, PixelFormat::kR32F},
+               {Resource::kReprojection, Access::kWrite, Area::kViewport, PixelFormat::kRGBA32F}},
+      .make = make_pass<ReprojectPass>,
+      .frames = facts.accumulates() ? Frames::kSparse : Frames::kWithHistory};
+  if (facts.accumulates()) {  // edges of motion in the previous frame
+    spec.uses.push_back(
+        {Resource::kPreviousReprojection, Access::kRead, Area::kPreviousViewport, PixelFormat::kRGBA32F});
   }
-  const Extent extent = tables.output();
-  const Extent now = current.render;
-  const Extent before = previous.render;
-  ReprojectedParams params{.output_width = extent.width,
-                           .output_height = extent.height,
-                           .frame0 = {now.width, now.height, layout_of(current.colour), {}, {}},
-                           .frame1 = {before.width, before.height, layout_of(previous.colour), {}, {}},
-                           .moves = moves_ ? layout_of(moves_->view()) : TexelLayout{},
-                           .output = layout_of(output),
-                           .columns = tables.columns(),
-                           .counter = counter.index,
-                           .columns_per_item = columns_per_item(device_, extent.width, kReprojectedBlock),
-                           .falloff0_x = falloff(now.width, extent.width),
-                           .falloff0_y = falloff(now.height, extent.height),
-                           .falloff1_x = falloff(before.width, extent.width),
-                           .falloff1_y = falloff(before.height, extent.height)};
-  if (reads_reactive_) {
-    params.frame0.reactive = layout_of(current.reactive);
-    params.frame1.reactive = layout_of(previous.reactive);
+  if (facts.weighs_residual())
+    spec.uses.push_back({Resource::kPreviousVelocity, Access::kRead, Area::kPreviousViewport, velocity});
+  if (facts.reads_reactive()) {
+    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
+    spec.uses.push_back(
+        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
   }
-  resolve_.setArg(0, params);
-  resolve_.setArg(1, tables.get(queue, now, current.jitter));
-  resolve_.setArg(2, tables.get(queue, before, previous.jitter));
-  set_memory(resolve_, 3, current.colour.memory);
-  set_memory(resolve_, 4, previous.colour.memory);
-  // What a variant does not read may be any image or buffer.
-  set_memory(resolve_, 5, (moves_ ? moves_->view() : output).memory);
-  set_memory(resolve_, 6, (reads_reactive_ ? current.reactive : current.colour).memory);
-  set_memory(resolve_, 7, (reads_reactive_ ? previous.reactive : previous.colour).memory);
-  set_memory(resolve_, 8, output.memory);
-  set_memory(resolve_, 9, counter.memory);
-  enqueue_rows(device_, queue, resolve_, extent, params.columns_per_item, events);
+  list.passes.push_back(std::move(spec));
 }
 
 }  // namespace quincunx

@@ -1,47 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "pass_scale.h"
-
+// scale_point, scale_bilinear, scale_noise, scale_noise_offset: one rendered frame to the output through an axis
+// table of two taps.
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
-#include "kernel_options.h"
-#include "program_cache.h"
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
 
 namespace quincunx {
 namespace {
 
 bool is_noise(Method method) {
   return method == Method::kNoise || method == Method::kNoiseOffset;
-}
-
-bool is_wide(Method method) {
-  return filter_of(method) != Filter::kTent;
-}
-
-// The kernel for viewports up to the output's size.
-const char* small_kernel(Method method) {
-  switch (method) {
-    case Method::kPoint:
-      return "scale_point";
-    case Method::kNoise:
-      return "scale_noise";
-    case Method::kNoiseOffset:
-      return "scale_noise_offset";
-    case Method::kBSpline:
-    case Method::kCatmullRom:
-    case Method::kLanczos2:
-      return FilterPass::kernel_name();
-    case Method::kBilinear:
-    case Method::kQuincunx:
-    case Method::kTemporal:
-      return "scale_bilinear";
-  }
-  return "scale_bilinear";
-}
-
-bool skips(Method method) {
-  return method == Method::kPoint || is_noise(method);
 }
 
 // Grain stands in for the detail that is missing: none at scale 1, all of it at scale 0.
@@ -56,67 +27,81 @@ int random_reach(int render, int output) {
   return static_cast<int>(std::nearbyint(std::clamp(ratio, 1.0, 250.0) * 256));
 }
 
+class ScalePass : public Pass {
+ public:
+  ScalePass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) { setup.tables.axis(); }
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent extent = frame.output;
+    const Extent render = frame.current.render;
+    AxisTables& tables = frame.tables.axis();
+    const ImageView& colour = frame[Resource::kColour];
+    const ImageView& output = frame[picture()];
+    const ScaleParams params{.output_width = extent.width,
+                             .output_height = extent.height,
+                             .source_width = render.width,
+                             .source_height = render.height,
+                             .source = layout_of(colour),
+                             .output = layout_of(output),
+                             .row_axis = tables.row_axis(),
+                             .counter = frame.counter.index,
+                             .columns_per_item = columns_per_item(device(), extent.width)};
+    const cl::Buffer& taps = tables.get(frame.queue, render, frame.current.jitter);
+    if (is_noise(settings().method)) {
+      const auto seed = static_cast<unsigned>(settings().noise_moves ? frame.current.frame_index : 0);
+      const NoiseParams noise{params, seed, grain_amplitude(settings().grain, render, extent),
+                              random_reach(render.width, extent.width),
+                              random_reach(render.height, extent.height)};
+      bind(noise, taps, colour, output, frame.counter);
+    } else {
+      bind(params, taps, colour, output, frame.counter);
+    }
+    launch(frame, extent, params.columns_per_item, event);
+  }
+};
+
+// The kernel, and why: several methods take bilinear's in place of their own.
+struct Choice {
+  const char* kernel;
+  const char* reason;
+  Frames frames = Frames::kAll;
+};
+
+Choice choice_of(Method method) {
+  switch (method) {
+    case Method::kPoint:
+      return {"scale_point", "the method: the nearest sample"};
+    case Method::kNoise:
+      return {"scale_noise", "the method: the nearest sample, with grain"};
+    case Method::kNoiseOffset:
+      return {"scale_noise_offset", "the method: one of four samples, at random"};
+    case Method::kBilinear:
+      return {"scale_bilinear", "the method: four samples"};
+    case Method::kQuincunx:
+      // Bit for bit what the quincunx resolve gives where the previous frame has no weight.
+      return {"scale_bilinear", "in place of both frames on the first one and after a reset",
+              Frames::kWithoutHistory};
+    default:
+      return {nullptr, nullptr};
+  }
+}
+
 }  // namespace
 
-const char* scale_kernel(Method method, Extent render, Extent output) {
-  const bool widened = widens(render, output) && !skips(method);
-  return widened ? FilterPass::kernel_name() : small_kernel(method);
-}
-
-ScalePass::ScalePass(const Device::Impl& device, Method method, const ResolveSettings& settings)
-    : device_(device), method_(method), settings_(settings) {
-  if (!is_wide(method)) kernel_ = build_kernel(device, small_kernel(method), scale_options(settings));
-  if (is_wide(method) || (widens(settings.target, settings.output) && !skips(method)))
-    filter_.emplace(device, filter_of(method), settings);
-}
-
-void ScalePass::warm_up(const cl::CommandQueue& queue) {
-  if (filter_) filter_->warm_up(queue);
-  if (!kernel_) return;
-  Scratch scratch(device_);
-  AxisTables tables(device_, {1, 1});
-  FrameInputs inputs;
-  inputs.colour = scratch.view(settings_.storage, settings_.colour);
-  inputs.render = inputs.colour.extent;
-  launch(queue, tables, inputs, scratch.view(Storage::kBuffer, settings_.resolved), scratch.counter(),
-         nullptr);
-  queue.finish();
-}
-
-void ScalePass::enqueue(const cl::CommandQueue& queue, AxisTables& tables, const FrameInputs& inputs,
-                        const ImageView& output, Counter counter, cl::Event* event) {
-  if (kernel_name(inputs.render) == std::string_view(FilterPass::kernel_name())) {
-    filter_->enqueue(queue, inputs, output, counter, event);
-  } else {
-    launch(queue, tables, inputs, output, counter, event);
-  }
-}
-
-void ScalePass::launch(const cl::CommandQueue& queue, AxisTables& tables, const FrameInputs& inputs,
-                       const ImageView& output, Counter counter, cl::Event* event) {
-  const Extent extent = tables.output();
-  const ScaleParams params{.output_width = extent.width,
-                           .output_height = extent.height,
-                           .source_width = inputs.render.width,
-                           .source_height = inputs.render.height,
-                           .source = layout_of(inputs.colour),
-                           .output = layout_of(output),
-                           .row_axis = tables.row_axis(),
-                           .counter = counter.index,
-                           .columns_per_item = columns_per_item(device_, extent.width)};
-  if (is_noise(method_)) {
-    const auto seed = static_cast<unsigned>(settings_.noise_moves ? inputs.frame_index : 0);
-    kernel_->setArg(0, NoiseParams{params, seed, grain_amplitude(settings_.grain, inputs.render, extent),
-                                   random_reach(inputs.render.width, extent.width),
-                                   random_reach(inputs.render.height, extent.height)});
-  } else {
-    kernel_->setArg(0, params);
-  }
-  kernel_->setArg(1, tables.get(queue, inputs.render, inputs.jitter));
-  set_memory(*kernel_, 2, inputs.colour.memory);
-  set_memory(*kernel_, 3, output.memory);
-  set_memory(*kernel_, 4, counter.memory);
-  enqueue_rows(device_, queue, *kernel_, extent, params.columns_per_item, event);
+void plan_scale(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  const Choice choice = choice_of(settings.method);
+  if (choice.kernel == nullptr) return;
+  list.passes.push_back(
+      {.kernel = choice.kernel,
+       .options = scale_options(settings),
+       .reason = choice.reason,
+       .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+       .make = make_pass<ScalePass>,
+       .frames = choice.frames,
+       // Bilinear widens above scale 1, which is scale_filter's work.
+       .viewports = skips_samples(settings.method) ? Viewports::kAll : Viewports::kNotWider});
 }
 
 }  // namespace quincunx

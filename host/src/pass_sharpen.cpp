@@ -1,40 +1,46 @@
 // SPDX-License-Identifier: MIT
-#include "pass_sharpen.h"
+// sharpen: the resolved picture made crisper.
+#include <fmt/format.h>
 
-#include "kernel_options.h"
-#include "program_cache.h"
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
 
 namespace quincunx {
+namespace {
 
-SharpenPass::SharpenPass(const Device::Impl& device, const ResolveSettings& settings)
-    : device_(device),
-      settings_(settings),
-      kernel_(build_kernel(device, kernel_name(), sharpen_options(settings))) {}
+class SharpenPass : public Pass {
+ public:
+  using Pass::Pass;
 
-void SharpenPass::warm_up(const cl::CommandQueue& queue) {
-  Scratch scratch(device_);
-  launch(queue, scratch.view(Storage::kBuffer, settings_.resolved), {1, 1},
-         scratch.view(Storage::kBuffer, settings_.resolved), nullptr);
-  queue.finish();
-}
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const SharpenParams params{.width = frame.output.width,
+                               .height = frame.output.height,
+                               .source = layout_of(frame[Resource::kUnsharpened]),
+                               .output = layout_of(frame[Resource::kResolved]),
+                               .columns_per_item = columns_per_item(device(), frame.output.width),
+                               .sharpness = settings().sharpness};
+    bind(params, frame[Resource::kUnsharpened], frame[Resource::kResolved]);
+    launch(frame, frame.output, params.columns_per_item, event);
+  }
+};
 
-void SharpenPass::enqueue(const cl::CommandQueue& queue, const ImageView& source, const ImageView& sharpened,
-                          cl::Event* event) {
-  launch(queue, source, settings_.output, sharpened, event);
-}
+}  // namespace
 
-void SharpenPass::launch(const cl::CommandQueue& queue, const ImageView& source, Extent extent,
-                         const ImageView& sharpened, cl::Event* event) {
-  const SharpenParams params{.width = extent.width,
-                             .height = extent.height,
-                             .source = layout_of(source),
-                             .output = layout_of(sharpened),
-                             .columns_per_item = columns_per_item(device_, extent.width),
-                             .sharpness = settings_.sharpness};
-  kernel_.setArg(0, params);
-  set_memory(kernel_, 1, source.memory);
-  set_memory(kernel_, 2, sharpened.memory);
-  enqueue_rows(device_, queue, kernel_, extent, params.columns_per_item, event);
+void plan_sharpen(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!facts.sharpens()) {
+    list.left_out.push_back(
+        {"sharpen", settings.sharpness > 0 ? "the view is no picture" : "sharpness is 0"});
+    return;
+  }
+  list.passes.push_back(
+      {.kernel = "sharpen",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
+       .reason = "sharpness is wanted: contrast between neighbours, within their range",
+       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.resolved},
+                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved}},
+       .make = make_pass<SharpenPass>});
 }
 
 }  // namespace quincunx

@@ -4,124 +4,67 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <array>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "frame_ring.h"
-#include "frame_traffic.h"
-#include "pass_clear.h"
-#include "pass_motion_blur.h"
-#include "pass_present.h"
-#include "pass_reproject.h"
-#include "pass_resolve.h"
-#include "pass_scale.h"
-#include "pass_sharpen.h"
-#include "pass_temporal.h"
-#include "pass_velocity.h"
+#include "pass_chain.h"
+#include "pass_clear_region.h"
 #include "program_cache.h"
 
 namespace quincunx {
+namespace {
+
+// A plan is data that anyone may edit; the service runs what plan_for() makes and nothing else.
+Status check_unedited(const ResolvePlan& plan) {
+  const Result<ResolvePlan> made = plan_for(plan.needs, plan.settings);
+  if (!made.ok()) return made.status();
+  const ResolvePlan& own = made.value();
+  if (plan == own) return {};
+  const char* edited = plan.passes != own.passes             ? "passes"
+                       : plan.buffers != own.buffers         ? "buffers"
+                       : plan.left_out != own.left_out       ? "left_out"
+                       : plan.velocity != own.velocity       ? "velocity"
+                       : plan.reads_depth != own.reads_depth ? "reads_depth"
+                                                             : "reads_reactive";
+  return Status::invalid(fmt::format(
+      "the plan's {} is not what plan_for() makes of its needs and settings; change those and plan again",
+      edited));
+}
+
+}  // namespace
 
 struct ResolveService::Impl {
-  Impl(const Device& on, const ResolvePlan& to_do);
+  Impl(const Device& on, const ResolvePlan& to_do)
+      : device(on),
+        plan(to_do),
+        chain(on, PlanFacts(to_do.needs, to_do.settings)),
+        counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {}
 
-  Status allocate();
   void warm_up();
-  void enqueue(const FrameInputs& inputs, const FrameOutputs& outputs, FrameRing::Slot& slot);
-  int resolve_both(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
-                   cl::Event* events);
-  int accumulate(const FrameInputs& inputs, const ImageView& target, Counter count, FrameRing::Slot& slot,
-                 cl::Event* events);
-  void show(const FrameInputs& inputs, const FrameOutputs& outputs, const ImageView& sharp, Counter count,
-            FrameRing::Slot& slot, cl::Event* event);
-  void add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const;
+  void enqueue(const PassFrame& frame, const FrameOutputs& outputs, FrameRing::Slot& slot);
   Status check_history(const FrameInputs& inputs) const;
-  FrameInputs with_velocity(FrameInputs inputs) const;
-  ClearPass* clear_pass(const ImageView& image);
-  bool uses_previous(const FrameInputs& inputs) const {
-    return plan.keeps_previous_frame() && has_previous && !inputs.reset;
+  ClearRegionPass* clear_pass(const ImageView& image) const;
+  // A dense frame has left no history.
+  bool has_history(const FrameInputs& inputs) const {
+    return plan.keeps_previous_frame() && has_previous && !inputs.reset &&
+           !(plan.accumulates() && is_dense(previous.render, plan.settings.output));
   }
 
   Device device;
   ResolvePlan plan;
-  AxisTables tables;
-  std::optional<VelocityPass> velocity;
-  std::optional<ScalePass> scale;      // where frames are not accumulated
-  std::optional<ResolvePass> resolve;  // of the two-frame forms one
-  std::optional<ReprojectPass> reproject;
-  std::optional<TemporalPass> temporal;
-  std::optional<SharpenPass> sharpen;
-  std::optional<MotionBlurPass> blur;
-  std::optional<PresentPass> present;
-  std::vector<std::pair<PixelFormat, ClearPass>> clears;  // by texel size
-  Image resolved;                                         // where the caller gives none
-  Image unsharpened;                                      // where the plan sharpens
-  Image blurred;                                          // as resolved
-  std::array<Image, 2> velocities;  // of VelocityPass: this frame's and the previous one's
-  std::size_t next_velocity = 0;
+  PassChain chain;
   cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
   FrameInputs previous;
   bool has_previous = false;
   FrameRing ring;
 };
 
-ResolveService::Impl::Impl(const Device& on, const ResolvePlan& to_do)
-    : device(on),
-      plan(to_do),
-      tables(*on.impl(), to_do.settings.output),
-      counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {
-  const Device::Impl& impl = *device.impl();
-  if (plan.velocity == VelocitySource::kCamera) velocity.emplace(impl, plan.settings);
-  if (!plan.accumulates() || plan.is_dense(plan.settings.target))
-    scale.emplace(impl, plan.settings.method, plan.settings);
-  if (plan.accumulates()) {
-    temporal.emplace(impl, plan);
-  } else if (plan.reprojects()) {
-    reproject.emplace(impl, plan);
-  } else if (plan.keeps_previous_frame()) {
-    resolve.emplace(impl, plan);
-  }
-  if (plan.sharpens()) sharpen.emplace(impl, plan.settings);
-  if (plan.blurs()) blur.emplace(impl, plan.settings);
-  if (plan.settings.present) present.emplace(impl, plan.settings);
-  for (const PixelFormat format : plan.clears()) {
-    clears.emplace_back(format, ClearPass(impl, plan.settings.storage, format));
-  }
-}
-
-Status ResolveService::Impl::allocate() {
-  const ResolveSettings& settings = plan.settings;
-  const auto make = [&](Image& image, Extent extent, PixelFormat format, Storage storage) -> Status {
-    auto made = device.allocate(extent, format, storage);
-    if (made.ok()) image = std::move(made).value();
-    return made.status();
-  };
-  for (Image* image : {&resolved, sharpen ? &unsharpened : nullptr, blur ? &blurred : nullptr}) {
-    if (image == nullptr) continue;
-    if (Status status = make(*image, settings.output, settings.resolved, Storage::kBuffer); !status.ok())
-      return status;
-  }
-  for (Image& image : velocities) {
-    if (!velocity) break;
-    if (Status status = make(image, settings.target, settings.velocity, settings.storage); !status.ok())
-      return status;
-  }
-  return {};
-}
-
 void ResolveService::Impl::warm_up() {
-  const cl::CommandQueue& queue = device.impl()->queue;
-  if (velocity) velocity->warm_up(queue);
-  if (scale) scale->warm_up(queue);
-  if (resolve) resolve->warm_up(queue);
-  if (reproject) reproject->warm_up(queue);
-  if (temporal) temporal->warm_up(queue);
-  if (sharpen) sharpen->warm_up(queue);
-  if (blur) blur->warm_up(queue);
-  if (present) present->warm_up(queue);
-  for (auto& [format, pass] : clears)
-    pass.warm_up(queue);
+  chain.warm_up();
   // The commands around the kernels have a first time too.
+  const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
   cl_uint back = 1;
   queue.enqueueFillBuffer(counter, zero, 0, sizeof(zero));
@@ -129,19 +72,22 @@ void ResolveService::Impl::warm_up() {
   queue.finish();
 }
 
-void ResolveService::Impl::add_pass(FrameRing::Slot& slot, const char* kernel, std::uint64_t bytes) const {
-  slot.report.passes[slot.report.pass_count++] = {.kernel = kernel, .bytes = bytes};
-}
-
-// What validate() cannot see: the previous frame must still be where it was.
+// What validate() cannot see: the previous frame must still be where it was. Of the images that change with every
+// frame, one that is read again tells.
 Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
-  if (!uses_previous(inputs)) return {};
-  const auto same = [](const ImageView& a, const ImageView& b) {
-    return a.memory == b.memory && a.offset == b.offset;
+  if (!has_history(inputs)) return {};
+  const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
+    const bool is_read = std::any_of(
+        plan.buffers.begin(), plan.buffers.end(),
+        [&](const PlannedBuffer& buffer) { return buffer.name == name_of(previous_of(resource)); });
+    return is_read && now.memory == before.memory && now.offset == before.offset;
   };
   const char* shared = nullptr;
-  if (!plan.accumulates() && same(inputs.colour, previous.colour)) shared = "colour";
-  if (plan.accumulates() && plan.follows() && same(inputs.depth, previous.depth)) shared = "depth";
+  if (is_shared(Resource::kColour, inputs.colour, previous.colour)) {
+    shared = name_of(Resource::kColour);
+  } else if (plan.accumulates() && is_shared(Resource::kDepth, inputs.depth, previous.depth)) {
+    shared = name_of(Resource::kDepth);
+  }
   if (shared == nullptr) return {};
   return Status::invalid(
       fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
@@ -149,111 +95,22 @@ Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
                   shared));
 }
 
-// The frame as the passes see it: where velocity comes from the camera it has the service's own target.
-FrameInputs ResolveService::Impl::with_velocity(FrameInputs inputs) const {
-  if (!velocity) return inputs;
-  inputs.velocity = velocities[next_velocity].view();
-  inputs.velocity_scale = {};
-  return inputs;
-}
-
-// This frame and the previous one; gives the number of kernels.
-int ResolveService::Impl::resolve_both(const FrameInputs& inputs, const ImageView& target, Counter count,
-                                       FrameRing::Slot& slot, cl::Event* events) {
-  const cl::CommandQueue& queue = device.impl()->queue;
-  if (resolve) {
-    resolve->enqueue(queue, tables, inputs, previous, target, count, events);
-    add_pass(slot, ResolvePass::kernel_name(), quincunx_bytes(plan, inputs.render, previous.render));
-    return 1;
-  }
-  reproject->enqueue(queue, inputs, previous, target, count, events);
-  const auto& kernels = ReprojectPass::kKernels;
-  if (reproject->moves()) add_pass(slot, kernels[0], reproject_bytes(plan, inputs.render, previous.render));
-  add_pass(slot, kernels[1], reprojected_bytes(plan, inputs.render, previous.render));
-  return reproject->moves() ? 2 : 1;
-}
-
-// This frame and all before it; gives the number of kernels.
-int ResolveService::Impl::accumulate(const FrameInputs& inputs, const ImageView& target, Counter count,
-                                     FrameRing::Slot& slot, cl::Event* events) {
-  const cl::CommandQueue& queue = device.impl()->queue;
-  // A dense frame has left no history.
-  const bool known = uses_previous(inputs) && !plan.is_dense(previous.render);
-  const FrameInputs& before = known ? previous : inputs;
-  if (!known) temporal->forget(queue);
-  temporal->enqueue(queue, inputs, before, target, count, events);
-  slot.report.used_previous = known;
-  const int first = slot.report.pass_count;
-  const auto& kernels = TemporalPass::kKernels;
-  if (plan.follows()) add_pass(slot, kernels[0], reproject_bytes(plan, inputs.render, before.render));
-  add_pass(slot, kernels[1], temporal_tiles_bytes(plan, inputs.render));
-  add_pass(slot, kernels[2], temporal_light_bytes(plan));
-  add_pass(slot, kernels[3], temporal_bytes(plan, inputs.render, before.render));
-  if (plan.settings.temporal.view == TemporalView::kPicture)
-    add_pass(slot, kernels[4], temporal_display_bytes(plan, inputs.render));
-  return slot.report.pass_count - first;
-}
-
-// The optional outputs, from the resolved picture.
-void ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs,
-                                const ImageView& sharp, Counter count, FrameRing::Slot& slot,
-                                cl::Event* event) {
-  const cl::CommandQueue& queue = device.impl()->queue;
-  const ResolveSettings& settings = plan.settings;
-  const ImageView* picture = &sharp;
-  if (blur && (outputs.blurred || outputs.presented)) {
-    picture = outputs.blurred ? &outputs.blurred : &blurred.view();
-    blur->enqueue(queue, tables, inputs, sharp, *picture, event);
-    event += MotionBlurPass::kKernels.size();
-    add_pass(slot, MotionBlurPass::kKernels[0], motion_tiles_bytes(settings, inputs.render));
-    add_pass(slot, MotionBlurPass::kKernels[1], motion_neighbours_bytes(settings));
-    add_pass(slot, MotionBlurPass::kKernels[2], motion_blur_bytes(settings, inputs.render));
-  }
-  if (outputs.presented) {
-    present->enqueue(queue, *picture, inputs.exposure, outputs.presented, count, event++);
-    add_pass(slot, PresentPass::kernel_name(), present_bytes(settings));
-  }
-}
-
-void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FrameOutputs& outputs,
+void ResolveService::Impl::enqueue(const PassFrame& frame, const FrameOutputs& outputs,
                                    FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
-  const ResolveSettings& settings = plan.settings;
-  const int index = ring.index_of(slot);
-  const Counter count = {counter(), index};
   const cl_uint zero = 0;
-  queue.enqueueFillBuffer(counter, zero, index * sizeof(zero), sizeof(zero));
-
-  const ImageView& resolved_view = outputs.resolved ? outputs.resolved : resolved.view();
-  const ImageView& target = sharpen ? unsharpened.view() : resolved_view;
-  cl::Event* event = slot.passes.data();
-  if (velocity) {
-    velocity->enqueue(queue, inputs, inputs.velocity, event++);
-    add_pass(slot, VelocityPass::kernel_name(), velocity_bytes(settings, inputs.render));
-  }
-  if (temporal && !plan.is_dense(inputs.render)) {
-    event += accumulate(inputs, target, count, slot, event);
-  } else if (!temporal && uses_previous(inputs)) {
-    event += resolve_both(inputs, target, count, slot, event);
-    slot.report.used_previous = true;
-  } else {
-    scale->enqueue(queue, tables, inputs, target, count, event++);
-    add_pass(slot, scale->kernel_name(inputs.render), scale_bytes(settings, inputs.render));
-  }
-  if (sharpen) {
-    sharpen->enqueue(queue, target, resolved_view, event++);
-    add_pass(slot, SharpenPass::kernel_name(), sharpen_bytes(settings));
-  }
-  show(inputs, outputs, resolved_view, count, slot, event);
-  queue.enqueueReadBuffer(counter, CL_FALSE, index * sizeof(zero), sizeof(slot.non_finite), &slot.non_finite,
-                          nullptr, &slot.done);
+  const std::size_t at = static_cast<std::size_t>(frame.counter.index) * sizeof(zero);
+  queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
+  chain.run(frame, outputs, slot.report, slot.passes.data());
+  queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
+                          &slot.done);
   queue.flush();
 }
 
-ClearPass* ResolveService::Impl::clear_pass(const ImageView& image) {
-  for (auto& [format, pass] : clears) {
-    if (image.storage == Storage::kImage || bytes_per_pixel(format) == bytes_per_pixel(image.format))
-      return &pass;
+ClearRegionPass* ResolveService::Impl::clear_pass(const ImageView& image) const {
+  for (const auto& pass : chain.passes()) {
+    auto* clear = dynamic_cast<ClearRegionPass*>(pass.get());
+    if (clear != nullptr && clear->serves(image)) return clear;
   }
   return nullptr;
 }
@@ -274,15 +131,17 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
     return Status::unsupported(
         fmt::format("'{}' has no images; plan with buffer storage", device.info().name));
   }
+  if (Status status = check_unedited(plan); !status.ok()) return status;
   try {
     auto impl = std::make_unique<Impl>(device, plan);
-    if (Status status = impl->allocate(); !status.ok()) return status;
     impl->warm_up();
     return ResolveService(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "creating the resolve service", device.info().name);
   } catch (const BuildError& error) {
     return Status::device(fmt::format("on '{}' {}", device.info().name, error.what()));
+  } catch (const AllocationError& error) {
+    return error.status();
   }
 }
 
@@ -300,12 +159,15 @@ FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutpu
     const Extent output = impl_->plan.settings.output;
     slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
                          static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
-    const FrameInputs frame = impl_->with_velocity(inputs);
+    const bool has_history = impl_->has_history(inputs);
+    const PassFrame frame = impl_->chain.frame(inputs, has_history ? &impl_->previous : nullptr, outputs,
+                                               {impl_->counter(), impl_->ring.index_of(slot)});
+    slot.report.used_previous =
+        has_history && !(impl_->plan.accumulates() && is_dense(inputs.render, output));
     impl_->enqueue(frame, outputs, slot);
     impl_->ring.commit();
-    impl_->previous = frame;
+    impl_->previous = inputs;
     impl_->has_previous = true;
-    impl_->next_velocity = 1 - impl_->next_velocity;
     return slot.report;
   } catch (const cl::Error& error) {
     // Part of the frame may be queued; what it left behind is not to be trusted as history.
@@ -330,7 +192,7 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
         fmt::format("the rectangle to clear is {}x{}; it must lie within 1x1 and the image's {}x{}",
                     render.width, render.height, image.extent.width, image.extent.height));
   }
-  ClearPass* pass = impl_->clear_pass(image);
+  ClearRegionPass* pass = impl_->clear_pass(image);
   if (pass == nullptr) {
     return Status::invalid(
         fmt::format("a clear of {} is not in the plan; set settings.clear for a scene without a "
@@ -338,11 +200,12 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
                     name_of(image.format)));
   }
   try {
-    pass->enqueue(impl_->device.impl()->queue, image, render, value, nullptr);
-    impl_->device.impl()->queue.flush();
+    const PassFrame frame = impl_->chain.frame({}, nullptr, {}, {});
+    pass->clear(frame, image, render, value, nullptr);
+    frame.queue.flush();
     return {};
   } catch (const cl::Error& error) {
-    return describe(error, ClearPass::kernel_name(), impl_->device.info().name);
+    return describe(error, pass->spec().kernel, impl_->device.info().name);
   }
 }
 
@@ -351,10 +214,17 @@ Status ResolveService::finish() {
 }
 
 Result<TileKinds> ResolveService::tile_kinds() const {
-  if (!impl_->blur)
+  const ImageView tiles = impl_->chain.newest(Resource::kTileBlurs);
+  if (!tiles)
     return Status::invalid("the plan has no motion blur and so no tiles; set settings.blur.shutter");
   try {
-    return TileKinds{impl_->blur->tiles(), impl_->blur->tile_kinds(impl_->device.impl()->queue)};
+    std::vector<TileBlur> blurs(static_cast<std::size_t>(tiles.extent.area()));
+    impl_->device.impl()->queue.enqueueReadBuffer(borrow<cl::Buffer>(tiles.memory), CL_TRUE, 0,
+                                                  blurs.size() * sizeof(TileBlur), blurs.data());
+    TileKinds found{tiles.extent, std::vector<std::uint8_t>(blurs.size())};
+    std::transform(blurs.begin(), blurs.end(), found.kinds.begin(),
+                   [](const TileBlur& blur) { return static_cast<std::uint8_t>(blur.kind); });
+    return found;
   } catch (const cl::Error& error) {
     return describe(error, "reading the tiles of the motion blur", impl_->device.info().name);
   }

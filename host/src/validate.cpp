@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "quincunx/resolve_service.h"
 
@@ -84,49 +86,80 @@ void check_camera(FrameCheck& check, const CameraMotion& camera) {
   }
 }
 
-}  // namespace
+// The caller's images: the plan's buffers of this name, and the fields that hold them.
+constexpr struct {
+  const char* name;
+  ImageView FrameInputs::*image;
+} kInputs[] = {{"colour", &FrameInputs::colour},
+               {"velocity", &FrameInputs::velocity},
+               {"depth", &FrameInputs::depth},
+               {"reactive", &FrameInputs::reactive}};
 
-Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
+constexpr struct {
+  const char* name;
+  ImageView FrameOutputs::*image;
+  const char* absent;  // what a plan lacks that does not have it
+} kOutputs[] = {{"resolved", &FrameOutputs::resolved, ""},
+                {"blurred", &FrameOutputs::blurred, "motion blur; set settings.blur.shutter"},
+                {"presented", &FrameOutputs::presented, "present pass; set settings.present"}};
+
+const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
+  const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(),
+                                  [name](const PlannedBuffer& buffer) { return buffer.name == name; });
+  return found != plan.buffers.end() ? &*found : nullptr;
+}
+
+void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   constexpr float kLargest = 1e6f;
-  FrameCheck check(plan);
-  const ResolveSettings& settings = plan.settings;
-  if (inputs.render.width < 1 || inputs.render.height < 1 || inputs.render.width > settings.target.width ||
-      inputs.render.height > settings.target.height) {
+  const Extent target = plan.settings.target;
+  if (inputs.render.width < 1 || inputs.render.height < 1 || inputs.render.width > target.width ||
+      inputs.render.height > target.height) {
     check.complain(fmt::format("render is {}x{}; it must lie within 1x1 and the target's {}x{}",
-                               inputs.render.width, inputs.render.height, settings.target.width,
-                               settings.target.height));
+                               inputs.render.width, inputs.render.height, target.width, target.height));
   }
-  check.input("colour", inputs.colour, settings.colour, inputs.render);
+  for (const auto& input : kInputs) {
+    const PlannedBuffer* buffer = find(plan, input.name);
+    if (buffer == nullptr || buffer->owned) continue;
+    check.input(input.name, inputs.*input.image, buffer->format, inputs.render);
+  }
   if (plan.velocity == VelocitySource::kTarget) {
-    check.input("velocity", inputs.velocity, settings.velocity, inputs.render);
     check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);
     check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
   }
-  if (plan.reads_depth) {
-    check.input("depth", inputs.depth, PixelFormat::kR32F, inputs.render);
-    check_camera(check, inputs.camera);
-  }
-  if (plan.reads_reactive) check.input("reactive", inputs.reactive, PixelFormat::kR8, inputs.render);
+  if (plan.reads_depth) check_camera(check, inputs.camera);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);
+}
+
+void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutputs& outputs) {
   if (!outputs.resolved && !outputs.blurred && !outputs.presented) {
     check.complain("outputs are all missing; give resolved, blurred, presented or several");
   }
-  if (outputs.resolved) check.output("resolved", outputs.resolved, settings.resolved, Storage::kBuffer);
-  if (outputs.blurred && !plan.blurs()) {
-    check.complain("blurred is given, but the plan has no motion blur; set settings.blur.shutter");
-  } else if (outputs.blurred) {
-    check.output("blurred", outputs.blurred, settings.resolved, Storage::kBuffer);
-    if (outputs.blurred.memory == outputs.resolved.memory &&
-        outputs.blurred.offset == outputs.resolved.offset)
-      check.complain("blurred is the memory of resolved; give it other memory");
+  for (const auto& output : kOutputs) {
+    const ImageView& image = outputs.*output.image;
+    if (!image) continue;
+    const PlannedBuffer* buffer = find(plan, output.name);
+    if (buffer == nullptr) {
+      check.complain(fmt::format("{} is given, but the plan has no {}", output.name, output.absent));
+      continue;
+    }
+    check.output(output.name, image, buffer->format,
+                 buffer->owned ? Storage::kBuffer : plan.settings.storage);
   }
-  if (outputs.presented && !settings.present) {
-    check.complain("presented is given, but the plan has no present pass; set settings.present");
-  } else if (outputs.presented) {
-    check.output("presented", outputs.presented, PixelFormat::kRGBA8, settings.storage);
+  if (outputs.blurred && find(plan, "blurred") != nullptr &&
+      outputs.blurred.memory == outputs.resolved.memory &&
+      outputs.blurred.offset == outputs.resolved.offset) {
+    check.complain("blurred is the memory of resolved; give it other memory");
   }
+}
+
+}  // namespace
+
+Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
+  FrameCheck check(plan);
+  check_inputs(check, plan, inputs);
+  check_outputs(check, plan, outputs);
   return check.status();
 }
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "pass_clear.h"
+#include "pass_clear_region.h"
 #include "quincunx_gl/handle.h"
 
 namespace quincunx::bench {
@@ -63,22 +63,36 @@ class Targets {
 void add_kernel(std::vector<Case>& cases, Stage& stage, double scale) {
   const Extent render = scaled(stage.output(), scale);
   const auto add = [&](PixelFormat format, double wanted) {
-    auto pass = std::make_shared<ClearPass>(stage.impl(), Storage::kBuffer, format);
-    Stage::add(cases,
-               {.name = fmt::format("clear_region {:.1f} {}", scale, name_of(format)),
-                .scale = scale,
-                .wanted = wanted,
-                .bytes = bytes_of(render, format)},
-               [pass, &stage, render, image = stage.noise(stage.output(), format)](cl::Event* event) {
-                 const float value[4] = {0, 0, 0, 1};
-                 pass->enqueue(stage.impl().queue, image, render, value, event);
-               });
+    const std::string name = fmt::format("clear_region {:.1f} {}", scale, name_of(format));
+    add_clear(cases, stage, format, render, {.name = name, .scale = scale, .wanted = wanted});
   };
   add(PixelFormat::kRGBA16F, kAimOfColour * scale * scale);
   add(PixelFormat::kRG16F, 0);
 }
 
 }  // namespace
+
+void add_clear(std::vector<Case>& cases, Stage& stage, PixelFormat format, Extent render, Case what) {
+  struct Clear {
+    Clear(Stage& stage, PixelFormat format)
+        : facts({}, {}),
+          tables(stage.impl(), {1, 1}, {1, 1}),
+          pass({stage.impl(), facts, tables},
+               clear_region_spec(Storage::kBuffer, Resource::kColour, format)) {}
+
+    PlanFacts facts;
+    PassTables tables;
+    ClearRegionPass pass;
+  };
+  auto clear = std::make_shared<Clear>(stage, format);
+  what.bytes = bytes_of(render, format);
+  Stage::add(cases, std::move(what),
+             [clear, &stage, render, image = stage.noise(stage.output(), format)](cl::Event* event) {
+               const float value[4] = {0, 0, 0, 1};
+               clear->pass.clear({.queue = stage.impl().queue, .tables = clear->tables}, image, render, value,
+                                 event);
+             });
+}
 
 void add_clear_cases(std::vector<Case>& cases, Stage& stage, bool opengl) {
   constexpr double kScales[] = {0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1};

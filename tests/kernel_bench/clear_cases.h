@@ -14,4 +14,7 @@ namespace quincunx::bench {
 // is current, now and whenever the cases run or end.
 void add_clear_cases(std::vector<Case>& cases, Stage& stage, bool opengl);
 
+// clear_region of `render` in an image of the stage's output extent; `what` without its bytes.
+void add_clear(std::vector<Case>& cases, Stage& stage, PixelFormat format, Extent render, Case what);
+
 }  // namespace quincunx::bench

@@ -5,25 +5,18 @@
 
 #include <memory>
 
-#include "frame_traffic.h"
-#include "pass_clear.h"
-#include "pass_motion_blur.h"
-#include "pass_present.h"
-#include "pass_reproject.h"
-#include "pass_resolve.h"
-#include "pass_scale.h"
-#include "pass_sharpen.h"
-#include "pass_temporal.h"
-#include "pass_velocity.h"
+#include "clear_cases.h"
+#include "pass_chain.h"
 
 namespace quincunx::bench {
 namespace {
 
-// Two frames at one scale, and the plan for them.
+// Two frames at one scale, and what is planned for them: no transparents, and nothing but the resolved picture.
 struct Scene {
   std::string suffix;  // " 0.71 half"
   double scale = 1;
-  ResolvePlan plan;
+  SceneNeeds needs = {.transparents = false};
+  ResolveSettings settings;
   FrameInputs current, previous;
 };
 
@@ -32,149 +25,138 @@ Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
   Scene scene;
   scene.suffix = fmt::format(" {:.2f} {}", scale, colour == PixelFormat::kRGBA16F ? "half" : "float");
   scene.scale = scale;
-  scene.plan.settings = {.output = stage.output(), .target = render, .colour = colour};
-  scene.plan.velocity = VelocitySource::kTarget;
+  scene.settings = {.output = stage.output(), .target = render, .colour = colour, .present = false};
   scene.current = stage.frame(render, colour, .25f, 0);
   scene.previous = stage.frame(render, colour, -.25f, 1);
   return scene;
 }
 
-// A filter's kernel serves several methods, so both are named.
-std::string method_name(Method method, const ScalePass& pass, const Scene& scene) {
-  const std::string kernel = pass.kernel_name(scene.current.render);
-  return kernel == FilterPass::kernel_name() ? fmt::format("{} {}", kernel, name_of(method)) : kernel;
+// Times the passes of these kernels, in this order, on what the scene and the outputs bind.
+void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& scene,
+                const FrameOutputs& outputs, const std::vector<std::string>& kernels) {
+  auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
+  std::vector<Pass*> passes;
+  for (const std::string& kernel : kernels) {
+    passes.push_back(chain->find(kernel));
+    what.bytes +=
+        bytes_of(passes.back()->spec(), {scene.current.render, scene.previous.render, stage.output()});
+  }
+  Stage::add(
+      cases, std::move(what),
+      [chain, passes, &stage, outputs, current = scene.current,
+       previous = scene.previous](cl::Event* events) {
+        const PassFrame frame = chain->frame(current, &previous, outputs, stage.counter());
+        for (Pass* pass : passes)
+          PassChain::enqueue(*pass, frame, events++);
+      },
+      static_cast<int>(passes.size()));
 }
 
-void add_scale(std::vector<Case>& cases, Stage& stage, const Scene& scene, Method method, double wanted,
+// Times whole frames, each with the history that those before it have left.
+void add_frames(std::vector<Case>& cases, Stage& stage, Case what, const Scene& scene) {
+  auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
+  const FrameOutputs outputs{.resolved = stage.noise(stage.output(), scene.settings.resolved)};
+  FrameReport first;
+  chain->run(chain->frame(scene.current, nullptr, outputs, stage.counter()), outputs, first, nullptr);
+  FrameReport report;
+  chain->run(chain->frame(scene.current, &scene.previous, outputs, stage.counter()), outputs, report,
+             nullptr);
+  for (int i = 0; i < report.pass_count; ++i)
+    what.bytes += report.passes[static_cast<std::size_t>(i)].bytes;
+  Stage::add(
+      cases, std::move(what),
+      [chain, &stage, outputs, current = scene.current, previous = scene.previous](cl::Event* events) {
+        FrameReport unused;
+        chain->run(chain->frame(current, &previous, outputs, stage.counter()), outputs, unused, events);
+      },
+      report.pass_count);
+}
+
+void add_scale(std::vector<Case>& cases, Stage& stage, Scene scene, Method method, double wanted,
                const std::string& suffix = {}) {
-  const ResolveSettings& settings = scene.plan.settings;
-  auto pass = std::make_shared<ScalePass>(stage.impl(), method, settings);
-  Stage::add(cases,
-             {.name = method_name(method, *pass, scene) + scene.suffix + suffix,
-              .scale = scene.scale,
-              .wanted = wanted,
-              .bytes = scale_bytes(settings, scene.current.render)},
-             [pass, &stage, inputs = scene.current,
-              resolved = stage.noise(stage.output(), settings.resolved)](cl::Event* event) {
-               pass->enqueue(stage.impl().queue, stage.tables(), inputs, resolved, stage.counter(), event);
-             });
+  scene.settings.method = method;
+  std::string kernel;
+  for (const PassSpec& spec : list_passes(PlanFacts(scene.needs, scene.settings)).passes) {
+    const bool is_wider = widens(scene.current.render, stage.output());
+    if (spec.viewports == Viewports::kAll || (spec.viewports == Viewports::kWider) == is_wider)
+      kernel = spec.kernel;
+  }
+  const bool filters = kernel == "scale_filter";
+  // A filter's kernel serves several methods, so both are named.
+  const std::string name = filters ? fmt::format("{} {}", kernel, name_of(method)) : kernel;
+  add_passes(cases, stage, {.name = name + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
+             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, {kernel});
 }
 
 void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
                  const std::string& suffix = {}) {
-  const ResolvePlan& plan = scene.plan;
-  auto pass = std::make_shared<ResolvePass>(stage.impl(), plan);
-  Stage::add(cases,
-             {.name = "resolve_quincunx" + scene.suffix + suffix,
-              .scale = scene.scale,
-              .wanted = wanted,
-              .bytes = quincunx_bytes(plan, scene.current.render, scene.previous.render)},
-             [pass, &stage, current = scene.current, previous = scene.previous,
-              resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* event) {
-               pass->enqueue(stage.impl().queue, stage.tables(), current, previous, resolved, stage.counter(),
-                             event);
-             });
+  add_passes(cases, stage,
+             {.name = "resolve_quincunx" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
+             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, {"resolve_quincunx"});
 }
 
 // Both kernels, or where nothing moves the second alone.
-void add_reprojected(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+void add_reprojected(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted,
                      const std::string& suffix, double pixels) {
-  ResolvePlan plan = scene.plan;
-  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
-  plan.settings.velocity = PixelFormat::kRG32F;
-  if (pixels == 0) plan.velocity = VelocitySource::kNone;
-  auto pass = std::make_shared<ReprojectPass>(stage.impl(), plan);
-  FrameInputs current = scene.current;
-  current.velocity = stage.velocity(current.render, [&](int x, int y) {
+  scene.settings.quincunx.form = TwoFrameForm::kReprojected;
+  scene.settings.velocity = PixelFormat::kRG32F;
+  scene.needs.moving_objects = pixels != 0;
+  scene.needs.camera_motion = pixels != 0;
+  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
     // Surfaces of some size that move apart.
     const bool odd = (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
   });
-  std::uint64_t bytes = reprojected_bytes(plan, current.render, scene.previous.render);
-  if (pass->moves()) bytes += reproject_bytes(plan, current.render, scene.previous.render);
-  Stage::add(
-      cases,
-      {.name = "resolve_reprojected" + scene.suffix + suffix,
-       .scale = scene.scale,
-       .wanted = wanted,
-       .bytes = bytes},
-      [pass, &stage, current, previous = scene.previous,
-       resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* events) {
-        pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
-      },
-      pass->moves() ? 2 : 1);
+  std::vector<std::string> kernels = {"resolve_reprojected"};
+  if (pixels != 0) kernels.insert(kernels.begin(), "reproject");
+  add_passes(cases, stage,
+             {.name = "resolve_reprojected" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
+             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, kernels);
 }
 
 // All kernels; everything moves by `pixels`, or if surfaces move `apart`, those of the case above. As these
-// stay where they are, what flows through them has many offsets, more than surfaces that move would leave.
-void add_temporal(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
+// stay where they are, what flows through them has many phases, more than surfaces that move would leave.
+void add_temporal(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted,
                   const std::string& suffix, TemporalPreset preset, double pixels, bool apart = false) {
-  ResolvePlan plan = scene.plan;
-  plan.settings.method = Method::kTemporal;
-  plan.settings.temporal.preset = preset;
-  plan.settings.velocity = PixelFormat::kRG32F;
-  auto pass = std::make_shared<TemporalPass>(stage.impl(), plan);
-  pass->forget(stage.impl().queue);
-  FrameInputs current = scene.current;
-  current.velocity = stage.velocity(current.render, [&](int x, int y) {
+  scene.settings.method = Method::kTemporal;
+  scene.settings.temporal.preset = preset;
+  scene.settings.velocity = PixelFormat::kRG32F;
+  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
     const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
   });
-  plan.needs.background = true;
   // A wall of one colour: whatever moves, history agrees with the frame.
-  current.colour = stage.constant(current.render, scene.plan.settings.colour);
-  current.depth = stage.constant(current.render, PixelFormat::kR32F);
-  FrameInputs previous = current;
-  previous.jitter = scene.previous.jitter;
-  const std::uint64_t bytes = reproject_bytes(plan, current.render, scene.previous.render) +
-                              temporal_tiles_bytes(plan, current.render) + temporal_light_bytes(plan) +
-                              temporal_bytes(plan, current.render, scene.previous.render) +
-                              temporal_display_bytes(plan, current.render);
-  Stage::add(
-      cases,
-      {.name = fmt::format("temporal:{}{}{}", name_of(preset), scene.suffix, suffix),
-       .scale = scene.scale,
-       .wanted = wanted,
-       .bytes = bytes},
-      [pass, &stage, current, previous,
-       resolved = stage.noise(stage.output(), plan.settings.resolved)](cl::Event* events) {
-        pass->enqueue(stage.impl().queue, current, previous, resolved, stage.counter(), events);
-      },
-      5);
+  scene.current.colour = stage.constant(scene.current.render, scene.settings.colour);
+  scene.current.depth = stage.constant(scene.current.render, PixelFormat::kR32F);
+  const Vec2 jitter = scene.previous.jitter;
+  scene.previous = scene.current;
+  scene.previous.jitter = jitter;
+  add_frames(cases, stage,
+             {.name = fmt::format("temporal:{}{}{}", name_of(preset), scene.suffix, suffix),
+              .scale = scene.scale,
+              .wanted = wanted},
+             scene);
 }
 
-void add_velocity(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
-  const ResolveSettings& settings = scene.plan.settings;
-  auto pass = std::make_shared<VelocityPass>(stage.impl(), settings);
-  Stage::add(
-      cases,
-      {.name = pass->kernel_name() + scene.suffix,
-       .scale = scene.scale,
-       .bytes = velocity_bytes(settings, scene.current.render)},
-      [pass, &stage, inputs = scene.current, velocity = stage.noise(scene.current.render, settings.velocity)](
-          cl::Event* event) { pass->enqueue(stage.impl().queue, inputs, velocity, event); });
+void add_velocity(std::vector<Case>& cases, Stage& stage, Scene scene) {
+  scene.needs.moving_objects = false;
+  add_passes(cases, stage, {.name = "velocity_from_depth" + scene.suffix, .scale = scene.scale}, scene, {},
+             {"velocity_from_depth"});
 }
 
 // All three kernels of the blur. `pixels`: how far a sample moves over the output while the shutter is open.
-void add_blur(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
-              const std::string& suffix, const std::function<double(int x, int y)>& pixels) {
-  ResolveSettings settings = scene.plan.settings;
-  settings.blur.shutter = 1;
-  settings.velocity = PixelFormat::kRG32F;
-  auto pass = std::make_shared<MotionBlurPass>(stage.impl(), settings);
-  FrameInputs inputs = scene.current;
-  inputs.velocity = stage.velocity(
-      inputs.render, [&](int x, int y) { return static_cast<float>(pixels(x, y) / stage.output().width); });
-  const std::uint64_t bytes = motion_tiles_bytes(settings, inputs.render) +
-                              motion_neighbours_bytes(settings) + motion_blur_bytes(settings, inputs.render);
-  Stage::add(
-      cases,
-      {.name = "motion_blur" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted, .bytes = bytes},
-      [pass, &stage, inputs, resolved = stage.noise(stage.output(), settings.resolved, 0),
-       blurred = stage.noise(stage.output(), settings.resolved, 1)](cl::Event* events) {
-        pass->enqueue(stage.impl().queue, stage.tables(), inputs, resolved, blurred, events);
-      },
-      static_cast<int>(MotionBlurPass::kKernels.size()));
+void add_blur(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted, const std::string& suffix,
+              const std::function<double(int x, int y)>& pixels) {
+  scene.settings.blur.shutter = 1;
+  scene.settings.velocity = PixelFormat::kRG32F;
+  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+    return static_cast<float>(pixels(x, y) / stage.output().width);
+  });
+  add_passes(cases, stage,
+             {.name = "motion_blur" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted}, scene,
+             {.resolved = stage.noise(stage.output(), scene.settings.resolved, 0),
+              .blurred = stage.noise(stage.output(), scene.settings.resolved, 1)},
+             {"motion_tiles", "motion_neighbours", "motion_blur"});
 }
 
 void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
@@ -186,49 +168,39 @@ void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
 
 void add_sharpens(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
-    const ResolveSettings settings{.output = stage.output(), .resolved = resolved, .sharpness = .5f};
-    auto pass = std::make_shared<SharpenPass>(stage.impl(), settings);
-    Stage::add(cases,
+    Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
+    scene.settings.resolved = resolved;
+    scene.settings.sharpness = .5f;
+    add_passes(cases, stage,
                {.name = fmt::format("sharpen {}", resolved == PixelFormat::kRGBA32F ? "float" : "half"),
-                .wanted = 2,
-                .bytes = sharpen_bytes(settings)},
-               [pass, &stage, source = stage.noise(stage.output(), resolved, 0),
-                sharpened = stage.noise(stage.output(), resolved, 1)](cl::Event* event) {
-                 pass->enqueue(stage.impl().queue, source, sharpened, event);
-               });
+                .wanted = 2},
+               scene, {.resolved = stage.noise(stage.output(), resolved)}, {"sharpen"});
   }
 }
 
 void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
-      const ResolveSettings settings{.output = stage.output(), .resolved = resolved, .tone_map = tone_map};
-      auto pass = std::make_shared<PresentPass>(stage.impl(), settings);
-      Stage::add(cases,
+      Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
+      scene.settings.resolved = resolved;
+      scene.settings.tone_map = tone_map;
+      scene.settings.present = true;
+      add_passes(cases, stage,
                  {.name = fmt::format("present {} {}", name_of(tone_map),
                                       resolved == PixelFormat::kRGBA32F ? "float" : "half"),
-                  .wanted = 1.2,
-                  .bytes = present_bytes(settings)},
-                 [pass, &stage, source = stage.noise(stage.output(), resolved),
-                  presented = stage.noise(stage.output(), PixelFormat::kRGBA8)](cl::Event* event) {
-                   pass->enqueue(stage.impl().queue, source, 1.0f, presented, stage.counter(), event);
-                 });
+                  .wanted = 1.2},
+                 scene,
+                 {.resolved = stage.noise(stage.output(), resolved),
+                  .presented = stage.noise(stage.output(), PixelFormat::kRGBA8)},
+                 {"present"});
     }
   }
 }
 
 void add_clears(std::vector<Case>& cases, Stage& stage) {
-  for (const PixelFormat format : {PixelFormat::kRGBA16F, PixelFormat::kRG16F}) {
-    auto pass = std::make_shared<ClearPass>(stage.impl(), Storage::kBuffer, format);
-    Stage::add(cases,
-               {.name = fmt::format("clear_region {}", name_of(format)),
-                .wanted = 0.4,
-                .bytes = bytes_of(stage.output(), format)},
-               [pass, &stage, image = stage.noise(stage.output(), format)](cl::Event* event) {
-                 const float value[4] = {0, 0, 0, 1};
-                 pass->enqueue(stage.impl().queue, image, stage.output(), value, event);
-               });
-  }
+  add_clear(cases, stage, PixelFormat::kRGBA16F, stage.output(),
+            {.name = "clear_region RGBA16F", .wanted = 0.4});
+  add_clear(cases, stage, PixelFormat::kRG16F, stage.output(), {.name = "clear_region RG16F", .wanted = 0.4});
 }
 
 }  // namespace
@@ -254,22 +226,22 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_temporal(cases, stage, scene, 10, " apart", TemporalPreset::kFast, -3.6, true);
     add_temporal(cases, stage, scene, 18, " apart", TemporalPreset::kBalanced, -3.6, true);
     add_temporal(cases, stage, scene, 0, " still", TemporalPreset::kBalanced, 0);
-    scene.plan.settings.quincunx.sampling = Sampling::kPoint;
+    scene.settings.quincunx.sampling = Sampling::kPoint;
     add_resolve(cases, stage, scene, 5, " point");
-    scene.plan.settings.quincunx.sampling = Sampling::kBilinear;
-    scene.plan.settings.clamp_ringing = false;
+    scene.settings.quincunx.sampling = Sampling::kBilinear;
+    scene.settings.clamp_ringing = false;
     add_scale(cases, stage, scene, Method::kCatmullRom, 1.7, " unclamped");
-    scene.plan.settings.clamp_ringing = true;
-    scene.plan.reads_reactive = true;
+    scene.settings.clamp_ringing = true;
+    scene.needs.transparents = true;
     add_resolve(cases, stage, scene, 5, " reactive");
-    scene.plan.settings.quincunx.residual_weight = 1;
+    scene.settings.quincunx.residual_weight = 1;
     add_reprojected(cases, stage, scene, 0, " reactive residual", 12);
-    scene.plan.settings.quincunx.residual_weight = 0;
-    scene.plan.reads_reactive = false;
-    scene.plan.velocity = VelocitySource::kNone;
+    scene.settings.quincunx.residual_weight = 0;
+    scene.needs.transparents = false;
+    scene.needs.moving_objects = scene.needs.camera_motion = false;
     add_resolve(cases, stage, scene, 5, " still");
-    scene.plan.velocity = VelocitySource::kTarget;
-    scene.plan.settings.resolved = PixelFormat::kRGBA16F;
+    scene.needs.moving_objects = scene.needs.camera_motion = true;
+    scene.settings.resolved = PixelFormat::kRGBA16F;
     add_scale(cases, stage, scene, Method::kBilinear, 1.1, " to half");
     add_resolve(cases, stage, scene, 5, " to half");
   }

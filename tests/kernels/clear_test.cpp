@@ -7,7 +7,8 @@
 
 #include "../reference/number_formats.h"
 #include "kernel_fixture.h"
-#include "pass_clear.h"
+#include "pass_clear_region.h"
+#include "pass_rig.h"
 
 namespace quincunx {
 namespace {
@@ -21,14 +22,18 @@ constexpr std::array kFormats = {PixelFormat::kR8,     PixelFormat::kR32F,  Pixe
 constexpr float kValue[4] = {.25f, .7f, 1.0f, 1e-5f};
 
 void check(PixelFormat format, Storage storage) {
-  ClearPass pass(testing::impl(), storage, format);
+  const PlanFacts facts({}, {});
+  PassTables tables(testing::impl(), {1, 1}, {1, 1});
+  ClearRegionPass pass({testing::impl(), facts, tables},
+                       clear_region_spec(storage, Resource::kColour, format));
+  const PassFrame frame{.queue = testing::impl().queue, .tables = tables};
   for (const Extent cleared : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
     const std::string what = fmt::format("{} {}x{}", name_of(format), cleared.width, cleared.height);
     Rig rig;
     const std::vector<Pixel> before = pattern_pixels(testing::Pattern::kNoise, cleared, 3);
     const ImageView view = rig.image(format, storage, cleared, before, .5);
     const std::vector<Pixel> untouched = rig.pixels(view, view.extent);
-    pass.enqueue(testing::impl().queue, view, cleared, kValue, nullptr);
+    pass.clear(frame, view, cleared, kValue, nullptr);
     const std::vector<Pixel> after = rig.pixels(view, view.extent);
     for (int y = 0; y < view.extent.height; ++y) {
       for (int x = 0; x < view.extent.width; ++x) {

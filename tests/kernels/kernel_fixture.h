@@ -11,7 +11,7 @@
 
 #include "../reference/passes.h"
 #include "axis_table.h"
-#include "pass_common.h"
+#include "pass.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"

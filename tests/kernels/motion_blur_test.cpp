@@ -7,7 +7,7 @@
 
 #include "../reference/motion_blur.h"
 #include "kernel_fixture.h"
-#include "pass_motion_blur.h"
+#include "pass_chain.h"
 
 namespace quincunx {
 namespace {
@@ -89,6 +89,8 @@ class MotionBlur : public ::testing::TestWithParam<std::tuple<Storage, PixelForm
     settings_.storage = std::get<0>(GetParam());
     settings_.velocity = std::get<1>(GetParam());
     settings_.resolved = std::get<2>(GetParam());
+    settings_.method = Method::kBilinear;
+    settings_.present = false;
     settings_.blur.shutter = .5f;
   }
 
@@ -130,12 +132,24 @@ class MotionBlur : public ::testing::TestWithParam<std::tuple<Storage, PixelForm
   Run run(Rig& rig, const TestFrame& frame, Extent output, const std::vector<Pixel>& resolved) {
     settings_.output = output;
     settings_.target = frame.inputs.render;
-    MotionBlurPass pass(testing::impl(), settings_);
-    AxisTables tables(testing::impl(), output);
+    PassChain chain(testing::device(), PlanFacts({}, settings_));
     const ImageView source = rig.image(settings_.resolved, Storage::kBuffer, output, resolved, 1e30);
     const ImageView view = rig.output(settings_.resolved, output);
-    pass.enqueue(testing::impl().queue, tables, frame.inputs, source, view, nullptr);
-    return {rig.bytes(view, output), pass.tile_kinds(testing::impl().queue)};
+    const PassFrame bound =
+        chain.frame(frame.inputs, nullptr, {.resolved = source, .blurred = view}, rig.counter());
+    for (const char* kernel : {"motion_tiles", "motion_neighbours", "motion_blur"})
+      PassChain::enqueue(*chain.find(kernel), bound, nullptr);
+    return {rig.bytes(view, output), kinds_of(chain.newest(Resource::kTileBlurs))};
+  }
+
+  static std::vector<std::uint8_t> kinds_of(const ImageView& tiles) {
+    std::vector<TileBlur> blurs(static_cast<std::size_t>(tiles.extent.area()));
+    testing::impl().queue.enqueueReadBuffer(borrow<cl::Buffer>(tiles.memory), CL_TRUE, 0,
+                                            blurs.size() * sizeof(TileBlur), blurs.data());
+    std::vector<std::uint8_t> kinds;
+    for (const TileBlur& blur : blurs)
+      kinds.push_back(static_cast<std::uint8_t>(blur.kind));
+    return kinds;
   }
 
   reference::BlurInput input_of(const TestFrame& frame, Extent output) const {

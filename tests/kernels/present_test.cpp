@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pass_present.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,10 +10,12 @@
 #include "../reference/number_formats.h"
 #include "error_table.h"
 #include "kernel_fixture.h"
+#include "pass_rig.h"
 
 namespace quincunx {
 namespace {
 
+using testing::PassRig;
 using testing::Pixel;
 using testing::Rig;
 
@@ -39,12 +39,14 @@ class Present : public ::testing::TestWithParam<Variant> {
                                    .storage = GetParam().storage,
                                    .tone_map = GetParam().tone_map,
                                    .dither = GetParam().dither};
-    PresentPass pass(testing::impl(), settings);
+    PassRig pass({}, settings, "present");
     const double poison = std::nan("");
     const ImageView source = rig.image(settings.resolved, Storage::kBuffer, extent, pixels, poison);
     const ImageView view = rig.output(PixelFormat::kRGBA8, extent, settings.storage);
     const Counter counter = rig.counter();
-    pass.enqueue(testing::impl().queue, source, exposure, view, counter, nullptr);
+    FrameInputs inputs;
+    inputs.exposure = exposure;
+    pass.run(inputs, {}, extent, counter, {{Resource::kResolved, source}, {Resource::kPresented, view}});
     const std::int64_t count = rig.count(counter);
     if (non_finite != nullptr) *non_finite = count;
     return rig.bytes(view, extent);

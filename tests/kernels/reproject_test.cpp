@@ -9,7 +9,8 @@
 
 #include "../reference/reproject.h"
 #include "kernel_fixture.h"
-#include "pass_reproject.h"
+#include "pass_rig.h"
+#include "sample_reach.h"
 
 namespace quincunx {
 namespace {
@@ -61,12 +62,10 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
  protected:
   Reprojected() {
     const Variant& v = GetParam();
-    plan_.settings = {
-        .colour = v.colour, .velocity = v.velocity, .resolved = v.resolved, .storage = v.storage};
-    plan_.settings.quincunx.form = TwoFrameForm::kReprojected;
-    plan_.settings.quincunx.residual_weight = v.residual ? .5f : 0;
-    plan_.velocity = v.moves ? VelocitySource::kTarget : VelocitySource::kNone;
-    plan_.reads_reactive = v.reactive;
+    settings_ = {.colour = v.colour, .velocity = v.velocity, .resolved = v.resolved, .storage = v.storage};
+    settings_.present = false;
+    settings_.quincunx.form = TwoFrameForm::kReprojected;
+    settings_.quincunx.residual_weight = v.residual ? .5f : 0;
     formats_ = {.storage = v.storage,
                 .colour = v.colour,
                 .velocity = v.velocity,
@@ -76,13 +75,15 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   }
 
   // One for all frames of an output, up to twice its size.
-  ReprojectPass& pass_for(Extent output) {
-    if (!pass_ || plan_.settings.output != output) {
-      plan_.settings.output = output;
-      plan_.settings.target = {2 * output.width + 3, 2 * output.height};
-      pass_.emplace(testing::impl(), plan_);
+  PassChain& chain_for(Extent output) {
+    if (!chain_ || settings_.output != output) {
+      const Variant& v = GetParam();
+      settings_.output = output;
+      settings_.target = {2 * output.width + 3, 2 * output.height};
+      const SceneNeeds needs{.moving_objects = v.moves, .camera_motion = v.moves, .transparents = v.reactive};
+      chain_.emplace(testing::device(), PlanFacts(needs, settings_));
     }
-    return *pass_;
+    return *chain_;
   }
 
   struct Run {
@@ -93,14 +94,16 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   };
 
   Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
-    ReprojectPass& pass = pass_for(output);
-    const ImageView view = rig.output(plan_.settings.resolved, output);
+    PassChain& chain = chain_for(output);
+    const ImageView view = rig.output(settings_.resolved, output);
     const Counter counter = rig.counter();
-    pass.enqueue(testing::impl().queue, current.inputs, previous.inputs, view, counter, nullptr);
+    FrameReport report;
+    chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
+              report, nullptr);
     Run run{rig.bytes(view, output), {}, {}, rig.count(counter)};
-    run.pixels = testing::decode(plan_.settings.resolved, run.bytes);
-    if (pass.moves()) {
-      for (const Pixel& move : rig.pixels(pass.move_view(), current.inputs.render))
+    run.pixels = testing::decode(settings_.resolved, run.bytes);
+    if (const ImageView moves = chain.newest(Resource::kReprojection)) {
+      for (const Pixel& move : rig.pixels(moves, current.inputs.render))
         run.moves.push_back({move[0], move[1], move[2]});
     } else {
       run.moves.assign(current.reference.colour.size(), {0, 0, 1});
@@ -125,8 +128,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     if (!v.moves) return;
     const auto expected = reference::reproject(
         current.reference, previous.reference,
-        {.reactive = v.reactive,
-         .residual_weight = static_cast<double>(plan_.settings.quincunx.residual_weight)});
+        {.reactive = v.reactive, .residual_weight = static_cast<double>(settings_.quincunx.residual_weight)});
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const reference::Move& e = expected[i];
       const reference::Move& a = run.moves[i];
@@ -159,15 +161,15 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
                                        !GetParam().moves && GetParam().reactive, output.width, output.height);
     const auto bound = [&](std::size_t i) {
       return weight_error(expected.move[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
-             16 * kDenormal + testing::output_rounding(plan_.settings.resolved, expected.largest[i]);
+             16 * kDenormal + testing::output_rounding(settings_.resolved, expected.largest[i]);
     };
-    testing::expect_close(expected, run.pixels, bound, what, plan_.settings.resolved);
+    testing::expect_close(expected, run.pixels, bound, what, settings_.resolved);
     EXPECT_GE(run.non_finite, expected.non_finite) << what;
     EXPECT_LE(run.non_finite, expected.non_finite + expected.undecided) << what;
   }
 
-  ResolvePlan plan_;
-  std::optional<ReprojectPass> pass_;
+  ResolveSettings settings_;
+  std::optional<PassChain> chain_;
   FrameFormats formats_;
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
@@ -302,7 +304,7 @@ TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
         // Eight weights at most, each off by its error, over a sum of 1.
         ASSERT_NEAR(pixel[c], bilinear.value[c],
                     (8 * weight_error(0) + kBlendError) * bilinear.largest +
-                        testing::output_rounding(plan_.settings.resolved, bilinear.largest))
+                        testing::output_rounding(settings_.resolved, bilinear.largest))
             << x << ", " << y;
       }
     }

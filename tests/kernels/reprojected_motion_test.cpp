@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The reprojected form of the two-frame resolve on pictures that move: nothing shifts, nothing stays behind.
 #include "kernel_fixture.h"
-#include "pass_reproject.h"
+#include "pass_chain.h"
 
 namespace quincunx {
 namespace {
@@ -13,19 +13,23 @@ using testing::TestFrame;
 
 constexpr double kRounding = 0x1p-24;
 
-ResolvePlan reprojected_plan(Extent output, Extent target) {
-  ResolvePlan plan;
-  plan.settings.quincunx.form = TwoFrameForm::kReprojected;
-  plan.settings.output = output;
-  plan.settings.target = target;
-  plan.velocity = VelocitySource::kTarget;
-  return plan;
+PlanFacts reprojected_facts(Extent output, Extent target) {
+  ResolveSettings settings{.output = output, .target = target, .present = false};
+  settings.quincunx.form = TwoFrameForm::kReprojected;
+  return {{.transparents = false}, settings};
+}
+
+void resolve(PassChain& chain, const TestFrame& current, const TestFrame& previous, const ImageView& view,
+             Counter counter) {
+  FrameReport report;
+  chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
+            report, nullptr);
 }
 
 // A picture that moves by whole and broken pixels, seen through two viewports with opposite jitter, comes
 // back in place: a wrong sign of velocity or of a jitter would show.
 TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
-  const ResolvePlan plan = reprojected_plan({128, 64}, {128, 64});
+  const PlanFacts facts = reprojected_facts({128, 64}, {128, 64});
   const FrameFormats formats{.with_velocity = true, .with_depth = true};
   const Pixel motion = {.03125, -.046875, 0, 0};  // uv a frame
   Rig rig;
@@ -45,14 +49,14 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
                                   std::vector<Pixel>(count, Pixel{.25, 0, 0, 0}), 0);
     return made;
   };
-  ReprojectPass pass(testing::impl(), plan);
+  PassChain chain(testing::device(), facts);
   for (const float jitter : {.25f, -.25f, 0.f}) {
     // What is at u now was at u - motion: there the previous frame showed the same colour.
     const TestFrame current = ramp(jitter, {91, 46}, 0);
     const TestFrame previous = ramp(-jitter, {100, 50}, 1);
-    const ImageView view = rig.output(PixelFormat::kRGBA32F, plan.settings.output);
-    pass.enqueue(testing::impl().queue, current.inputs, previous.inputs, view, rig.counter(), nullptr);
-    const std::vector<Pixel> pixels = rig.pixels(view, plan.settings.output);
+    const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output);
+    resolve(chain, current, previous, view, rig.counter());
+    const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output);
     for (int y = 8; y < 56; ++y) {
       for (int x = 8; x < 120; ++x) {
         // Weights by distance shift a ramp by .19 samples at most (a quarter of the way between two of them);
@@ -66,7 +70,7 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
 
 // A bright surface in front of a still background has moved on: what it uncovered shows none of it.
 TEST(ReprojectedMotion, WhatWasHiddenLeavesNoGhost) {
-  const ResolvePlan plan = reprojected_plan({96, 48}, {64, 32});
+  const PlanFacts facts = reprojected_facts({96, 48}, {64, 32});
   const FrameFormats formats{.with_velocity = true, .with_depth = true};
   const Extent render{64, 32};
   Rig rig;
@@ -83,12 +87,12 @@ TEST(ReprojectedMotion, WhatWasHiddenLeavesNoGhost) {
     made.inputs.depth = rig.image(PixelFormat::kR32F, Storage::kBuffer, render, depth, 0);
     return made;
   };
-  ReprojectPass pass(testing::impl(), plan);
+  PassChain chain(testing::device(), facts);
   const TestFrame previous = scene(20, -.25f);
   const TestFrame current = scene(28, .25f);
-  const ImageView view = rig.output(PixelFormat::kRGBA32F, plan.settings.output);
-  pass.enqueue(testing::impl().queue, current.inputs, previous.inputs, view, rig.counter(), nullptr);
-  const std::vector<Pixel> pixels = rig.pixels(view, plan.settings.output);
+  const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output);
+  resolve(chain, current, previous, view, rig.counter());
+  const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output);
   const auto red = [&](int x) { return pixels[static_cast<std::size_t>(24 * 96 + x)][0]; };
   for (int x = 0; x < 96; ++x) {
     const double at = (x + .5) * render.width / 96;  // render pixels

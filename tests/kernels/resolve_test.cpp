@@ -7,14 +7,14 @@
 #include <memory>
 
 #include "kernel_fixture.h"
-#include "pass_resolve.h"
-#include "pass_scale.h"
+#include "pass_rig.h"
 
 namespace quincunx {
 namespace {
 
 using testing::FrameFormats;
 using testing::FrameSpec;
+using testing::PassRig;
 using testing::Pattern;
 using testing::Pixel;
 using testing::Rig;
@@ -40,17 +40,17 @@ class Resolve : public ::testing::TestWithParam<Variant> {
  protected:
   Resolve() {
     const Variant& v = GetParam();
-    plan_.settings = {
+    settings_ = {
         .colour = v.colour, .velocity = v.velocity_format, .resolved = v.resolved, .storage = v.storage};
-    plan_.settings.quincunx.sampling = v.sampling;
-    plan_.velocity = v.velocity;
-    plan_.reads_reactive = v.reactive;
+    settings_.quincunx.sampling = v.sampling;
+    const bool moves = v.velocity == VelocitySource::kTarget;
+    const SceneNeeds needs{.moving_objects = moves, .camera_motion = moves, .transparents = v.reactive};
     formats_ = {.storage = v.storage,
                 .colour = v.colour,
                 .velocity = v.velocity_format,
                 .with_velocity = v.velocity == VelocitySource::kTarget,
                 .with_reactive = v.reactive};
-    pass_ = std::make_unique<ResolvePass>(testing::impl(), plan_);
+    pass_ = std::make_unique<PassRig>(needs, settings_, "resolve_quincunx");
   }
 
   struct Run {
@@ -61,31 +61,29 @@ class Resolve : public ::testing::TestWithParam<Variant> {
 
   template <typename Enqueue>
   Run run(Rig& rig, Extent output, Enqueue enqueue) {
-    AxisTables tables(testing::impl(), output);
-    const ImageView view = rig.output(plan_.settings.resolved, output);
+    const ImageView view = rig.output(settings_.resolved, output);
     const Counter counter = rig.counter();
-    enqueue(tables, view, counter);
+    enqueue(view, counter);
     Run result{rig.bytes(view, output), {}, 0};
-    result.pixels = testing::decode(plan_.settings.resolved, result.bytes);
+    result.pixels = testing::decode(settings_.resolved, result.bytes);
     result.non_finite = rig.count(counter);
     return result;
   }
 
   Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
-    return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
-      pass_->enqueue(testing::impl().queue, tables, current.inputs, previous.inputs, view, counter, nullptr);
+    return run(rig, output, [&](const ImageView& view, Counter counter) {
+      pass_->run(current.inputs, previous.inputs, output, counter, {{Resource::kResolved, view}});
     });
   }
 
   // Of this frame alone.
   Run single(Rig& rig, const TestFrame& current, Extent output) {
-    ResolveSettings settings = plan_.settings;
-    settings.target = current.inputs.render;
-    settings.output = output;
+    ResolveSettings settings = settings_;
     const bool point = GetParam().sampling == Sampling::kPoint;
-    ScalePass scale(testing::impl(), point ? Method::kPoint : Method::kBilinear, settings);
-    return run(rig, output, [&](AxisTables& tables, const ImageView& view, Counter counter) {
-      scale.enqueue(testing::impl().queue, tables, current.inputs, view, counter, nullptr);
+    settings.method = point ? Method::kPoint : Method::kBilinear;
+    PassRig scale({}, settings, point ? "scale_point" : "scale_bilinear");
+    return run(rig, output, [&](const ImageView& view, Counter counter) {
+      scale.run(current.inputs, {}, output, counter, {{Resource::kResolved, view}});
     });
   }
 
@@ -98,10 +96,10 @@ class Resolve : public ::testing::TestWithParam<Variant> {
   }
 
   reference::Picture expected(const TestFrame& current, const TestFrame& previous, Extent output) const {
-    const auto weight =
-        plan_.velocity == VelocitySource::kNone ? reference::Weight::kMean : reference::Weight::kVelocity;
+    const auto weight = GetParam().velocity == VelocitySource::kNone ? reference::Weight::kMean
+                                                                     : reference::Weight::kVelocity;
     return reference::resolve_quincunx(current.reference, previous.reference, weight,
-                                       GetParam().sampling == Sampling::kPoint, plan_.reads_reactive, 1,
+                                       GetParam().sampling == Sampling::kPoint, GetParam().reactive, 1,
                                        output.width, output.height);
   }
 
@@ -113,18 +111,18 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     const reference::Picture picture = expected(current, previous, output);
     const auto bound = [&](std::size_t i) {
       return kResolveError * picture.largest[i] + kDenormal +
-             testing::output_rounding(plan_.settings.resolved, picture.largest[i]);
+             testing::output_rounding(settings_.resolved, picture.largest[i]);
     };
     const std::string what =
         fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
                     before.render.height, output.width, output.height, name_of(now.colour));
-    testing::expect_close(picture, actual.pixels, bound, what, plan_.settings.resolved);
+    testing::expect_close(picture, actual.pixels, bound, what, settings_.resolved);
     EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
   }
 
-  ResolvePlan plan_;
+  ResolveSettings settings_;
   FrameFormats formats_;
-  std::unique_ptr<ResolvePass> pass_;
+  std::unique_ptr<PassRig> pass_;
 };
 
 TEST_P(Resolve, MatchesTheReferenceAtEverySizeScaleAndInput) {
@@ -214,7 +212,7 @@ TEST_P(Resolve, AConstantStaysConstant) {
   for (const Pixel& pixel : resolve(rig, current, previous, {64, 33}).pixels) {
     for (std::size_t c = 0; c < 4; ++c) {
       ASSERT_NEAR(pixel[c], value[c],
-                  kResolveError * value[c] + testing::output_rounding(plan_.settings.resolved, value[c]));
+                  kResolveError * value[c] + testing::output_rounding(settings_.resolved, value[c]));
     }
   }
 }
@@ -265,11 +263,11 @@ TEST_P(Resolve, ANonFiniteTexelChangesItsFootprintOnly) {
 
 // With f = 0 in every pixel the pass is the scale pass, bit for bit.
 TEST_P(Resolve, WithoutTrustItIsTheScalePass) {
-  if (!plan_.reads_reactive) return;
+  if (!GetParam().reactive) return;
   Rig rig;
   TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
   const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}, .seed = 2});
-  current.inputs.reactive = rig.image(PixelFormat::kR8, plan_.settings.storage, {45, 23},
+  current.inputs.reactive = rig.image(PixelFormat::kR8, settings_.storage, {45, 23},
                                       std::vector<Pixel>(45 * 23, Pixel{1, 1, 1, 1}), 0);
   EXPECT_EQ(resolve(rig, current, previous, {64, 33}).bytes, single(rig, current, {64, 33}).bytes);
 }
@@ -337,10 +335,9 @@ INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](
 // v is counted in pixels of its frame's viewport, whatever the output: at the same uv velocity a larger
 // viewport trusts the previous frame less.
 TEST(ResolveWeight, CountsRenderPixels) {
-  ResolvePlan plan;
-  plan.velocity = VelocitySource::kTarget;
-  plan.settings.quincunx.velocity_weight = 2;
-  ResolvePass pass(testing::impl(), plan);
+  ResolveSettings settings;
+  settings.quincunx.velocity_weight = 2;
+  PassRig pass({.transparents = false}, settings, "resolve_quincunx");
   const FrameFormats formats{.with_velocity = true};
   const Extent output{50, 30};
   for (const Extent render : {Extent{40, 20}, Extent{80, 40}}) {
@@ -356,10 +353,8 @@ TEST(ResolveWeight, CountsRenderPixels) {
     current.inputs.velocity = rig.image(PixelFormat::kRG16F, Storage::kBuffer, render, plain(render, uv0), 0);
     previous.inputs.velocity =
         rig.image(PixelFormat::kRG16F, Storage::kBuffer, before, plain(before, uv1), 0);
-    AxisTables tables(testing::impl(), output);
     const ImageView view = rig.output(PixelFormat::kRGBA32F, output);
-    pass.enqueue(testing::impl().queue, tables, current.inputs, previous.inputs, view, rig.counter(),
-                 nullptr);
+    pass.run(current.inputs, previous.inputs, output, rig.counter(), {{Resource::kResolved, view}});
     const double v0 = std::hypot(uv0[0] * render.width, uv0[1] * render.height);
     const double v1 = std::hypot(uv1[0] * before.width, uv1[1] * before.height);
     const double f = 1 / (1 + 2 * (v0 * v0 + v1 * v1));

@@ -52,26 +52,30 @@ ScaleRig::ScaleRig(const ScaleVariant& variant)
   settings_.colour = variant.colour;
   settings_.resolved = variant.resolved;
   settings_.clamp_ringing = variant.clamp_ringing;
+  settings_.method = variant.method;
+  settings_.present = false;
   settings_.grain = 0.75f;
 }
 
-// Each pass serves one output, and viewports up to twice as wide and high or up to `render`.
-ScalePass& ScaleRig::pass_for(Extent output, Extent render) {
-  const bool serves = pass_ && settings_.output == output && render.width <= settings_.target.width &&
+// Each chain serves one output, and viewports up to twice as wide and high or up to `render`.
+PassChain& ScaleRig::chain_for(Extent output, Extent render) {
+  const bool serves = chain_ && settings_.output == output && render.width <= settings_.target.width &&
                       render.height <= settings_.target.height;
   if (!serves) {
     settings_.output = output;
     settings_.target = {std::max(2 * output.width, render.width), std::max(2 * output.height, render.height)};
-    pass_ = std::make_unique<ScalePass>(impl(), variant_.method, settings_);
+    chain_ = std::make_unique<PassChain>(device(), PlanFacts({}, settings_));
   }
-  return *pass_;
+  return *chain_;
 }
 
 ScaleRig::Run ScaleRig::run(Rig& rig, const TestFrame& frame, Extent output) {
-  AxisTables tables(impl(), output);
   const ImageView view = rig.output(settings_.resolved, output);
   const Counter counter = rig.counter();
-  pass_for(output, frame.inputs.render).enqueue(impl().queue, tables, frame.inputs, view, counter, nullptr);
+  PassChain& chain = chain_for(output, frame.inputs.render);
+  FrameReport report;
+  chain.run(chain.frame(frame.inputs, nullptr, {.resolved = view}, counter), {.resolved = view}, report,
+            nullptr);
   Run result{rig.bytes(view, output), {}, 0};
   result.pixels = decode(settings_.resolved, result.bytes);
   result.non_finite = rig.count(counter);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernel_fixture.h"
-#include "pass_scale.h"
+#include "pass_chain.h"
 
 namespace quincunx::testing {
 
@@ -80,13 +80,13 @@ class ScaleRig {
   const ScaleVariant& variant() const { return variant_; }
 
  private:
-  ScalePass& pass_for(Extent output, Extent render);
+  PassChain& chain_for(Extent output, Extent render);
   double relative_error(Extent render, Extent output) const;
 
   ScaleVariant variant_;
   ResolveSettings settings_;
   FrameFormats formats_;
-  std::unique_ptr<ScalePass> pass_;
+  std::unique_ptr<PassChain> chain_;
 };
 
 }  // namespace quincunx::testing

@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "kernel_fixture.h"
-#include "pass_sharpen.h"
+#include "pass_rig.h"
 
 namespace quincunx {
 namespace {
 
+using testing::PassRig;
 using testing::Pattern;
 using testing::Pixel;
 using testing::Rig;
@@ -38,11 +39,10 @@ class Sharpen : public ::testing::TestWithParam<PixelFormat> {
   std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent, float sharpness,
                                  double outside = 1e30, bool tight = false) {
     Rig rig;
-    const ResolveSettings settings{.output = extent, .resolved = GetParam(), .sharpness = sharpness};
-    SharpenPass pass(testing::impl(), settings);
+    PassRig pass({}, {.resolved = GetParam(), .sharpness = sharpness}, "sharpen");
     const ImageView source = rig.image(GetParam(), Storage::kBuffer, extent, pixels, outside, tight);
     const ImageView view = rig.output(GetParam(), extent);
-    pass.enqueue(testing::impl().queue, source, view, nullptr);
+    pass.run({}, {}, extent, {}, {{Resource::kUnsharpened, source}, {Resource::kResolved, view}});
     return rig.bytes(view, extent);
   }
 

@@ -5,7 +5,7 @@
 
 #include <map>
 
-#include "kernel_options.h"
+#include "pass_rig.h"
 #include "program_cache.h"
 
 namespace quincunx::testing {
@@ -60,16 +60,17 @@ reference::Tile to_reference(const TemporalTile& tile) {
           .brighter = static_cast<int>(tile.brighter)};
 }
 
-ResolvePlan TemporalStages::plan(TemporalPreset preset) const {
-  ResolvePlan plan;
-  plan.settings = {.method = Method::kTemporal,
-                   .colour = variant_.colour,
-                   .resolved = variant_.resolved,
-                   .storage = variant_.storage};
-  plan.settings.temporal = {.preset = preset, .history = variant_.history};
-  plan.velocity = variant_.moves ? VelocitySource::kTarget : VelocitySource::kNone;
-  plan.reads_reactive = variant_.reactive;
-  return plan;
+PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {
+  ResolveSettings settings{.method = Method::kTemporal,
+                           .colour = variant_.colour,
+                           .resolved = variant_.resolved,
+                           .storage = variant_.storage};
+  settings.temporal = {.preset = preset, .history = variant_.history};
+  return {{.moving_objects = variant_.moves,
+           .camera_motion = variant_.moves,
+           .transparents = variant_.reactive,
+           .background = background},
+          settings};
 }
 
 cl::Buffer TemporalStages::history(const StageInputs& in) const {
@@ -132,7 +133,8 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   const cl::Buffer before = tiles_to_device(r.before);
   const cl::Buffer now = to_device(std::vector<TemporalTile>(r.before.size()));
   const cl::Buffer total = to_device(std::vector<TotalLight>(1));
-  cl::Kernel tiles = kernel("temporal_tiles", temporal_tiles_options(plan(TemporalPreset::kBalanced)));
+  cl::Kernel tiles =
+      kernel("temporal_tiles", spec_of(facts(TemporalPreset::kBalanced), "temporal_tiles").options);
   tiles.setArg(0, params);
   set_memory(tiles, 1, in.frame.colour.memory);
   set_memory(tiles, 2, variant_.moves ? in.moves.memory : before());
@@ -194,7 +196,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const std::size_t bytes = r.history.size() * bytes_per_pixel(variant_.history);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
   const cl::Buffer before = tiles_to_device(r.before);
-  cl::Kernel resolve = kernel("resolve_temporal", temporal_options(plan(preset)));
+  cl::Kernel resolve = kernel("resolve_temporal", spec_of(facts(preset), "resolve_temporal").options);
   resolve.setArg(0, params);
   resolve.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(resolve, 2, in.frame.colour.memory);
@@ -230,10 +232,9 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.tiles_x = r.tiles_x();
   params.columns = tables.columns();
   params.columns_per_item = columns_per_item(impl(), output.width, kTemporalTile);
-  ResolvePlan display_plan = plan(shown.preset);
-  display_plan.needs.background = shown.background;
   params.first = shown.first ? 1 : 0;
-  cl::Kernel display = kernel("temporal_display", temporal_display_options(display_plan));
+  cl::Kernel display =
+      kernel("temporal_display", spec_of(facts(shown.preset, shown.background), "temporal_display").options);
   display.setArg(0, params);
   display.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(display, 2, in.frame.colour.memory);

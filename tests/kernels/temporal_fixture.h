@@ -101,7 +101,7 @@ class TemporalStages {
                      const Shown& shown) const;
 
  private:
-  ResolvePlan plan(TemporalPreset preset) const;
+  PlanFacts facts(TemporalPreset preset, bool background = true) const;
   cl::Buffer history(const StageInputs& in) const;
 
   StageVariant variant_;

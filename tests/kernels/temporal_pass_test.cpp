@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pass_temporal.h"
+#include "pass_chain.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
@@ -18,13 +18,13 @@ using testing::TestFrame;
 constexpr double kRounding = 0x1p-24;
 constexpr Vec2 kJitters[] = {{.25f, -.25f}, {-.125f, .375f}, {.4375f, .0625f}, {-.4f, -.3f}};
 
-ResolvePlan plan_for_test(Extent output, PixelFormat history = PixelFormat::kRGBA32F) {
-  ResolvePlan plan;
-  plan.settings = {
-      .method = Method::kTemporal, .output = output, .target = {2 * output.width, 2 * output.height}};
-  plan.settings.temporal.history = history;
-  plan.velocity = VelocitySource::kTarget;
-  return plan;
+ResolveSettings settings_for(Extent output, PixelFormat history = PixelFormat::kRGBA32F) {
+  ResolveSettings settings{.method = Method::kTemporal,
+                           .output = output,
+                           .target = {2 * output.width, 2 * output.height},
+                           .present = false};
+  settings.temporal.history = history;
+  return settings;
 }
 
 std::vector<Pixel> constant(Extent extent, const Pixel& pixel) {
@@ -33,27 +33,28 @@ std::vector<Pixel> constant(Extent extent, const Pixel& pixel) {
 
 class Sequence {
  public:
-  explicit Sequence(const ResolvePlan& plan) : plan_(plan), pass_(testing::impl(), plan) {
-    pass_.forget(testing::impl().queue);
-  }
+  explicit Sequence(const ResolveSettings& settings)
+      : settings_(settings),
+        chain_(testing::device(), PlanFacts({.transparents = false, .background = false}, settings)) {}
 
   // A frame of this colour; velocity is `speed` times noise.
   void run(Extent render, const std::vector<Pixel>& colour, double speed) {
     const unsigned i = count_++;
     TestFrame now = make_frame(
-        rig_, {.colour = plan_.settings.colour, .with_velocity = true, .with_depth = true},
+        rig_, {.colour = settings_.colour, .with_velocity = true, .with_depth = true},
         {.render = render, .jitter = kJitters[i % std::size(kJitters)], .seed = i, .speed = speed}, colour);
     // One surface, which hides nothing.
     now.inputs.depth =
         rig_.image(PixelFormat::kR32F, Storage::kBuffer, render, constant(render, {1, 0, 0, 0}), 0);
-    if (count_ == 1) before_ = now.inputs;
-    const ImageView view = rig_.output(plan_.settings.resolved, plan_.settings.output);
+    const ImageView view = rig_.output(settings_.resolved, settings_.output);
     const Counter counter = rig_.counter();
-    pass_.enqueue(testing::impl().queue, now.inputs, before_, view, counter, nullptr);
+    FrameReport report;
+    chain_.run(chain_.frame(now.inputs, count_ == 1 ? nullptr : &before_, {.resolved = view}, counter),
+               {.resolved = view}, report, nullptr);
     before_ = now.inputs;
-    shown = rig_.pixels(view, plan_.settings.output);
-    history_bytes = rig_.bytes(pass_.history(), plan_.settings.output);
-    history = testing::decode(plan_.settings.temporal.history, history_bytes);
+    shown = rig_.pixels(view, settings_.output);
+    history_bytes = rig_.bytes(chain_.newest(Resource::kHistory), settings_.output);
+    history = testing::decode(settings_.temporal.history, history_bytes);
     non_finite = rig_.count(counter);
   }
 
@@ -63,8 +64,8 @@ class Sequence {
 
  private:
   Rig rig_;
-  ResolvePlan plan_;
-  TemporalPass pass_;
+  ResolveSettings settings_;
+  PassChain chain_;
   FrameInputs before_;
   unsigned count_ = 0;
 };
@@ -74,7 +75,7 @@ class Sequence {
 TEST(TemporalPass, AConstantPictureStaysConstantUnderAnyMotion) {
   constexpr int kFrames = 12;
   for (const double speed : {0.0, .002, .02, .5}) {
-    Sequence sequence(plan_for_test({67, 41}));
+    Sequence sequence(settings_for({67, 41}));
     for (int i = 0; i < kFrames; ++i) {
       const Extent render{30 + i, 23};
       sequence.run(render, constant(render, {.25, .75, .125, 1}), speed);
@@ -94,7 +95,7 @@ TEST(TemporalPass, AConstantPictureStaysConstantUnderAnyMotion) {
 TEST(TemporalPass, HistoryThatStandsStillIsCopied) {
   for (const PixelFormat format : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const Extent output : {Extent{64, 64}, Extent{7, 5}, Extent{257, 129}}) {
-      Sequence sequence(plan_for_test(output, format));
+      Sequence sequence(settings_for(output, format));
       const Extent render = testing::scaled(output, .6, .7);
       std::vector<Pixel> colour = pattern_pixels(Pattern::kNoise, render, 4);
       for (Pixel& pixel : colour) {
@@ -116,9 +117,9 @@ TEST(TemporalPass, WhatIsNotFiniteNeverReachesHistory) {
   const double spoilt[] = {std::nan(""), std::numeric_limits<double>::infinity(), 65504, 1e30};
   for (const PixelFormat format : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
     const Extent render{39, 20};
-    ResolvePlan plan = plan_for_test({64, 33});
-    plan.settings.colour = format;
-    Sequence sequence(plan);
+    ResolveSettings settings = settings_for({64, 33});
+    settings.colour = format;
+    Sequence sequence(settings);
     for (unsigned i = 0; i < 8; ++i) {
       std::vector<Pixel> colour = pattern_pixels(Pattern::kNoise, render, i);
       for (std::size_t p = 0; p < colour.size(); ++p) {

@@ -11,7 +11,7 @@
 
 #include "embedded_kernels.h"
 #include "kernel_fixture.h"
-#include "kernel_options.h"
+#include "pass_spec.h"
 #include "program_cache.h"
 
 namespace quincunx {
@@ -70,81 +70,105 @@ TEST(Variants, EveryEmbeddedKernelHasRows) {
   }
 }
 
-TEST(Variants, TheHostAsksForEveryRowAndNoOther) {
+// Every combination of what a plan's options depend on.
+std::vector<PlanFacts> all_facts() {
   using enum PixelFormat;
-  const std::vector<Row> listed = rows();
-  const std::set<Row> all(listed.begin(), listed.end());
-  std::set<Row> asked;
-  std::set<std::string> kernels;
-  const auto expect_row = [&](const std::string& kernel, const std::string& options) {
-    if (asked.insert({kernel, options}).second) {
-      EXPECT_TRUE(all.contains({kernel, options})) << kernel << " " << options;
-    }
-    kernels.insert(kernel);
-  };
-  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
-    for (const PixelFormat format : {kR8, kR32F, kRG16F, kRG32F, kRGBA8, kRGBA16F, kRGBA32F}) {
-      expect_row("clear_region", clear_options(storage, format));
-    }
-    for (const PixelFormat velocity : {kRG16F, kRG32F})
-      expect_row("velocity_from_depth", velocity_options({.velocity = velocity, .storage = storage}));
-    for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
-      for (const PixelFormat resolved : {kRGBA16F, kRGBA32F}) {
-        ResolvePlan plan;
-        plan.settings = {.colour = colour, .resolved = resolved, .storage = storage};
-        expect_row("scale_point", scale_options(plan.settings));
-        expect_row("scale_bilinear", scale_options(plan.settings));
-        expect_row("sharpen", sharpen_options(plan.settings));
-        for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
-          plan.settings.tone_map = tone_map;
-          for (const bool dither : {false, true}) {
-            plan.settings.dither = dither;
-            expect_row("present", present_options(plan.settings));
+  std::vector<PlanFacts> all;
+  const auto add_needs = [&all](const ResolveSettings& settings) {
+    for (const bool moves : {false, true}) {
+      for (const bool transparents : {false, true}) {
+        for (const bool background : {false, true}) {
+          all.push_back({{.moving_objects = moves,
+                          .camera_motion = moves,
+                          .transparents = transparents,
+                          .background = background},
+                         settings});
+          if (moves) {
+            all.push_back({{.moving_objects = false, .transparents = transparents, .background = background},
+                           settings});
           }
         }
-        for (const VelocitySource velocity :
-             {VelocitySource::kNone, VelocitySource::kTarget, VelocitySource::kCamera}) {
-          plan.velocity = velocity;
-          for (const PixelFormat velocity_format : {kRG16F, kRG32F}) {
-            plan.settings.velocity = velocity_format;
-            for (const bool reactive : {false, true}) {
-              plan.reads_reactive = reactive;
-              for (const Sampling sampling : {Sampling::kPoint, Sampling::kBilinear}) {
-                plan.settings.quincunx = {.sampling = sampling};
-                expect_row("resolve_quincunx", quincunx_options(plan));
-              }
-              plan.settings.quincunx = {.form = TwoFrameForm::kReprojected};
-              expect_row("resolve_reprojected", reprojected_options(plan));
-              for (const float weight : {0.0f, 1.0f}) {
-                plan.settings.quincunx.residual_weight = weight;
-                expect_row("reproject", reproject_options(plan));
-              }
-              plan.settings.method = Method::kTemporal;
-              for (const TemporalPreset preset :
-                   {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
-                for (const PixelFormat history : {kRGBA16F, kRGBA32F}) {
-                  plan.settings.temporal = {.preset = preset, .history = history};
-                  if (velocity != VelocitySource::kNone) expect_row("reproject", reproject_options(plan));
-                  expect_row("temporal_tiles", temporal_tiles_options(plan));
-                  expect_row("resolve_temporal", temporal_options(plan));
-                  for (const bool background : {false, true}) {
-                    plan.needs.background = background;
-                    expect_row("temporal_display", temporal_display_options(plan));
-                  }
-                }
-              }
-              plan.settings.method = Method::kQuincunx;
+      }
+    }
+  };
+  const auto add_methods = [&](ResolveSettings settings) {
+    for (const MethodInfo& method : methods()) {
+      settings.method = method.method;
+      add_needs(settings);
+    }
+    settings.method = Method::kQuincunx;
+    for (const TwoFrameForm form :
+         {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected}) {
+      for (const Sampling sampling : {Sampling::kPoint, Sampling::kBilinear}) {
+        for (const float residual : {0.0f, 1.0f}) {
+          settings.quincunx = {.form = form, .sampling = sampling, .residual_weight = residual};
+          add_needs(settings);
+        }
+      }
+    }
+    settings.method = Method::kTemporal;
+    for (const TemporalPreset preset :
+         {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
+      for (const PixelFormat history : {kRGBA16F, kRGBA32F}) {
+        settings.temporal = {.preset = preset, .history = history};
+        add_needs(settings);
+      }
+    }
+  };
+  const Extent output{64, 64};
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
+      for (const PixelFormat velocity : {kRG16F, kRG32F}) {
+        for (const PixelFormat resolved : {kRGBA16F, kRGBA32F}) {
+          ResolveSettings settings{.output = output,
+                                   .target = {2 * output.width, 2 * output.height},
+                                   .colour = colour,
+                                   .velocity = velocity,
+                                   .resolved = resolved,
+                                   .storage = storage,
+                                   .clear = true};
+          settings.blur.shutter = .5f;
+          settings.sharpness = .5f;
+          for (const bool clamp_ringing : {false, true}) {
+            settings.clamp_ringing = clamp_ringing;
+            add_methods(settings);
+          }
+          settings.method = Method::kBilinear;
+          for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
+            for (const bool dither : {false, true}) {
+              settings.tone_map = tone_map;
+              settings.dither = dither;
+              all.push_back({{}, settings});
             }
           }
         }
       }
     }
   }
-  for (const Row& row : listed) {
-    if (kernels.contains(row.kernel)) {
-      EXPECT_TRUE(asked.contains(row)) << "no plan asks for " << row.kernel << " " << row.options;
-    }
+  return all;
+}
+
+TEST(Variants, PlansAskForEveryRowAndNoOther) {
+  const std::vector<Row> listed = rows();
+  const std::set<Row> all(listed.begin(), listed.end());
+  std::set<Row> asked;
+  for (const PlanFacts& facts : all_facts()) {
+    for (const PassSpec& spec : list_passes(facts).passes)
+      asked.insert({spec.kernel, spec.options});
   }
+  for (const Row& row : asked)
+    EXPECT_TRUE(all.contains(row)) << "variants.txt lacks " << row.kernel << " " << row.options;
+  for (const Row& row : listed)
+    EXPECT_TRUE(asked.contains(row)) << "no plan asks for " << row.kernel << " " << row.options;
+}
+
+// A frame's report has a fixed number of places.
+TEST(Variants, NoPlanHasMorePassesThanAReport) {
+  std::size_t most = 0;
+  for (const PlanFacts& facts : all_facts())
+    most = std::max(most, list_passes(facts).passes.size());
+  EXPECT_LE(most, static_cast<std::size_t>(FrameReport::kMaxPasses));
+  EXPECT_GE(most, 11u) << "the temporal upscaler with all that goes with it";
 }
 
 }  // namespace

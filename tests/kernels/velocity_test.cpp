@@ -9,13 +9,14 @@
 
 #include "error_table.h"
 #include "kernel_fixture.h"
-#include "pass_velocity.h"
+#include "pass_rig.h"
 
 namespace quincunx {
 namespace {
 
 using testing::FrameFormats;
 using testing::FrameSpec;
+using testing::PassRig;
 using testing::Pattern;
 using testing::Pixel;
 using testing::Rig;
@@ -47,7 +48,7 @@ class Velocity : public ::testing::TestWithParam<Variant> {
   Velocity() {
     settings_.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
-    pass_ = std::make_unique<VelocityPass>(testing::impl(), settings_);
+    pass_ = std::make_unique<PassRig>(SceneNeeds{.moving_objects = false}, settings_, "velocity_from_depth");
   }
 
   TestFrame frame(Rig& rig, const FrameSpec& spec, const std::array<float, 16>& camera = kCameraStep) const {
@@ -61,7 +62,7 @@ class Velocity : public ::testing::TestWithParam<Variant> {
     const Extent render = frame.inputs.render;
     const std::vector<Pixel> before(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
     const ImageView view = rig.image(settings_.velocity, settings_.storage, render, before, -7, tight);
-    pass_->enqueue(testing::impl().queue, frame.inputs, view, nullptr);
+    pass_->run(frame.inputs, {}, {1, 1}, {}, {{Resource::kVelocity, view}});
     const Extent target = view.extent;
     const std::vector<Pixel> all = rig.pixels(view, target);
     for (int y = 0; y < target.height; ++y) {
@@ -102,7 +103,7 @@ class Velocity : public ::testing::TestWithParam<Variant> {
   }
 
   ResolveSettings settings_;
-  std::unique_ptr<VelocityPass> pass_;
+  std::unique_ptr<PassRig> pass_;
 };
 
 TEST_P(Velocity, MatchesTheReference) {

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+
+#include "quincunx/resolve_service.h"
 
 namespace quincunx {
 namespace {
@@ -196,6 +200,32 @@ TEST(ResolvePlan, EveryBadFieldIsNamed) {
   for (const char* field : {"settings.output", "settings.target", "settings.colour", "settings.velocity",
                             "settings.resolved", "settings.quincunx.velocity_weight"}) {
     EXPECT_NE(result.status().message().find(field), std::string::npos) << field;
+  }
+}
+
+// Nobody's change to a plan is passed over: what differs from the planner's own is refused by name.
+TEST(ResolvePlan, AnEditedPlanIsRefusedByName) {
+  Result<Device> device = Device::open();
+  ASSERT_TRUE(device.ok()) << device.status().message();
+  const ResolvePlan own = plan({}, settings(Method::kTemporal));
+  ASSERT_TRUE(ResolveService::create(device.value(), own).ok());
+  const std::pair<const char*, void (*)(ResolvePlan&)> edits[] = {
+      {"passes", [](ResolvePlan& p) { p.passes.pop_back(); }},
+      {"passes", [](ResolvePlan& p) { p.passes.front().options += " -D EXTRA"; }},
+      {"buffers", [](ResolvePlan& p) { p.buffers.front().owned = true; }},
+      {"left_out", [](ResolvePlan& p) { p.left_out.clear(); }},
+      {"velocity", [](ResolvePlan& p) { p.velocity = VelocitySource::kNone; }},
+      {"reads_depth", [](ResolvePlan& p) { p.reads_depth = false; }},
+      {"reads_reactive", [](ResolvePlan& p) { p.reads_reactive = false; }},
+      {"passes", [](ResolvePlan& p) { p.settings.method = Method::kPoint; }},
+      {"passes", [](ResolvePlan& p) { p.needs.moving_objects = p.needs.camera_motion = false; }},
+  };
+  for (const auto& [what, edit] : edits) {
+    ResolvePlan edited = own;
+    edit(edited);
+    const auto service = ResolveService::create(device.value(), edited);
+    ASSERT_FALSE(service.ok()) << what;
+    EXPECT_NE(service.status().message().find(what), std::string::npos) << service.status().message();
   }
 }
 

@@ -54,7 +54,7 @@ struct PassReport {
 };
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 12;
+  static constexpr int kMaxPasses = 16;
 
   Status status;  // not ok: nothing was enqueued and no output was touched
   std::uint64_t frame_index = 0;

@@ -25,10 +25,20 @@ enum class Method {
   kTemporal,  // all frames so far, accumulated where the surfaces are: needs a jitter of many places (Halton)
 };
 
+// A filter that is applied to rows and columns in turn.
+struct SeparableFilter {
+  int radius = 0;                        // samples, up to scale 1; the weight is 0 from there on
+  double (*weight)(double d) = nullptr;  // at a distance d >= 0, in samples; need not be normalised
+  bool rings = false;                    // has negative lobes, so that ResolveSettings::clamp_ringing counts
+
+  friend bool operator==(const SeparableFilter&, const SeparableFilter&) = default;
+};
+
 struct MethodInfo {
   Method method;
-  const char* name;     // "catmull-rom": lower case, no spaces, no colon
-  const char* summary;  // what it does, in a few words
+  const char* name;             // "catmull-rom": lower case, no spaces, no colon
+  const char* summary;          // what it does, in a few words
+  SeparableFilter filter = {};  // of a method that is nothing but a separable filter
 };
 
 // Every method once, in the order of Method, which is that of growing effort.

@@ -21,6 +21,8 @@ struct SceneNeeds {
   bool camera_motion = true;
   bool transparents = true;  // drawn without velocity, with reactive values
   bool background = true;    // something (a sky, a room) covers every pixel: colour needs no clear
+
+  friend bool operator==(const SceneNeeds&, const SceneNeeds&) = default;
 };
 
 struct QuincunxSettings {
@@ -30,12 +32,16 @@ struct QuincunxSettings {
   // kReprojected: K of a factor 1/(1 + K|v0 - v1|^2), v1 of the previous sample there, in render pixels a
   // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion uncover each other.
   float residual_weight = 0;
+
+  friend bool operator==(const QuincunxSettings&, const QuincunxSettings&) = default;
 };
 
 struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;
   TemporalView view = TemporalView::kPicture;
   PixelFormat history = PixelFormat::kRGBA16F;  // RGBA16F or RGBA32F
+
+  friend bool operator==(const TemporalSettings&, const TemporalSettings&) = default;
 };
 
 // Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
@@ -43,6 +49,8 @@ struct TemporalSettings {
 struct MotionBlurSettings {
   float shutter = 0;  // part of a frame's time that the shutter is open, in [0, 2]; 0: no blur
   int samples = 8;    // at most, of a pixel: 4, 8, 16, 32 or 64; slow motion takes fewer
+
+  friend bool operator==(const MotionBlurSettings&, const MotionBlurSettings&) = default;
 };
 
 struct ResolveSettings {
@@ -65,6 +73,8 @@ struct ResolveSettings {
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
   float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
+
+  friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };
 
 // Where the resolve finds velocity.
@@ -81,6 +91,8 @@ struct PlannedPass {
   std::string options;      // the -D options of the variant
   std::string reason;       // why it is here
   std::uint64_t bytes = 0;  // read and written at the largest viewport, each texel once
+
+  friend bool operator==(const PlannedPass&, const PlannedPass&) = default;
 };
 
 // How the part of a buffer that is in use follows the resolution.
@@ -99,36 +111,35 @@ struct PlannedBuffer {
   Scaling scaling = Scaling::kScales;
   std::uint64_t bytes = 0;
   bool owned = false;  // by the service; else the caller brings it
+
+  friend bool operator==(const PlannedBuffer&, const PlannedBuffer&) = default;
 };
 
 struct LeftOut {
   std::string what;
   std::string why;
+
+  friend bool operator==(const LeftOut&, const LeftOut&) = default;
 };
 
+// What plan_for() made. To change a plan, change the settings and plan again: ResolveService::create() refuses one
+// that differs from what plan_for() makes of its needs and settings.
 struct ResolvePlan {
   SceneNeeds needs;
   ResolveSettings settings;
   VelocitySource velocity = VelocitySource::kNone;
-  bool reads_depth = false;
-  bool reads_reactive = false;
-  std::vector<PlannedPass> passes;
+  bool reads_depth = false;         // FrameInputs::depth is needed
+  bool reads_reactive = false;      // FrameInputs::reactive is needed
+  std::vector<PlannedPass> passes;  // in the order in which they run
   std::vector<PlannedBuffer> buffers;
   std::vector<LeftOut> left_out;
 
-  // Some images of a frame are read by the next dispatch too.
-  bool keeps_previous_frame() const { return settings.method == Method::kQuincunx || accumulates(); }
-  bool accumulates() const { return settings.method == Method::kTemporal; }
-  // kTemporal: whether samples are so dense, from 1.56 a pixel on, that a frame alone is the better picture.
-  bool is_dense(Extent render) const;
-  bool weighs_velocity() const;             // kVelocity, and something moves
-  bool reprojects() const;                  // kReprojected, whether something moves or not
-  bool follows() const;                     // where each sample was in the previous frame is computed
-  bool weighs_residual() const;             // kReprojected reads the previous frame's velocity too
-  bool sharpens() const;                    // sharpness is wanted, and of a picture
-  bool blurs() const;                       // motion blur is wanted, and something moves
-  std::vector<PixelFormat> clears() const;  // formats that ResolveService::clear() takes; texel sizes differ
-  std::string explain() const;              // a page of plain text
+  bool keeps_previous_frame() const;  // some images of a frame are read by the next dispatch, too
+  bool accumulates() const;           // all frames since the last reset count
+  bool blurs() const;                 // motion blur is wanted, and something moves
+  std::string explain() const;        // a page of plain text
+
+  friend bool operator==(const ResolvePlan&, const ResolvePlan&) = default;
 };
 
 // Errors: kInvalidArgument; the message names every bad field.

@@ -128,8 +128,10 @@ void Stage::add_copy(std::vector<Case>& cases) {
   cl::Program program(impl().context, kCopySource);
   program.build(impl().device, kCommonBuildOptions);
   cl::Kernel kernel(program, "copy");
-  set_memory(kernel, 0, noise(output_, PixelFormat::kRGBA32F, 0).memory);
-  set_memory(kernel, 1, noise(output_, PixelFormat::kRGBA32F, 1).memory);
+  for (const int argument : {0, 1}) {
+    const cl_mem memory = noise(output_, PixelFormat::kRGBA32F, argument).memory;
+    kernel.setArg(static_cast<cl_uint>(argument), sizeof(memory), &memory);
+  }
   kernel.setArg(2, output_.width);
   kernel.setArg(3, output_.height);
   add(cases, {.name = "copy", .bytes = 2 * bytes_of(output_, PixelFormat::kRGBA32F)},

@@ -8,7 +8,7 @@
 
 #include "axis_table.h"
 #include "bench/harness/harness.h"
-#include "pass_common.h"
+#include "pass.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "pass_moves.h"
+#include "pass_chain.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
@@ -18,21 +18,25 @@ using testing::TestFrame;
 
 constexpr double kRounding = 0x1p-24;
 
-ResolvePlan plan_for_test(Extent output) {
-  ResolvePlan plan;
-  plan.settings = {.method = Method::kTemporal, .output = output, .target = output};
-  plan.velocity = VelocitySource::kTarget;
-  return plan;
+ResolveSettings settings_for(Extent output) {
+  return {.method = Method::kTemporal, .output = output, .target = output, .present = false};
 }
 
-TEST(TemporalMoves, ContrastMatchesTheReference) {
+// Runs the upscaler on a frame and gives what reproject found; null: there is no previous frame.
+std::vector<Pixel> reproject(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs* before) {
+  FrameReport report;
+  chain.run(chain.frame(now, before, {}, rig.counter()), {}, report, nullptr);
+  return rig.pixels(chain.newest(Resource::kReprojection), now.render);
+}
+
+TEST(TemporalReproject, ContrastMatchesTheReference) {
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
       unsigned seed = 0;
       for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
-        ResolvePlan plan = plan_for_test({129, 65});
-        plan.settings.storage = storage;
-        plan.settings.velocity = velocity;
+        ResolveSettings settings = settings_for({129, 65});
+        settings.storage = storage;
+        settings.velocity = velocity;
         Rig rig;
         const FrameFormats formats{
             .storage = storage, .velocity = velocity, .with_velocity = true, .with_depth = true};
@@ -42,10 +46,8 @@ TEST(TemporalMoves, ContrastMatchesTheReference) {
                              .seed = ++seed,
                              .outside = std::nan("")};
         const TestFrame now = make_frame(rig, formats, spec);
-        MovePass pass(testing::impl(), plan);
-        pass.forget(testing::impl().queue);
-        pass.enqueue(testing::impl().queue, now.inputs, now.inputs, nullptr);
-        const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+        PassChain chain(testing::device(), PlanFacts({.transparents = false}, settings));
+        const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, nullptr);
         const auto expected =
             reference::reproject(now.reference, now.reference, {.output_width = 129, .output_height = 65});
         for (std::size_t i = 0; i < moves.size(); ++i) {
@@ -61,7 +63,7 @@ TEST(TemporalMoves, ContrastMatchesTheReference) {
 }
 
 // An edge of motion in the first frame is known to the second, with a minus, and to no third.
-TEST(TemporalMoves, ContrastOfThePreviousFrameIsNotFedOn) {
+TEST(TemporalReproject, ContrastOfThePreviousFrameIsNotFedOn) {
   const Extent render{12, 8};
   Rig rig;
   const auto frame = [&](double speed) {
@@ -73,15 +75,14 @@ TEST(TemporalMoves, ContrastOfThePreviousFrameIsNotFedOn) {
     made.inputs.velocity_scale = {1, 1};
     return made;
   };
-  const cl::CommandQueue& queue = testing::impl().queue;
-  MovePass pass(testing::impl(), plan_for_test({24, 16}));
-  pass.forget(queue);
+  PassChain chain(testing::device(), PlanFacts({.transparents = false}, settings_for({24, 16})));
   TestFrame before = frame(.0625);  // 1.5 output pixels
+  bool is_first = true;
   const double expected[] = {1.5, -1.5, 0, 0};
   for (const double contrast : expected) {
     const TestFrame now = frame(contrast > 0 ? .0625 : 0);
-    pass.enqueue(queue, now.inputs, before.inputs, nullptr);
-    const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+    const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, is_first ? nullptr : &before.inputs);
+    is_first = false;
     for (std::size_t i = 0; i < moves.size(); ++i) {
       const std::size_t x = i % 12;
       EXPECT_EQ(moves[i][3], x == 5 || x == 6 ? contrast : 0) << i;
@@ -101,14 +102,13 @@ void scatter_reactive(Rig& rig, TestFrame& frame, Storage storage, const FrameSp
   frame.inputs.reactive = rig.image(PixelFormat::kR8, storage, spec.render, reactive, spec.outside);
 }
 
-TEST(TemporalMoves, AnEarlierEdgeAndReactiveValuesAroundTakeTrust) {
+TEST(TemporalReproject, AnEarlierEdgeAndReactiveValuesAroundTakeTrust) {
   std::int64_t decided = 0, compared = 0, gone = 0, earlier = 0, dimmed = 0;
   unsigned seed = 40;
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
-      ResolvePlan plan = plan_for_test({129, 65});
-      plan.settings.storage = storage;
-      plan.reads_reactive = true;
+      ResolveSettings settings = settings_for({129, 65});
+      settings.storage = storage;
       Rig rig;
       const FrameFormats formats{
           .storage = storage, .with_velocity = true, .with_depth = true, .with_reactive = true};
@@ -122,15 +122,11 @@ TEST(TemporalMoves, AnEarlierEdgeAndReactiveValuesAroundTakeTrust) {
         frame->inputs.velocity_scale = {.05f, .05f};
         frame->reference.velocity_scale = {.05f, .05f};
       }
-      MovePass pass(testing::impl(), plan);
-      const cl::CommandQueue& queue = testing::impl().queue;
-      pass.forget(queue);
-      pass.enqueue(queue, before.inputs, before.inputs, nullptr);
+      PassChain chain(testing::device(), PlanFacts({}, settings));
       reference::ReprojectOptions options{.reactive = true, .output_width = 129, .output_height = 65};
-      for (const Pixel& move : rig.pixels(pass.view(), render))
+      for (const Pixel& move : reproject(rig, chain, before.inputs, nullptr))
         options.contrast_before.push_back(move[3]);
-      pass.enqueue(queue, now.inputs, before.inputs, nullptr);
-      const std::vector<Pixel> moves = rig.pixels(pass.view(), render);
+      const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, &before.inputs);
       const auto expected = reference::reproject(now.reference, before.reference, options);
       options.reactive = false;
       const auto opaque = reference::reproject(now.reference, before.reference, options);

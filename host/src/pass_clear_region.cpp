@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "pass_clear.h"
+#include "pass_clear_region.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
-#include "kernel_options.h"
-#include "program_cache.h"
+#include "pass_list.h"
+#include "pass_options.h"
 
 namespace quincunx {
 namespace {
@@ -65,31 +67,56 @@ void encode_texel(PixelFormat format, const float value[4], unsigned bits[4]) {
   }
 }
 
-ClearPass::ClearPass(const Device::Impl& device, Storage storage, PixelFormat format)
-    : device_(device),
-      storage_(storage),
-      format_(format),
-      kernel_(build_kernel(device, kernel_name(), clear_options(storage, format))) {}
-
-void ClearPass::warm_up(const cl::CommandQueue& queue) {
-  Scratch scratch(device_);
-  const float zero[4] = {};
-  enqueue(queue, scratch.view(storage_, format_), {1, 1}, zero, nullptr);
-  queue.finish();
-}
-
-void ClearPass::enqueue(const cl::CommandQueue& queue, const ImageView& image, Extent render,
-                        const float value[4], cl::Event* event) {
+void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Extent render,
+                            const float value[4], cl::Event* event) {
   ClearParams params{};
   params.width = render.width;
   params.height = render.height;
-  params.columns_per_item = columns_per_item(device_, render.width);
+  params.columns_per_item = columns_per_item(device(), render.width);
   params.output = layout_of(image);
   encode_texel(image.format, value, params.bits);
   std::copy_n(value, 4, params.value);
-  kernel_.setArg(0, params);
-  set_memory(kernel_, 1, image.memory);
-  enqueue_rows(device_, queue, kernel_, render, params.columns_per_item, event);
+  bind(params, image);
+  launch(frame, render, params.columns_per_item, event);
+}
+
+void ClearRegionPass::enqueue(const PassFrame& frame, cl::Event* event) {
+  const float zero[4] = {};
+  clear(frame, frame[spec().uses.front().resource], frame.current.render, zero, event);
+}
+
+PassSpec clear_region_spec(Storage storage, Resource resource, PixelFormat format) {
+  return {.kernel = "clear_region",
+          .options = storage == Storage::kImage
+                         ? "-D OUTPUT_STORAGE=IMAGE"
+                         : fmt::format("-D OUTPUT_STORAGE=BUFFER -D TEXEL_BYTES={}", bytes_per_pixel(format)),
+          .reason = "nothing covers every pixel: clear() is called before drawing",
+          .uses = {{resource, Access::kWrite, Area::kViewport, format}},
+          .make = make_pass<ClearRegionPass>,
+          .frames = Frames::kOnRequest};
+}
+
+void plan_clear_region(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (facts.needs.background) {
+    list.left_out.push_back({"clear_region", "the background covers every pixel of the viewport"});
+    return;
+  }
+  if (!settings.clear) {
+    list.left_out.push_back({"clear_region", "the renderer clears its own targets"});
+    return;
+  }
+  std::vector<PixelFormat> planned;
+  const auto add = [&](Resource resource, PixelFormat format) {
+    for (const PixelFormat other : planned) {
+      if (settings.storage == Storage::kImage || bytes_per_pixel(other) == bytes_per_pixel(format)) return;
+    }
+    planned.push_back(format);
+    list.passes.push_back(clear_region_spec(settings.storage, resource, format));
+  };
+  add(Resource::kColour, settings.colour);
+  if (facts.velocity == VelocitySource::kTarget) add(Resource::kVelocity, settings.velocity);
+  if (facts.reads_reactive()) add(Resource::kReactive, PixelFormat::kR8);
 }
 
 }  // namespace quincunx

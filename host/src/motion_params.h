@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// What the three kernels of the motion blur share.
+#pragma once
+
+#include "pass.h"
+
+namespace quincunx {
+
+MotionParams motion_params(const PassFrame& frame, const Device::Impl& device,
+                           const MotionBlurSettings& settings);
+
+}  // namespace quincunx

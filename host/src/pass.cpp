@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#include "pass.h"
+
+#include <algorithm>
+
+#include "program_cache.h"
+
+namespace quincunx {
+namespace {
+
+int round_up(int value, int step) {
+  return (value + step - 1) / step * step;
+}
+
+}  // namespace
+
+AxisTables& PassTables::axis() {
+  if (!axis_) axis_ = std::make_unique<AxisTables>(device_, output_);
+  return *axis_;
+}
+
+PositionTables& PassTables::positions() {
+  if (!positions_) positions_ = std::make_unique<PositionTables>(device_, output_);
+  return *positions_;
+}
+
+FilterTables& PassTables::filter(const Filter& filter) {
+  for (const auto& made : filters_) {
+    if (made->filter() == filter) return *made;
+  }
+  return *filters_.emplace_back(std::make_unique<FilterTables>(device_, filter, target_, output_));
+}
+
+Pass::Pass(const PassSetup& setup, const PassSpec& spec)
+    : device_(setup.device),
+      facts_(setup.facts),
+      spec_(spec),
+      kernel_(build_kernel(setup.device, spec.kernel, spec.options)) {}
+
+bool Pass::takes_part(const PassFrame& frame) const {
+  const auto serves = [&] {
+    switch (spec_.frames) {
+      case Frames::kAll:
+        return true;
+      case Frames::kWithHistory:
+        return frame.has_history;
+      case Frames::kWithoutHistory:
+        return !frame.has_history;
+      case Frames::kSparse:
+        return !is_dense(frame.current.render, frame.output);
+      case Frames::kDense:
+        return is_dense(frame.current.render, frame.output);
+      case Frames::kOnRequest:
+        return false;
+    }
+    return false;
+  };
+  if (spec_.viewports == Viewports::kAll) return serves();
+  return widens(frame.current.render, frame.output) == (spec_.viewports == Viewports::kWider) && serves();
+}
+
+bool Pass::uses(Resource resource) const {
+  return std::any_of(spec_.uses.begin(), spec_.uses.end(),
+                     [resource](const Use& use) { return use.resource == resource; });
+}
+
+TexelLayout Pass::layout_if_used(const PassFrame& frame, Resource resource) const {
+  return uses(resource) ? layout_of(frame[resource]) : TexelLayout{};
+}
+
+void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
+  kernel.setArg(index, sizeof(memory), &memory);
+}
+
+void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event) {
+  // A CPU runs a group in one thread, a GPU wants a compact tile.
+  const bool cpu = device.info.kind == DeviceKind::kCpu;
+  const int group_x = cpu ? 1 : 16;
+  const int group_y = cpu ? 4 : 8;
+  const int items_x = (extent.width + columns - 1) / columns;
+  queue.enqueueNDRangeKernel(
+      kernel, cl::NullRange,
+      cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
+                  static_cast<std::size_t>(round_up(extent.height, group_y))),
+      cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
+}
+
+TexelLayout layout_of(const ImageView& view) {
+  const std::size_t texel = bytes_per_pixel(view.format);
+  if (view.storage == Storage::kImage || texel == 0) return {0, 0};
+  return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
+}
+
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent) {
+  const Vec2 to_uv = frame.velocity_scale != Vec2{} ? frame.velocity_scale : Vec2{1, 1};
+  return {static_cast<double>(to_uv.x) * extent.width, static_cast<double>(to_uv.y) * extent.height};
+}
+
+Ratio ratio_of(Extent to, Extent from) {
+  return {static_cast<float>(static_cast<double>(to.width) / from.width),
+          static_cast<float>(static_cast<double>(to.height) / from.height)};
+}
+
+int columns_per_item(const Device::Impl& device, int width, int block) {
+  return device.info.kind == DeviceKind::kCpu ? round_up(width, block) : block;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Pass: one kernel variant of a plan, compiled for a device. What passes share: tables, layouts, launch sizes,
+// kernel arguments.
+//
+// A pass compiles at construction and allocates nothing afterwards. Construction may throw cl::Error and
+// BuildError, enqueue() cl::Error. Not thread-safe.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "axis_table.h"
+#include "device_impl.h"
+#include "filter_table.h"
+#include "params.h"
+#include "pass_spec.h"
+#include "position_table.h"
+#include "quincunx/frame.h"
+#include "quincunx/image.h"
+
+namespace quincunx {
+
+// Where a pass adds the number of its output pixels that met NaN or Inf: uint `index` of the buffer `memory`.
+struct Counter {
+  cl_mem memory = nullptr;
+  int index = 0;
+};
+
+// The tables that passes of one output read. Each is made when a pass first asks for it, at construction.
+class PassTables {
+ public:
+  // For viewports up to `target`.
+  PassTables(const Device::Impl& device, Extent target, Extent output)
+      : device_(device), target_(target), output_(output) {}
+
+  AxisTables& axis();
+  PositionTables& positions();
+  FilterTables& filter(const Filter& filter);
+
+ private:
+  const Device::Impl& device_;
+  Extent target_;
+  Extent output_;
+  std::unique_ptr<AxisTables> axis_;
+  std::unique_ptr<PositionTables> positions_;
+  std::vector<std::unique_ptr<FilterTables>> filters_;
+};
+
+struct PassSetup {
+  const Device::Impl& device;
+  const PlanFacts& facts;  // outlives the pass
+  PassTables& tables;
+};
+
+// One frame as its passes see it.
+struct PassFrame {
+  const cl::CommandQueue& queue;
+  PassTables& tables;
+  FrameInputs current = {};   // with the service's velocity where that comes from the camera
+  FrameInputs previous = {};  // the current one where there is no history
+  bool has_history = false;
+  Extent output = {};
+  Counter counter = {};
+  std::array<ImageView, kResources> views = {};  // of the resources that the plan has
+
+  ImageView& operator[](Resource resource) { return views[static_cast<std::size_t>(resource)]; }
+  const ImageView& operator[](Resource resource) const { return views[static_cast<std::size_t>(resource)]; }
+  FrameExtents extents() const { return {current.render, previous.render, output}; }
+};
+
+// CLHPP takes no raw handle as an argument.
+void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
+
+// Enough work-items of `columns` x 1 pixels for the extent, in groups of one fixed size: a device compiles a
+// kernel anew for each size.
+void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event);
+
+class Pass {
+ public:
+  Pass(const PassSetup& setup, const PassSpec& spec);
+  virtual ~Pass() = default;
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
+
+  const PassSpec& spec() const { return spec_; }
+
+  // Whether the pass takes part in this frame.
+  bool takes_part(const PassFrame& frame) const;
+
+  // Enqueues the kernel; `event`, if not null, is its event. What spec().uses names is bound in the frame.
+  virtual void enqueue(const PassFrame& frame, cl::Event* event) = 0;
+
+ protected:
+  const Device::Impl& device() const { return device_; }
+  const PlanFacts& facts() const { return facts_; }
+  const ResolveSettings& settings() const { return facts_.settings; }
+  // What a variant does not read may be any memory: `other`'s.
+  bool uses(Resource resource) const;
+  const ImageView& view_or(const PassFrame& frame, Resource resource, Resource other) const {
+    return frame[uses(resource) ? resource : other];
+  }
+  TexelLayout layout_if_used(const PassFrame& frame, Resource resource) const;
+  // The picture that the method makes.
+  Resource picture() const { return facts_.sharpens() ? Resource::kUnsharpened : Resource::kResolved; }
+
+  // As enqueue_rows().
+  void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event) {
+    enqueue_rows(device_, frame.queue, kernel_, extent, columns, event);
+  }
+
+  // Sets the kernel's arguments in order: structs by value, buffers, the memory of images and counters.
+  template <typename... Arguments>
+  void bind(const Arguments&... arguments) {
+    cl_uint index = 0;
+    (set(index++, arguments), ...);
+  }
+
+ private:
+  template <typename Argument>
+  void set(cl_uint index, const Argument& argument) {
+    if constexpr (std::is_same_v<Argument, ImageView> || std::is_same_v<Argument, Counter>) {
+      set_memory(kernel_, index, argument.memory);
+    } else {
+      kernel_.setArg(index, argument);
+    }
+  }
+
+  const Device::Impl& device_;
+  const PlanFacts& facts_;
+  PassSpec spec_;
+  cl::Kernel kernel_;
+};
+
+// A pass's `make`.
+template <typename Made>
+std::unique_ptr<Pass> make_pass(const PassSetup& setup, const PassSpec& spec) {
+  return std::make_unique<Made>(setup, spec);
+}
+
+// In texels; zeros for an image.
+TexelLayout layout_of(const ImageView& view);
+
+// From a frame's velocity, in its own units, to pixels of an extent.
+struct VelocityScale {
+  double x;
+  double y;
+};
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent);
+
+// From one extent to another on each axis, rounded once.
+struct Ratio {
+  float x, y;
+};
+Ratio ratio_of(Extent to, Extent from);
+
+// Pixels of a row that one work-item makes: a whole row on a CPU, where the row's own values are then loaded
+// once, and one block elsewhere. A multiple of `block`.
+int columns_per_item(const Device::Impl& device, int width, int block = kBlock);
+
+}  // namespace quincunx

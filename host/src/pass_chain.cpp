@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "pass_chain.h"
+
+#include <algorithm>
+
+namespace quincunx {
+namespace {
+
+constexpr std::size_t index_of(Resource resource) {
+  return static_cast<std::size_t>(resource);
+}
+
+void fill_zero(const cl::CommandQueue& queue, cl_mem memory, std::size_t bytes) {
+  queue.enqueueFillBuffer(borrow<cl::Buffer>(memory), cl_uint{0}, 0, bytes);
+}
+
+// What the pass adds to begins at zero.
+void clear_sums(const PassFrame& frame, const PassSpec& spec) {
+  for (const Use& use : spec.uses) {
+    if (use.access != Access::kAccumulate) continue;
+    const auto elements = static_cast<std::size_t>(extent_of(use.area, frame.extents()).area());
+    fill_zero(frame.queue, frame[use.resource].memory, elements * use.element_bytes());
+  }
+}
+
+bool is_picture(Resource resource) {
+  return resource == Resource::kUnsharpened || resource == Resource::kResolved ||
+         resource == Resource::kBlurred;
+}
+
+Image allocate_image(const Device& device, Extent extent, PixelFormat format, Storage storage) {
+  Result<Image> made = device.allocate(extent, format, storage);
+  if (!made.ok()) throw AllocationError(made.status());
+  return std::move(made).value();
+}
+
+// Memory for warm-up: four elements of any kind, all zero in a buffer, since a kernel follows what tiles say.
+ImageView scratch_view(const Device::Impl& device, const Use& use, Storage storage,
+                       std::vector<cl::Memory>& kept) {
+  constexpr int kSide = 2;
+  ImageView view{.storage = storage, .format = use.format, .extent = {kSide, kSide}};
+  if (storage == Storage::kImage) {
+    // Kernels take images of any format; these two exist everywhere.
+    const cl::ImageFormat channels(CL_RGBA, use.format == PixelFormat::kRGBA8 ? CL_UNORM_INT8 : CL_FLOAT);
+    kept.push_back(cl::Image2D(device.context, CL_MEM_READ_WRITE, channels, kSide, kSide));
+  } else {
+    const std::size_t bytes = kSide * kSide * use.element_bytes();
+    kept.push_back(cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes));
+    fill_zero(device.queue, kept.back()(), bytes);
+  }
+  view.memory = kept.back()();
+  return view;
+}
+
+// Inputs and the presented picture have the plan's storage, all else is in buffers.
+Storage storage_of(Resource resource, const ResolveSettings& settings) {
+  const bool planned = resource <= Resource::kPreviousReactive || resource == Resource::kPresented;
+  return planned ? settings.storage : Storage::kBuffer;
+}
+
+}  // namespace
+
+PassChain::PassChain(const Device& device, const PlanFacts& facts)
+    : device_(device), facts_(facts), tables_(*device_.impl(), facts.settings.target, facts.settings.output) {
+  const PassList list = list_passes(facts_);
+  resources_ = resources_of(list.passes);
+  const PassSetup setup{*device_.impl(), facts_, tables_};
+  for (const PassSpec& spec : list.passes)
+    passes_.push_back(spec.make(setup, spec));
+  needed_.resize(passes_.size());
+  for (const ResourceUse& use : resources_) {
+    if (use.written && !is_previous(use.resource) && use.resource != Resource::kPresented)
+      allocate(use, keeps(use.resource));
+  }
+}
+
+// Whether a pass of the next frame reads it.
+bool PassChain::keeps(Resource resource) const {
+  const Resource previous = previous_of(resource);
+  return previous != resource &&
+         std::any_of(resources_.begin(), resources_.end(),
+                     [previous](const ResourceUse& use) { return use.resource == previous; });
+}
+
+void PassChain::allocate(const ResourceUse& use, bool keeps_previous) {
+  const ResolveSettings& settings = facts_.settings;
+  const Extent extent = extent_of(use.largest.area, {settings.target, settings.target, settings.output});
+  const Storage storage = storage_of(use.resource, settings);
+  Owned& owned = owned_.emplace_back(Owned{use.resource, {}});
+  for (std::size_t i = 0; i < (keeps_previous ? 2 : 1); ++i) {
+    if (is_picture(use.resource) || storage == Storage::kImage) {
+      owned.images[i] = allocate_image(device_, extent, use.largest.format, storage);
+      continue;
+    }
+    const cl::Buffer buffer(device_.impl()->context, CL_MEM_READ_WRITE,
+                            static_cast<std::size_t>(extent.area()) * use.largest.element_bytes());
+    owned.images[i] = Image::borrow({.memory = buffer(), .format = use.largest.format, .extent = extent});
+  }
+}
+
+Pass* PassChain::find(std::string_view kernel) const {
+  for (const auto& pass : passes_) {
+    if (pass->spec().kernel == kernel) return pass.get();
+  }
+  return nullptr;
+}
+
+ImageView PassChain::newest(Resource resource) const {
+  for (const Owned& owned : owned_) {
+    if (owned.resource == resource) return owned.images[owned.images[1] ? 1 - next_ : 0].view();
+  }
+  return {};
+}
+
+void bind_inputs(PassFrame& frame) {
+  frame[Resource::kColour] = frame.current.colour;
+  frame[Resource::kVelocity] = frame.current.velocity;
+  frame[Resource::kDepth] = frame.current.depth;
+  frame[Resource::kReactive] = frame.current.reactive;
+  frame[Resource::kPreviousColour] = frame.previous.colour;
+  frame[Resource::kPreviousVelocity] = frame.previous.velocity;
+  frame[Resource::kPreviousDepth] = frame.previous.depth;
+  frame[Resource::kPreviousReactive] = frame.previous.reactive;
+}
+
+PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previous,
+                           const FrameOutputs& outputs, Counter counter) {
+  PassFrame frame{.queue = device_.impl()->queue,
+                  .tables = tables_,
+                  .current = current,
+                  .previous = previous != nullptr ? *previous : current,
+                  .has_history = previous != nullptr,
+                  .output = facts_.settings.output,
+                  .counter = counter};
+  if (facts_.velocity == VelocitySource::kCamera) {  // the service's own target, in uv
+    frame.current.velocity_scale = {};
+    frame.previous.velocity_scale = {};
+  }
+  bind_inputs(frame);
+  for (const Owned& owned : owned_) {
+    const bool paired = static_cast<bool>(owned.images[1]);
+    frame[owned.resource] = owned.images[paired ? next_ : 0].view();
+    if (paired) frame[previous_of(owned.resource)] = owned.images[1 - next_].view();
+  }
+  if (outputs.resolved) frame[Resource::kResolved] = outputs.resolved;
+  if (outputs.blurred) frame[Resource::kBlurred] = outputs.blurred;
+  frame[Resource::kPresented] = outputs.presented;
+  return frame;
+}
+
+// What the accumulating passes find of the previous frame is nothing.
+void PassChain::forget(const PassFrame& frame) {
+  for (const ResourceUse& use : resources_) {
+    if (!is_previous(use.resource) || !use.written) continue;
+    const Extent extent =
+        extent_of(use.largest.area, {facts_.settings.target, facts_.settings.target, frame.output});
+    fill_zero(frame.queue, frame[use.resource].memory,
+              static_cast<std::size_t>(extent.area()) * use.largest.element_bytes());
+  }
+}
+
+// Marks the passes whose results the outputs or the next frame need, from the last to the first.
+void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs) {
+  std::array<bool, kResources> wanted{};
+  wanted[index_of(Resource::kResolved)] = true;
+  wanted[index_of(Resource::kBlurred)] = static_cast<bool>(outputs.blurred);
+  wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);
+  for (const ResourceUse& use : resources_) {
+    if (keeps(use.resource)) wanted[index_of(use.resource)] = true;
+  }
+  for (std::size_t i = passes_.size(); i-- > 0;) {
+    const std::vector<Use>& uses = passes_[i]->spec().uses;
+    needed_[i] = passes_[i]->takes_part(frame) && std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
+                   return use.access != Access::kRead && wanted[index_of(use.resource)];
+                 });
+    if (!needed_[i]) continue;
+    for (const Use& use : uses)
+      wanted[index_of(use.resource)] |= use.access != Access::kWrite;
+  }
+}
+
+void PassChain::enqueue(Pass& pass, const PassFrame& frame, cl::Event* event) {
+  clear_sums(frame, pass.spec());
+  pass.enqueue(frame, event);
+}
+
+void PassChain::run(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report,
+                    cl::Event* events) {
+  if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render, frame.output))
+    forget(frame);
+  mark_needed(frame, outputs);
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    if (!needed_[i]) continue;
+    const PassSpec& spec = passes_[i]->spec();
+    enqueue(*passes_[i], frame, events != nullptr ? events++ : nullptr);
+    report.passes[report.pass_count++] = {.kernel = spec.kernel, .bytes = bytes_of(spec, frame.extents())};
+  }
+  next_ = 1 - next_;
+}
+
+void PassChain::warm_up() {
+  constexpr Extent kPixel = {1, 1};
+  const Device::Impl& device = *device_.impl();
+  std::vector<cl::Memory> kept;
+  PassTables tables(device, kPixel, kPixel);
+  const cl::Buffer counter(device.context, CL_MEM_READ_WRITE, sizeof(cl_uint));
+  PassFrame frame{.queue = device.queue, .tables = tables, .output = kPixel, .counter = {counter(), 0}};
+  frame.current.render = kPixel;
+  frame.previous.render = kPixel;
+  for (const auto& pass : passes_) {
+    for (const Use& use : pass->spec().uses) {
+      if (!frame[use.resource])
+        frame[use.resource] = scratch_view(device, use, storage_of(use.resource, facts_.settings), kept);
+    }
+  }
+  for (const auto& pass : passes_)
+    enqueue(*pass, frame, nullptr);
+  device.queue.finish();
+}
+
+}  // namespace quincunx

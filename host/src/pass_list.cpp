@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "pass_list.h"
+
+namespace quincunx {
+namespace {
+
+// In the order in which they run.
+constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
+    plan_velocity_from_depth,  // the camera's motion
+    plan_reproject,            // where samples were
+    plan_temporal_tiles,
+    plan_temporal_light,
+    plan_resolve_temporal,
+    plan_temporal_display,  // many frames
+    plan_resolve_quincunx,
+    plan_resolve_reprojected,  // two frames
+    plan_scale,
+    plan_scale_filter,  // one frame
+    plan_sharpen,
+    plan_motion_tiles,
+    plan_motion_neighbours,
+    plan_motion_blur,
+    plan_present,
+    plan_clear_region,
+};
+
+// Of the caller's images, those that nobody reads.
+void note_unused_inputs(const PlanFacts& facts, const std::vector<ResourceUse>& used,
+                        std::vector<LeftOut>& left_out) {
+  const auto note = [&left_out](const char* what, const char* why) { left_out.push_back({what, why}); };
+  const auto reads = [&used](Resource resource) {
+    for (const ResourceUse& use : used) {
+      if (use.resource == resource) return true;
+    }
+    return false;
+  };
+  const bool several = facts.keeps_previous_frame();
+  if (!several) note("the previous frame", "the method uses one frame only");
+  if (facts.velocity == VelocitySource::kCamera) {
+    note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
+  } else if (!reads(Resource::kVelocity)) {
+    note("velocity", !several                              ? "the method uses one frame only"
+                     : facts.has_form(TwoFrameForm::kMean) ? "the form is the plain mean"
+                                                           : "nothing moves: all frames count alike");
+  }
+  if (!reads(Resource::kDepth)) note("depth", "no pass reads it");
+  if (!facts.reads_reactive())
+    note("reactive values", several ? "the scene has no transparents" : "the method uses one frame only");
+}
+
+}  // namespace
+
+PassList list_passes(const PlanFacts& facts) {
+  PassList planned;
+  for (const auto plan : kPlanners)
+    plan(facts, planned);
+  PassList list{std::move(planned.passes), {}};
+  note_unused_inputs(facts, resources_of(list.passes), list.left_out);
+  for (LeftOut& left : planned.left_out)
+    list.left_out.push_back(std::move(left));
+  return list;
+}
+
+}  // namespace quincunx

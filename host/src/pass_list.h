@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The part of each pass_*.cpp that plans: it adds its pass where the facts ask for it, else says why not.
+#pragma once
+
+#include "pass_spec.h"
+
+namespace quincunx {
+
+void plan_velocity_from_depth(const PlanFacts& facts, PassList& list);
+void plan_reproject(const PlanFacts& facts, PassList& list);
+void plan_temporal_tiles(const PlanFacts& facts, PassList& list);
+void plan_temporal_light(const PlanFacts& facts, PassList& list);
+void plan_resolve_temporal(const PlanFacts& facts, PassList& list);
+void plan_temporal_display(const PlanFacts& facts, PassList& list);
+void plan_resolve_quincunx(const PlanFacts& facts, PassList& list);
+void plan_resolve_reprojected(const PlanFacts& facts, PassList& list);
+void plan_scale(const PlanFacts& facts, PassList& list);
+void plan_scale_filter(const PlanFacts& facts, PassList& list);
+void plan_sharpen(const PlanFacts& facts, PassList& list);
+void plan_motion_tiles(const PlanFacts& facts, PassList& list);
+void plan_motion_neighbours(const PlanFacts& facts, PassList& list);
+void plan_motion_blur(const PlanFacts& facts, PassList& list);
+void plan_present(const PlanFacts& facts, PassList& list);
+void plan_clear_region(const PlanFacts& facts, PassList& list);
+
+// The picture that the method makes, before sharpening.
+inline Resource picture_of(const PlanFacts& facts) {
+  return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+}
+
+}  // namespace quincunx

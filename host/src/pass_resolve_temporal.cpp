@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// resolve_temporal: this frame added to the history.
+#include <fmt/format.h>
+
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
+
+namespace quincunx {
+namespace {
+
+int view_code(TemporalView view) {
+  switch (view) {
+    case TemporalView::kPicture:
+      return kViewPicture;
+    case TemporalView::kConfidence:
+      return kViewConfidence;
+    case TemporalView::kRejection:
+      return kViewRejection;
+    case TemporalView::kOffset:
+      return kViewOffset;
+  }
+  return kViewPicture;
+}
+
+class ResolveTemporalPass : public Pass {
+ public:
+  ResolveTemporalPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) {
+    setup.tables.positions();
+  }
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent output = frame.output;
+    const Extent now = frame.current.render;
+    const Extent before = frame.previous.render;
+    const Extent tiles = extent_of(Area::kTiles, frame.extents());
+    const Ratio spacing = ratio_of(output, now);
+    const Ratio move = ratio_of(output, before);
+    PositionTables& tables = frame.tables.positions();
+    // A debug view is written here, the picture by temporal_display.
+    const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
+    const TemporalParams params{
+        .output_width = output.width,
+        .output_height = output.height,
+        .frame0 = {now.width,
+                   now.height,
+                   layout_of(frame[Resource::kColour]),
+                   {},
+                   layout_if_used(frame, Resource::kReactive)},
+        .frame1 = {before.width, before.height, {}, {}, layout_if_used(frame, Resource::kPreviousReactive)},
+        .moves = layout_if_used(frame, Resource::kReprojection),
+        .output = layout_of(frame[shown]),
+        .columns = tables.columns(),
+        .counter = frame.counter.index,
+        .columns_per_item = columns_per_item(device(), output.width, kTemporalTile),
+        .move_x = move.x,
+        .move_y = move.y,
+        .spacing_x = spacing.x,
+        .spacing_y = spacing.y,
+        .tiles_x = tiles.width,
+        .tiles_y = tiles.height,
+        .view = view_code(settings().temporal.view),
+        .half_output = settings().resolved == PixelFormat::kRGBA16F ? 1 : 0};
+    bind(params, tables.get(frame.queue, now, frame.current.jitter), frame[Resource::kColour],
+         view_or(frame, Resource::kReprojection, Resource::kTiles),
+         view_or(frame, Resource::kReactive, Resource::kColour),
+         view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
+         frame[Resource::kPreviousTiles], frame[Resource::kTiles], frame[Resource::kHistory], frame[shown],
+         frame.counter);
+    launch(frame, output, params.columns_per_item, event);
+  }
+};
+
+std::string options_of(const PlanFacts& facts, bool reactive) {
+  const ResolveSettings& settings = facts.settings;
+  const TemporalPreset preset = settings.temporal.preset;
+  const bool moves = facts.reprojects();
+  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} {} -D HISTORY_FORMAT={}",
+                     moves ? 1 : 0, reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
+                     moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
+                     colour_options(settings), precision_of(settings.temporal.history));
+}
+
+}  // namespace
+
+void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  const ResolveSettings& settings = facts.settings;
+  // Where samples are reprojected, that already holds what reactive values take.
+  const bool reactive = !facts.reprojects() && facts.reads_reactive();
+  PassSpec spec{
+      .kernel = "resolve_temporal",
+      .options = options_of(facts, reactive),
+      .reason = "the method: this frame added to the history",
+      .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+               {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+               {Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
+      .make = make_pass<ResolveTemporalPass>,
+      .frames = Frames::kSparse};
+  if (facts.reprojects())
+    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  if (reactive) {
+    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
+    spec.uses.push_back(
+        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
+  }
+  if (!facts.shows_picture())
+    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved});
+  list.passes.push_back(std::move(spec));
+}
+
+}  // namespace quincunx

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "pass_spec.h"
+
+#include <algorithm>
+
+#include "params.h"
+
+namespace quincunx {
+namespace {
+
+Extent tiles_of(Extent output, int side) {
+  return {(output.width + side - 1) / side, (output.height + side - 1) / side};
+}
+
+// The previous frame's resources, each after its own.
+constexpr struct {
+  Resource now, before;
+} kKept[] = {
+    {Resource::kColour, Resource::kPreviousColour},
+    {Resource::kVelocity, Resource::kPreviousVelocity},
+    {Resource::kDepth, Resource::kPreviousDepth},
+    {Resource::kReactive, Resource::kPreviousReactive},
+    {Resource::kReprojection, Resource::kPreviousReprojection},
+    {Resource::kTiles, Resource::kPreviousTiles},
+    {Resource::kHistory, Resource::kPreviousHistory},
+};
+
+std::int64_t rank(Area area) {
+  // Only viewports share a resource with other areas, and the largest viewport may exceed the output.
+  return area == Area::kViewport || area == Area::kPreviousViewport ? 1 : 0;
+}
+
+}  // namespace
+
+const char* name_of(Resource resource) {
+  switch (resource) {
+    case Resource::kColour:
+      return "colour";
+    case Resource::kVelocity:
+      return "velocity";
+    case Resource::kDepth:
+      return "depth";
+    case Resource::kReactive:
+      return "reactive";
+    case Resource::kPreviousColour:
+      return "colour of the previous frame";
+    case Resource::kPreviousVelocity:
+      return "velocity of the previous frame";
+    case Resource::kPreviousDepth:
+      return "depth of the previous frame";
+    case Resource::kPreviousReactive:
+      return "reactive of the previous frame";
+    case Resource::kReprojection:
+      return "reprojection";
+    case Resource::kPreviousReprojection:
+      return "reprojection of the previous frame";
+    case Resource::kTiles:
+      return "tiles";
+    case Resource::kPreviousTiles:
+      return "tiles of the previous frame";
+    case Resource::kTotalLight:
+      return "total light";
+    case Resource::kHistory:
+      return "history";
+    case Resource::kPreviousHistory:
+      return "history of the previous frame";
+    case Resource::kUnsharpened:
+      return "unsharpened";
+    case Resource::kResolved:
+      return "resolved";
+    case Resource::kStreaks:
+      return "streaks";
+    case Resource::kLongestStreak:
+      return "longest streak";
+    case Resource::kTileBlurs:
+      return "blur tiles";
+    case Resource::kBlurred:
+      return "blurred";
+    case Resource::kPresented:
+      return "presented";
+  }
+  return "unknown";
+}
+
+Resource previous_of(Resource resource) {
+  for (const auto& [now, before] : kKept) {
+    if (now == resource) return before;
+  }
+  return resource;
+}
+
+bool is_previous(Resource resource) {
+  return std::any_of(std::begin(kKept), std::end(kKept),
+                     [resource](const auto& kept) { return kept.before == resource; });
+}
+
+Extent extent_of(Area area, const FrameExtents& extents) {
+  switch (area) {
+    case Area::kViewport:
+      return extents.render;
+    case Area::kPreviousViewport:
+      return extents.previous_render;
+    case Area::kOutput:
+      return extents.output;
+    case Area::kTiles:
+      return tiles_of(extents.output, kTemporalTile);
+    case Area::kBlurTiles:
+      return tiles_of(extents.output, kTileSide);
+    case Area::kWhole:
+      return {1, 1};
+  }
+  return {};
+}
+
+std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents) {
+  std::uint64_t bytes = 0;
+  for (const Use& use : spec.uses) {
+    const std::uint64_t times = use.access == Access::kRead || use.access == Access::kWrite ? 1 : 2;
+    bytes += times * static_cast<std::uint64_t>(extent_of(use.area, extents).area()) * use.element_bytes();
+  }
+  return bytes;
+}
+
+std::vector<ResourceUse> resources_of(const std::vector<PassSpec>& passes) {
+  std::vector<ResourceUse> found;
+  const auto entry = [&found](Resource resource) {
+    return std::find_if(found.begin(), found.end(),
+                        [resource](const ResourceUse& use) { return use.resource == resource; });
+  };
+  for (const PassSpec& pass : passes) {
+    if (pass.frames == Frames::kOnRequest) continue;
+    for (const Use& use : pass.uses) {
+      auto known = entry(use.resource);
+      if (known == found.end()) known = found.insert(found.end(), {use.resource, use, false});
+      if (rank(use.area) > rank(known->largest.area)) known->largest = use;
+      known->written |= use.access != Access::kRead;
+    }
+  }
+  for (const auto& [now, before] : kKept) {
+    if (const auto of_now = entry(now), of_before = entry(before);
+        of_now != found.end() && of_before != found.end())
+      of_before->written = of_now->written;
+  }
+  std::sort(found.begin(), found.end(),
+            [](const ResourceUse& a, const ResourceUse& b) { return a.resource < b.resource; });
+  return found;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// PassSpec: a pass described as data. Each pass_*.cpp makes its own; all else follows from the list of them: the
+// plan's text, bytes and buffers, allocation, what validate() asks for, what is left out, warm-up, the loop that
+// runs a frame, events and reports.
+//
+// To add a pass, see "Adding a pass" in docs/pipeline.md.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plan_facts.h"
+#include "quincunx/image.h"
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+
+class Pass;
+struct PassSpec;
+struct PassSetup;
+
+// Whatever a pass reads or writes. A resource that a pass of the plan writes belongs to the service; the others
+// are the caller's. A name that begins with kPrevious is the frame before's: the service keeps two of its own
+// resources and exchanges them after each frame.
+enum class Resource : std::uint8_t {
+  kColour,
+  kVelocity,
+  kDepth,
+  kReactive,
+  kPreviousColour,
+  kPreviousVelocity,
+  kPreviousDepth,
+  kPreviousReactive,
+  kReprojection,
+  kPreviousReprojection,
+  kTiles,
+  kPreviousTiles,
+  kTotalLight,
+  kHistory,
+  kPreviousHistory,
+  kUnsharpened,
+  kResolved,
+  kStreaks,
+  kLongestStreak,
+  kTileBlurs,
+  kBlurred,
+  kPresented,
+};
+constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
+
+const char* name_of(Resource resource);  // "colour of the previous frame"
+// The resource of the previous frame that becomes of `resource`, or itself where none does.
+Resource previous_of(Resource resource);
+bool is_previous(Resource resource);
+
+enum class Access : std::uint8_t {
+  kRead,
+  kWrite,
+  kUpdate,      // read and written
+  kAccumulate,  // set to zero before the pass, which adds to it
+};
+
+// Which part of a resource a pass touches.
+enum class Area : std::uint8_t {
+  kViewport,          // of this frame, within the target
+  kPreviousViewport,  // of the previous frame, within the target
+  kOutput,
+  kTiles,      // one element for each tile of kTemporalTile^2 output pixels
+  kBlurTiles,  // one element for each tile of kTileSide^2 output pixels
+  kWhole,      // one element
+};
+
+struct Use {
+  Resource resource;
+  Access access;
+  Area area;
+  PixelFormat format = PixelFormat::kNone;
+  std::size_t record_bytes = 0;  // of one element, where it is no pixel
+
+  std::size_t element_bytes() const { return record_bytes != 0 ? record_bytes : bytes_per_pixel(format); }
+};
+
+// The frames that a pass takes part in.
+enum class Frames : std::uint8_t {
+  kAll,
+  kWithHistory,     // the previous frame counts
+  kWithoutHistory,  // the first frame and those after a reset
+  kSparse,          // is_dense() does not hold
+  kDense,
+  kOnRequest,  // none: a call of its own runs it
+};
+
+// Which viewports it serves: those for which widens() holds or does not hold, or all.
+enum class Viewports : std::uint8_t { kAll, kNotWider, kWider };
+
+using MakePass = std::unique_ptr<Pass> (*)(const PassSetup& setup, const PassSpec& spec);
+
+struct PassSpec {
+  const char* kernel = "";  // static
+  std::string options;      // -D options of the variant
+  std::string reason;       // why the plan has it
+  std::vector<Use> uses;
+  MakePass make = nullptr;
+  Frames frames = Frames::kAll;
+  Viewports viewports = Viewports::kAll;
+};
+
+// The extents that uses follow.
+struct FrameExtents {
+  Extent render, previous_render, output;
+};
+
+Extent extent_of(Area area, const FrameExtents& extents);
+
+// Read and written in a frame, each element once; what a pass both reads and writes twice.
+std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents);
+
+// The passes of a plan in the order in which they run, and why the others are not in it. Pure.
+struct PassList {
+  std::vector<PassSpec> passes;
+  std::vector<LeftOut> left_out;
+};
+PassList list_passes(const PlanFacts& facts);
+
+// A resource of a plan, over all passes that use it.
+struct ResourceUse {
+  Resource resource;
+  Use largest;           // the use with the largest area
+  bool written = false;  // by a pass: it belongs to the service
+};
+std::vector<ResourceUse> resources_of(const std::vector<PassSpec>& passes);
+
+}  // namespace quincunx

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// temporal_light: where the light has changed, and where the picture has.
+#include "pass.h"
+#include "pass_list.h"
+
+namespace quincunx {
+namespace {
+
+class TemporalLightPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent tiles = extent_of(Area::kTiles, frame.extents());
+    bind(tiles.width, tiles.height, frame[Resource::kPreviousTiles], frame[Resource::kTotalLight],
+         frame[Resource::kTiles]);
+    launch(frame, tiles, 1, event);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_light(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  list.passes.push_back(
+      {.kernel = "temporal_light",
+       .options = "",
+       .reason = "the method: where the light has changed",
+       .uses = {{Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+                {Resource::kTotalLight, Access::kRead, Area::kWhole, {}, sizeof(TotalLight)},
+                {Resource::kTiles, Access::kUpdate, Area::kTiles, {}, sizeof(TemporalTile)}},
+       .make = make_pass<TemporalLightPass>,
+       .frames = Frames::kSparse});
+}
+
+}  // namespace quincunx

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// temporal_tiles: which tiles move as a whole, and what their samples say of the history.
+#include <fmt/format.h>
+
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
+
+namespace quincunx {
+namespace {
+
+class TemporalTilesPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const FrameInputs& current = frame.current;
+    const Extent output = frame.output;
+    const Extent render = current.render;
+    const Extent tiles = extent_of(Area::kTiles, frame.extents());
+    const Ratio spacing = ratio_of(output, render);
+    const Ratio move = ratio_of(output, frame.previous.render);
+    const TemporalTileParams params{
+        .frame = {render.width, render.height, layout_of(frame[Resource::kColour]), {}, {}},
+        .output_width = output.width,
+        .output_height = output.height,
+        .tiles_x = tiles.width,
+        .tiles_y = tiles.height,
+        .moves = layout_if_used(frame, Resource::kReprojection),
+        .spacing_x = spacing.x,
+        .spacing_y = spacing.y,
+        .start_x = (.5f + current.jitter.x) * spacing.x,
+        .start_y = (.5f + current.jitter.y) * spacing.y,
+        .move_x = move.x,
+        .move_y = move.y,
+        .judged_apart = settings().temporal.preset == TemporalPreset::kFast ? 4 : 2};
+    bind(params, frame[Resource::kColour], view_or(frame, Resource::kReprojection, Resource::kTiles),
+         frame[Resource::kPreviousHistory], frame[Resource::kPreviousTiles], frame[Resource::kTiles],
+         frame[Resource::kTotalLight]);
+    launch(frame, tiles, 1, event);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  const ResolveSettings& settings = facts.settings;
+  PassSpec spec{
+      .kernel = "temporal_tiles",
+      .options = fmt::format("-D MOTION={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
+                             colour_options(settings), precision_of(settings.temporal.history)),
+      .reason = "the method: which tiles move as a whole",
+      .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+               {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+               {Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kTiles, Access::kWrite, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
+      .make = make_pass<TemporalTilesPass>,
+      .frames = Frames::kSparse};
+  if (facts.reprojects())
+    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  list.passes.push_back(std::move(spec));
+}
+
+}  // namespace quincunx

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// PlanFacts: what passes ask of a plan: the scene's needs, the settings, and what follows from both.
+#pragma once
+
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+
+// A value; pure.
+struct PlanFacts {
+  PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings);
+
+  SceneNeeds needs;
+  ResolveSettings settings;
+  VelocitySource velocity;  // where passes find it; kNone where no pass reads it
+
+  bool has_velocity() const { return velocity != VelocitySource::kNone; }
+  bool accumulates() const { return settings.method == Method::kTemporal; }
+  bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
+  bool keeps_previous_frame() const { return accumulates() || resolves_two_frames(); }
+  bool has_form(TwoFrameForm form) const { return resolves_two_frames() && settings.quincunx.form == form; }
+  bool weighs_velocity() const { return has_velocity() && has_form(TwoFrameForm::kVelocity); }
+  bool reprojects() const {  // where each sample was in the previous frame is computed
+    return has_velocity() && (accumulates() || has_form(TwoFrameForm::kReprojected));
+  }
+  bool weighs_residual() const {
+    return reprojects() && !accumulates() && settings.quincunx.residual_weight > 0;
+  }
+  bool reads_reactive() const { return keeps_previous_frame() && needs.transparents; }
+  bool shows_picture() const {  // and no debug view
+    return !accumulates() || settings.temporal.view == TemporalView::kPicture;
+  }
+  bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
+  bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
+};
+
+// Whether the temporal upscaler's samples are so dense, from 1.56 a pixel on, that a frame alone is the better
+// picture.
+bool is_dense(Extent render, Extent output);
+
+// Whether a viewport is larger than the output on an axis, so that filters widen.
+bool widens(Extent render, Extent output);
+
+}  // namespace quincunx

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#include "pass_rig.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace quincunx::testing {
+
+PassSpec spec_of(const PlanFacts& facts, std::string_view kernel) {
+  for (PassSpec& spec : list_passes(facts).passes) {
+    if (spec.kernel == kernel) return std::move(spec);
+  }
+  std::fprintf(stderr, "the plan has no %s\n", std::string(kernel).c_str());
+  std::abort();
+}
+
+PassRig::PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel)
+    : facts_(needs, settings) {
+  PassTables tables(impl(), {1, 1}, {1, 1});
+  const PassSpec spec = spec_of(facts_, kernel);
+  pass_ = spec.make({impl(), facts_, tables}, spec);
+}
+
+void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
+                  Bound bound) {
+  PassTables tables(impl(), current.render, output);
+  PassFrame frame{.queue = impl().queue,
+                  .tables = tables,
+                  .current = current,
+                  .previous = previous,
+                  .has_history = true,
+                  .output = output,
+                  .counter = counter};
+  bind_inputs(frame);
+  for (const auto& [resource, view] : bound)
+    frame[resource] = view;
+  PassChain::enqueue(*pass_, frame, nullptr);
+  impl().queue.finish();
+}
+
+}  // namespace quincunx::testing

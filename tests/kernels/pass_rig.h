@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// PassRig: one pass of a plan, run alone on what a test binds to its resources.
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "kernel_fixture.h"
+#include "pass_chain.h"
+
+namespace quincunx::testing {
+
+// A scene in which nothing moves.
+inline constexpr SceneNeeds kStill = {.moving_objects = false, .camera_motion = false, .transparents = false};
+
+class PassRig {
+ public:
+  using Bound = std::initializer_list<std::pair<Resource, ImageView>>;
+
+  // Ends the program where the plan has no pass of this kernel.
+  PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel);
+
+  const PlanFacts& facts() const { return facts_; }
+
+  // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.
+  void run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
+           Bound bound);
+
+ private:
+  PlanFacts facts_;
+  std::unique_ptr<Pass> pass_;
+};
+
+// The spec of a kernel in the plan for these facts. Ends the program where there is none.
+PassSpec spec_of(const PlanFacts& facts, std::string_view kernel);
+
+}  // namespace quincunx::testing
