@@ -66,17 +66,14 @@ known_packages() {
   done
 }
 
-# configure_and_build PRESET [TARGET...]: into build/PRESET; says one line and shows the tools' words only on failure.
+# configure_and_build PRESET [TARGET...]: into build/PRESET; shows CMake's words only on failure. With ccache, set
+# CMAKE_CXX_COMPILER_LAUNCHER=ccache, which CMake reads; headers are then not precompiled.
 configure_and_build() {
   local preset=$1 log
   shift
   mkdir -p "build/$preset"
   log="build/$preset/configure.log"
-  local launcher=()
-  if command -v ccache >/dev/null; then
-    launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-  fi
-  if ! cmake --preset "$preset" "${launcher[@]}" >"$log" 2>&1; then
+  if ! cmake --preset "$preset" >"$log" 2>&1; then
     cat "$log" >&2
     fail "cmake could not configure build/$preset; the reason is above."
   fi

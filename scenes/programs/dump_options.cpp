@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 
 namespace quincunx::scenes {
@@ -19,80 +18,74 @@ has them), .history.exr, .target.exr, .tiles.exr, .output.exr (resolved, blurred
 one frame.0012.STAGE.png a stage.
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
-void add_stage_options(CLI::App& app, DumpOptions& options) {
-  auto* frame = app.add_option("--frame", options.frame, "Which frame of the run")
-                    ->check(CLI::NonNegativeNumber)
-                    ->type_name("N");
+void add_stage_options(tools::CommandLine& app, DumpOptions& options) {
+  const auto frame =
+      app.add_option("--frame", options.frame, "Which frame of the run").non_negative().type_name("N");
   app.add_option_function<std::vector<std::string>>(
          "--stages",
          [&options](const std::vector<std::string>& names) {
            for (const std::string& name : names) {
              const auto stage = stage_named(name);
              if (!stage) {
-               throw CLI::ValidationError("--stages", fmt::format("'{}' is none of {}", name, stage_names()));
+               throw tools::UsageError{"--stages", fmt::format("'{}' is none of {}", name, stage_names())};
              }
              options.stages.push_back(*stage);
            }
          },
          "Which stages: " + stage_names() + " (default: all there are)")
-      ->delimiter(',')
-      ->type_name("NAME,NAME");
-  auto* out = app.add_option("--out", options.out, "Folder for the stages of one frame")->type_name("FOLDER");
+      .delimiter(',')
+      .type_name("NAME,NAME");
+  const auto out =
+      app.add_option("--out", options.out, "Folder for the stages of one frame").type_name("FOLDER");
   app.add_option_function<std::string>(
          "--format",
          [&options](const std::string& format) {
            if (format != "png" && format != "exr" && format != "both") {
-             throw CLI::ValidationError("--format", fmt::format("'{}' is none of png, exr, both", format));
+             throw tools::UsageError{"--format", fmt::format("'{}' is none of png, exr, both", format)};
            }
            options.png = format != "exr";
            options.exr = format != "png";
          },
          "png (for a person), exr (the numbers) or both (default)")
-      ->type_name("NAME");
+      .type_name("NAME");
   app.add_option("--truth", options.truth,
                  "Supersampled truth, N x N samples a pixel (default: 8 where a stage needs it)")
-      ->check(CLI::Range(1, 64))
-      ->type_name("N");
+      .in_range(1, 64)
+      .type_name("N");
   app.add_option(
          "--warm-up", options.warm_up,
          fmt::format("Frames resolved before the one that is shown, for its history (default: 1; {} of "
                      "methods that accumulate)",
                      kAccumulatedFrames))
-      ->check(CLI::NonNegativeNumber);
-  auto* sequence =
+      .non_negative();
+  const auto sequence =
       app.add_option("--sequence", options.sequence,
                      "Instead: write the whole run in the exchange format, and its truth with --truth")
-          ->type_name("PATTERN")
-          ->excludes(out)
-          ->excludes(frame);
+          .type_name("PATTERN")
+          .excludes(out)
+          .excludes(frame);
   app.add_flag("--device-depth", options.device_depth,
                "With --sequence: Z is near / distance as drawn, not distance")
-      ->needs(sequence);
+      .needs(sequence);
 }
 
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& options) {
-  CLI::App app(
+  tools::CommandLine app(
       "Shows what happens inside a frame: every stage as numbers and as a picture, or a run as a sequence.",
-      "quincunx-dump");
-  app.footer(kExamples);
-  app.set_version_flag("--version", "quincunx-dump " QUINCUNX_VERSION);
-  app.get_formatter()->column_width(30);
+      "quincunx-dump", QUINCUNX_VERSION, kExamples);
   add_stage_options(app, options);
   add_picture_options(app, options);
   add_machine_options(app, options);
-  try {
-    app.parse(argc, argv);
+  const auto check_needs = [&options] {
     const bool listing = options.list_scenes || options.list_devices;
     if (!listing && options.out.empty() && options.sequence.empty()) {
-      throw CLI::ValidationError("--out",
-                                 "is missing: give the folder for the stages, or --sequence PATTERN");
+      throw tools::UsageError{"--out", "is missing: give the folder for the stages, or --sequence PATTERN"};
     }
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? tools::kDone : tools::kUsage;
-  }
-  if (app.count("--warm-up") == 0 && options.resolve.method == Method::kTemporal)
+  };
+  if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
+  if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal)
     options.warm_up = kAccumulatedFrames;
   return std::nullopt;
 }

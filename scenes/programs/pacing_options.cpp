@@ -10,7 +10,7 @@
 #include <map>
 #include <utility>
 
-#include "tools/program/option_choice.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -27,18 +27,18 @@ Result<CostTable> read_calibration(const std::string& path) {
 }
 
 std::string positive_finite(const std::string& text) {
-  double value = 0;
-  const bool good = CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value);
+  const std::optional<double> value = tools::number_in(text);
+  const bool good = value && *value > 0 && std::isfinite(*value);
   return good ? std::string() : fmt::format("'{}' is no positive finite number", text);
 }
 
-void refuse_given(CLI::App& app, std::initializer_list<std::string> names, const std::string& why) {
+void refuse_given(tools::CommandLine& app, std::initializer_list<std::string> names, const std::string& why) {
   for (const std::string& name : names) {
-    if (app.count(name) > 0) throw CLI::ValidationError(name, why);
+    if (app.has(name)) throw tools::UsageError{name, why};
   }
 }
 
-void add_controller_options(CLI::App& app, PacingOptions& options) {
+void add_controller_options(tools::CommandLine& app, PacingOptions& options) {
   static const std::map<std::string, ControllerKind> kControllers = {
       {"predictive", ControllerKind::kPredictive},
       {"proportional", ControllerKind::kProportional},
@@ -50,7 +50,7 @@ void add_controller_options(CLI::App& app, PacingOptions& options) {
       "the report");
   app.add_option("--calibration", options.calibration,
                  "For the predictive controller: what --calibrate wrote")
-      ->type_name("FILE");
+      .type_name("FILE");
   app.add_flag_callback(
       "--follow-cpu", [&options] { options.cpu_bound = CpuBound::kFollow; },
       "Where the processor takes longer than the target, the predictive controller makes its time the "
@@ -58,42 +58,42 @@ void add_controller_options(CLI::App& app, PacingOptions& options) {
   app.add_flag("--blur-aware", options.blur_aware,
                "The longer the streaks that the camera's motion draws, the lower the highest resolution "
                "(predictive)")
-      ->needs("--blur");
+      .needs("--blur");
   app.add_flag(
       "--detail-follows", options.detail_follows,
       "Where the resolution is low, small surfaces are left out and moving shadows drawn less often");
 }
 
-void add_ladder_options(CLI::App& app, PacingOptions& options) {
+void add_ladder_options(tools::CommandLine& app, PacingOptions& options) {
   static const std::map<std::string, AxisOrder> kOrders = {{"horizontal-first", AxisOrder::kHorizontalFirst},
                                                            {"horizontal-only", AxisOrder::kHorizontalOnly},
                                                            {"both", AxisOrder::kBoth}};
   tools::add_choice(app, "--ladder", options.order, kOrders,
                     "With a controller: horizontal-first (default), horizontal-only or both");
   app.add_option("--min-scale", options.min_scale, "Lowest scale that a controller may choose, per axis")
-      ->check(CLI::Range(0.01, 2.0))
-      ->capture_default_str();
+      .in_range(0.01, 2.0)
+      .show_default();
   app.add_option("--max-scale", options.max_scale, "Highest scale that a controller may choose")
-      ->check(CLI::Range(0.01, 2.0))
-      ->capture_default_str();
+      .in_range(0.01, 2.0)
+      .show_default();
 }
 
-void add_display_options(CLI::App& app, PacingOptions& options) {
+void add_display_options(tools::CommandLine& app, PacingOptions& options) {
   app.add_option("--buffers", options.buffers, "Of the display that frames are made for")
-      ->check(CLI::Range(2, 8))
-      ->capture_default_str();
+      .in_range(2, 8)
+      .show_default();
   app.add_option("--headroom", options.headroom, "Part of the refresh interval that a controller leaves free")
-      ->check(CLI::Range(0.0, 0.5))
-      ->capture_default_str();
+      .in_range(0.0, 0.5)
+      .show_default();
   app.add_option(
          "--compare-fixed", options.compared_scales,
          "Draw the same frames again at each of these fixed scales; the report sets them side by side")
-      ->check(CLI::Range(0.01, 2.0))
-      ->delimiter(',')
-      ->type_name("S,S");
+      .in_range(0.01, 2.0)
+      .delimiter(',')
+      .type_name("S,S");
 }
 
-void add_measuring_options(CLI::App& app, PacingOptions& options) {
+void add_measuring_options(tools::CommandLine& app, PacingOptions& options) {
   static const std::map<std::string, FrameCost> kCosts = {
       {"auto", FrameCost::kAuto}, {"device", FrameCost::kDevice}, {"span", FrameCost::kSpan}};
   tools::add_choice(
@@ -102,12 +102,12 @@ void add_measuring_options(CLI::App& app, PacingOptions& options) {
       "or auto (default: device where OpenGL's timers can be trusted)");
   app.add_option("--calibrate", options.calibrate,
                  "Measure instead what frames cost at a few resolutions, and write it for --calibration")
-      ->excludes("--target-fps")
-      ->type_name("FILE");
+      .excludes("--target-fps")
+      .type_name("FILE");
 }
 
 // What fits together, where it is more than one option needing another.
-void check_together(CLI::App& app, const PacingOptions& options) {
+void check_together(tools::CommandLine& app, const PacingOptions& options) {
   if (options.has_ladder()) {
     refuse_given(app, {"--scale", "--scale-path"},
                  "here the resolution is chosen for you; bound it by --min-scale and --max-scale, or ask for "
@@ -124,20 +124,20 @@ void check_together(CLI::App& app, const PacingOptions& options) {
 
 }  // namespace
 
-void add_pacing_options(CLI::App& app, PacingOptions& options) {
-  auto* target = app.add_option("--target-fps", options.target_fps,
-                                "Hold this rate: a controller chooses each frame's resolution")
-                     ->check(positive_finite)
-                     ->type_name("F");
+void add_pacing_options(tools::CommandLine& app, PacingOptions& options) {
+  const auto target = app.add_option("--target-fps", options.target_fps,
+                                     "Hold this rate: a controller chooses each frame's resolution")
+                          .check(positive_finite)
+                          .type_name("F");
   add_controller_options(app, options);
   add_ladder_options(app, options);
   add_display_options(app, options);
   for (const char* name : {"--controller", "--calibration", "--follow-cpu", "--blur-aware",
                            "--detail-follows", "--buffers", "--headroom", "--compare-fixed"}) {
-    app.get_option(name)->needs(target);
+    app.option(name).needs(target);
   }
   add_measuring_options(app, options);
-  app.parse_complete_callback([&app, &options] { check_together(app, options); });
+  app.when_read([&app, &options] { check_together(app, options); });
 }
 
 Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output) {

@@ -2,13 +2,16 @@
 // PacingOptions: what a command line says of resolution control.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "programs/frame_meter.h"
 #include "programs/frame_pacing.h"
+
+namespace quincunx::tools {
+class CommandLine;
+}
 
 namespace quincunx::scenes {
 
@@ -34,7 +37,7 @@ struct PacingOptions {
 };
 
 // After --scale and --scale-path, with which they are checked.
-void add_pacing_options(CLI::App& app, PacingOptions& options);
+void add_pacing_options(tools::CommandLine& app, PacingOptions& options);
 
 // Errors: kInvalidArgument, naming the option.
 Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output);

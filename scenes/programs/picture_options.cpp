@@ -7,7 +7,7 @@
 #include <map>
 
 #include "scene_catalog.h"
-#include "tools/program/option_choice.h"
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 #include "tools/program/resolve_settings_options.h"
 
@@ -34,7 +34,7 @@ Result<ScalePath> scale_path_for(const PictureOptions& options) {
 
 }  // namespace
 
-void add_picture_options(CLI::App& app, PictureOptions& options) {
+void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
   static const std::map<std::string, Jitter> kJitters = {{"none", Jitter::kNone},
                                                          {"quincunx", Jitter::kQuincunx},
                                                          {"quincunx-half", Jitter::kQuincunxHalf},
@@ -44,36 +44,34 @@ void add_picture_options(CLI::App& app, PictureOptions& options) {
                  "Built-in scene, or a .gltf or .glb file (default: the first of the list)");
   app.add_option("--seed", options.seed,
                  "Of what is random in a scene or a scale path; same seed, same pixels")
-      ->capture_default_str();
+      .show_default();
   app.add_option_function<std::string>(
          "--output",
          [&options](const std::string& text) {
            const std::string error = tools::parse_extent(text, options.output);
-           if (!error.empty()) throw CLI::ValidationError("--output", error);
+           if (!error.empty()) throw tools::UsageError{"--output", error};
          },
          "Size of the picture (default: 1280x720)")
-      ->type_name("WxH");
-  auto* scale =
-      app.add_option("--scale", options.scale, "Render scale of both axes or of each")->type_name("S|SX,SY");
+      .type_name("WxH");
+  const auto scale =
+      app.add_option("--scale", options.scale, "Render scale of both axes or of each").type_name("S|SX,SY");
   app.add_option("--scale-path", options.scale_path,
                  "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
-      ->type_name("PATH")
-      ->excludes(scale);
+      .type_name("PATH")
+      .excludes(scale);
   tools::add_resolve_options(app, options.resolve);
   tools::add_choice(app, "--jitter", options.jitter, kJitters,
                     "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--frames", options.frames, "Number of frames")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      .positive();
+  app.add_option("--frames", options.frames, "Number of frames").positive().show_default();
   app.add_option("--fps", options.fps, "Frames a second of scene time (with --target-fps: that rate)")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--start", options.start, "Scene time of the first frame, seconds")->capture_default_str();
+      .positive()
+      .show_default();
+  app.add_option("--start", options.start, "Scene time of the first frame, seconds").show_default();
 }
 
-void add_machine_options(CLI::App& app, PictureOptions& options) {
+void add_machine_options(tools::CommandLine& app, PictureOptions& options) {
   static const std::map<std::string, gl::Interop> kInterops = {
       {"auto", gl::Interop::kAuto}, {"gl", gl::Interop::kGl}, {"copy", gl::Interop::kCopy}};
   static const std::map<std::string, gl::Platform> kPlatforms = {{"auto", gl::Platform::kAuto},

@@ -3,7 +3,6 @@
 // method, frames, devices.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,6 +11,10 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"
+
+namespace quincunx::tools {
+class CommandLine;
+}
 
 namespace quincunx::scenes {
 
@@ -39,10 +42,10 @@ struct PictureOptions {
 };
 
 // Scene, size, scale, method, jitter, tone map, frames and their times.
-void add_picture_options(CLI::App& app, PictureOptions& options);
+void add_picture_options(tools::CommandLine& app, PictureOptions& options);
 
 // Devices, lists and how much is said.
-void add_machine_options(CLI::App& app, PictureOptions& options);
+void add_machine_options(tools::CommandLine& app, PictureOptions& options);
 
 // Prints what --list-scenes or --list-devices ask for.
 void print_scenes();

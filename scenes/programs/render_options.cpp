@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 
 namespace quincunx::scenes {
@@ -20,29 +19,29 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-render --window --scale 0.71                               in a window; H there lists the keys
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
-void add_run_options(CLI::App& app, RenderOptions& options) {
+void add_run_options(tools::CommandLine& app, RenderOptions& options) {
   app.add_option("--truth", options.truth,
                  "Supersampled truth instead: N x N samples a pixel at output size, box")
-      ->check(CLI::Range(1, 64))
-      ->excludes("--target-fps")
-      ->excludes("--calibrate")
-      ->type_name("N");
+      .in_range(1, 64)
+      .excludes("--target-fps")
+      .excludes("--calibrate")
+      .type_name("N");
   app.add_option("--shutter", options.shutter,
                  "With --truth: part of the frame's time that the shutter is open")
-      ->check(CLI::Range(0.0, 1.0))
-      ->needs("--truth");
+      .in_range(0.0, 1.0)
+      .needs("--truth");
   app.add_option("--out", options.out,
                  "Frames to write: .png (presented) or .exr (linear); #, @ or %04d is the number")
-      ->type_name("PATTERN");
+      .type_name("PATTERN");
   app.add_option("--contact-sheet", options.contact_sheet, "One PNG that shows the whole run")
-      ->type_name("FILE");
+      .type_name("FILE");
   app.add_option("--exr-frame", options.exr_frame,
                  "Write this frame's targets and resolved picture as EXR beside --out")
-      ->check(CLI::NonNegativeNumber)
-      ->type_name("N");
+      .non_negative()
+      .type_name("N");
   app.add_option("--report", options.report,
                  "Write BASE.txt and BASE.json: passes, bytes, viewports, devices")
-      ->type_name("BASE");
+      .type_name("BASE");
   app.add_flag("!--no-overlap", options.overlap,
                "Finish each frame before the next: slower, cleaner pass times");
   app.add_flag("--explain", options.explain,
@@ -50,50 +49,43 @@ void add_run_options(CLI::App& app, RenderOptions& options) {
   app.add_flag("--json", options.json, "Print the report as JSON on standard output");
 }
 
-void add_window_options(CLI::App& app, RenderOptions& options) {
-  auto* window = app.add_flag("--window", options.window,
-                              "Show the frames in a window, until it is closed or --frames are shown");
+void add_window_options(tools::CommandLine& app, RenderOptions& options) {
+  const auto window = app.add_flag("--window", options.window,
+                                   "Show the frames in a window, until it is closed or --frames are shown");
   for (const char* other : {"--truth", "--out", "--contact-sheet", "--exr-frame", "--report", "--json",
                             "--calibrate", "--compare-fixed"}) {
-    window->excludes(app.get_option(other));
+    window.excludes(app.option(other));
   }
   app.add_option("--script", options.script, "Keys and sizes for the window, by frame; docs/window.md")
-      ->needs(window)
-      ->type_name("FILE");
+      .needs(window)
+      .type_name("FILE");
   app.add_option("--captures", options.captures, "Folder of the window's screenshots and dumps")
-      ->needs(window)
-      ->capture_default_str()
-      ->type_name("FOLDER");
+      .needs(window)
+      .show_default()
+      .type_name("FOLDER");
   app.add_flag("!--hide-ui", options.show_ui, "Begin with the picture alone; Tab shows the panel")
-      ->needs(window);
-  app.add_flag("!--no-vsync", options.vsync, "Show pictures without waiting for the display")->needs(window);
+      .needs(window);
+  app.add_flag("!--no-vsync", options.vsync, "Show pictures without waiting for the display").needs(window);
 }
 
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& options) {
-  CLI::App app(
+  tools::CommandLine app(
       "Renders a scene at a dynamic resolution with OpenGL and makes the picture from it with OpenCL.",
-      "quincunx-render");
-  app.footer(kExamples);
-  app.set_version_flag("--version", "quincunx-render " QUINCUNX_VERSION);
-  app.get_formatter()->column_width(30);
+      "quincunx-render", QUINCUNX_VERSION, kExamples);
   add_picture_options(app, options);
   add_pacing_options(app, options.pacing);
   add_run_options(app, options);
   add_window_options(app, options);
   add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-render", argc, argv);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  if (const std::optional<int> code = app.parse(argc, argv)) return code;
   // Held at its rate, the scene goes at its own speed.
-  if (options.pacing.on() && app.count("--fps") == 0) options.fps = options.pacing.target_fps;
+  if (options.pacing.on() && !app.has("--fps")) options.fps = options.pacing.target_fps;
   // The targets hold whatever a controller may choose.
   if (options.pacing.has_ladder()) options.scale = fmt::format("{}", options.pacing.max_scale);
-  if (options.window && app.count("--frames") == 0) options.frames = 0;
+  if (options.window && !app.has("--frames")) options.frames = 0;
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 // What every controller keeps, whatever it is told.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -3,7 +3,6 @@
 // copy.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "peers.h"
 #include "quincunx_gl/egl_context.h"
 #include "tools/program/atomic_file.h"
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 
 namespace quincunx::bench {
@@ -95,7 +95,7 @@ int run(const Options& options, const std::string& command) {
   return status.ok() ? tools::kDone : tools::fail(status);
 }
 
-void declare(CLI::App& app, Options& options) {
+void declare(tools::CommandLine& app, Options& options) {
   app.add_option("--device", options.device, "part of a device's name, its number, cpu or gpu");
   app.add_option_function<std::vector<std::string>>(
          "--output",
@@ -104,14 +104,14 @@ void declare(CLI::App& app, Options& options) {
            for (const std::string& size : sizes) {
              Extent extent;
              const std::string error = tools::parse_extent(size, extent);
-             if (!error.empty()) throw CLI::ValidationError("--output", error);
+             if (!error.empty()) throw tools::UsageError{"--output", error};
              options.outputs.push_back(extent);
            }
          },
          "output sizes, one or more (default: 1280x720)")
-      ->expected(1, 16);
-  app.add_option("--scales", options.scales, "render scales")->check(CLI::Range(.01, 4.0));
-  app.add_option("--rounds", options.rounds, "measured rounds")->check(CLI::Range(1, 100000));
+      .expected(1, 16);
+  app.add_option("--scales", options.scales, "render scales").in_range(.01, 4.0);
+  app.add_option("--rounds", options.rounds, "measured rounds").in_range(1, 100000);
   app.add_option("--filter", options.filters, "only cases whose name contains one of these");
   app.add_flag("!--no-peers", options.peers, "leave out C++, OpenImageIO and GL");
   app.add_flag("--clears", options.clears, "instead of the passes: full against partial clears");
@@ -123,9 +123,11 @@ void declare(CLI::App& app, Options& options) {
 
 int main(int argc, char** argv) {
   quincunx::bench::Options options;
-  CLI::App app("The time of each pass, and of the same work by other means, in units of a float4 copy");
+  quincunx::tools::CommandLine app(
+      "The time of each pass, and of the same work by other means, in units of a float4 copy",
+      "quincunx-kernel-bench", "", "");
   quincunx::bench::declare(app, options);
-  CLI11_PARSE(app, argc, argv);
+  if (const std::optional<int> code = app.parse(argc, argv)) return *code;
   try {
     return quincunx::bench::run(options,
                                 quincunx::tools::command_line_text("quincunx-kernel-bench", argc, argv));

@@ -2,6 +2,7 @@
 // What load_gltf makes of node trees, animations and cameras.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 

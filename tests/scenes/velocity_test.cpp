@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Velocity: by warping the previous frame, by geometry computed here, and by depth and the camera's motion.
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <optional>

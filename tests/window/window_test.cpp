@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the window shows and writes, and that every setting can be changed while it runs.
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <memory>

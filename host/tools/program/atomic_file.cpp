@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <regex>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -30,6 +30,10 @@ std::string temporary_name(const std::filesystem::path& path) {
 
 Status cannot_write(const std::string& path, const std::string& reason) {
   return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
+}
+
+bool is_number(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
 }  // namespace
@@ -90,12 +94,19 @@ void AtomicFile::discard() noexcept {
 }
 
 std::optional<std::string> abandoned_target(const std::string& name) {
-  // As temporary_name() makes it.
-  static const std::regex form(R"(\.(.+)\.(\d{1,9})-\d+\.part)");
-  std::smatch parts;
-  if (!std::regex_match(name, parts, form)) return std::nullopt;
-  const bool lives = ::kill(static_cast<pid_t>(std::stol(parts[2])), 0) == 0 || errno != ESRCH;
-  return lives ? std::nullopt : std::optional(parts[1].str());
+  // As temporary_name() makes it: ".TARGET.PROCESS-COUNT.part". By hand, because <regex> compiles for seconds.
+  constexpr std::string_view kEnd = ".part";
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return std::nullopt;
+  const std::string_view text = std::string_view(name).substr(1, name.size() - 1 - kEnd.size());
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string_view::npos || dot == 0) return std::nullopt;
+  const std::string_view numbers = text.substr(dot + 1);
+  const std::size_t dash = numbers.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const std::string_view process = numbers.substr(0, dash);
+  if (process.size() > 9 || !is_number(process) || !is_number(numbers.substr(dash + 1))) return std::nullopt;
+  const bool lives = ::kill(static_cast<pid_t>(std::stol(std::string(process))), 0) == 0 || errno != ESRCH;
+  return lives ? std::nullopt : std::optional(std::string(text.substr(0, dot)));
 }
 
 Status write_text(const std::string& path, std::string_view text) {

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: MIT
 #include "tools/program/resolve_settings_options.h"
 
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "tools/program/command_line.h"
 #include "tools/program/method_names.h"
-#include "tools/program/option_choice.h"
 
 namespace quincunx::tools {
 namespace {
 
-// CLI::Range takes NaN for a number of any range.
+// Option::in_range() takes NaN for a number of any range.
 std::string complain_beyond_one(const std::string& text) {
-  float part = 0;
-  if (CLI::detail::lexical_cast(text, part) && part >= 0 && part <= 1) return {};
+  const std::optional<double> part = number_in(text);
+  if (part && *part >= 0 && *part <= 1) return {};
   return fmt::format("'{}' is no number from 0 to 1", text);
 }
 
 }  // namespace
 
-void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
+void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
   static const std::map<std::string, ToneMap> kToneMaps = {
       {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
@@ -29,34 +35,34 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
                  "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str()
-      ->type_name("K");
+      .non_negative()
+      .show_default()
+      .type_name("K");
   app.add_option("--residual-weight", settings.quincunx.residual_weight,
                  "K of quincunx:reprojected: how fast a change of motion does; 0 looks at none")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str()
-      ->type_name("K");
+      .non_negative()
+      .show_default()
+      .type_name("K");
   add_choice(app, "--view", settings.temporal.view, kViews,
              "What temporal shows: picture, confidence, rejection or offset (default: picture)");
   app.add_option("--blur", settings.blur.shutter,
                  "Motion blur: part of a frame's time that the shutter is open, to 2")
-      ->check(CLI::Range(0.0, 2.0))
-      ->type_name("SHUTTER");
+      .in_range(0.0, 2.0)
+      .type_name("SHUTTER");
   app.add_option("--blur-samples", settings.blur.samples, "Samples a pixel at most: 4, 8, 16, 32 or 64")
-      ->check(CLI::IsMember({4, 8, 16, 32, 64}).description(""))
-      ->capture_default_str()
-      ->type_name("N");
+      .one_of({4, 8, 16, 32, 64})
+      .show_default()
+      .type_name("N");
   app.add_option("--sharpen", settings.sharpness, "How far the resolved picture is sharpened: 0 (not) to 1")
-      ->check(complain_beyond_one)
-      ->capture_default_str()
-      ->type_name("AMOUNT");
+      .check(complain_beyond_one)
+      .show_default()
+      .type_name("AMOUNT");
   app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
                "Let catmull-rom and lanczos2 overshoot at edges");
   app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
-      ->check(complain_beyond_one)
-      ->capture_default_str()
-      ->type_name("A");
+      .check(complain_beyond_one)
+      .show_default()
+      .type_name("A");
   app.add_flag("!--still-noise", settings.noise_moves, "The same noise in every frame");
   add_choice(app, "--tone-map", settings.tone_map, kToneMaps, "clamp, reinhard or aces (default: aces)");
   app.add_flag("!--no-dither", settings.dither, "Round to 8 bits without dither");

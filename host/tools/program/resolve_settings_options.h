@@ -6,15 +6,13 @@
 
 #include "quincunx/resolve_plan.h"
 
-namespace CLI {
-class App;
-}
-
 namespace quincunx::tools {
+
+class CommandLine;
 
 // --method with its forms and settings, --tone-map, --no-dither. `settings` must outlive the parsing and
 // holds the defaults.
-void add_resolve_options(CLI::App& app, ResolveSettings& settings);
+void add_resolve_options(CommandLine& app, ResolveSettings& settings);
 
 // What these options come to, as far as linear pixels depend on it: "quincunx:velocity, velocity weight 1".
 std::string resolve_settings_text(const ResolveSettings& settings);

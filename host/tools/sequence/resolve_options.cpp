@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "tools/sequence/resolve_options.h"
 
-#include <algorithm>
-#include <cmath>
-#include <thread>
+#include <fmt/format.h>
 
-#include "tools/program/option_choice.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 #include "tools/program/resolve_settings_options.h"
 #include "tools/sequence/frame_numbers.h"
@@ -23,8 +29,8 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-resolve "seq/frame.%04d.exr" --out "up/up.%04d.exr" -n            only say what would be done
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
-CLI::ValidationError wrong(const std::string& option, const std::string& reason) {
-  return CLI::ValidationError(option, reason);
+UsageError wrong(const std::string& option, const std::string& reason) {
+  return UsageError{option, reason};
 }
 
 // "A,B" into two words that are not empty.
@@ -38,9 +44,8 @@ std::array<std::string, 2> split_pair(const std::string& option, const std::stri
 }
 
 float parse_float(const std::string& option, const std::string& text) {
-  float value = 0;
-  if (!CLI::detail::lexical_cast(text, value) || !std::isfinite(value))
-    throw wrong(option, fmt::format("'{}' is no number", text));
+  const float value = static_cast<float>(number_in(text).value_or(NAN));
+  if (!std::isfinite(value)) throw wrong(option, fmt::format("'{}' is no number", text));
   return value;
 }
 
@@ -53,7 +58,7 @@ void set_velocity(SequenceInput& input, const std::string& text) {
   input.velocity = split_pair("--velocity", text, "write U,V, or none, or camera");
 }
 
-void add_motion_options(CLI::App& app, SequenceInput& input) {
+void add_motion_options(CommandLine& app, SequenceInput& input) {
   static const std::map<std::string, VelocityConvention> kConventions = {
       {"nuke", VelocityConvention::kNuke},
       {"blender", VelocityConvention::kBlender},
@@ -63,7 +68,7 @@ void add_motion_options(CLI::App& app, SequenceInput& input) {
          "--velocity", [&input](const std::string& text) { set_velocity(input, text); },
          "Motion's channels; camera: from depth and worldToNDC; none (default: backward.u,backward.v, if "
          "any)")
-      ->type_name("U,V");
+      .type_name("U,V");
   add_choice(
       app, "--velocity-convention", kConventions,
       "What motion means: nuke and blender (previous - current, pixels, up), fsr2 (the same, down), ndc "
@@ -80,11 +85,11 @@ void add_motion_options(CLI::App& app, SequenceInput& input) {
                {parse_float("--velocity-scale", parts[0]), parse_float("--velocity-scale", parts[1])}};
          },
          "Or: what makes motion current - previous in parts of the image, y down")
-      ->type_name("X,Y")
-      ->excludes("--velocity-convention");
+      .type_name("X,Y")
+      .excludes("--velocity-convention");
 }
 
-void add_channel_options(CLI::App& app, ResolveOptions& options) {
+void add_channel_options(CommandLine& app, ResolveOptions& options) {
   SequenceInput& input = options.sequence;
   static const std::map<std::string, DepthKind> kDepthKinds = {
       {"linear", DepthKind::kLinear},
@@ -95,35 +100,35 @@ void add_channel_options(CLI::App& app, ResolveOptions& options) {
   };
   app.add_option("--colour,--color", input.colour_layer,
                  "Layer of colour: R, G, B, A of LAYER (default: without layer)")
-      ->type_name("LAYER");
+      .type_name("LAYER");
   add_motion_options(app, input);
   app.add_option_function<std::string>("--depth", channel(input.depth),
                                        "Depth's channel, or none (default: Z, if any)")
-      ->type_name("CHANNEL");
+      .type_name("CHANNEL");
   add_choice(app, "--depth-kind", input.depth_kind, kDepthKinds,
              "linear (distance along the view axis), device (far is 1) or device-reversed (far is 0)");
   app.add_option_function<float>(
          "--near", [&input](float distance) { input.near_plane = distance; },
          "Near plane's distance, of linear depth (default: attribute quincunx:near)")
-      ->check(CLI::PositiveNumber)
-      ->type_name("D");
+      .positive()
+      .type_name("D");
   app.add_option_function<std::string>(
          "--reactive", channel(input.reactive),
          "Channel that is 1 where history lies, or none (default: reactive.mask)")
-      ->type_name("CHANNEL");
+      .type_name("CHANNEL");
   app.add_option("--jitter", options.jitter,
                  "attribute, none, quincunx, quincunx-half, halton or a file of FRAME X Y (default: the "
                  "attribute, if any)")
-      ->type_name("NAME|FILE");
+      .type_name("NAME|FILE");
 }
 
-void add_picture_options(CLI::App& app, ResolveOptions& options) {
+void add_picture_options(CommandLine& app, ResolveOptions& options) {
   static const std::map<std::string, ChannelType> kTypes = {{"half", ChannelType::kHalf},
                                                             {"float", ChannelType::kFloat}};
-  app.add_option("INPUT", options.input, "Frames to read: #, @ or %04d is the number")->type_name("PATTERN");
+  app.add_option("INPUT", options.input, "Frames to read: #, @ or %04d is the number").type_name("PATTERN");
   app.add_option("--out", options.out,
                  "Frames to write: .exr (linear) or .png (presented); #, @ or %04d is the number")
-      ->type_name("PATTERN");
+      .type_name("PATTERN");
   app.add_option_function<std::string>(
          "--output",
          [&options](const std::string& text) {
@@ -133,16 +138,15 @@ void add_picture_options(CLI::App& app, ResolveOptions& options) {
            options.sequence.output = extent;
          },
          "Size of the picture (default: attribute quincunx:outputSize)")
-      ->type_name("WxH");
+      .type_name("WxH");
   add_resolve_options(app, options.resolve);
-  app.add_option("--exposure", options.exposure, "Multiplies linear colour in a PNG (default: 1)")
-      ->check(CLI::PositiveNumber);
+  app.add_option("--exposure", options.exposure, "Multiplies linear colour in a PNG (default: 1)").positive();
   add_choice(app, "--store", options.stored, kTypes, "half (default) or float in an EXR");
   app.add_option("--truth", options.truth, "True pictures to score the frames against, where there are any")
-      ->type_name("PATTERN");
+      .type_name("PATTERN");
 }
 
-void add_run_options(CLI::App& app, ResolveOptions& options) {
+void add_run_options(CommandLine& app, ResolveOptions& options) {
   app.add_option_function<std::string>(
          "--frames",
          [&options](const std::string& text) {
@@ -151,30 +155,30 @@ void add_run_options(CLI::App& app, ResolveOptions& options) {
            options.frames = std::move(frames).value();
          },
          "Frames to write, for example 1-10x2,20 (default: all there are)")
-      ->type_name("RANGES");
+      .type_name("RANGES");
   app.add_option_function<int>(
          "--warm-up", [&options](int count) { options.warm_up = count; },
          "Frames to read before the first, for its history (default: as many as the method looks back)")
-      ->check(CLI::Range(0, 100000))
-      ->type_name("N");
+      .in_range(0, 100000)
+      .type_name("N");
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
   app.add_flag("-n,--dry-run", options.dry_run, "Only list what would be read and made, and what is missing");
   app.add_flag("--explain", options.explain, "Only print the plan: passes, buffers, what is left out");
   app.add_option("--threads", options.threads, "Threads that read and write files")
-      ->check(CLI::Range(1, 256))
-      ->capture_default_str();
+      .in_range(1, 256)
+      .show_default();
   app.add_option("--device", options.device,
                  "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices");
   app.add_option("--report", options.report, "Write BASE.txt and BASE.json: times, passes, scores")
-      ->type_name("BASE");
+      .type_name("BASE");
   app.add_flag("--json", options.json, "Print the report as JSON on standard output");
   app.add_flag("-q,--quiet", options.quiet, "Say nothing but errors");
   app.add_flag("-v,--verbose", options.verbosity, "Say more; twice: everything");
 }
 
-// What CLI11 cannot express.
+// What options alone cannot express.
 void check_needs(const ResolveOptions& options) {
   if (options.list_devices) return;
   if (options.input.empty()) throw wrong("INPUT", "is missing: give the pattern of the frames to read");
@@ -187,23 +191,15 @@ void check_needs(const ResolveOptions& options) {
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& options) {
-  CLI::App app("Makes full-size frames from an EXR sequence of any renderer, with OpenCL and without OpenGL.",
-               "quincunx-resolve");
-  app.footer(kExamples);
-  app.set_version_flag("--version", "quincunx-resolve " QUINCUNX_VERSION);
-  app.get_formatter()->column_width(30);
+  CommandLine app(
+      "Makes full-size frames from an EXR sequence of any renderer, with OpenCL and without OpenGL.",
+      "quincunx-resolve", QUINCUNX_VERSION, kExamples);
   options.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   add_picture_options(app, options);
   add_channel_options(app, options);
   add_run_options(app, options);
   options.command_line = command_line_text("quincunx-resolve", argc, argv);
-  try {
-    app.parse(argc, argv);
-    check_needs(options);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kUsage;
-  }
-  return std::nullopt;
+  return app.parse(argc, argv, [&options] { check_needs(options); });
 }
 
 }  // namespace quincunx::tools

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>

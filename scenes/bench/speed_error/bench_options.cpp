@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 
 namespace quincunx::bench {
@@ -19,75 +20,73 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --traces --out report               resolution controllers over load traces; open report/traces.html
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
-void add_choice_options(CLI::App& app, BenchOptions& options) {
+void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--scenes", options.scenes,
                  "Built-in scenes or .gltf and .glb files (default: all built in)")
-      ->delimiter(',')
-      ->type_name("NAME,...");
+      .delimiter(',')
+      .type_name("NAME,...");
   app.add_option("--scales", options.scales, "Render scales (default: 0.35,0.5,0.71,0.85,1)")
-      ->delimiter(',')
-      ->type_name("S,...");
+      .delimiter(',')
+      .type_name("S,...");
   app.add_option("--methods", options.methods, "Methods (default: all of --list-methods)")
-      ->delimiter(',')
-      ->type_name("NAME,...");
+      .delimiter(',')
+      .type_name("NAME,...");
   app.add_flag("--list-methods", options.list_methods, "List the methods");
   app.add_option_function<std::string>(
          "--output",
          [&options](const std::string& text) {
            const std::string error = tools::parse_extent(text, options.output);
-           if (!error.empty()) throw CLI::ValidationError("--output", error);
+           if (!error.empty()) throw tools::UsageError{"--output", error};
          },
          "Size of the picture (default: 1280x720)")
-      ->type_name("WxH");
+      .type_name("WxH");
   app.add_option("--seed", options.seed, "Of what is random in a scene; same seed, same pixels")
-      ->capture_default_str();
+      .show_default();
   app.add_flag(
       "--quick", options.quick,
       "For a look in under two minutes: --output 320x180 --scenes courtyard,wires,occluders --scales "
       "0.5,0.71,1 --frames 4 --rounds 4 --truth 4, each unless given");
 }
 
-void add_measuring_options(CLI::App& app, BenchOptions& options) {
+void add_measuring_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--frames", options.frames,
                  "Frames whose errors are measured, and of each timed round (default: 6)")
-      ->check(CLI::Range(1, 10000));
+      .in_range(1, 10000);
   app.add_option("--warm-up", options.warm_up,
                  "Frames that do not count, before those that are measured and before the first timed round "
                  "(default: 2)")
-      ->check(CLI::Range(1, 1000));
+      .in_range(1, 1000);
   app.add_option("--history-warm-up", options.history_warm_up,
                  "Of methods that accumulate, frames before those that are measured (default: 24; never "
                  "fewer than --warm-up)")
-      ->check(CLI::Range(1, 10000));
+      .in_range(1, 10000);
   app.add_option("--rounds", options.rounds, "Rounds that are timed, after those (default: 5)")
-      ->check(CLI::Range(1, 10000));
+      .in_range(1, 10000);
   app.add_option("--truth", options.truth, "Truth has N x N samples a pixel (default: 8)")
-      ->check(CLI::Range(1, 64))
-      ->type_name("N");
-  app.add_option("--fps", options.fps, "Frames a second of scene time")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--start", options.start, "Scene time of the first frame, seconds")->capture_default_str();
+      .in_range(1, 64)
+      .type_name("N");
+  app.add_option("--fps", options.fps, "Frames a second of scene time").positive().show_default();
+  app.add_option("--start", options.start, "Scene time of the first frame, seconds").show_default();
 }
 
-void add_result_options(CLI::App& app, BenchOptions& options) {
+void add_result_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--out", options.out,
                  "Write bench.json, .csv, .svg and .html (with --traces: traces.json, .csv and .html) into "
                  "this folder")
-      ->type_name("FOLDER");
-  auto* compare =
+      .type_name("FOLDER");
+  const auto compare =
       app.add_option("--compare", options.compare, "Say what got better or worse since this bench.json")
-          ->type_name("OLD.json");
+          .type_name("OLD.json");
   app.add_option("--from", options.from, "Measure nothing: compare this bench.json")
-      ->type_name("NEW.json")
-      ->needs(compare);
+      .type_name("NEW.json")
+      .needs(compare);
   app.add_flag("--json", options.json, "Print the results as JSON on standard output");
 }
 
-void apply_quick(const CLI::App& app, BenchOptions& options) {
+void apply_quick(const tools::CommandLine& app, BenchOptions& options) {
   if (!options.quick) return;
   const auto unless_given = [&app](const char* option, auto& value, auto quick) {
-    if (app.count(option) == 0) value = quick;
+    if (!app.has(option)) value = quick;
   };
   unless_given("--output", options.output, Extent{320, 180});
   unless_given("--scenes", options.scenes, std::vector<std::string>{"courtyard", "wires", "occluders"});
@@ -100,11 +99,9 @@ void apply_quick(const CLI::App& app, BenchOptions& options) {
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& options) {
-  CLI::App app("Speed against error: every method at every scale of every scene, against supersampled truth.",
-               "quincunx-bench");
-  app.footer(kExamples);
-  app.set_version_flag("--version", "quincunx-bench " QUINCUNX_VERSION);
-  app.get_formatter()->column_width(30);
+  tools::CommandLine app(
+      "Speed against error: every method at every scale of every scene, against supersampled truth.",
+      "quincunx-bench", QUINCUNX_VERSION, kExamples);
   options.frames = 6;
   add_choice_options(app, options);
   add_measuring_options(app, options);
@@ -112,11 +109,7 @@ std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& optio
   traces::add_trace_options(app, options.traces);
   scenes::add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-bench", argc, argv);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? tools::kDone : tools::kUsage;
-  }
+  if (const std::optional<int> code = app.parse(argc, argv)) return code;
   apply_quick(app, options);
   return std::nullopt;
 }

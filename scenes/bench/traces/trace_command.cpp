@@ -8,6 +8,7 @@
 
 #include "bench/traces/trace_page.h"
 #include "tools/program/atomic_file.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::traces {
 namespace {
@@ -38,38 +39,38 @@ std::vector<Display> displays_of(TraceOptions options) {
 
 }  // namespace
 
-void add_trace_options(CLI::App& app, TraceOptions& options) {
-  auto* traces = app.add_flag("--traces", options.wanted,
-                              "Instead: resolution controllers over load traces, on a simulated display");
+void add_trace_options(tools::CommandLine& app, TraceOptions& options) {
+  const auto traces = app.add_flag(
+      "--traces", options.wanted, "Instead: resolution controllers over load traces, on a simulated display");
   app.add_option("--hz", options.refresh_hz, "With --traces: refresh rates (default: 60)")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->delimiter(',')
-      ->needs(traces);
+      .in_range(1.0, 1000.0)
+      .delimiter(',')
+      .needs(traces);
   app.add_option("--buffers", options.buffers, "With --traces: buffers of the swap chain (default: 3)")
-      ->check(CLI::Range(2, 8))
-      ->delimiter(',')
-      ->needs(traces);
+      .in_range(2, 8)
+      .delimiter(',')
+      .needs(traces);
   app.add_option("--latency", options.latencies,
                  "With --traces: frames until a timer comes back (default: 1)")
-      ->check(CLI::Range(1, 8))
-      ->delimiter(',')
-      ->needs(traces);
+      .in_range(1, 8)
+      .delimiter(',')
+      .needs(traces);
   app.add_flag("--every-display", options.every_display,
                "With --traces: 30, 60, 120 Hz; 2 and 3 buffers; timers 1 to 4 frames late")
-      ->needs(traces);
+      .needs(traces);
   app.add_option("--seeds", options.seeds, "With --traces: seeds of the scripted loads (default: 1,2,3)")
-      ->delimiter(',')
-      ->needs(traces);
+      .delimiter(',')
+      .needs(traces);
   app.add_option("--recorded", options.recorded,
                  "With --traces: also replay these CSV files (columns gpu_ms, area_fraction, cpu_ms)")
-      ->needs(traces)
-      ->type_name("FILE");
+      .needs(traces)
+      .type_name("FILE");
   app.add_option("--recorded-target-ms", options.recording.target_ms,
                  "With --traces: target that recorded times are measured in")
-      ->needs(traces);
+      .needs(traces);
   app.add_option("--recorded-fixed-part", options.recording.fixed_part,
                  "With --traces: part of recorded costs that does not scale")
-      ->needs(traces);
+      .needs(traces);
 }
 
 Result<TraceRun> run_traces(const TraceOptions& options) {

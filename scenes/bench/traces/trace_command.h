@@ -2,7 +2,6 @@
 // quincunx-bench --traces: its options, and what it does.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -10,6 +9,10 @@
 #include "bench/traces/recorded_trace.h"
 #include "bench/traces/trace_run.h"
 #include "quincunx/status.h"
+
+namespace quincunx::tools {
+class CommandLine;
+}
 
 namespace quincunx::traces {
 
@@ -25,7 +28,7 @@ struct TraceOptions {
 };
 
 // --traces, and options that need it.
-void add_trace_options(CLI::App& app, TraceOptions& options);
+void add_trace_options(tools::CommandLine& app, TraceOptions& options);
 
 // Replays everything. Errors: of a recording that cannot be read.
 Result<TraceRun> run_traces(const TraceOptions& options);

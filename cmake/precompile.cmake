@@ -1,0 +1,29 @@
+# Precompiled headers: they halve the time of a build.
+#
+#   quincunx_precompile(TARGET product)    cmake/precompiled/product.h
+#   quincunx_precompile(TARGET tests)      that and GoogleTest
+#
+# Each is compiled once, by an object library that all users share. The compiler takes it only for files with the same
+# options; elsewhere, and where QUINCUNX_PRECOMPILE is off, it reads the headers as text or not at all.
+set(QUINCUNX_PRECOMPILED_FOLDER ${CMAKE_CURRENT_LIST_DIR}/precompiled)
+
+function(quincunx_precompile target set)
+  if(NOT QUINCUNX_PRECOMPILE)
+    return()
+  endif()
+  set(owner quincunx_precompiled_${set})
+  if(NOT TARGET ${owner})
+    set(source ${PROJECT_BINARY_DIR}/precompiled/${set}.cpp)
+    file(GENERATE OUTPUT ${source} CONTENT "// Holds the precompiled header.\n")
+    add_library(${owner} OBJECT ${source})
+    find_package(fmt REQUIRED)
+    find_package(spdlog REQUIRED)
+    target_link_libraries(${owner} PRIVATE quincunx_options spdlog::spdlog fmt::fmt)
+    if(set STREQUAL "tests")
+      find_package(GTest REQUIRED)
+      target_link_libraries(${owner} PRIVATE GTest::gtest)
+    endif()
+    target_precompile_headers(${owner} PRIVATE ${QUINCUNX_PRECOMPILED_FOLDER}/${set}.h)
+  endif()
+  target_precompile_headers(${target} REUSE_FROM ${owner})
+endfunction()

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT
+// The same for the tests.
+#include <gtest/gtest.h>
+
+#include "product.h"

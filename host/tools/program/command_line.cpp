@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// The only file that includes CLI11.
+#include "tools/program/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "tools/program/program.h"
+
+namespace quincunx::tools {
+namespace {
+
+// What callers throw, in the type that CLI11 reports.
+template <typename Call>
+void report_usage_errors(const Call& call) {
+  try {
+    call();
+  } catch (const UsageError& error) {
+    throw CLI::ValidationError(error.option, error.reason);
+  }
+}
+
+}  // namespace
+
+Option Option::check(Complaint complaint) const {
+  return Option(option_->check(std::move(complaint)));
+}
+Option Option::in_range(int lowest, int highest) const {
+  return Option(option_->check(CLI::Range(lowest, highest)));
+}
+Option Option::in_range(double lowest, double highest) const {
+  return Option(option_->check(CLI::Range(lowest, highest)));
+}
+Option Option::positive() const {
+  return Option(option_->check(CLI::PositiveNumber));
+}
+Option Option::non_negative() const {
+  return Option(option_->check(CLI::NonNegativeNumber));
+}
+Option Option::one_of(std::initializer_list<int> values) const {
+  return Option(option_->check(CLI::IsMember(std::set<int>(values)).description("")));
+}
+
+Option Option::type_name(const std::string& name) const {
+  return Option(option_->type_name(name));
+}
+Option Option::show_default() const {
+  return Option(option_->capture_default_str());
+}
+Option Option::delimiter(char separator) const {
+  return Option(option_->delimiter(separator));
+}
+Option Option::expected(int fewest, int most) const {
+  return Option(option_->expected(fewest, most));
+}
+
+Option Option::needs(const Option& other) const {
+  return Option(option_->needs(other.option_));
+}
+Option Option::needs(const std::string& other) const {
+  return Option(option_->needs(other));
+}
+Option Option::excludes(const Option& other) const {
+  return Option(option_->excludes(other.option_));
+}
+Option Option::excludes(const std::string& other) const {
+  return Option(option_->excludes(other));
+}
+
+CommandLine::CommandLine(const std::string& description, const std::string& program,
+                         const std::string& version, const std::string& examples)
+    : app_(std::make_unique<CLI::App>(description, program)) {
+  app_->footer(examples);
+  if (!version.empty()) app_->set_version_flag("--version", program + " " + version);
+  app_->get_formatter()->column_width(30);
+}
+
+CommandLine::~CommandLine() = default;
+
+template <typename Target>
+Option CommandLine::add_option(const std::string& names, Target& target, const std::string& description) {
+  return Option(app_->add_option(names, target, description));
+}
+
+template <typename Value>
+Option CommandLine::add_option_function(const std::string& names, std::function<void(const Value&)> set,
+                                        const std::string& description) {
+  const auto checked = [set = std::move(set)](const Value& value) {
+    report_usage_errors([&] { set(value); });
+  };
+  return Option(app_->add_option_function<Value>(names, checked, description));
+}
+
+Option CommandLine::add_flag(const std::string& names, bool& target, const std::string& description) {
+  return Option(app_->add_flag(names, target, description));
+}
+Option CommandLine::add_flag(const std::string& names, int& count, const std::string& description) {
+  return Option(app_->add_flag(names, count, description));
+}
+Option CommandLine::add_flag_callback(const std::string& names, std::function<void()> set,
+                                      const std::string& description) {
+  return Option(app_->add_flag_callback(names, std::move(set), description));
+}
+
+Option CommandLine::option(const std::string& name) const {
+  return Option(app_->get_option(name));
+}
+bool CommandLine::has(const std::string& name) const {
+  return app_->count(name) > 0;
+}
+void CommandLine::when_read(std::function<void()> check) {
+  app_->parse_complete_callback([check = std::move(check)] { report_usage_errors(check); });
+}
+
+std::optional<int> CommandLine::parse(int argc, const char* const* argv, const std::function<void()>& check) {
+  try {
+    app_->parse(argc, argv);
+    if (check) report_usage_errors(check);
+  } catch (const CLI::ParseError& error) {
+    return app_->exit(error) == 0 ? kDone : kUsage;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0;
+  if (!CLI::detail::lexical_cast(text, value)) return std::nullopt;
+  return value;
+}
+
+template Option CommandLine::add_option(const std::string&, std::string&, const std::string&);
+template Option CommandLine::add_option(const std::string&, int&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::int64_t&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option CommandLine::add_option(const std::string&, float&, const std::string&);
+template Option CommandLine::add_option(const std::string&, double&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::vector<int>&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::vector<std::uint64_t>&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::vector<float>&, const std::string&);
+template Option CommandLine::add_option(const std::string&, std::vector<double>&, const std::string&);
+
+template Option CommandLine::add_option_function<std::string>(const std::string&,
+                                                              std::function<void(const std::string&)>,
+                                                              const std::string&);
+template Option CommandLine::add_option_function<int>(const std::string&, std::function<void(const int&)>,
+                                                      const std::string&);
+template Option CommandLine::add_option_function<float>(const std::string&, std::function<void(const float&)>,
+                                                        const std::string&);
+template Option CommandLine::add_option_function<std::vector<std::string>>(
+    const std::string&, std::function<void(const std::vector<std::string>&)>, const std::string&);
+
+}  // namespace quincunx::tools
