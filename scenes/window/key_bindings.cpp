@@ -39,7 +39,7 @@ Value neighbour(Value value, int count, bool back) {
 std::vector<std::string> methods(bool of_one_frame) {
   std::vector<std::string> names;
   for (const auto& [name, choice] : tools::method_choices()) {
-    if ((choice.method < Method::kQuincunx) == of_one_frame) names.push_back(name);
+    if (uses_earlier_frames(choice.method) != of_one_frame) names.push_back(name);
   }
   return names;
 }

@@ -21,10 +21,23 @@ TEST(MethodNames, EachNameSaysWhatItChooses) {
 }
 
 TEST(MethodNames, EveryMethodHasOne) {
-  for (const Method method : {Method::kPoint, Method::kBilinear, Method::kBSpline, Method::kCatmullRom,
-                              Method::kLanczos2, Method::kNoise, Method::kNoiseOffset, Method::kQuincunx}) {
-    EXPECT_TRUE(method_choices().contains(quincunx::name_of(method)));
+  for (const MethodInfo& info : methods()) {
+    ASSERT_TRUE(method_choices().contains(info.name)) << info.name;
+    EXPECT_EQ(method_choices().at(info.name).method, info.method);
+    EXPECT_STREQ(name_of(info.method), info.name);
   }
+}
+
+TEST(MethodNames, TheListHoldsEachOne) {
+  const std::string list = method_list();
+  EXPECT_EQ(list.rfind("point, bilinear, ", 0), 0u) << list;
+  for (const auto& [name, choice] : method_choices()) {
+    const std::string ending = name.find(':') == std::string::npos ? name : name.substr(name.find(':'));
+    EXPECT_NE(list.find(ending), std::string::npos) << name << " in " << list;
+  }
+  const std::string last = " or temporal[:fast|:balanced|:quality]";
+  ASSERT_GT(list.size(), last.size());
+  EXPECT_EQ(list.substr(list.size() - last.size()), last);
 }
 
 TEST(MethodNames, FormsAreTold) {

@@ -10,44 +10,10 @@
 #include <vector>
 
 #include "quincunx/image.h"
+#include "quincunx/method.h"
 #include "quincunx/status.h"
 
 namespace quincunx {
-
-// How the picture is made from the frames. All are aware of the jitter. Above scale 1 (more samples than
-// pixels) the filters widen with the ratio, so that nothing between output pixels is skipped; point and noise
-// skip.
-enum class Method {
-  kPoint,        // nearest sample
-  kBilinear,     // four samples
-  kBSpline,      // 16 samples, cubic B-spline: smooth, never rings (Sigg and Hadwiger 2005)
-  kCatmullRom,   // 16 samples, cubic: sharp
-  kLanczos2,     // 16 samples, windowed sinc, for comparison (Duchon 1979)
-  kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
-  kNoiseOffset,  // one of bilinear's four samples, at random by their weights (Binks 2012)
-  kQuincunx,     // this frame and the previous one on the five-of-a-die pattern
-  kTemporal,  // all frames so far, accumulated where the surfaces are: needs a jitter of many places (Halton)
-};
-
-// How kQuincunx weighs the previous frame.
-enum class TwoFrameForm : std::uint8_t {
-  kMean,         // the plain mean of both frames
-  kVelocity,     // f = 1/(1 + K(|v0|^2 + |v1|^2)), v in render pixels a frame (Binks 2012)
-  kReprojected,  // read where its surfaces were, dropped where they were hidden; samples weighted by distance
-};
-
-// How kMean and kVelocity read the frames.
-enum class Sampling : std::uint8_t {
-  kPoint,     // the nearest sample
-  kBilinear,  // four samples
-};
-
-enum class ToneMap { kClamp, kReinhard, kAces };
-
-const char* name_of(Method method);      // "quincunx"
-const char* name_of(TwoFrameForm form);  // "velocity"
-const char* name_of(Sampling sampling);  // "point"
-const char* name_of(ToneMap tone_map);   // "aces"
 
 // What the scene will ever do while this plan is used.
 struct SceneNeeds {
@@ -65,21 +31,6 @@ struct QuincunxSettings {
   // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion uncover each other.
   float residual_weight = 0;
 };
-
-// What kTemporal spends. Each is the best picture found at its cost; docs/pipeline.md has the figures.
-enum class TemporalPreset : std::uint8_t { kFast, kBalanced, kQuality };
-
-// What the resolved picture of kTemporal shows.
-enum class TemporalView : std::uint8_t {
-  kPicture,
-  kConfidence,  // how much is known of a pixel: 1 (white) is all that is ever kept
-  kRejection,   // why history is doubted: red hidden, off screen or reactive; green an edge of motion; blue a
-                // change
-  kOffset,      // where between texels history was read: red x, green y; blue: how far it moved
-};
-
-const char* name_of(TemporalPreset preset);  // "balanced"
-const char* name_of(TemporalView view);      // "confidence"
 
 struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;

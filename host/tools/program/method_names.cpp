@@ -1,48 +1,75 @@
 // SPDX-License-Identifier: MIT
 #include "tools/program/method_names.h"
 
-namespace quincunx::tools {
+#include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
+namespace quincunx::tools {
 namespace {
 
-constexpr const char* kVelocitySummary = "both frames, the previous one less where anything moves";
+// The forms of those methods that have some, in the order in which help texts list them. The usual form has
+// the summary of its method.
+std::vector<MethodChoice> all_forms() {
+  using Form = TwoFrameForm;
+  using Preset = TemporalPreset;
+  const auto both = [](Form form, Sampling sampling, const char* summary) {
+    return MethodChoice{.method = Method::kQuincunx, .form = form, .sampling = sampling, .summary = summary};
+  };
+  const auto all = [](Preset preset, const char* summary) {
+    return MethodChoice{.method = Method::kTemporal, .preset = preset, .summary = summary};
+  };
+  return {
+      both(Form::kMean, Sampling::kBilinear, "the plain mean of this frame and the previous one"),
+      both(Form::kVelocity, Sampling::kBilinear, ""),
+      both(Form::kVelocity, Sampling::kPoint, "the same of nearest samples"),
+      both(Form::kReprojected, Sampling::kBilinear, "both frames, the previous one where its surfaces were"),
+      all(Preset::kFast, "all frames so far, the cheapest way"),
+      all(Preset::kBalanced, ""),
+      all(Preset::kQuality, "all frames so far, with all that helps"),
+  };
+}
 
-constexpr const char* kBalancedSummary = "all frames so far, where their surfaces are now";
+std::string form_name(const MethodChoice& choice) {
+  if (choice.method == Method::kTemporal) return name_of(choice.preset);
+  return choice.sampling == Sampling::kPoint ? name_of(choice.sampling) : name_of(choice.form);
+}
 
 }  // namespace
 
 const std::map<std::string, MethodChoice>& method_choices() {
-  using Form = TwoFrameForm;
-  static const auto single = [](Method method, const char* summary) {
-    return MethodChoice{.method = method, .summary = summary};
-  };
-  static const auto both = [](Form form, const char* summary) {
-    return MethodChoice{.method = Method::kQuincunx, .form = form, .summary = summary};
-  };
-  static const auto all = [](TemporalPreset preset, const char* summary) {
-    return MethodChoice{.method = Method::kTemporal, .preset = preset, .summary = summary};
-  };
-  static const std::map<std::string, MethodChoice> choices = {
-      {"point", single(Method::kPoint, "the nearest sample")},
-      {"bilinear", single(Method::kBilinear, "four samples")},
-      {"b-spline", single(Method::kBSpline, "16 samples, cubic: smooth, never rings")},
-      {"catmull-rom", single(Method::kCatmullRom, "16 samples, cubic: sharp")},
-      {"lanczos2", single(Method::kLanczos2, "16 samples, windowed sinc")},
-      {"noise", single(Method::kNoise, "the nearest sample with film grain")},
-      {"noise-offset", single(Method::kNoiseOffset, "one of bilinear's samples, by chance")},
-      {"quincunx", single(Method::kQuincunx, kVelocitySummary)},
-      {"quincunx:mean", both(Form::kMean, "the plain mean of this frame and the previous one")},
-      {"quincunx:velocity", both(Form::kVelocity, kVelocitySummary)},
-      {"quincunx:point",
-       {.form = Form::kVelocity, .sampling = Sampling::kPoint, .summary = "the same of nearest samples"}},
-      {"quincunx:reprojected",
-       both(Form::kReprojected, "both frames, the previous one where its surfaces were")},
-      {"temporal", single(Method::kTemporal, kBalancedSummary)},
-      {"temporal:fast", all(TemporalPreset::kFast, "all frames so far, the cheapest way")},
-      {"temporal:balanced", all(TemporalPreset::kBalanced, kBalancedSummary)},
-      {"temporal:quality", all(TemporalPreset::kQuality, "all frames so far, with all that helps")},
-  };
+  static const auto choices = [] {
+    std::map<std::string, MethodChoice> by_name;
+    for (const MethodInfo& info : methods())
+      by_name[info.name] = {.method = info.method, .summary = info.summary};
+    for (MethodChoice& form : all_forms()) {
+      const std::string method = name_of(form.method);
+      if (form.summary.empty()) form.summary = by_name[method].summary;
+      by_name[fmt::format("{}:{}", method, form_name(form))] = std::move(form);
+    }
+    return by_name;
+  }();
   return choices;
+}
+
+std::string method_list() {
+  std::string list;
+  const std::vector<MethodChoice> forms = all_forms();
+  for (const MethodInfo& info : methods()) {
+    std::string endings;
+    for (const MethodChoice& form : forms) {
+      if (form.method == info.method)
+        endings += fmt::format("{}:{}", endings.empty() ? "" : "|", form_name(form));
+    }
+    const bool last = &info == &methods().back();
+    list += fmt::format("{}{}{}",
+                        list.empty() ? ""
+                        : last       ? " or "
+                                     : ", ",
+                        info.name, endings.empty() ? "" : fmt::format("[{}]", endings));
+  }
+  return list;
 }
 
 void choose(ResolveSettings& settings, const MethodChoice& choice) {

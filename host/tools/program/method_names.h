@@ -20,9 +20,12 @@ struct MethodChoice {
   friend bool operator==(const MethodChoice&, const MethodChoice&) = default;
 };
 
-// Every name: the one table that command lines, reports and benchmarks go by. A method alone has its usual
-// form.
+// Every name that command lines, reports and benchmarks know: those of quincunx::methods(), each with its usual
+// form, and those of the forms.
 const std::map<std::string, MethodChoice>& method_choices();
+
+// All of them in one line, for help texts: "point, bilinear, ... or temporal[:fast|:balanced|:quality]".
+std::string method_list();
 
 void choose(ResolveSettings& settings, const MethodChoice& choice);
 

@@ -25,10 +25,7 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
                                                              {"rejection", TemporalView::kRejection},
                                                              {"offset", TemporalView::kOffset}};
 
-  add_choice(app, "--method", method_choices(),
-             "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset, "
-             "quincunx[:mean|:velocity|:point|:reprojected] or temporal[:fast|:balanced|:quality] "
-             "(default: quincunx)",
+  add_choice(app, "--method", method_choices(), method_list() + " (default: quincunx)",
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
                  "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
