@@ -360,6 +360,12 @@ Result<TileKinds> ResolveService::tile_kinds() const {
   }
 }
 
+Result<ImageView> ResolveService::history() const {
+  if (!impl_->temporal) return Status::invalid("the plan accumulates no history; choose the method temporal");
+  if (!impl_->has_previous || impl_->plan.is_dense(impl_->previous.render)) return ImageView();
+  return impl_->temporal->history();
+}
+
 const ResolvePlan& ResolveService::plan() const {
   return impl_->plan;
 }
