@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/resolution_ladder.h"
 #include "quincunx/status.h"
 
