@@ -13,6 +13,8 @@
 
 namespace quincunx {
 
+struct ResolvePlan;
+
 // Where the camera was, for velocity that is derived from depth. Column-major: takes (ndc.x, ndc.y, depth, 1)
 // of this frame, jitter excluded, to homogeneous clip coordinates of the previous frame, jitter excluded;
 // ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
@@ -47,6 +49,10 @@ struct FrameOutputs {
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
   ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
 };
+
+// Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and the
+// resolved one where it does not. An empty view leaves its picture out.
+FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented);
 
 struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"
