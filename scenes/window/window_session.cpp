@@ -8,7 +8,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/image/image_io.h"
 #include "tools/program/clock.h"
 #include "tools/program/method_names.h"

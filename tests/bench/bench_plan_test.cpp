@@ -8,7 +8,7 @@
 
 #include "bench/speed_error/bench_gallery.h"
 #include "bench/speed_error/uncovered.h"
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::bench {
