@@ -11,7 +11,7 @@
 
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/uncovered.h"
-#include "program_cache.h"
+#include "quincunx/cache_folder.h"
 #include "programs/target_file.h"
 #include "render/embedded_shaders.h"
 #include "render/truth.h"

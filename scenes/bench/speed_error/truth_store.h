@@ -23,7 +23,7 @@ struct SceneTruth {
 };
 
 // Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
-// program_cache.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
+// cache_folder.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
 // shaders, and the same moment drawn with one sample a pixel, which tells when a scene has changed.
 Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions);
