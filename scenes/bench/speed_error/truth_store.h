@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SceneTruth: what the measured frames of a scene truly look like, and which pixels they uncover.
+// SceneTruth: what the measured frames of a scene truly look like, and which of their pixels are disoccluded.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace quincunx::bench {
 // One truth for all scales and methods: made once, before anything is timed.
 struct SceneTruth {
   std::vector<tools::MeasuredPicture> pictures;  // of each measured frame, exposed
-  std::vector<std::vector<std::uint8_t>>
-      uncovered;                  // of each: 1 where it was hidden within the last 2 frames
+  // Of each measured frame: 1 where a pixel was hidden within the last two frames.
+  std::vector<std::vector<std::uint8_t>> disoccluded;
   std::optional<double> flicker;  // mean change of luma from frame to frame
-  double uncovered_part = 0;      // of all pixels
+  double disoccluded_part = 0;    // of all pixels
 };
 
 // Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
