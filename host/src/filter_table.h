@@ -2,10 +2,12 @@
 // Filter tables: which texels each output column and row reads through a separable filter, and with what
 // weights; made in double precision on the host.
 //
-// Pixel x has its centre at p = (x + .5) * render / output render pixels, the sample of texel i lies at i +
-// .5 + jitter (see axis_table.h). With r = max(1, render / output) a sample at the distance d weighs filter(d
-// / r), over the sum of all: above scale 1 the filter widens, so that what lies between output pixels is
-// averaged and not skipped.
+// In render pixels (see axis_table.h):
+//   centre of output pixel x       p = (x + .5) * render / output
+//   sample of texel i              i + .5 + jitter
+//   weight at the distance d       filter(d / r), divided by the sum of all weights
+//   widening                       r = max(1, render / output)
+// Above scale 1 the filter widens, so that what lies between output pixels is averaged and not skipped.
 #pragma once
 
 #include <cstddef>

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Builds a kernel variant, or loads its binary from disk.
 //
-// Binaries lie in $QUINCUNX_CACHE_DIR, else $XDG_CACHE_HOME/quincunx, else ~/.cache/quincunx, keyed by source
-// with all its includes, options, device and driver; an unusable or damaged entry is rebuilt and replaced, a
-// folder that cannot be written only costs time. QUINCUNX_CACHE_DIR set to an empty string turns the cache
-// off.
+// Binaries lie in cache_folder(), keyed by source with all its includes, options, device and driver; an
+// unusable or damaged entry is rebuilt and replaced, a folder that cannot be written only costs time. Without
+// a folder every kernel is compiled each time.
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "device_impl.h"
+#include "quincunx/cache_folder.h"
 
 namespace quincunx {
 
@@ -32,9 +30,6 @@ cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, con
 // The whole source of kernel `name` with its includes expanded, each once: what build_kernel compiles. Throws
 // std::out_of_range for a name that is not embedded.
 std::string kernel_source(const std::string& name);
-
-// The folder of everything that is worth keeping between runs; nothing where the user wants none.
-std::optional<std::filesystem::path> cache_folder();
 
 // Counts since the process started, for tests and reports. Thread-safe.
 struct CacheCounts {

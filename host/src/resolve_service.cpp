@@ -230,6 +230,13 @@ Result<TileKinds> ResolveService::tile_kinds() const {
   }
 }
 
+Result<ImageView> ResolveService::history() const {
+  const ResolvePlan& plan = impl_->plan;
+  if (!plan.accumulates()) return Status::invalid("the plan accumulates no history; choose the method temporal");
+  if (!impl_->has_previous || is_dense(impl_->previous.render, plan.settings.output)) return ImageView();
+  return impl_->chain.newest(Resource::kHistory);
+}
+
 const ResolvePlan& ResolveService::plan() const {
   return impl_->plan;
 }

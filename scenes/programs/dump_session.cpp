@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <glm/gtc/packing.hpp>
 
 #include "programs/presenter.h"
 #include "programs/target_file.h"
@@ -44,9 +45,10 @@ bool is_colour(Stage stage) {
   }
 }
 
+// Opaque where the fourth plane is no alpha.
 std::vector<float> interleaved(const StagePlanes& planes) {
-  std::vector<float> rgba(planes.planes[0].size() * 4);
-  for (std::size_t c = 0; c < 4; ++c) {
+  std::vector<float> rgba(planes.planes[0].size() * 4, 1.0f);
+  for (std::size_t c = 0; c < (planes.channels[3] == "A" ? 4u : 3u); ++c) {
     for (std::size_t i = 0; i < planes.planes[c].size(); ++i)
       rgba[4 * i + c] = planes.planes[c][i];
   }
@@ -145,8 +147,10 @@ Status DumpSession::resolve_up_to_the_frame() {
   const std::int64_t first = std::max<std::int64_t>(0, options_.frame - options_.warm_up);
   for (std::int64_t index = first; index <= options_.frame; ++index) {
     if (Status status = source_->draw(index, true); !status.ok()) return status;
+    if (index == options_.frame && wants(Stage::kHistory)) {
+      if (Status status = collect_history(); !status.ok()) return status;
+    }
     if (Status status = resolve_next(); !status.ok()) return status;
-    previous_ = std::move(current_);
     current_ = std::move(source_->oldest());
     source_->release();
   }
@@ -162,6 +166,43 @@ Status DumpSession::resolve_next() {
       service_->dispatch(inputs.value(), {resolved_.view(), presented.value(), blurred_.view()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
+}
+
+// What the frame that is drawn and not yet resolved will read of the past.
+Status DumpSession::collect_history() {
+  const DrawnFrame& next = source_->oldest();
+  const ResolvePlan& plan = service_->plan();
+  const bool reads_past = !next.reset && !plan.is_dense(next.view.render);
+  if (!plan.accumulates()) {
+    planes_[Stage::kHistory] =
+        colour_planes(current_->view.render, colour_of(current_->targets), tools::ChannelType::kHalf);
+  } else {
+    const bool half = plan.settings.temporal.history == PixelFormat::kRGBA16F;
+    auto history = accumulated();
+    if (!history.ok()) return history.status();
+    planes_[Stage::kHistory] = colour_planes(options_.output, history.value(),
+                                             half ? tools::ChannelType::kHalf : tools::ChannelType::kFloat);
+    planes_[Stage::kHistory].channels[3] = "confidence";
+  }
+  for (std::vector<float>& plane : planes_[Stage::kHistory].planes) {
+    if (!reads_past) std::fill(plane.begin(), plane.end(), 0.0f);
+  }
+  return {};
+}
+
+// R, G, B and confidence; all zero where there is no history.
+Result<std::vector<float>> DumpSession::accumulated() const {
+  std::vector<float> texels(static_cast<std::size_t>(options_.output.area()) * 4);
+  const auto history = service_->history();
+  if (!history.ok()) return history.status();
+  if (!history.value()) return texels;
+  if (history->format == PixelFormat::kRGBA32F) return download(history.value());
+  std::vector<std::uint16_t> halves(texels.size());
+  if (Status status = source_->device().download(history.value(), history->extent, halves.data());
+      !status.ok())
+    return status;
+  std::transform(halves.begin(), halves.end(), texels.begin(), glm::unpackHalf1x16);
+  return texels;
 }
 
 Result<std::vector<float>> DumpSession::download(const ImageView& image) const {
@@ -197,10 +238,6 @@ Status DumpSession::collect_targets() {
     std::fill(row, row + render.width, 1.0f);
   }
   planes_[Stage::kClear] = {target, {"mask"}, {std::move(cleared)}, tools::ChannelType::kHalf};
-  if (wants(Stage::kHistory)) {
-    planes_[Stage::kHistory] =
-        colour_planes(previous_->view.render, colour_of(previous_->targets), tools::ChannelType::kHalf);
-  }
   if (!options_.exr) return {};
   files_.push_back(path_of("render.exr"));
   return write_targets(files_.back(), file);

@@ -31,10 +31,12 @@ class DumpSession {
   std::string why_missing(Stage stage) const;  // empty: it is there
   Status resolve_up_to_the_frame();
   Status resolve_next();
+  Status collect_history();
   Status collect_targets();
   Status collect_output();
   Status write_exr_files();
   Status write_pictures();
+  Result<std::vector<float>> accumulated() const;
   Result<std::vector<float>> download(const ImageView& image) const;
   bool wants(Stage stage) const;
   std::string path_of(const std::string& ending) const;
@@ -45,8 +47,7 @@ class DumpSession {
   Image resolved_;
   Image blurred_;  // empty without motion blur
   float exposure_ = 1;
-  std::optional<DrawnFrame> previous_;
-  std::optional<DrawnFrame> current_;
+  std::optional<DrawnFrame> current_;    // the last one that was resolved
   std::vector<std::uint8_t> presented_;  // RGBA8
   std::map<Stage, StagePlanes> planes_;
   std::vector<std::string> files_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "programs/frame_source.h"
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 
 namespace quincunx::scenes {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "frame_sequence.h"
+#include "programs/frame_sequence.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"

@@ -24,7 +24,7 @@ Result<PacedLoop> PacedLoop::create(FramePacing pacing, FrameCost cost) {
 }
 
 double PacedLoop::now_ms() const {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+  return tools::ms_since(start_);
 }
 
 bool PacedLoop::ready() const {

@@ -11,13 +11,13 @@
 // Where overlaps(), the next frame may be drawn before this one is finished, if ready().
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 #include "programs/frame_meter.h"
 #include "programs/frame_pacing.h"
+#include "tools/program/clock.h"
 
 namespace quincunx::scenes {
 
@@ -43,14 +43,12 @@ class PacedLoop {
   tools::PacingRun run() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   PacedLoop(FramePacing pacing, FrameMeter meter) : pacing_(std::move(pacing)), meter_(std::move(meter)) {}
   double now_ms() const;
 
   FramePacing pacing_;
   FrameMeter meter_;
-  Clock::time_point start_ = Clock::now();
+  tools::Clock::time_point start_ = tools::Clock::now();
   double cpu_at_begin_ms_ = 0;
   std::deque<double> cpu_ms_;  // of the frames that are not finished
 };

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <map>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/program/command_line.h"
 #include "tools/program/program.h"
 #include "tools/program/resolve_settings_options.h"

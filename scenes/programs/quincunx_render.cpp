@@ -5,11 +5,11 @@
 #include <cstdio>
 #include <exception>
 
+#include "catalog/scene_catalog.h"
 #include "programs/calibration_run.h"
 #include "programs/render_options.h"
 #include "programs/render_session.h"
 #include "programs/truth_run.h"
-#include "scene_catalog.h"
 #include "tools/program/program.h"
 #include "tools/program/run_report.h"
 #include "window/window_run.h"

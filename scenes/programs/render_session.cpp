@@ -4,23 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "programs/camera_streak.h"
 #include "programs/target_file.h"
 #include "tools/image/image_io.h"
+#include "tools/program/clock.h"
 #include "tools/program/method_names.h"
 #include "tools/program/progress.h"
 
 namespace quincunx::scenes {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
+using tools::Clock;
 
 constexpr int kContactSheetFrames = 24;
 
@@ -141,7 +137,7 @@ Status RenderSession::draw(std::int64_t index) {
   const FrameView view = paced_ ? begin_paced(index) : source_->sequence().at(index);
   if (Status status = source_->draw(index, view, index == options_.exr_frame); !status.ok()) return status;
   if (paced_) paced_->end_draw();
-  draw_ms_.push_back(since(start));
+  draw_ms_.push_back(tools::ms_since(start));
   return {};
 }
 
@@ -150,10 +146,9 @@ Status RenderSession::dispatch() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  FrameOutputs outputs{.presented = presented.value()};
   // The files hold the picture as it is before the tone map.
-  (plan().blurs() ? outputs.blurred : outputs.resolved) = resolved_.view();
-  const FrameReport report = service_->dispatch(inputs.value(), outputs);
+  const FrameReport report =
+      service_->dispatch(inputs.value(), outputs_for(plan(), resolved_.view(), presented.value()));
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bridge().traffic().bytes_in);
   return report.status;
@@ -169,13 +164,13 @@ Status RenderSession::deliver(std::int64_t index) {
   if (index == options_.exr_frame) {
     if (Status status = write_exr_frame(index); !status.ok()) return status;
   }
-  write_ms_.push_back(since(start));
+  write_ms_.push_back(tools::ms_since(start));
   const DrawnFrame& frame = source_->oldest();
   rows_.push_back({.index = index,
                    .seconds = frame.view.seconds,
                    .render = frame.view.render,
                    .jitter = frame.view.jitter,
-                   .frame_ms = since(last_delivery_)});
+                   .frame_ms = tools::ms_since(last_delivery_)});
   last_delivery_ = Clock::now();
   source_->release();
   return {};
@@ -292,7 +287,7 @@ Status RenderSession::run() {
     if (Status status = sheet_->write(options_.contact_sheet); !status.ok()) return status;
     files_.push_back(options_.contact_sheet);
   }
-  wall_seconds_ = since(start) / 1000;
+  wall_seconds_ = tools::ms_since(start) / 1000;
   return {};
 }
 

@@ -5,10 +5,10 @@
 
 #include <vector>
 
+#include "catalog/scene_catalog.h"
 #include "programs/presenter.h"
 #include "programs/target_file.h"
 #include "render/truth.h"
-#include "scene_catalog.h"
 #include "tools/image/image_io.h"
 #include "tools/program/progress.h"
 #include "tools/sequence/frame_pattern.h"

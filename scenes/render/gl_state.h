@@ -2,7 +2,7 @@
 // The fixed-function state of each part of a frame.
 #pragma once
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx_gl/render_targets.h"
 
 namespace quincunx::scenes {

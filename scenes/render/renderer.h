@@ -21,9 +21,9 @@ struct FrameView {
   Vec2 jitter = {};             // render pixels: samples lie at pixel centre + jitter
   double seconds = 0;           // scene time of this frame
   double previous_seconds = 0;  // scene time of the previous frame: velocity = this position - that one
-  float aspect =
-      0;  // of the picture, width / height; 0: the viewport's. A viewport is rounded to pixels, so frames
-          // of one picture at several resolutions show the same only with the picture's own aspect
+  // Of the picture, width / height; 0: the viewport's. A viewport is rounded to pixels, so frames of one picture at
+  // several resolutions show the same only with the picture's own aspect.
+  float aspect = 0;
   float lod_bias = 0;  // of every texture
   // Less work where detail may go; both 0: all of it.
   float least_size = 0;   // surfaces that span less than this part of the picture's height are left out

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::scenes {

@@ -2,26 +2,22 @@
 #include "window/live_picture.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "programs/target_file.h"
 #include "render/truth.h"
+#include "tools/program/clock.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::scenes {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using tools::Clock;
 
 constexpr Extent kLowestExtent = {8, 8};
 constexpr std::int64_t kSweepFrames = 240;
 constexpr const char* kSweep = "sweep:0.25,1,0.25";
 constexpr const char* kRandom = "random:0.25,1";
 constexpr int kTruthSamples = 4;  // 4 x 4 a pixel: a compromise, because it is drawn for every frame
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void choose_method(ResolveSettings& settings, const std::string& name) {
   tools::choose(settings, tools::method_choices().at(name));
@@ -168,7 +164,7 @@ Status LivePicture::draw(std::int64_t index, const FrameView& view, Keep keep) {
   timer_.end();
   if (!status.ok()) return status;
   times_ = FrameTimes();
-  times_.cpu_ms = since(start);
+  times_.cpu_ms = tools::ms_since(start);
   return source_->submit();
 }
 
@@ -192,15 +188,13 @@ Status LivePicture::dispatch(bool reset) {
   poll_timer();  // now, because the fall-back counts until it is asked
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  FrameOutputs outputs{.presented = presented.value()};
-  if (keep_ == Keep::kForFiles) {
-    if (!resolved_) {
-      auto image = source_->device().allocate(output(), plan().settings.resolved);
-      if (!image.ok()) return image.status();
-      resolved_ = std::move(image).value();
-    }
-    (plan().blurs() ? outputs.blurred : outputs.resolved) = resolved_.view();
+  if (keep_ == Keep::kForFiles && !resolved_) {
+    auto image = source_->device().allocate(output(), plan().settings.resolved);
+    if (!image.ok()) return image.status();
+    resolved_ = std::move(image).value();
   }
+  const ImageView linear = keep_ == Keep::kForFiles ? resolved_.view() : ImageView();
+  const FrameOutputs outputs = outputs_for(plan(), linear, presented.value());
   if (const FrameReport report = service_->dispatch(inputs.value(), outputs); !report.ok())
     return report.status;
   if (other_service_) {

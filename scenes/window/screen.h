@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
 #include "window/window_settings.h"

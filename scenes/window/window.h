@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 struct GLFWwindow;

@@ -8,8 +8,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/image/image_io.h"
+#include "tools/program/clock.h"
 #include "tools/program/method_names.h"
 #include "window/key_bindings.h"
 #include "window/window_run.h"
@@ -17,16 +18,12 @@
 namespace quincunx::scenes {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using tools::Clock;
 
 constexpr double kMinimisedSeconds = 0.02;  // how long a turn waits while there is nothing to show
 constexpr double kFrozenSeconds = 0.01;
 constexpr double kMessageSeconds = 4;
 constexpr std::size_t kWarmUp = 32;  // frames before a frozen one, for methods that accumulate
-
-double milliseconds(Clock::time_point from, Clock::time_point to) {
-  return std::chrono::duration<double, std::milli>(to - from).count();
-}
 
 // Frames that the picture of one depends on, at most.
 std::int64_t frames_before(const LookSettings& look) {
@@ -260,7 +257,7 @@ PanelFacts WindowSession::facts() {
   facts.render = view_.render;
   facts.output = picture_->output();
   facts.target_ms = 1000 / settings_.rate.target_fps;
-  if (milliseconds(said_, Clock::now()) < 1000 * kMessageSeconds) facts.message = message_;
+  if (tools::ms_since(said_) < 1000 * kMessageSeconds) facts.message = message_;
   if (settings_.zoom.factor > 1) {
     const ZoomOrigin origin = zoom_origin(settings_.zoom, facts.output);
     const int x = origin.x + static_cast<int>(pointer_.position.x) / settings_.zoom.factor;

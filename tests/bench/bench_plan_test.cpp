@@ -7,8 +7,8 @@
 #include <set>
 
 #include "bench/speed_error/bench_gallery.h"
-#include "bench/speed_error/uncovered.h"
-#include "scene_catalog.h"
+#include "bench/speed_error/disocclusion.h"
+#include "catalog/scene_catalog.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::bench {
@@ -136,19 +136,19 @@ TEST(Gallery, CropsFitTheirRoomAndThePicture) {
   EXPECT_EQ(crop_for({32, 16}, 1, 1e9), (Extent{32, 16}));
 }
 
-TEST(Uncovered, IsWhatANearerSurfaceHid) {
+TEST(Disocclusion, IsWhatANearerSurfaceHid) {
   // Four columns: the near surface (depth 0.5) stood on columns 1 and 2; now it has left, all is far (0.1).
   constexpr Extent extent{4, 2};
   Geometry now{extent, std::vector<float>(8, 0.1f), std::vector<Vec2>(8)};
   Geometry before = now;
   for (const std::size_t i : {1u, 2u, 5u, 6u})
     before.depth[i] = 0.5f;
-  const auto mask = uncovered_since(now, before);
+  const auto mask = disoccluded_since(now, before);
   EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(uncovered_since(now, now), std::vector<std::uint8_t>(8, 0));
+  EXPECT_EQ(disoccluded_since(now, now), std::vector<std::uint8_t>(8, 0));
   // What came from outside was not hidden, and what is as near as before neither.
   now.velocity.assign(8, {2, 0});
-  EXPECT_EQ(uncovered_since(now, before), std::vector<std::uint8_t>(8, 0));
+  EXPECT_EQ(disoccluded_since(now, before), std::vector<std::uint8_t>(8, 0));
 }
 
 }  // namespace

@@ -21,6 +21,44 @@ TEST(Result, ComesBackFromJson) {
   EXPECT_EQ(to_json(back.value()), to_json(sample_result()));
 }
 
+TEST(Result, ComesBackFromTables) {
+  const std::string text = to_tables(sample_result());
+  const auto back = from_json(text, "x.json");
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  EXPECT_EQ(back.value(), sample_result());
+  EXPECT_EQ(to_tables(back.value()), text);
+}
+
+TEST(Result, TablesNameAFieldOnceAndHaveALineARow) {
+  const std::string text = to_tables(sample_result());
+  EXPECT_EQ(text.find("worst_window"), text.rfind("worst_window"));
+  EXPECT_LT(text.size(), to_json(sample_result()).size() / 2);
+  for (const char* begin : {"\n[\"pan\",0.5,\"bilinear\",", "\n[\"pan\",0.7,\"quincunx:mean\","})
+    EXPECT_NE(text.find(begin), std::string::npos) << begin;
+  // An empty list is no table.
+  EXPECT_EQ(from_json(to_tables(BenchResult()), "x.json").value(), BenchResult());
+}
+
+TEST(Result, RefusesARowThatDoesNotFillItsTable) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(to_tables(sample_result()));
+  json["rows"]["data"][1].erase(0);
+  const auto back = from_json(json.dump(), "short.json");
+  ASSERT_FALSE(back.ok());
+  EXPECT_NE(back.status().message().find("short.json"), std::string::npos);
+}
+
+TEST(Result, ReadsTheFormatBefore) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(to_json(sample_result()));
+  json["format"] = 1;
+  for (auto& scene : json["scenes"]) {
+    scene["uncovered"] = scene["disoccluded"];
+    scene.erase("disoccluded");
+  }
+  const auto back = from_json(json.dump(), "old.json");
+  ASSERT_TRUE(back.ok()) << back.status().message();
+  EXPECT_EQ(back.value(), sample_result());
+}
+
 TEST(Result, JsonHasNoNumberThatIsNone) {
   const auto json = nlohmann::json::parse(to_json(sample_result()));
   EXPECT_TRUE(json["rows"][1]["quality"]["psnr"].is_null());     // infinite

@@ -85,8 +85,8 @@ TEST(MinimumOfNController, StepTakesTheShortestOfTheLastN) {
   // m = min(60, 5, 30) = 5: s = .8041275 * 1.1 = .88454025; m = min(5, 30, 30) = 5: s = .972994275
   EXPECT_EQ(after(*controller, {.gpu_ms = 30}), (Extent{884, 884}));
   EXPECT_EQ(after(*controller, {.gpu_ms = 30}), (Extent{972, 972}));
-  // 5 has left: m = 30: s = .972994275 (1 + .2 (10 - 30) / 10) = .583796565; within 340818.4: 582 x 584 =
-  // 339888
+  // 5 has left, m = 30: s = .972994275 (1 + .2 (10 - 30) / 10) = .583796565
+  // 582 x 584 = 339888 is the largest within 340818.4
   EXPECT_EQ(after(*controller, {.gpu_ms = 30}).area(), 339888);
 }
 

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "bench/harness/stage.h"
+#include "stage.h"
 
 namespace quincunx::bench {
 

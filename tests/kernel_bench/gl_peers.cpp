@@ -6,10 +6,10 @@
 #include <random>
 #include <stdexcept>
 
-#include "bench/harness/stage.h"
 #include "gl_peer_shaders.h"
 #include "peers.h"
 #include "quincunx_gl/handle.h"
+#include "stage.h"
 
 namespace quincunx::bench {
 namespace {

@@ -6,13 +6,14 @@
 #include <cstdio>
 #include <optional>
 
-#include "bench/harness/report.h"
-#include "bench/harness/stage.h"
+#include "bench/harness/process_clock.h"
 #include "clear_cases.h"
 #include "kernel_cases.h"
+#include "kernel_report.h"
 #include "opencl.h"
 #include "peers.h"
 #include "quincunx_gl/egl_context.h"
+#include "stage.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
 #include "tools/program/program.h"

@@ -6,8 +6,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "bench/harness/stage.h"
 #include "peers.h"
+#include "stage.h"
 
 namespace quincunx::bench {
 namespace {

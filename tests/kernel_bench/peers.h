@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "bench/harness/harness.h"
+#include "interleaved.h"
 #include "quincunx/image.h"
 
 namespace quincunx::bench {

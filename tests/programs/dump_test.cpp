@@ -2,6 +2,7 @@
 // quincunx-dump: its numbers are those of quincunx-render, its files whole, its refusals clear.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -84,6 +85,47 @@ TEST_F(Dump, EveryStageHasAPictureAndTheFilesAreNamed) {
   EXPECT_EQ(cleared, viewport.area());
   EXPECT_EQ(target.extent, (Extent{96, 54}));
   EXPECT_GE(image("d/frame.0003.output.exr").channel("truth.G"), 0);
+}
+
+// Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
+// hardly known and the rounding of history to halves.
+TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {
+  const std::string run = "-q --scene still --output 64x36 --scale 0.5 --method temporal --format exr ";
+  expect_done(dump(run + "--frame 15 --warm-up 15 --stages resolved --out '{}/d'"));
+  expect_done(dump(run + "--frame 16 --warm-up 16 --stages history --out '{}/d'"));
+  const auto history = image("d/frame.0016.history.exr");
+  const auto resolved = image("d/frame.0015.output.exr");
+  EXPECT_EQ(history.channels, (std::vector<std::string>{"R", "G", "B", "confidence"}));
+  ASSERT_EQ(history.extent, (Extent{64, 36}));
+  int known = 0;
+  for (int y = 0; y < 36; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float confidence = history.at(x, y, history.channel("confidence"));
+      ASSERT_GE(confidence, 0);
+      ASSERT_LE(confidence, 32);
+      if (confidence < 1.5f) continue;
+      ++known;
+      for (const char* name : {"R", "G", "B"}) {
+        const float seen = resolved.at(x, y, resolved.channel(name));
+        ASSERT_NEAR(history.at(x, y, history.channel(name)), seen, 0x1p-10f * seen + 0x1p-24f)
+            << name << " at " << x << ", " << y;
+      }
+    }
+  }
+  EXPECT_GT(known, 64 * 36 / 2);
+}
+
+TEST_F(Dump, AFrameAfterACutReadsNoHistory) {
+  // The second shot of the scene begins after four seconds.
+  const std::string run = "-q --scene cut --output 32x18 --fps 4 --warm-up 2 --stages history --format exr ";
+  for (const std::string method : {"temporal", "quincunx"}) {
+    expect_done(dump(run + "--method " + method + " --frame 16 --out '{}/" + method + "'"));
+    expect_done(dump(run + "--method " + method + " --frame 17 --out '{}/" + method + "'"));
+    for (const float value : image(method + "/frame.0016.history.exr").pixels)
+      ASSERT_EQ(value, 0) << method;
+    const auto later = image(method + "/frame.0017.history.exr").pixels;
+    EXPECT_GT(*std::max_element(later.begin(), later.end()), 0) << method;
+  }
 }
 
 TEST_F(Dump, FormatsAndStagesAreTheOnesAskedFor) {

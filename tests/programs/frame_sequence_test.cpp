@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_sequence.h"
+#include "programs/frame_sequence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scale_path.h"
+#include "programs/scale_path.h"
 
 #include <gtest/gtest.h>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "catalog/scene_catalog.h"
 #include "render_fixture.h"
-#include "scene_catalog.h"
 
 namespace quincunx::scenes::testing {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "scene_check.h"
 
 namespace quincunx::scenes {

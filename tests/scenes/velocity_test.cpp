@@ -91,9 +91,8 @@ WarpError warp_error(const Picture& now, const Picture& before, float sign, bool
 }
 
 TEST_F(RenderTest, VelocityWarpsThePreviousFrameOntoThisOne) {
-  // Waves of some 40 pixels and amplitude .4: bilinear interpolation errs by up to .4 (2 pi / 40)^2 / 8 =
-  // .0012, 8-bit texels by .002 and the filter's weights by as much again. Half a pixel of jitter moves the
-  // value by .02 rms.
+  // Waves of some 40 pixels and amplitude .4. Bilinear interpolation errs by up to .4 (2 pi / 40)^2 / 8 = .0012, 8-bit
+  // texels by .002 and the filter's weights by as much again. Half a pixel of jitter moves the value by .02 rms.
   constexpr double kBound = 0.004;
   Renderer renderer = renderer_of(smooth_scene(true));
   const Picture before = draw(renderer, view_of_size(kSize, kJitterBefore, kBefore, kBefore - 0.05), kSize);

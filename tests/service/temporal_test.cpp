@@ -318,5 +318,23 @@ TEST(Temporal, HighlightAndShadowDoNotSmear) {
   }
 }
 
+TEST(Temporal, HistoryIsThereToInspect) {
+  TemporalRun run(still_scene());
+  ASSERT_TRUE(run.rig().service().history().ok());
+  EXPECT_FALSE(run.rig().service().history().value()) << "before the first frame";
+  run.next();
+  const ImageView first = run.rig().service().history().value();
+  EXPECT_EQ(first.extent, kOutput);
+  EXPECT_EQ(first.format, PixelFormat::kRGBA16F);
+  run.next();
+  const ImageView second = run.rig().service().history().value();
+  ASSERT_TRUE(second);
+  EXPECT_NE(second.memory, first.memory);
+  run.next({320, 192});
+  EXPECT_FALSE(run.rig().service().history().value()) << "after a dense frame";
+  TemporalRun single(still_scene(), kBilinear);
+  EXPECT_EQ(single.rig().service().history().status().code(), StatusCode::kInvalidArgument);
+}
+
 }  // namespace
 }  // namespace quincunx

@@ -8,7 +8,7 @@
 // scaling).
 #pragma once
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/resolution_ladder.h"
 #include "quincunx/status.h"
 

@@ -6,7 +6,7 @@
 // viewport, never the one asked for.
 #pragma once
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

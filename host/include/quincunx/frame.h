@@ -13,6 +13,8 @@
 
 namespace quincunx {
 
+struct ResolvePlan;
+
 // Where the camera was, for velocity that is derived from depth. Column-major: takes (ndc.x, ndc.y, depth, 1)
 // of this frame, jitter excluded, to homogeneous clip coordinates of the previous frame, jitter excluded;
 // ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
@@ -23,16 +25,17 @@ struct CameraMotion {
 
 // One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
 // done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done:
-// the service reads the previous frame where the caller left it and copies nothing. So give frames n and n -
-// 1 different memory; a ring of three lets the renderer run ahead.
+// the service reads the previous frame where the caller left it and copies nothing. So give frames n and n - 1
+// different memory; a ring of three lets the renderer run ahead.
 struct FrameInputs {
   ImageView colour = {};  // RGBA16F or RGBA32F, linear, premultiplied
-  ImageView depth = {};   // R32F, reversed infinite depth; only read where the plan says so
-  ImageView velocity =
-      {};  // RG16F or RG32F, this position - previous position; only read where the plan says so
-  ImageView reactive = {};  // R8, 0: trust history, 1: ignore it; only read where the plan says so
+  // The other images are read only where the plan says so.
+  ImageView depth = {};     // R32F, reversed infinite depth
+  ImageView velocity = {};  // RG16F or RG32F, this position - previous position
+  ImageView reactive = {};  // R8, 0: trust history, 1: ignore it
   Extent render = {};       // the viewport, within the images' extents; any size from 1x1
-  Vec2 jitter = {};  // render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1]
+  // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
+  Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
   CameraMotion camera = {};
   float exposure = 0;             // multiplies linear colour in the present pass; 0: 1
@@ -46,6 +49,10 @@ struct FrameOutputs {
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
   ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
 };
+
+// Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and the
+// resolved one where it does not. An empty view leaves its picture out.
+FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented);
 
 struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"
@@ -63,8 +70,8 @@ struct FrameReport {
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
   int pass_count = 0;
   std::array<PassReport, kMaxPasses> passes;
-  std::int64_t non_finite_pixels =
-      -1;  // output pixels that met NaN or Inf in their footprint; -1: not known yet
+  // Output pixels that met NaN or Inf in their footprint; -1: not known yet.
+  std::int64_t non_finite_pixels = -1;
 
   bool ok() const { return status.ok(); }
 };

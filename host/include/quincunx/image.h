@@ -11,23 +11,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "quincunx/extent.h"
+
 namespace quincunx {
-
-// Width and height in pixels.
-struct Extent {
-  int width = 0;
-  int height = 0;
-
-  friend bool operator==(const Extent&, const Extent&) = default;
-  std::int64_t area() const { return static_cast<std::int64_t>(width) * height; }
-};
-
-struct Vec2 {
-  float x = 0;
-  float y = 0;
-
-  friend bool operator==(const Vec2&, const Vec2&) = default;
-};
 
 // Colour formats are linear light with premultiplied alpha. kRGBA8 of the present pass is sRGB encoded.
 enum class PixelFormat : std::uint8_t {

@@ -39,9 +39,9 @@ struct BlurAware {
 struct PredictiveSettings {
   LadderSettings ladder = {};
   double target_ms = 1000.0 / 60;
-  int buffers =
-      3;  // of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there
-          // is no slack: every frame has to fit, and recurring slow frames lower the resolution.
+  // Of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there is no slack: every
+  // frame has to fit, and recurring slow frames lower the resolution.
+  int buffers = 3;
   double fixed_part = 0.25;                             // first guess of what does not scale, in [0, 0.9]
   std::optional<CostTable> calibration = std::nullopt;  // replaces that guess, if it spans enough resolutions
   CpuBound cpu_bound = CpuBound::kHold;

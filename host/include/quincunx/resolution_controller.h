@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/resolution_ladder.h"
 #include "quincunx/status.h"
 
@@ -84,9 +84,9 @@ class ResolutionController {
 };
 
 // The seed's proportional controller (Binks, "Dynamic Resolution Rendering", 2012, "Resolution Control"):
-//   s <- s (1 + k (1 - t / T)),  t = mean of gpu_ms and interval_ms; gpu_ms alone where the interval is
-//   unknown or
-// significantly longer, which is a spike of the processor or a wait for the display. s scales both axes.
+//   s <- s (1 + k (1 - t / T))
+// s scales both axes and T is the target. t is the mean of gpu_ms and interval_ms. It is gpu_ms alone where the interval
+// is unknown or significantly longer: that is a spike of the processor or a wait for the display.
 struct ProportionalSettings {
   LadderSettings ladder = {};
   double target_ms = 1000.0 / 60;
@@ -98,7 +98,9 @@ Result<std::unique_ptr<ResolutionController>> make_proportional_controller(
 
 // The minimum-of-N controller (the draw-time tutorial for MonoGame): with m the shortest of the last N times
 // and the target reduced by a margin,
-//   s <- s + factor s (T' - m) / T',  T' = target * margin.  s scales both axes.
+//   s <- s + factor s (T' - m) / T'
+//   T' = target * margin
+// s scales both axes.
 struct MinimumOfNSettings {
   LadderSettings ladder = {};
   double target_ms = 1000.0 / 60;

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -35,8 +35,8 @@ constexpr int kCaptionHeight = 38;  // of the strip below the bar
 constexpr int kCaptionInset = 12;
 constexpr int kCaptionBaseline = 25;
 constexpr double kWantedAspect = 1.5;
-constexpr double kCostOfHoles =
-    0.25;  // a gap in the last row looks as bad as an aspect that is off by e^0.25
+// A gap in the last row looks as bad as an aspect that is off by e^0.25.
+constexpr double kCostOfHoles = 0.25;
 
 double decode(int code) {
   const double x = code / 255.0;

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 
 namespace quincunx::tools {
 

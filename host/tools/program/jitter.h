@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 
 namespace quincunx::tools {
 

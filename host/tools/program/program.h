@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {

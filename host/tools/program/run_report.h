@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "tools/program/pacing_report.h"

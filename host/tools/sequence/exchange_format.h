@@ -3,7 +3,7 @@
 // (docs/inputs.md). Pure; thread-safe.
 #pragma once
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 
 namespace quincunx::tools {
 

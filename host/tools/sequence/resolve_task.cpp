@@ -11,13 +11,13 @@
 namespace quincunx::tools {
 namespace {
 
-// An accumulated picture depends on all frames before it; still ones grow better for some 100, moving ones
-// for ten.
-constexpr int kAccumulatedFrames = 48;
+// Of a method that accumulates: frames resolved before the first one that is asked for. Its picture depends on all
+// frames before it; still pictures grow better for some 100 of them, moving ones for ten.
+constexpr int kFramesOfHistory = 48;
 
 // Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
 int history_of(const ResolvePlan& plan) {
-  if (plan.accumulates()) return kAccumulatedFrames;
+  if (plan.accumulates()) return kFramesOfHistory;
   return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
 }
 

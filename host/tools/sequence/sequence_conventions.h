@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {

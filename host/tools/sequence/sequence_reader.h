@@ -23,8 +23,7 @@ struct SequenceFrame {
   std::vector<float> depth;            // reversed infinite; empty where not read
   std::vector<std::uint8_t> reactive;  // empty where not read
   std::optional<Matrix> world_to_ndc;
-  std::vector<Attribute>
-      kept;  // of the file: camera, rate and the like, which hold for the resolved frame too
+  std::vector<Attribute> kept;  // of the file: camera, rate and the like: the resolved frame's too
 };
 
 // Reads the channels of `format` of the file that `expected` was scanned from. Where the data window leaves

@@ -5,18 +5,12 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "tools/program/clock.h"
 #include "tools/sequence/sequence_camera.h"
 
 namespace quincunx::tools {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // Inflating is several times cheaper than deflating, and inputs are smaller than outputs.
 int reading_threads(int threads) {
@@ -96,7 +90,7 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
   const DeviceFrame& device_frame = ring_[static_cast<std::size_t>(count_ % 2)];
   const Clock::time_point start = Clock::now();
   if (Status status = upload(frame, device_frame); !status.ok()) return status;
-  outcome_.upload_ms.push_back(since(start));
+  outcome_.upload_ms.push_back(ms_since(start));
   FrameInputs inputs;
   inputs.colour = device_frame.colour.view();
   inputs.velocity = device_frame.velocity.view();
@@ -109,9 +103,8 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
   inputs.reset = scanned.reset || last_ + 1 != frame.number;
   inputs.frame_index = static_cast<std::uint64_t>(frame.number);
   if (Status status = camera_of(frame, inputs); !status.ok()) return status;
-  FrameOutputs outputs{.presented = presented_.view()};
-  (service_.plan().blurs() ? outputs.blurred : outputs.resolved) = linear_.view();
-  FrameReport report = service_.dispatch(inputs, outputs);
+  FrameReport report =
+      service_.dispatch(inputs, outputs_for(service_.plan(), linear_.view(), presented_.view()));
   if (!report.ok()) return report.status;
   last_ = frame.number;
   last_world_to_ndc_ = frame.world_to_ndc;
@@ -165,7 +158,7 @@ Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
   if (scanned.wanted) {
     if (Status status = download(picture); !status.ok()) return status;
   }
-  outcome_.resolve_ms.push_back(since(start));
+  outcome_.resolve_ms.push_back(ms_since(start));
   if (scanned.wanted) {
     if (Status status = hand_over(*frame.value(), std::move(picture)); !status.ok()) return status;
     outcome_.resolved.push_back(scanned.number);
@@ -173,7 +166,7 @@ Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
                              .render = scanned.render,
                              .ratio = report->ratio,
                              .jitter = scanned.jitter,
-                             .frame_ms = since(last_delivery_),
+                             .frame_ms = ms_since(last_delivery_),
                              .used_previous = report->used_previous});
     last_delivery_ = Clock::now();
   }
@@ -229,7 +222,7 @@ Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
   outcome_.busy = {
       {"reading", ahead_->busy_seconds()}, {"resolving", resolving}, {"writing", writers_.busy_seconds()}};
   if (job_.scores != nullptr) outcome_.busy.push_back({"measuring", job_.scores->busy_seconds()});
-  outcome_.wall_seconds = since(start) / 1000;
+  outcome_.wall_seconds = ms_since(start) / 1000;
   ahead_.reset();  // it refers to `good`
   return status.ok() ? finished : status;
 }

@@ -54,7 +54,7 @@ function makeScenesTable() {
     textColumn("scene", (row) => row.name), textColumn("what is seen", (row) => row.summary, true),
     textColumn("what it tests", (row) => row.reason, true),
     numberColumn("flicker of truth", (row) => row.truth_flicker),
-    numberColumn("uncovered", (row) => row.uncovered, (row) => `${number(100 * row.uncovered)} %`),
+    numberColumn("disoccluded", (row) => row.disoccluded, (row) => `${number(100 * row.disoccluded)} %`),
   ], result.scenes);
 }
 

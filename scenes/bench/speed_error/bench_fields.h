@@ -92,7 +92,7 @@ void fields(Archive& io, SceneRow& value) {
   io("summary", value.summary);
   io("reason", value.reason);
   io("truth_flicker", value.truth_flicker);
-  io("uncovered", value.uncovered);
+  io("disoccluded", value.disoccluded);
 }
 
 template <typename Archive>

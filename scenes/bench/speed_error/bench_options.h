@@ -9,7 +9,7 @@
 
 #include "bench/traces/trace_command.h"
 #include "programs/picture_options.h"
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 
 namespace quincunx::bench {
 

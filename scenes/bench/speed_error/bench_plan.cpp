@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::bench {

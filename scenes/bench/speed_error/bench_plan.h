@@ -7,7 +7,7 @@
 
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_result.h"
-#include "frame_sequence.h"
+#include "programs/frame_sequence.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "scene.h"

@@ -24,7 +24,7 @@ double pixel_error(const tools::MeasuredPicture& picture, const tools::MeasuredP
 
 void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPicture& truth,
                        const tools::MeasuredPicture* previous_truth,
-                       std::span<const std::uint8_t> uncovered) {
+                       std::span<const std::uint8_t> disoccluded) {
   const tools::PictureScores scores = tools::measure(picture, truth);
   error_ += squared_error_of(scores.psnr_tone_mapped);
   error_linear_ += squared_error_of(scores.psnr_linear);
@@ -42,10 +42,10 @@ void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPict
   if (latest_ && previous_truth != nullptr) {
     flicker_ += tools::flicker(picture, *latest_, truth, *previous_truth);
   }
-  for (std::size_t i = 0; i < uncovered.size(); ++i) {
-    if (uncovered[i] == 0) continue;
-    uncovered_error_ += pixel_error(picture, truth, i);
-    ++uncovered_count_;
+  for (std::size_t i = 0; i < disoccluded.size(); ++i) {
+    if (disoccluded[i] == 0) continue;
+    disoccluded_error_ += pixel_error(picture, truth, i);
+    ++disoccluded_count_;
   }
   latest_ = std::move(picture);
   ++frames_;
@@ -61,8 +61,8 @@ Quality QualityTally::quality() const {
   quality.error_p99 = p99_ / count;
   quality.relative_error = relative_ / count;
   if (frames_ > 1) quality.flicker = flicker_ / (count - 1);
-  if (uncovered_count_ > 0) {
-    quality.ghosting = std::sqrt(uncovered_error_ / static_cast<double>(uncovered_count_));
+  if (disoccluded_count_ > 0) {
+    quality.ghosting = std::sqrt(disoccluded_error_ / static_cast<double>(disoccluded_count_));
   }
   quality.non_finite = non_finite_;
   return quality;

@@ -15,9 +15,9 @@ namespace quincunx::bench {
 // One thread at a time.
 class QualityTally {
  public:
-  // The measured frames in order; `uncovered` has a value for each pixel.
+  // The measured frames in order; `disoccluded` has a value for each pixel.
   void add(tools::MeasuredPicture picture, const tools::MeasuredPicture& truth,
-           const tools::MeasuredPicture* previous_truth, std::span<const std::uint8_t> uncovered);
+           const tools::MeasuredPicture* previous_truth, std::span<const std::uint8_t> disoccluded);
 
   // At least one frame.
   Quality quality() const;
@@ -28,8 +28,8 @@ class QualityTally {
   int frames_ = 0;
   Quality worst_;  // of its fields only those of the worst window
   double error_ = 0, error_linear_ = 0, ssim_ = 0, flip_ = 0, p99_ = 0, relative_ = 0, flicker_ = 0;
-  double uncovered_error_ = 0;
-  std::int64_t uncovered_count_ = 0;
+  double disoccluded_error_ = 0;
+  std::int64_t disoccluded_count_ = 0;
   std::int64_t non_finite_ = 0;
   std::optional<tools::MeasuredPicture> latest_;
 };

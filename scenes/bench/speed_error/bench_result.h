@@ -8,12 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::bench {
 
-inline constexpr int kResultFormat = 1;  // of the JSON; a reader refuses another
+// Of the JSON. Format 1 had no tables, and `uncovered` for `disoccluded`; it is still read. A reader refuses others.
+inline constexpr int kResultFormat = 2;
 
 // Repeated measurements of one quantity. `low` to `high` holds the true median with 95 % confidence as far as
 // the spread between rounds tells.
@@ -40,7 +41,7 @@ struct Quality {
   int worst_x = 0;  // upper left pixel
   int worst_y = 0;
   std::optional<double> flicker;   // absent where one frame was measured
-  std::optional<double> ghosting;  // RMS error of what was uncovered; absent where nothing was
+  std::optional<double> ghosting;  // RMS error of what was disoccluded; absent where nothing was
   std::int64_t non_finite = 0;     // pixels, all frames
 
   friend bool operator==(const Quality&, const Quality&) = default;
@@ -106,7 +107,7 @@ struct SceneRow {
   std::string summary;
   std::string reason;
   std::optional<double> truth_flicker;  // mean change of the truth's own luma from frame to frame
-  double uncovered = 0;                 // part of the pixels that was uncovered in the last two frames
+  double disoccluded = 0;               // part of the pixels that was disoccluded in the last two frames
 
   friend bool operator==(const SceneRow&, const SceneRow&) = default;
 };
@@ -170,9 +171,12 @@ struct BenchResult {
   friend bool operator==(const BenchResult&, const BenchResult&) = default;
 };
 
-std::string to_json(const BenchResult& result);  // numbers to 6 significant digits
+// Both hold the same, numbers to 6 significant digits: for programs that read it, nested objects; and to be kept, a
+// line for each row of each list (see bench_tables.h).
+std::string to_json(const BenchResult& result);
+std::string to_tables(const BenchResult& result);
 
-// Errors: kInvalidArgument, naming `path`, for what is no result of this program.
+// Of either. Errors: kInvalidArgument, naming `path`, for what is no result of this program.
 Result<BenchResult> from_json(const std::string& text, const std::string& path);
 Result<BenchResult> read_result(const std::string& path);  // errors also: kIoFailure
 

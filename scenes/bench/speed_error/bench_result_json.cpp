@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/speed_error/bench_fields.h"
+#include "bench/speed_error/bench_tables.h"
 
 namespace quincunx::bench {
 namespace {
@@ -103,34 +104,48 @@ class Reader {
   const Json& json_;
 };
 
-}  // namespace
-
-std::string to_json(const BenchResult& result) {
+Json objects_of(BenchResult result) {
   Writer writer;
   std::string program = kProgram;
   int format = kResultFormat;
   writer("program", program);
   writer("format", format);
-  BenchResult copy = result;
-  fields(writer, copy);
-  return writer.take().dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  fields(writer, result);
+  return writer.take();
+}
+
+void bring_up_to_date(Json& json) {
+  for (Json& scene : json.at("scenes"))
+    scene["disoccluded"] = scene.at("uncovered");
+}
+
+}  // namespace
+
+std::string to_json(const BenchResult& result) {
+  return objects_of(result).dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_tables(const BenchResult& result) {
+  return text_with_tables(objects_of(result));
 }
 
 Result<BenchResult> from_json(const std::string& text, const std::string& path) {
   try {
-    const Json json = Json::parse(text);
+    Json json = without_tables(Json::parse(text));
     if (json.at("program") != kProgram) {
       return Status::invalid(fmt::format("'{}' is no result of {}", path, kProgram));
     }
-    if (json.at("format") != kResultFormat) {
-      return Status::invalid(fmt::format("'{}' has format {}; this program reads format {}", path,
-                                         json.at("format").dump(), kResultFormat));
+    const Json format = json.at("format");
+    if (format != 1 && format != kResultFormat) {
+      return Status::invalid(fmt::format("'{}' has format {}; this program reads formats 1 and {}", path,
+                                         format.dump(), kResultFormat));
     }
+    if (format == 1) bring_up_to_date(json);
     BenchResult result;
     Reader reader(json);
     fields(reader, result);
     return result;
-  } catch (const Json::exception& error) {
+  } catch (const std::exception& error) {
     return Status::invalid(fmt::format("'{}' is no result of {}: {}", path, kProgram, error.what()));
   }
 }

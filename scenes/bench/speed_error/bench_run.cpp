@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-
-#include "bench/harness/report.h"
+#include "bench/harness/process_clock.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_statistics.h"
 #include "bench/speed_error/case_run.h"
+#include "tools/program/clock.h"
 #include "tools/program/jitter.h"
 #include "tools/program/progress.h"
 
@@ -58,7 +57,7 @@ class Runner {
     auto truth = make_truth(stage.value()->renderer(), scene, result_.machine.gl_version, plan.conditions);
     if (!truth.ok()) return truth.status();
     step(name + ": truth");
-    result_.scenes.push_back({name, scene.summary, scene.reason, truth->flicker, truth->uncovered_part});
+    result_.scenes.push_back({name, scene.summary, scene.reason, truth->flicker, truth->disoccluded_part});
     gallery_.begin_scene(name, truth->pictures.back());
     for (const double scale : plan_.scales) {
       if (Status status = run_case(*stage.value(), plan, truth.value(), name, scale); !status.ok())
@@ -99,7 +98,7 @@ class Runner {
 }  // namespace
 
 Result<BenchRun> run_bench(const BenchPlan& plan, const BenchOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const tools::Clock::time_point start = tools::Clock::now();
   Runner runner(plan, options);
   BenchResult& result = runner.result();
   result.version = QUINCUNX_VERSION;
@@ -112,7 +111,7 @@ Result<BenchRun> run_bench(const BenchPlan& plan, const BenchOptions& options) {
   result.machine.load_before = load_of_last_minute();
   if (Status status = runner.run(); !status.ok()) return status;
   result.machine.load_after = load_of_last_minute();
-  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.wall_seconds = tools::ms_since(start) / 1000;
   BenchRun run{std::move(result), runner.take_gallery()};
   return run;
 }

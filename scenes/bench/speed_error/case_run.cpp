@@ -33,11 +33,7 @@ void for_each_in_parallel(std::size_t count, const Task& task) {
 
 CaseRun::CaseRun(const scenes::FrameSource& stage, const BenchPlan& plan, const SceneTruth& truth,
                  double scale)
-    : plan_(plan),
-      truth_(truth),
-      scale_(scale),
-      device_(stage.device()),
-      copy_stage_(stage.device(), plan.conditions.output) {}
+    : plan_(plan), truth_(truth), scale_(scale), device_(stage.device()) {}
 
 Result<std::unique_ptr<CaseRun>> CaseRun::create(const scenes::FrameSource& stage, const BenchPlan& plan,
                                                  const SceneTruth& truth, double scale) {
@@ -50,7 +46,9 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.resolved);
   if (!resolved.ok()) return resolved.status();
   resolved_ = std::move(resolved).value();
-  copy_stage_.add_copy(copy_);
+  auto copy = CopyKernel::create(device_, plan_.conditions.output);
+  if (!copy.ok()) return copy.status();
+  copy_.emplace(std::move(copy).value());
 
   std::map<std::tuple<scenes::Jitter, float, bool>, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
@@ -129,7 +127,7 @@ Status CaseRun::measure_frame(int frame) {
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
     entries_[i]->tally.add(
         measured(plan_.conditions.output, std::move(pictures[i]), inputs_[entries_[i]->feed].exposure),
-        truth_.pictures[at], previous, truth_.uncovered[at]);
+        truth_.pictures[at], previous, truth_.disoccluded[at]);
   });
   return {};
 }
@@ -145,7 +143,7 @@ Status CaseRun::run_quality() {
     if (has_begun(presenter_feed_, frame)) {
       if (Status status = time_whole_frame(false); !status.ok()) return status;
     }
-    time_copy(false);
+    if (Status status = time_copy(false); !status.ok()) return status;
     release(frame);
   }
   // Whatever the work on errors has driven out of the caches.
@@ -175,7 +173,7 @@ Status CaseRun::time_frames(int count, bool keep) {
 
 // Each frame another method goes first, so that no place in the order is always the same method's.
 Status CaseRun::time_frame(int frame, bool keep) {
-  time_copy(keep);
+  if (Status status = time_copy(keep); !status.ok()) return status;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
     auto time = entry.contender.dispatch(inputs_[entry.feed], {.resolved = resolved_.view()});
@@ -185,13 +183,15 @@ Status CaseRun::time_frame(int frame, bool keep) {
   return time_whole_frame(keep);
 }
 
-void CaseRun::time_copy(bool keep) {
+Status CaseRun::time_copy(bool keep) {
   const StepClock clock;
-  const double ms = copy_.front().run();
+  auto ms = copy_->run();
   const StepTime step = clock.elapsed();
-  if (!keep) return;
-  copy_ms_.back().push_back(ms);
+  if (!ms.ok()) return ms.status();
+  if (!keep) return {};
+  copy_ms_.back().push_back(ms.value());
   copy_processor_ms_.back().push_back(step.processor_ms);
+  return {};
 }
 
 Status CaseRun::time_whole_frame(bool keep) {
@@ -242,7 +242,7 @@ CopyRow CaseRun::copy_row(const std::string& scene) const {
               .scale = scale_,
               .ms = spread_of(copy_ms_),
               .processor_ms = spread_of(copy_processor_ms_)};
-  row.gigabytes_per_second = static_cast<double>(copy_.front().bytes) / row.ms.median * 1e-6;
+  row.gigabytes_per_second = static_cast<double>(copy_->bytes()) / row.ms.median * 1e-6;
   return row;
 }
 

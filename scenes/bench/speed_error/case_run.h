@@ -5,9 +5,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "bench/harness/stage.h"
+#include "bench/harness/copy_kernel.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_quality.h"
 #include "bench/speed_error/contender.h"
@@ -64,7 +65,7 @@ class CaseRun {
   Status measure_frame(int frame);
   Status time_frames(int count, bool keep);
   Status time_frame(int frame, bool keep);
-  void time_copy(bool keep);
+  Status time_copy(bool keep);
   Status time_whole_frame(bool keep);
 
   const BenchPlan& plan_;
@@ -73,8 +74,7 @@ class CaseRun {
   Device device_;
   Extent render_;
   Image resolved_;
-  Stage copy_stage_;
-  std::vector<Case> copy_;  // the float4 copy alone
+  std::optional<CopyKernel> copy_;  // there once opened
   std::vector<Feed> feeds_;
   std::vector<FrameInputs> inputs_;              // of each feed, this frame
   std::vector<std::unique_ptr<Entry>> entries_;  // in the order of the plan's methods

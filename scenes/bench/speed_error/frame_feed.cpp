@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "bench/harness/harness.h"
+#include "bench/harness/process_clock.h"
 
 namespace quincunx::bench {
 namespace {

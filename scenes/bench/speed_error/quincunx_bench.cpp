@@ -23,7 +23,7 @@ Status write_files(const std::string& folder, const BenchRun& run) {
   const auto write = [&folder](const char* name, const std::string& text) {
     return tools::write_text((std::filesystem::path(folder) / name).string(), text);
   };
-  if (Status status = write("bench.json", to_json(run.result)); !status.ok()) return status;
+  if (Status status = write("bench.json", to_tables(run.result)); !status.ok()) return status;
   if (Status status = write("bench.csv", to_csv(run.result)); !status.ok()) return status;
   if (Status status = write("bench.svg", plot_of(run.result)); !status.ok()) return status;
   return write("bench.html", page_of(run.result, run.gallery));

@@ -10,9 +10,9 @@
 #include <filesystem>
 
 #include "bench/speed_error/bench_plan.h"
-#include "bench/speed_error/uncovered.h"
-#include "program_cache.h"
+#include "bench/speed_error/disocclusion.h"
 #include "programs/target_file.h"
+#include "quincunx/cache_folder.h"
 #include "render/embedded_shaders.h"
 #include "render/truth.h"
 #include "tools/image/image_io.h"
@@ -106,13 +106,13 @@ Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& s
     spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
   }
   if (conditions.frames > 1) truth.flicker = change / (conditions.frames - 1);
-  auto uncovered = uncovered_pixels(renderer, scene, conditions);
-  if (!uncovered.ok()) return uncovered.status();
-  truth.uncovered = std::move(uncovered).value();
+  auto disoccluded = disoccluded_pixels(renderer, scene, conditions);
+  if (!disoccluded.ok()) return disoccluded.status();
+  truth.disoccluded = std::move(disoccluded).value();
   std::int64_t count = 0;
-  for (const auto& mask : truth.uncovered)
+  for (const auto& mask : truth.disoccluded)
     count += std::count(mask.begin(), mask.end(), 1);
-  truth.uncovered_part =
+  truth.disoccluded_part =
       static_cast<double>(count) / static_cast<double>(conditions.output.area() * conditions.frames);
   return truth;
 }

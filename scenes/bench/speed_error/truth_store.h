@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// SceneTruth: what the measured frames of a scene truly look like, and which pixels they uncover.
+// SceneTruth: what the measured frames of a scene truly look like, and which of their pixels are disoccluded.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ namespace quincunx::bench {
 // One truth for all scales and methods: made once, before anything is timed.
 struct SceneTruth {
   std::vector<tools::MeasuredPicture> pictures;  // of each measured frame, exposed
-  std::vector<std::vector<std::uint8_t>>
-      uncovered;                  // of each: 1 where it was hidden within the last 2 frames
+  // Of each measured frame: 1 where a pixel was hidden within the last two frames.
+  std::vector<std::vector<std::uint8_t>> disoccluded;
   std::optional<double> flicker;  // mean change of luma from frame to frame
-  double uncovered_part = 0;      // of all pixels
+  double disoccluded_part = 0;    // of all pixels
 };
 
 // Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
-// program_cache.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
+// cache_folder.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
 // shaders, and the same moment drawn with one sample a pixel, which tells when a scene has changed.
 Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions);

@@ -30,9 +30,6 @@ struct Figures {
 // After `warm_rounds` that do not count.
 std::vector<Figures> run_interleaved(const std::vector<Case>& cases, int warm_rounds, int rounds);
 
-// Processor time of this process so far, all threads, ms.
-double processor_ms();
-
 // Wall clock of one run, ms.
 double wall_ms(const std::function<void()>& run);
 

@@ -1,26 +1,19 @@
 // SPDX-License-Identifier: MIT
-#include "bench/harness/stage.h"
+#include "stage.h"
 
 #include <cstring>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
-#include "program_cache.h"
+#include "bench/harness/copy_kernel.h"
 
 namespace quincunx::bench {
 namespace {
-
-constexpr const char* kCopySource = R"(
-__kernel void copy(__global const float4* source, __global float4* output, int width, int height) {
-  const int x = get_global_id(0);
-  const int y = get_global_id(1);
-  if (x >= width || y >= height) return;
-  output[y * width + x] = source[y * width + x];
-})";
 
 double milliseconds(const cl::Event& event) {
   event.wait();
@@ -126,22 +119,14 @@ void Stage::add(std::vector<Case>& cases, Case what, Enqueue enqueue, int kernel
 }
 
 void Stage::add_copy(std::vector<Case>& cases) {
-  cl::Program program(impl().context, kCopySource);
-  program.build(impl().device, kCommonBuildOptions);
-  cl::Kernel kernel(program, "copy");
-  for (const int argument : {0, 1}) {
-    const cl_mem memory = noise(output_, PixelFormat::kRGBA32F, argument).memory;
-    kernel.setArg(static_cast<cl_uint>(argument), sizeof(memory), &memory);
-  }
-  kernel.setArg(2, output_.width);
-  kernel.setArg(3, output_.height);
-  add(cases, {.name = "copy", .bytes = 2 * bytes_of(output_, PixelFormat::kRGBA32F)},
-      [this, kernel](cl::Event* event) {
-        const auto groups = static_cast<std::size_t>((output_.width + 63) / 64);
-        impl().queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-                                          cl::NDRange(groups * 64, static_cast<std::size_t>(output_.height)),
-                                          cl::NDRange(64, 1), nullptr, event);
-      });
+  auto made = CopyKernel::create(device_, output_);
+  if (!made.ok()) throw std::runtime_error(made.status().message());
+  const auto copy = std::make_shared<CopyKernel>(std::move(made).value());
+  cases.push_back({.name = "copy", .bytes = copy->bytes(), .run = [copy] {
+                     auto ms = copy->run();
+                     if (!ms.ok()) throw std::runtime_error(ms.status().message());
+                     return ms.value();
+                   }});
 }
 
 }  // namespace quincunx::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/speed_error/uncovered.h"
+#include "bench/speed_error/disocclusion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets
 
 }  // namespace
 
-std::vector<std::uint8_t> uncovered_since(const Geometry& now, const Geometry& before) {
+std::vector<std::uint8_t> disoccluded_since(const Geometry& now, const Geometry& before) {
   std::vector<std::uint8_t> mask(now.depth.size(), 0);
   for (std::size_t i = 0; i < mask.size(); ++i) {
     const std::int64_t corner = corner_of(previous_place(now, i), before.extent);
@@ -69,8 +69,8 @@ std::vector<std::uint8_t> uncovered_since(const Geometry& now, const Geometry& b
   return mask;
 }
 
-std::vector<std::uint8_t> uncovered_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
-                                               const std::vector<std::uint8_t>& older) {
+std::vector<std::uint8_t> disoccluded_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
+                                                 const std::vector<std::uint8_t>& older) {
   for (std::size_t i = 0; i < newer.size(); ++i) {
     const Place place = previous_place(now, i);
     const std::int64_t nearest = corner_of({std::round(place.x), std::round(place.y)}, now.extent);
@@ -79,9 +79,9 @@ std::vector<std::uint8_t> uncovered_within_two(const Geometry& now, std::vector<
   return newer;
 }
 
-Result<std::vector<std::vector<std::uint8_t>>> uncovered_pixels(scenes::Renderer& renderer,
-                                                                const scenes::Scene& scene,
-                                                                const Conditions& conditions) {
+Result<std::vector<std::vector<std::uint8_t>>> disoccluded_pixels(scenes::Renderer& renderer,
+                                                                  const scenes::Scene& scene,
+                                                                  const Conditions& conditions) {
   constexpr int kBack = 2;
   const gl::RenderTargets targets({.target = conditions.output, .velocity = true, .reactive = false});
   std::vector<std::vector<std::uint8_t>> masks;
@@ -97,8 +97,8 @@ Result<std::vector<std::vector<std::uint8_t>>> uncovered_pixels(scenes::Renderer
       const std::vector<std::uint8_t> none(now->depth.size(), 0);
       const bool cut = scenes::is_cut(scene, previous, seconds);
       if (cut) older = none;
-      std::vector<std::uint8_t> newer = cut ? none : uncovered_since(now.value(), before);
-      if (frame >= 0) masks.push_back(uncovered_within_two(now.value(), newer, older));
+      std::vector<std::uint8_t> newer = cut ? none : disoccluded_since(now.value(), before);
+      if (frame >= 0) masks.push_back(disoccluded_within_two(now.value(), newer, older));
       older = std::move(newer);
     }
     before = std::move(now).value();

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "bench/harness/report.h"
+#include "kernel_report.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <ctime>
 #include <nlohmann/json.hpp>
 
 namespace quincunx::bench {
@@ -54,10 +52,6 @@ std::string text_of(const Run::Size& size) {
 }
 
 }  // namespace
-
-std::string date_now() {
-  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
-}
 
 std::string text_of(const Run& run) {
   std::string text = fmt::format("{} | {} {}\n", run.device.name, run.device.platform, run.device.driver);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scene_catalog.h"
+#include "catalog/scene_catalog.h"
 
 #include <fmt/format.h>
 
@@ -36,7 +36,7 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
     {"wheel", "Spoked wheels with lettering on their rims, turning at three speeds",
      "rotation: velocity that varies within an object, a camera that stands still", make_wheel},
     {"occluders", "Slats, hoops and balls that circle fast before a lettered wall",
-     "tens of pixels a frame before detail: what they uncover has no history", make_occluders},
+     "tens of pixels a frame before detail: what they disocclude has no history", make_occluders},
     {"particles", "Smoke, sparks and tinted glass before a lettered wall",
      "transparents without velocity: reactive values must keep their trails away", make_particles},
     {"flight", "The courtyard, flown through; smoke hangs before the camera for a third of the way",

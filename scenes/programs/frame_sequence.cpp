@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "frame_sequence.h"
+#include "programs/frame_sequence.h"
 
 #include <fmt/format.h>
 

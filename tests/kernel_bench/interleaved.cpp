@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "bench/harness/harness.h"
-
-#include <time.h>
+#include "interleaved.h"
 
 #include <algorithm>
 #include <chrono>
+
+#include "bench/harness/process_clock.h"
 
 namespace quincunx::bench {
 namespace {
@@ -36,12 +36,6 @@ std::vector<Figures> run_interleaved(const std::vector<Case>& cases, int warm_ro
     figures.push_back({cases[i], summarise(samples[i].ms), summarise(samples[i].processor)});
   }
   return figures;
-}
-
-double processor_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
 }
 
 double wall_ms(const std::function<void()>& run) {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "quincunx/image.h"
+#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::scenes {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/harness/harness.h"
+#include "interleaved.h"
 #include "quincunx/device.h"
 
 namespace quincunx::bench {
@@ -23,7 +23,6 @@ struct Run {
   std::vector<Size> sizes;
 };
 
-std::string date_now();
 std::string text_of(const Run& run);
 std::string json_of(const Run& run);
 

@@ -5,10 +5,10 @@
 
 #include <cstdint>
 
+#include "programs/scale_path.h"
 #include "quincunx/dynamic_viewport.h"
 #include "quincunx/status.h"
 #include "render/renderer.h"
-#include "scale_path.h"
 #include "tools/program/jitter.h"
 
 namespace quincunx::scenes {

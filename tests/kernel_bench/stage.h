@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "axis_table.h"
-#include "bench/harness/harness.h"
+#include "interleaved.h"
 #include "pass.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"

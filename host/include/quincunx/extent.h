@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Extent, Vec2: sizes and positions. No OpenCL here, so that whoever only chooses resolutions needs none.
+#pragma once
+
+#include <cstdint>
+
+namespace quincunx {
+
+// Width and height in pixels.
+struct Extent {
+  int width = 0;
+  int height = 0;
+
+  friend bool operator==(const Extent&, const Extent&) = default;
+  std::int64_t area() const { return static_cast<std::int64_t>(width) * height; }
+};
+
+struct Vec2 {
+  float x = 0;
+  float y = 0;
+
+  friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+}  // namespace quincunx
