@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Axis tables: which texels each output column and row reads, made in double precision on the host.
 //
-// With `render` texels under `output` pixels on an axis, pixel x has its centre at p = (x + .5) * render /
-// output render pixels. The sample of texel i lies at i + .5 + jitter, so p has the texel coordinate u = p -
-// .5 - jitter.
+// With `render` texels under `output` pixels on an axis, the centre of pixel x lies, in render pixels, at
+//   p = (x + .5) * render / output.
+// The sample of texel i lies at i + .5 + jitter, so p has the texel coordinate
+//   u = p - .5 - jitter.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// CostModel: a frame's time is a level (its time at the output resolution) times the work at its area
-// fraction,
-//   work(p) = b + (1 - b) p,
-// with b, the part that does not scale, learned from pairs of frames of different area.
+// CostModel: a frame's time is its level (the time that it would take at the output resolution) times the
+// work at its area fraction p,
+//   work(p) = b + (1 - b) p.
+// b, the part that does not scale, is learned from pairs of frames of different area.
 #pragma once
 
 namespace quincunx {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Builds a kernel variant, or loads its binary from disk.
 //
-// Binaries lie in $QUINCUNX_CACHE_DIR, else $XDG_CACHE_HOME/quincunx, else ~/.cache/quincunx, keyed by source
-// with all its includes, options, device and driver; an unusable or damaged entry is rebuilt and replaced, a
-// folder that cannot be written only costs time. QUINCUNX_CACHE_DIR set to an empty string turns the cache
-// off.
+// Binaries lie in $QUINCUNX_CACHE_DIR, else $XDG_CACHE_HOME/quincunx, else ~/.cache/quincunx. They are keyed by
+// the source with all its includes, the options, the device and the driver. An unusable or damaged entry is
+// rebuilt and replaced; a folder that cannot be written only costs time. QUINCUNX_CACHE_DIR set to an empty
+// string turns the cache off.
 #pragma once
 
 #include <filesystem>

@@ -23,13 +23,12 @@ struct CameraMotion {
 
 // One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
 // done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done:
-// the service reads the previous frame where the caller left it and copies nothing. So give frames n and n -
-// 1 different memory; a ring of three lets the renderer run ahead.
+// the service reads the previous frame where the caller left it and copies nothing. So give consecutive
+// frames different memory; a ring of three lets the renderer run ahead.
 struct FrameInputs {
-  ImageView colour = {};  // RGBA16F or RGBA32F, linear, premultiplied
-  ImageView depth = {};   // R32F, reversed infinite depth; only read where the plan says so
-  ImageView velocity =
-      {};  // RG16F or RG32F, this position - previous position; only read where the plan says so
+  ImageView colour = {};    // RGBA16F or RGBA32F, linear, premultiplied
+  ImageView depth = {};     // R32F, reversed infinite depth; only read where the plan says so
+  ImageView velocity = {};  // RG16F or RG32F, this - previous position; only read where the plan says so
   ImageView reactive = {};  // R8, 0: trust history, 1: ignore it; only read where the plan says so
   Extent render = {};       // the viewport, within the images' extents; any size from 1x1
   Vec2 jitter = {};  // render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1]
