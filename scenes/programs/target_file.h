@@ -19,8 +19,7 @@ struct TargetFile {
   std::int64_t index = 0;
   bool reset = false;
   double fps = 60;
-  bool linear_depth =
-      true;  // Z holds the distance along the view axis; else the reversed device depth, untouched
+  bool linear_depth = true;  // Z is the distance along the view axis; else the reversed device depth as drawn
 };
 
 // One value a pixel of the viewport, as the file has them; empty for targets that were not drawn.

@@ -62,8 +62,7 @@ struct FrameReport {
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
   int pass_count = 0;
   std::array<PassReport, kMaxPasses> passes;
-  std::int64_t non_finite_pixels =
-      -1;  // output pixels that met NaN or Inf in their footprint; -1: not known yet
+  std::int64_t non_finite_pixels = -1;  // pixels that met NaN or Inf in their footprint; -1: not known yet
 
   bool ok() const { return status.ok(); }
 };

@@ -42,7 +42,7 @@ class MeasuredPicture {
 double psnr_linear(const MeasuredPicture& picture, const MeasuredPicture& truth);
 double psnr_tone_mapped(const MeasuredPicture& picture, const MeasuredPicture& truth);
 
-// Mean structural similarity of luma, 1 for equal pictures: Gaussian windows of 11x11, sigma 1.5, that lie
+// Mean structural similarity of luma, 1 for equal pictures. Its Gaussian windows of 11x11, sigma 1.5, lie
 // wholly inside.
 // Source: Wang, Bovik, Sheikh, Simoncelli, "Image Quality Assessment: From Error Visibility to Structural
 // Similarity", 2004.

@@ -37,10 +37,9 @@ struct PacingRun {
 };
 
 struct PacingSummary {
-  double achieved_fps = 0;  // frames shown a second, from the first to the last; 0 for a single frame
-  int dropped = 0;          // refreshes without a new frame
-  int dropped_at_start =
-      0;  // of these, those of the first second, in which a controller comes down from the top
+  double achieved_fps = 0;   // frames shown a second, from the first to the last; 0 for a single frame
+  int dropped = 0;           // refreshes without a new frame
+  int dropped_at_start = 0;  // of these, in the first second, while a controller comes down from the top
   double mean_busy_ms = 0;
   double median_busy_ms = 0;
   double p95_busy_ms = 0;
