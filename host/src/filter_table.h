@@ -2,10 +2,10 @@
 // Filter tables: which texels each output column and row reads through a separable filter, and with what
 // weights; made in double precision on the host.
 //
-// Pixels and samples lie where axis_table.h has them. A sample at the distance d from a pixel's centre, in
-// render pixels, has the weight
-//   filter(d / r) / the sum over all samples,   r = max(1, render / output).
-// So above scale 1 the filter widens, and what lies between output pixels is averaged, not skipped.
+// Pixel x has its centre at p = (x + .5) * render / output render pixels, the sample of texel i lies at i +
+// .5 + jitter (see axis_table.h). With r = max(1, render / output) a sample at the distance d weighs filter(d
+// / r), over the sum of all: above scale 1 the filter widens, so that what lies between output pixels is
+// averaged and not skipped.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +35,8 @@ int filter_taps(Filter filter, int render, int output);
 int filter_inner(int render, int output);
 
 // Fills spans[0, output) and weights[0, output * filter_taps()). Beyond the edges a filter sees the edge
-// texel, whose weight takes what falls there. A weight below 2^-25 is 0. `render` and `output` are at least 1,
-// |jitter| is at most 1. Pure, no allocation.
+// texel, whose weight takes what falls there. A weight below 2^-25 is 0. `render` and `output` >= 1, |jitter|
+// <= 1. Pure, no allocation.
 void fill_filter(Filter filter, int render, int output, double jitter, FilterSpan* spans, float* weights);
 
 // The tables of one filter and output extent on the device, for viewports up to `target`. Not thread-safe.
