@@ -22,7 +22,7 @@ class LevelTracker {
   double mean_level() const { return level_ * (1 + bias_); }
   double sigma() const { return sigma_; }  // relative
   double trend() const { return trend_; }  // smoothed relative residual: above 0 while the load grows
-  // The level that the last frame means if it was no outlier; 0 where it was none.
+  // Where the last frame was an outlier: the level if it was a step; else 0.
   double suspect() const { return suspect_; }
   // Second largest time above expectation among the last frames: what has to be expected again.
   double recurring_excess() const;

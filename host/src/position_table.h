@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Position tables: where the centre of each output column and row lies among the samples of a viewport, made
-// in double precision on the host. As axis tables, but positions may lie outside the viewport: what moves is
-// only clamped where it ends.
+// in double precision on the host. They are like axis tables, but positions may lie outside the viewport: a
+// position that a kernel moves is clamped only where it ends.
 #pragma once
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // PresentationBacklog: how far the device is behind the display, in ms.
 //
-// 0: it finished in time for the refresh before the one it has to meet, and now waits for a free buffer; the
-// queue is full. slack(): it finished just in time. Beyond it a refresh is missed, and the backlog starts
+// At 0 it finished in time for the refresh before the one it has to meet, and now waits for a free buffer; the
+// queue is full. At slack() it finished just in time. Beyond that a refresh is missed, and the backlog starts
 // again one refresh lower. Each frame adds its time and takes away one refresh interval. As the phase of the
 // display is not known, the backlog is taken for the worst until the queue is seen full, and again after a
 // missed refresh that was not expected.

@@ -13,8 +13,9 @@
 
 namespace quincunx {
 
-// A viewport and jitter that were used lately cost nothing, a new one is filled into the slot unused for
-// longest and written without blocking: no allocation after construction. Not thread-safe. Throws cl::Error.
+// A viewport and jitter that were used lately cost nothing. The table of a new one is filled into the slot that
+// has been unused for longest, and written without blocking. There is no allocation after construction. Not
+// thread-safe. Throws cl::Error.
 class TableRing {
  public:
   TableRing(const Device::Impl& device, std::size_t bytes);

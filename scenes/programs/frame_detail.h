@@ -7,9 +7,9 @@
 
 namespace quincunx::scenes {
 
-// Four levels. From each to the next, surfaces that span another .8 % of the picture's height are left out,
-// and the shadows of what moves are drawn in one frame less of as many: every frame, every second, third,
-// fourth. Called once a frame, in order; one thread.
+// There are four levels. At each, surfaces that span another .8 % of the picture's height are left out, and
+// the shadows of what moves are drawn less often: in every frame, every second, third or fourth one. Called
+// once a frame, in order; one thread.
 class FrameDetail {
  public:
   static Result<FrameDetail> create();

@@ -8,8 +8,8 @@
 
 namespace quincunx::scenes {
 
-// When a mesh is cut: while a part has more than `few` triangles and is longer than `metres` or has more than
-// `many`.
+// When a part of a mesh is cut further: if it has more than `many` triangles, or more than `few` and is longer
+// than `metres`.
 struct PartLimits {
   std::size_t few = 96;
   std::size_t many = 2048;

@@ -34,8 +34,8 @@ check("" "AxisTables.*" "Clear*"
   "*Resolve.Poison*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Resolve.ANon*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Velocity.ATight*" "*Velocity.Poison*")
-# Optimised, the first stops oclgrind at hints about memory that its compiler puts in where it inlines, and of the other it
-# computes the minimum of int8 wrongly.
+# These run without optimisation. Optimised, the first stops oclgrind at hints about memory that its compiler puts in
+# where it inlines, and of the other it computes the minimum of int8 wrongly.
 check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"

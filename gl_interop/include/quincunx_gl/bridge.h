@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Bridge: how a frame that GL drew reaches OpenCL, and how the picture that OpenCL made returns to GL.
 //
-// Two backends behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing), after
-// a probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads the viewport's
-// rectangle, and nothing else, into persistently mapped pixel buffers that OpenCL uses as host memory. A ring
-// of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
+// Two backends stand behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing),
+// after a probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads the
+// viewport's rectangle, and nothing else, into persistently mapped pixel buffers that OpenCL uses as host
+// memory. A ring of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
 //
-// A frame's life:   targets(s) -> draw -> submit(s, render)          GL thread
-//                   acquire(s) -> service.dispatch(...)              s is held, with s - 1, until the next
-//                   dispatch present() -> presented_pixels() / presented_texture()
+// The life of a frame in slot s:
+//   begin_draw(s), draw, submit(s, render)
+//   acquire(s), service.dispatch(...)    s is held, and so is the slot before it, until the next dispatch
+//   present(), then presented_pixels() or presented_texture()
 // All calls come from the thread where the GL context is current.
 #pragma once
 

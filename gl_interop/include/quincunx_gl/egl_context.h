@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// EglContext: an OpenGL 4.5 core context: one of its own without a window, or that of a window made
+// EglContext: an OpenGL 4.5 core context, either one of its own without a window or that of a window made
 // elsewhere.
 #pragma once
 
@@ -27,10 +27,10 @@ struct EglInfo {
   bool software = false;                // llvmpipe, softpipe, swrast
 };
 
-// Owns display connection and context, but for kCurrent: that context stays its maker's, who keeps it alive
-// and current longer than this object. Move-only; the context is current on the thread that made it, and
-// every GL call of this library happens on the thread where it is current. Destroying it after all GL objects
-// is the caller's duty. Debug output of the driver (errors, not chatter) goes to the log.
+// Owns display connection and context, except for kCurrent: that context stays its maker's, who keeps it
+// alive and current longer than this object. Move-only. The context is current on the thread that made it, and
+// every GL call of this library happens on the thread where it is current. The caller destroys it after all GL
+// objects. Debug output of the driver (errors, not chatter) goes to the log.
 class EglContext {
  public:
   // Errors: kUnsupported with what was tried and what each said; for kCurrent also where no EGL context is

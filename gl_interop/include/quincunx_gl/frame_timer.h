@@ -2,9 +2,9 @@
 // FrameTimer: how long OpenGL worked on each frame, for a resolution controller, without ever waiting for it.
 //
 // GL_TIME_ELAPSED queries are trusted only if they agree with fences on a known load when the timer is made;
-// software renderers count something else. The fall-back sees by a fence that a frame is done: its time runs
-// from begin(), or from when the frame before it was seen done, to the poll() that sees it, and so is an
-// upper bound that is as exact as polls are frequent. All calls on the thread where the GL context is
+// software renderers count something else. The fall-back sees by a fence that a frame is done. Its time runs
+// from begin(), or from when the frame before it was seen done, to the poll() that sees it. So it is an upper
+// bound that is as exact as polls are frequent. All calls come from the thread where the GL context is
 // current.
 #pragma once
 

@@ -21,8 +21,8 @@ struct TargetNeeds {
 // what was not asked for are GL_NONE.
 class RenderTargets {
  public:
-  explicit RenderTargets(
-      const TargetNeeds& needs);  // throws std::runtime_error when the framebuffer is incomplete
+  // Throws std::runtime_error when the framebuffer is incomplete.
+  explicit RenderTargets(const TargetNeeds& needs);
 
   Extent extent() const { return extent_; }
   GLuint framebuffer() const { return framebuffer_.get(); }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // CostTable: measured frame times by resolution, each with a confidence that decays as it ages.
 //
-// Recorded at test points (each resolution in turn, the scene held still) or while a program runs, kept as
-// JSON text. A controller takes its first guess of what does not scale from it. A value without clock or
-// device; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 3:
-// weight past times with a confidence value by how long it is since that resolution was chosen, and use the
-// inverse to extrapolate from those chosen recently.
+// It is recorded at test points (each resolution in turn, the scene held still) or while a program runs, and
+// kept as JSON text. A controller takes from it its first guess of what does not scale with the pixels. It is
+// a value without clock or device; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best
+// Practice", section 3: weight past times with a confidence value by how long it is since that resolution was
+// chosen, and use the inverse to extrapolate from those chosen recently.
 #pragma once
 
 #include <cstdint>
@@ -32,19 +32,19 @@ class CostTable {
   // In [0, 1]: 1 right after a resolution was recorded, 0 where it never was.
   double confidence(double area_fraction) const;
 
-  // Expected time in ms: what was recorded, as far as its confidence goes, and for the rest what the other
-  // entries, by their own confidence, extrapolate to if fixed_part of the cost does not scale. Nothing while
-  // the table is empty or for an area fraction outside (0, 4].
+  // The expected time in ms. As far as the confidence of what was recorded there goes, it is that; the rest is
+  // what the other entries, by their own confidence, extrapolate to if fixed_part of the cost does not scale.
+  // Nothing while the table is empty or for an area fraction outside (0, 4].
   std::optional<double> predict(double area_fraction, double fixed_part = 0.25) const;
 
-  // The part of the cost at the output resolution that does not scale: of the straight line through the
-  // entries, within [0, 0.9]. Nothing while they do not span a quarter of the output's area.
+  // The part of the cost at the output resolution that does not scale, within [0, 0.9]: that of the straight
+  // line through the entries. Nothing while they do not span a quarter of the output's area.
   std::optional<double> fixed_part() const;
 
   bool empty() const { return entries_.empty(); }
 
-  // JSON text and back. Ages are kept: an old table is trusted less. Errors of from_json(): kInvalidArgument,
-  // saying what is wrong, for text that to_json() would not write.
+  // JSON text and back. Ages are kept, so an old table is trusted less. Errors of from_json():
+  // kInvalidArgument for text that to_json() would not write; the message says what is wrong.
   std::string to_json() const;
   static Result<CostTable> from_json(const std::string& text);
 

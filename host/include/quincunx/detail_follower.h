@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // DetailFollower: detail settings that go along with the resolution that a controller chooses.
 //
-// Level of detail, blur samples, shading rate and the like change in a few levels; each change is seen and
-// may cost time, so a level is left only when the resolution has clearly moved on, and rests. dual_output()
-// does the same for the output resolution. Pure values; not thread safe. Source: "Dynamic Resolution Scaling
-// Implementation Best Practice", section 10 (scale settings as well as resolution; "dual" resolution
-// scaling).
+// Level of detail, blur samples, shading rate and the like change in a few levels. Each change is seen and may
+// cost time, so a level is left only when the resolution has clearly moved on, and the follower then rests.
+// dual_output() does the same for the output resolution. Pure values; not thread safe. Source: "Dynamic
+// Resolution Scaling Implementation Best Practice", section 10 (scale settings as well as resolution; "dual"
+// resolution scaling).
 #pragma once
 
 #include "quincunx/extent.h"
@@ -27,8 +27,8 @@ class DetailFollower {
   // Errors: kInvalidArgument for a field outside its range.
   static Result<DetailFollower> create(const DetailSettings& settings = {});
 
-  // Called once per frame with the area fraction it is drawn at; at most one level further per call. One that
-  // is not a positive finite number changes nothing. Returns level().
+  // Called once per frame with the area fraction it is drawn at. Goes at most one level further per call, and
+  // nowhere for a fraction that is not a positive finite number. Returns level().
   int observe(double area_fraction);
   int level() const { return level_; }
   // The level as a share: 1 full detail, 0 the least. Multiply sample counts or distances by a range of it.
@@ -44,10 +44,10 @@ class DetailFollower {
 };
 
 // The output extent that goes with a render extent: the smallest rung of `outputs` whose area the render
-// extent fills to at most `most_filled` (in (0, 1]); the highest rung where all are filled more. With 0.64,
+// extent fills to at most `most_filled` (in (0, 1]); where all are filled more, the highest rung. With 0.64,
 // passes after upscaling run at the lowest output until the render extent reaches .8 of it on each axis, and
-// at more from there on. Errors: kInvalidArgument for an empty render extent or a most_filled outside its
-// range.
+// at larger ones from there on. Errors: kInvalidArgument for an empty render extent or a most_filled outside
+// its range.
 Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double most_filled = 0.64);
 
 }  // namespace quincunx

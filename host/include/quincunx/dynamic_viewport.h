@@ -20,11 +20,12 @@ class DynamicViewport {
   static Result<DynamicViewport> create(Extent output, float max_scale = 1.0f, int step = 2,
                                         Extent floor = {8, 8});
 
-  // The viewport nearest to output * scale on each axis. Errors: kInvalidArgument for a scale that is not a
-  // positive finite number; the viewport then stays as it was. Values beyond the range are clamped.
+  // Takes the viewport nearest to output * scale on each axis. Values beyond the range are clamped. Errors:
+  // kInvalidArgument for a scale that is not a positive finite number; the viewport then stays as it was.
   Status set_scale(float scale_x, float scale_y);
 
-  // Any integer viewport from 1x1 to the target extent, off the ladder if wanted. Errors: kInvalidArgument.
+  // Takes any integer viewport from 1x1 to the target extent; it need not be on the ladder. Errors:
+  // kInvalidArgument.
   Status set_render(Extent render);
 
   Extent render() const { return render_; }

@@ -2,12 +2,15 @@
 // The default resolution controller: it predicts the next frame's time and spends what the display's queue
 // allows.
 //
-// What it knows of the world is a level (the time a frame would take at the output resolution), how much of
-// that does not scale, and the backlog: how far the device is behind the display, from 0 (it waits for a free
-// buffer) to the slack that the buffers give (beyond it a refresh is missed). It aims just below the target
-// while the backlog is small, below it in proportion to the backlog, and never so high that one more frame
-// like the worst one seen would use up the slack. Single slow frames are ridden out while there is slack; two
-// in a row are a step and answered at once. docs/control.md has the whole algorithm and its measured table.
+// What it knows of the world is
+//   a level: the time that a frame would take at the output resolution;
+//   how much of that does not scale with the pixels;
+//   the backlog: how far the device is behind the display, from 0 (it waits for a free buffer) to the slack
+//   that the buffers give (beyond it a refresh is missed).
+// It aims just below the target while the backlog is small, lower in proportion to the backlog, and never so
+// high that one more frame like the worst one seen would use up the slack. Single slow frames are ridden out
+// while there is slack; two in a row are a step and answered at once. docs/control.md has the whole algorithm
+// and its measured table.
 //
 // What it makes use of, if told: interval_ms or queued (else the backlog is only computed), next_frame
 // (timers that come back late), missed_vsyncs (surprises make it careful until the queue is seen full again),
@@ -25,7 +28,7 @@ namespace quincunx {
 
 enum class CpuBound : std::uint8_t {
   kHold,    // while the processor needs longer than target and device, the resolution never rises
-  kFollow,  // then the median of its last five times, at most twice the target, is the target
+  kFollow,  // instead, the median of its last five times, at most twice the target, becomes the target
 };
 
 // Motion blur hides detail: the longer its streaks, the lower the resolution may be. Off unless asked for.

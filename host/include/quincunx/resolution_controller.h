@@ -46,17 +46,17 @@ class ResolutionController {
   virtual const char* name() const = 0;  // "predictive"
 
   // Learns from one frame and chooses next(). Errors: kInvalidArgument for a frame number that is not above
-  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kLongestMs],
+  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kLongestMs], or
   // another field that is negative (queued: below -1), too long or not finite. After an error nothing has
-  // changed, so that a caller may ignore it.
+  // changed, so a caller may ignore it.
   Status observe(const FrameTiming& timing);
 
   // The extent to draw the next frame at: a rung of the ladder. Before the first observe() the highest one.
   Extent next() const { return ladder_[rung_]; }
   int rung() const { return rung_; }
 
-  // The time a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
-  // kInvalidArgument for one outside (0, kLongestMs]; the old one then stays.
+  // The time that a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
+  // kInvalidArgument for one outside (0, kLongestMs]; the old target then stays.
   Status set_target_ms(double target_ms);
   double target_ms() const { return target_ms_; }
 
@@ -70,7 +70,7 @@ class ResolutionController {
 
   static Status check_target(double target_ms);
 
-  // Called with a valid timing: returns the next rung, or one outside the ladder, which is clamped.
+  // Called with a valid timing. Returns the next rung; one outside the ladder is clamped.
   virtual int choose(const FrameTiming& timing) = 0;
 
  private:

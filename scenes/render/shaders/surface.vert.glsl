@@ -1,4 +1,5 @@
-// surface.vert: meshes, instanced. Options (defined or not): VELOCITY, TEXTURED, VERTEX_COLOUR, UNLIT, SHADOWS (never with UNLIT).
+// surface.vert: meshes, instanced. Options (defined or not): VELOCITY, TEXTURED, VERTEX_COLOUR, UNLIT, SHADOWS (never
+// with UNLIT).
 #include "frame.glsl"
 
 layout(location = 0) in vec3 position;
