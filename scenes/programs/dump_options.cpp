@@ -57,7 +57,7 @@ void add_stage_options(CLI::App& app, DumpOptions& options) {
          "--warm-up", options.warm_up,
          fmt::format("Frames resolved before the one that is shown, for its history (default: 1; {} of "
                      "methods that accumulate)",
-                     kAccumulatedFrames))
+                     kWarmUpFrames))
       ->check(CLI::NonNegativeNumber);
   auto* sequence =
       app.add_option("--sequence", options.sequence,
@@ -93,7 +93,7 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
     return app.exit(error) == 0 ? tools::kDone : tools::kUsage;
   }
   if (app.count("--warm-up") == 0 && options.resolve.method == Method::kTemporal)
-    options.warm_up = kAccumulatedFrames;
+    options.warm_up = kWarmUpFrames;
   return std::nullopt;
 }
 
