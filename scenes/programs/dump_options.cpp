@@ -56,7 +56,7 @@ void add_stage_options(tools::CommandLine& app, DumpOptions& options) {
          "--warm-up", options.warm_up,
          fmt::format("Frames resolved before the one that is shown, for its history (default: 1; {} of "
                      "methods that accumulate)",
-                     kAccumulatedFrames))
+                     kWarmUpFrames))
       .non_negative();
   const auto sequence =
       app.add_option("--sequence", options.sequence,
@@ -86,7 +86,7 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
   };
   if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
   if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal)
-    options.warm_up = kAccumulatedFrames;
+    options.warm_up = kWarmUpFrames;
   return std::nullopt;
 }
 

@@ -57,9 +57,9 @@ float lod_bias_for(Method method, Jitter jitter);
 
 Jitter jitter_for(const PictureOptions& options);
 
-// Frames before one that is looked at, for the history of a method that accumulates: after these, what moves
-// gains nothing any more, and what stands still little.
-inline constexpr int kAccumulatedFrames = 24;
+// Frames that are drawn before the first one that is looked at, to fill the history of a method that accumulates:
+// after these what moves gains nothing any more, and what stands still little.
+inline constexpr int kWarmUpFrames = 24;
 
 // The frames that the options describe. Errors: kInvalidArgument, naming the option.
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options);

@@ -73,7 +73,7 @@ class Present : public ::testing::TestWithParam<Variant> {
       Pixel stored = pixels[i];
       for (double& value : stored)
         value = testing::stored_value(GetParam().resolved, value);
-      const Pixel expected = reference::present_codes(stored, curve(), factor);
+      const Pixel expected = reference::present(stored, curve(), factor);
       const int x = static_cast<int>(i) % extent.width;
       const int y = static_cast<int>(i) / extent.width;
       for (std::size_t c = 0; c < 4; ++c) {
@@ -172,7 +172,7 @@ TEST_P(Present, DitherKeepsTheMeanAndShowsNoTile) {
   Pixel stored = grey;
   for (double& value : stored)
     value = testing::stored_value(GetParam().resolved, value);
-  const double expected = reference::present_codes(stored, reference::Curve::kClamp, 1)[0];
+  const double expected = reference::present(stored, reference::Curve::kClamp, 1)[0];
   double sum = 0;
   for (std::size_t i = 0; i < codes.size(); i += 4)
     sum += codes[i];

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "../reference/reproject.h"
+#include "expected.h"
 #include "kernel_fixture.h"
 #include "pass_rig.h"
 #include "sample_reach.h"
@@ -25,15 +26,11 @@ using testing::TestFrame;
 constexpr double kRounding = 0x1p-24;
 constexpr double kDenormal = 0x1p-126;
 
-// A texel coordinate in the previous frame: the steps, the start and the move are rounded, then two products
-// and two sums, each by 2^-24 of the largest among them.
-constexpr double kPlaceError = 8 * kRounding;
-
-// A fraction is rounded to 2^-25; moved, the sum rounds by 2^-24 of fraction + move. Of (1 - d^2/r^2)^3 the
+// A fraction is rounded to 2^-25; moved, the sum rounds by 2^-24 of fraction + motion. Of (1 - d^2/r^2)^3 the
 // slope is below 2 for r >= .875; its square, product, difference and cube add 11 roundings, the mixing with
 // bilinear's 3 more, all of values below 1. A sample's weight is the product of two such.
-double weight_error(double move) {
-  const double position = .5 * kRounding + (1 + std::abs(move)) * kRounding;
+double weight_error(double motion) {
+  const double position = .5 * kRounding + (1 + std::abs(motion)) * kRounding;
   return 2 * (2 * position + 14 * kRounding);
 }
 
@@ -89,7 +86,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   struct Run {
     std::vector<unsigned char> bytes;
     std::vector<Pixel> pixels;
-    std::vector<reference::Move> moves;
+    std::vector<reference::Reprojection> reprojections;
     std::int64_t non_finite = 0;
   };
 
@@ -102,11 +99,11 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
               report, nullptr);
     Run run{rig.bytes(view, output), {}, {}, rig.count(counter)};
     run.pixels = testing::decode(settings_.resolved, run.bytes);
-    if (const ImageView moves = chain.newest(Resource::kReprojection)) {
-      for (const Pixel& move : rig.pixels(moves, current.inputs.render))
-        run.moves.push_back({move[0], move[1], move[2]});
+    if (const ImageView found = chain.newest(Resource::kReprojection)) {
+      for (const Pixel& pixel : rig.pixels(found, current.inputs.render))
+        run.reprojections.push_back({pixel[0], pixel[1], pixel[2]});
     } else {
-      run.moves.assign(current.reference.colour.size(), {0, 0, 1});
+      run.reprojections.assign(current.reference.colour.size(), {0, 0, 1});
     }
     return run;
   }
@@ -122,30 +119,28 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     return made;
   }
 
-  void compare_moves(const Run& run, const TestFrame& current, const TestFrame& previous,
-                     const std::string& what) {
+  void compare_reprojections(const Run& run, const TestFrame& current, const TestFrame& previous,
+                             const std::string& what) {
     const Variant& v = GetParam();
     if (!v.moves) return;
-    const auto expected = reference::reproject(
+    const auto expected = testing::expected_reprojections(
         current.reference, previous.reference,
         {.reactive = v.reactive, .residual_weight = static_cast<double>(settings_.quincunx.residual_weight)});
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const reference::Move& e = expected[i];
-      const reference::Move& a = run.moves[i];
-      ASSERT_NEAR(e.x, a.x, 4 * kRounding * std::abs(e.x) + kDenormal) << what << ", sample " << i;
-      ASSERT_NEAR(e.y, a.y, 4 * kRounding * std::abs(e.y) + kDenormal) << what << ", sample " << i;
+      const auto& [value, bound, undecided] = expected[i];
+      const reference::Reprojection& actual = run.reprojections[i];
+      ASSERT_NEAR(value.x, actual.x, bound.x.error) << what << ", sample " << i;
+      ASSERT_NEAR(value.y, actual.y, bound.y.error) << what << ", sample " << i;
       ++compared_;
-      if (e.undecided) continue;
+      if (undecided) continue;
       ++decided_;
-      ASSERT_EQ(std::isnan(e.trust), std::isnan(a.trust)) << what << ", sample " << i;
-      // Two edges, each moved by an error of the place; six operations; the residual's slope is below 1.
-      const double allowed = 2 * kPlaceError * e.reach + 6 * kRounding + 6 * kRounding * e.speed;
-      if (std::isnan(e.trust)) continue;
-      ASSERT_NEAR(e.trust, a.trust, allowed) << what << ", sample " << i;
+      ASSERT_EQ(std::isnan(value.trust), std::isnan(actual.trust)) << what << ", sample " << i;
+      if (std::isnan(value.trust)) continue;
+      ASSERT_NEAR(value.trust, actual.trust, bound.trust.error) << what << ", sample " << i;
     }
   }
 
-  // The picture from the device's own moves, so that no rounding before it matters.
+  // The picture from the device's own reprojections, so that no rounding before it matters.
   void compare(const FrameSpec& now, const FrameSpec& before, Extent output) {
     Rig rig;
     const TestFrame current = frame(rig, now);
@@ -154,13 +149,13 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     const std::string what =
         fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
                     before.render.height, output.width, output.height, testing::name_of(now.colour));
-    compare_moves(run, current, previous, what);
+    compare_reprojections(run, current, previous, what);
     if (HasFatalFailure()) return;
     const auto expected =
-        reference::resolve_reprojected(current.reference, previous.reference, run.moves,
+        reference::resolve_reprojected(current.reference, previous.reference, run.reprojections,
                                        !GetParam().moves && GetParam().reactive, output.width, output.height);
     const auto bound = [&](std::size_t i) {
-      return weight_error(expected.move[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
+      return weight_error(expected.motion[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
              16 * kDenormal + testing::output_rounding(settings_.resolved, expected.largest[i]);
     };
     testing::expect_close(expected, run.pixels, bound, what, settings_.resolved);

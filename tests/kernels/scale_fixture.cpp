@@ -11,19 +11,6 @@ namespace {
 
 constexpr double kLargestHalf = 65504;
 
-reference::Filter filter_for(Method method) {
-  switch (method) {
-    case Method::kBSpline:
-      return reference::Filter::kBSpline;
-    case Method::kCatmullRom:
-      return reference::Filter::kCatmullRom;
-    case Method::kLanczos2:
-      return reference::Filter::kLanczos2;
-    default:
-      return reference::Filter::kTent;
-  }
-}
-
 bool larger(Extent render, Extent output) {
   return render.width > output.width || render.height > output.height;
 }
@@ -43,7 +30,7 @@ bool takes_one_sample(Method method) {
 }
 
 bool rings(Method method) {
-  return method == Method::kCatmullRom || method == Method::kLanczos2;
+  return !takes_one_sample(method) && reference::filter_named(quincunx::name_of(method)).rings;
 }
 
 ScaleRig::ScaleRig(const ScaleVariant& variant)
@@ -97,18 +84,18 @@ reference::Sampler ScaleRig::sampler(const TestFrame& frame, Extent output) cons
   const double amplitude = static_cast<double>(settings_.grain) * std::max(0.0, 1 - scale);
   switch (variant_.method) {
     case Method::kPoint:
-      return reference::point_sampler(source, output.width, output.height);
+      return reference::scale_point(source, output.width, output.height);
     case Method::kNoise:
-      return reference::grain_sampler(source, amplitude, seed, output.width, output.height);
+      return reference::scale_noise(source, amplitude, seed, output.width, output.height);
     case Method::kNoiseOffset:
-      return reference::offset_sampler(source, seed, output.width, output.height);
+      return reference::scale_noise_offset(source, seed, output.width, output.height);
     case Method::kBilinear:
-      if (!larger(render, output)) return reference::bilinear_sampler(source, output.width, output.height);
+      if (!larger(render, output)) return reference::scale_bilinear(source, output.width, output.height);
       [[fallthrough]];
     default:
-      return reference::filter_sampler(source, filter_for(variant_.method),
-                                       settings_.clamp_ringing && rings(variant_.method), output.width,
-                                       output.height);
+      return reference::scale_filter(source, reference::filter_named(quincunx::name_of(variant_.method)),
+                                     settings_.clamp_ringing && rings(variant_.method), output.width,
+                                     output.height);
   }
 }
 

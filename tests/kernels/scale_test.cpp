@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Every single-frame filter, in every variant: against its reference, and what holds for all of them.
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "scale_fixture.h"
 
@@ -157,6 +160,38 @@ TEST_P(Scale, JitterIsTakenBack) {
         }
       }
     }
+  }
+}
+
+// What a filter is known for: its values at whole distances, a sum of 1 at every place but for Lanczos' ripple,
+// nothing beyond its support, and no step where its pieces meet.
+TEST(ReferenceFilters, AreWhatTheirSourcesSay) {
+  const std::map<std::string, std::array<double, 3>> at_whole_distances = {
+      {"bilinear", {1, 0, 0}},    {"b-spline", {2. / 3, 1. / 6, 0}},
+      {"catmull-rom", {1, 0, 0}}, {"mitchell", {8. / 9, 1. / 18, 0}},
+      {"lanczos2", {1, 0, 0}},    {"lanczos3", {1, 0, 0}}};
+  for (const reference::Filter& filter : reference::all_filters()) {
+    const auto& expected = at_whole_distances.at(filter.name);
+    for (std::size_t d = 0; d < 3; ++d)
+      EXPECT_NEAR(filter.value(static_cast<double>(d)), expected[d], 1e-15) << filter.name << " at " << d;
+    EXPECT_EQ(filter.value(filter.support), 0) << filter.name;
+    EXPECT_EQ(filter.value(filter.support + .5), 0) << filter.name;
+    // A windowed sinc does not quite sum to 1: of two lobes by .019, of three by .0058.
+    const std::string name = filter.name;
+    const double ripple = name == "lanczos2" ? .019 : name == "lanczos3" ? .0058 : 1e-14;
+    double least = 0;
+    for (double d = 0; d < filter.support; d += 0x1p-10) {
+      const double value = filter.value(d);
+      least = std::min(least, value);
+      EXPECT_NEAR(value, filter.value(d + 1e-9), 1e-8) << filter.name << " at " << d;
+      double sum = 0;
+      for (int i = -4; i <= 4; ++i)
+        sum += filter.value(std::abs(d - i));
+      if (d < 1) {
+        EXPECT_NEAR(sum, 1, ripple) << filter.name << " at " << d;
+      }
+    }
+    EXPECT_EQ(least < -1e-12, filter.rings) << filter.name;
   }
 }
 

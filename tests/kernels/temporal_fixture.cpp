@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "pass_rig.h"
@@ -18,46 +19,48 @@ std::string name_of(const StageVariant& v) {
 }
 
 TemporalTile to_kernel(const reference::Tile& tile) {
-  const auto number = [](const reference::Bounded& value) { return static_cast<float>(value.value); };
-  return {.offset_x = number(tile.offset[0]),
-          .offset_y = number(tile.offset[1]),
-          .source_x = number(tile.source[0]),
-          .source_y = number(tile.source[1]),
-          .step_x = tile.step[0],
-          .step_y = tile.step[1],
-          .rigid = tile.rigid ? 1 : 0,
-          .plain = tile.plain ? 1 : 0,
-          .torn = tile.torn ? 1 : 0,
-          .brightening = number(tile.brightening),
-          .light = number(tile.light),
-          .history_error = number(tile.history_error),
-          .neighbour_error = number(tile.neighbour_error),
-          .count = static_cast<float>(tile.samples),
-          .brighter = static_cast<float>(tile.brighter),
-          .persistence = number(tile.persistence),
-          .flicker = number(tile.flicker),
-          .doubt = number(tile.doubt),
-          .gain = number(tile.gain)};
+  const auto number = [](double value) { return static_cast<float>(value); };
+  const auto& [reprojection, evidence, light] = tile;
+  return {.offset_x = number(reprojection.phase[0]),
+          .offset_y = number(reprojection.phase[1]),
+          .source_x = number(reprojection.source_phase[0]),
+          .source_y = number(reprojection.source_phase[1]),
+          .step_x = reprojection.step[0],
+          .step_y = reprojection.step[1],
+          .rigid = reprojection.is_rigid ? 1 : 0,
+          .plain = reprojection.is_copyable ? 1 : 0,
+          .torn = reprojection.has_motion_edge ? 1 : 0,
+          .brightening = number(evidence.brightening),
+          .light = number(evidence.light),
+          .history_error = number(evidence.history_error),
+          .neighbour_error = number(evidence.neighbour_error),
+          .count = static_cast<float>(evidence.count),
+          .brighter = static_cast<float>(evidence.brighter),
+          .persistence = number(light.persistence),
+          .flicker = number(light.flicker),
+          .doubt = number(light.rejection),
+          .gain = number(light.gain)};
 }
 
 reference::Tile to_reference(const TemporalTile& tile) {
   const auto number = [](float value) { return static_cast<double>(value); };
-  return {.offset = {number(tile.offset_x), number(tile.offset_y)},
-          .source = {number(tile.source_x), number(tile.source_y)},
-          .step = {tile.step_x, tile.step_y},
-          .rigid = tile.rigid != 0,
-          .plain = tile.plain != 0,
-          .torn = tile.torn != 0,
-          .brightening = number(tile.brightening),
-          .light = number(tile.light),
-          .history_error = number(tile.history_error),
-          .neighbour_error = number(tile.neighbour_error),
-          .persistence = number(tile.persistence),
-          .flicker = number(tile.flicker),
-          .doubt = number(tile.doubt),
-          .gain = number(tile.gain),
-          .samples = static_cast<int>(tile.count),
-          .brighter = static_cast<int>(tile.brighter)};
+  return {.reprojection = {.phase = {number(tile.offset_x), number(tile.offset_y)},
+                           .source_phase = {number(tile.source_x), number(tile.source_y)},
+                           .step = {tile.step_x, tile.step_y},
+                           .is_rigid = tile.rigid != 0,
+                           .is_copyable = tile.plain != 0,
+                           .has_motion_edge = tile.torn != 0},
+          .evidence = {.brightening = number(tile.brightening),
+                       .light = number(tile.light),
+                       .history_error = number(tile.history_error),
+                       .neighbour_error = number(tile.neighbour_error),
+                       .count = static_cast<int>(tile.count),
+                       .brighter = static_cast<int>(tile.brighter)},
+          .light = {.gain = number(tile.gain),
+                    .rejection = number(tile.doubt),
+                    .persistence = number(tile.persistence),
+                    .flicker = number(tile.flicker),
+                    .mean_brightening = number(tile.brightening / std::max(tile.count, 1.f))}};
 }
 
 PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {
@@ -127,8 +130,8 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   params.spacing_y = to_float(r.spacing(1));
   params.start_x = to_float((.5 + r.frame.jitter_x) * r.spacing(0));
   params.start_y = to_float((.5 + r.frame.jitter_y) * r.spacing(1));
-  params.move_x = to_float(r.move_scale(0));
-  params.move_y = to_float(r.move_scale(1));
+  params.move_x = to_float(r.reprojection_scale(0));
+  params.move_y = to_float(r.reprojection_scale(1));
   params.judged_apart = r.judged_apart;
   const cl::Buffer before = tiles_to_device(r.before);
   const cl::Buffer now = to_device(std::vector<TemporalTile>(r.before.size()));
@@ -187,8 +190,8 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.columns = tables.columns();
   params.counter = counter.index;
   params.columns_per_item = columns_per_item(impl(), output.width, kReprojectedBlock);
-  params.move_x = to_float(r.move_scale(0));
-  params.move_y = to_float(r.move_scale(1));
+  params.move_x = to_float(r.reprojection_scale(0));
+  params.move_y = to_float(r.reprojection_scale(1));
   params.spacing_x = to_float(r.spacing(0));
   params.spacing_y = to_float(r.spacing(1));
   params.tiles_x = r.tiles_x();

@@ -32,20 +32,20 @@ constexpr double kZoneMoves[][2] = {{0, 0},     {0, 0},       {-.37, 0},   {3, -
                                     {.25, 1.8}, {-9.3, 14.6}, {2.6, -700}, {.3, .45}};
 
 // Zones of 40 x 24 output pixels: three of four move as one.
-std::vector<reference::Move> make_moves(const reference::TemporalInputs& in, unsigned seed) {
+std::vector<reference::Reprojection> make_moves(const reference::TemporalInputs& in, unsigned seed) {
   const Zones zones(seed);
   std::mt19937 random(seed + 1);
   std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<reference::Move> moves;
+  std::vector<reference::Reprojection> moves;
   for (int y = 0; y < in.frame.height; ++y) {
     for (int x = 0; x < in.frame.width; ++x) {
       std::mt19937 zone =
           zones.of(static_cast<int>(x * in.spacing(0) / 40), static_cast<int>(y * in.spacing(1) / 24));
       const bool rigid = zone() % 4 != 0;
       const auto& motion = kZoneMoves[zone() % std::size(kZoneMoves)];
-      reference::Move move{.x = motion[0], .y = motion[1], .trust = 1};
+      reference::Reprojection move{.x = motion[0], .y = motion[1], .trust = 1};
       if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.trust = .75;
-      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.contrast = as_float(uniform(random) - .5);
+      if (rigid && zone() % 3 == 0 && random() % 30 == 0) move.motion_edge = as_float(uniform(random) - .5);
       if (!rigid) {
         const double spread = zone() % 2 == 0 ? 1 : .02;  // little enough to show one surface
         move = {.x = spread * (12 * uniform(random) - 6),
@@ -53,11 +53,11 @@ std::vector<reference::Move> make_moves(const reference::TemporalInputs& in, uns
                 .trust = uniform(random)};
         if (random() % 2 == 0) move.trust = 1;
         if (random() % 20 == 0) move.trust = 0;
-        if (random() % 2 == 0) move.contrast = as_float(3 * uniform(random) - 1.5);
+        if (random() % 2 == 0) move.motion_edge = as_float(3 * uniform(random) - 1.5);
         if (random() % 50 == 0) move = {.trust = kNan};
       }
-      move.x = as_float(move.x / in.move_scale(0));
-      move.y = as_float(move.y / in.move_scale(1));
+      move.x = as_float(move.x / in.reprojection_scale(0));
+      move.y = as_float(move.y / in.reprojection_scale(1));
       move.trust = as_float(move.trust);
       moves.push_back(move);
     }
@@ -74,8 +74,9 @@ std::vector<reference::Tile> make_tiles_before(const reference::TemporalInputs& 
       std::mt19937 zone = zones.of(x / 4, y / 3);
       std::uniform_real_distribution<double> uniform(-.5, .5);
       reference::Tile tile;
-      if (moves && zone() % 2 == 0) tile.offset = {as_float(uniform(zone)), as_float(uniform(zone))};
-      tile.persistence = as_float(uniform(zone));
+      if (moves && zone() % 2 == 0)
+        tile.reprojection.phase = {as_float(uniform(zone)), as_float(uniform(zone))};
+      tile.light.persistence = as_float(uniform(zone));
       tiles.push_back(tile);
     }
   }
@@ -133,10 +134,10 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
     out.reactive_before = previous.reference.reactive;
   }
   if (!variant_.moves) return in;
-  out.moves = make_moves(out, spec.seed + 3000);
+  out.reprojections = make_moves(out, spec.seed + 3000);
   std::vector<Pixel> moves;
-  for (const reference::Move& move : out.moves)
-    moves.push_back({move.x, move.y, move.trust, move.contrast});
+  for (const reference::Reprojection& move : out.reprojections)
+    moves.push_back({move.x, move.y, move.trust, move.motion_edge});
   in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
   return in;
 }
@@ -149,8 +150,8 @@ std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsign
     reference::Tile exact = to_reference(to_kernel(tile));
     const int i = static_cast<int>(made.size());
     std::mt19937 zone = zones.of(i % in.reference.tiles_x() / 5, i / in.reference.tiles_x() / 4);
-    if (zone() % 3 == 0) exact.doubt = as_float(uniform(zone));
-    if (zone() % 3 == 0) exact.gain = as_float(.25 + 2 * uniform(zone));
+    if (zone() % 3 == 0) exact.light.rejection = as_float(uniform(zone));
+    if (zone() % 3 == 0) exact.light.gain = as_float(.25 + 2 * uniform(zone));
     made.push_back(exact);
   }
   return made;

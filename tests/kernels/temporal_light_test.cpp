@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // temporal_light against its reference, on tiles of any findings.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "expected.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
 namespace {
 
-using reference::Bounded;
 using reference::Tile;
 
 struct Findings {
@@ -60,7 +62,7 @@ class Finder {
     total.brightening += static_cast<int>(tile.brightening * 40);
     total.change += static_cast<int>(std::abs(tile.brightening) * 40);
     total.light += static_cast<int>(tile.light * 40);
-    // A cut would hide what single tiles doubt.
+    // A cut would hide why single tiles are rejected.
     total.history_error += static_cast<int>(tile.history_error * (round % 4 == 1 ? 40 : 4));
     total.neighbour_error += static_cast<int>(tile.neighbour_error * 40);
   }
@@ -69,58 +71,69 @@ class Finder {
   std::uniform_real_distribution<double> uniform_{0, 1};
 };
 
-std::vector<Tile> completed(const Findings& found) {
+reference::LightInputs inputs_of(const Findings& found) {
   const auto number = [](int value) { return static_cast<double>(value); };
   const TotalLight& total = found.total;
-  std::vector<Tile> tiles = found.tiles;
-  reference::temporal_light(found.count.width, found.count.height, found.before,
-                            {number(total.brightening), number(total.change), number(total.light),
-                             number(total.history_error), number(total.neighbour_error)},
-                            tiles);
-  return tiles;
+  return {found.count.width,
+          found.count.height,
+          found.before,
+          found.tiles,
+          {number(total.brightening), number(total.change), number(total.light), number(total.history_error),
+           number(total.neighbour_error)}};
+}
+
+std::vector<reference::TileLight> lights_of(const Findings& found) {
+  const reference::LightInputs in = inputs_of(found);
+  std::vector<reference::TileLight> lights;
+  for (int y = 0; y < in.tiles_y; ++y) {
+    for (int x = 0; x < in.tiles_x; ++x)
+      lights.push_back(reference::temporal_light<double>(in, x, y));
+  }
+  return lights;
 }
 
 // The same, had there been another flicker.
-std::vector<Tile> with_flicker(Findings found, double flicker) {
+std::vector<reference::TileLight> with_flicker(Findings found, double flicker) {
   for (Tile& tile : found.before)
-    tile.flicker = flicker;
-  return completed(found);
+    tile.light.flicker = flicker;
+  return lights_of(found);
 }
 
-std::vector<Tile> without_edges(Findings found) {
+std::vector<reference::TileLight> without_edges(Findings found) {
   for (Tile& tile : found.tiles)
-    tile.torn = false;
-  return completed(found);
+    tile.reprojection.has_motion_edge = false;
+  return lights_of(found);
 }
 
 // How many tiles meet what: each finding is taken away to see what it changes.
 struct Met {
-  int tiles = 0, decided = 0, relit = 0, doubted = 0;
-  int gain_held_back = 0, gain_of_the_whole = 0;  // by an edge of motion
-  int reversed = 0, changed = 0, hidden_by_flicker = 0;
+  int tiles = 0, decided = 0, relit = 0, rejected = 0;
+  int gain_held_back = 0, gain_of_the_whole = 0;  // by a motion edge
+  int alternating = 0, changed = 0, hidden_by_flicker = 0;
 
-  void add(const Findings& found, const std::vector<Tile>& expected) {
-    const std::vector<Tile> joined = without_edges(found), calm = with_flicker(found, 0),
-                            wild = with_flicker(found, 1e6);
+  template <typename Expected>
+  void add(const Findings& found, const std::vector<Expected>& expected) {
+    const std::vector<reference::TileLight> joined = without_edges(found), calm = with_flicker(found, 0),
+                                            wild = with_flicker(found, 1e6);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const double gain = expected[i].gain.value, doubt = expected[i].doubt.value;
+      const double gain = expected[i].value.gain, rejection = expected[i].value.rejection;
       ++tiles;
-      if (expected[i].unsure) continue;
+      if (expected[i].undecided) continue;
       ++decided;
       relit += gain != 1 ? 1 : 0;
-      doubted += doubt > 0 ? 1 : 0;
-      gain_held_back += gain == 1 && joined[i].gain.value != 1 ? 1 : 0;
-      gain_of_the_whole += gain != 1 && joined[i].gain.value != gain ? 1 : 0;
-      reversed += calm[i].flicker.value > 0 ? 1 : 0;
-      changed += doubt > wild[i].doubt.value ? 1 : 0;
-      hidden_by_flicker += doubt < calm[i].doubt.value ? 1 : 0;
+      rejected += rejection > 0 ? 1 : 0;
+      gain_held_back += gain == 1 && joined[i].gain != 1 ? 1 : 0;
+      gain_of_the_whole += gain != 1 && joined[i].gain != gain ? 1 : 0;
+      alternating += calm[i].flicker > 0 ? 1 : 0;
+      changed += rejection > wild[i].rejection ? 1 : 0;
+      hidden_by_flicker += rejection < calm[i].rejection ? 1 : 0;
     }
   }
 };
 
-void expect_near(const Bounded& expected, float actual, const char* what, int round, std::size_t tile) {
-  ASSERT_NEAR(expected.value, static_cast<double>(actual), expected.error)
-      << what << ", round " << round << ", tile " << tile;
+void expect_near(double expected, const reference::Bounded& bound, float actual, const std::string& what) {
+  ASSERT_NEAR(expected, bound.value, 1e-12 * std::max(1.0, std::abs(expected))) << what;
+  ASSERT_NEAR(expected, static_cast<double>(actual), bound.error) << what;
 }
 
 TEST(TemporalLight, MatchesTheReference) {
@@ -129,24 +142,29 @@ TEST(TemporalLight, MatchesTheReference) {
   Met met;
   for (int round = 0; round < 84; ++round) {
     const Findings found = finder.find(round);
-    const std::vector<Tile> expected = completed(found);
+    const reference::LightInputs in = inputs_of(found);
+    const auto expected = testing::expected_pixels(
+        in.tiles_x, in.tiles_y,
+        [&]<typename Real>(Real, int x, int y) { return reference::temporal_light<Real>(in, x, y); });
     const auto actual = stages.run_light(found.count, found.before, found.total, found.tiles);
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      expect_near(expected[i].flicker, actual[i].flicker, "flicker", round, i);
-      if (expected[i].unsure) continue;
-      expect_near(expected[i].gain, actual[i].gain, "gain", round, i);
-      expect_near(expected[i].doubt, actual[i].doubt, "doubt", round, i);
-      expect_near(expected[i].persistence, actual[i].persistence, "persistence", round, i);
+      const auto& [value, bound, undecided] = expected[i];
+      const std::string what = fmt::format("round {}, tile {}: ", round, i);
+      expect_near(value.flicker, bound.flicker, actual[i].flicker, what + "flicker");
+      if (undecided) continue;
+      expect_near(value.gain, bound.gain, actual[i].gain, what + "gain");
+      expect_near(value.rejection, bound.rejection, actual[i].doubt, what + "rejection");
+      expect_near(value.persistence, bound.persistence, actual[i].persistence, what + "persistence");
       if (HasFatalFailure()) return;
     }
     met.add(found, expected);
   }
   EXPECT_GE(met.decided, met.tiles * 9 / 10);
   EXPECT_GT(met.relit, met.tiles / 20);
-  EXPECT_GT(met.doubted, met.tiles / 20);
+  EXPECT_GT(met.rejected, met.tiles / 20);
   EXPECT_GT(met.gain_held_back, met.tiles / 100);
   EXPECT_GT(met.gain_of_the_whole, met.tiles / 100);
-  EXPECT_GT(met.reversed, met.tiles / 20);
+  EXPECT_GT(met.alternating, met.tiles / 20);
   EXPECT_GT(met.changed, met.tiles / 100);
   EXPECT_GT(met.hidden_by_flicker, met.tiles / 100);
 }

@@ -149,7 +149,7 @@ TEST(TemporalStill, OffsetsFollowAPan) {
   testing::StageInputs in =
       stages.inputs(rig, {.output = {64, 64}, .render = {32, 40}, .previous = {32, 40}, .seed = 2});
   const double move = -.37 * 32 / 64;
-  in.reference.moves.assign(32 * 40, {.x = move, .trust = 1});
+  in.reference.reprojections.assign(32 * 40, {.x = move, .trust = 1});
   in.moves =
       rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, {32, 40}, constant({32, 40}, {move, 0, 1, 0}), 0);
   in.reference.before.assign(64, {});
@@ -227,7 +227,7 @@ testing::StageInputs two_surfaces(Rig& rig, const testing::TemporalStages& stage
   constexpr Extent kRender{12, 8};
   testing::StageInputs in = stages.inputs(rig, {.output = {24, 16}, .render = kRender, .previous = kRender});
   std::vector<Pixel> colour, moves;
-  in.reference.moves.clear();
+  in.reference.reprojections.clear();
   for (int i = 0; i < static_cast<int>(kRender.area()); ++i) {
     const bool left = i % kRender.width < kRender.width / 2;
     colour.push_back(left ? Pixel{1, 0, 0, 1} : Pixel{0, 1, 0, 1});

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What reproject finds for the temporal upscaler: edges of motion, and reactive values around each sample.
+// What reproject finds for the temporal upscaler: motion edges, and reactive values around each sample.
 #include <cmath>
 #include <random>
 
+#include "expected.h"
 #include "pass_chain.h"
 #include "temporal_fixture.h"
 
@@ -16,8 +17,6 @@ using testing::Pixel;
 using testing::Rig;
 using testing::TestFrame;
 
-constexpr double kRounding = 0x1p-24;
-
 ResolveSettings settings_for(Extent output) {
   return {.method = Method::kTemporal, .output = output, .target = output, .present = false};
 }
@@ -29,7 +28,7 @@ std::vector<Pixel> reproject(Rig& rig, PassChain& chain, const FrameInputs& now,
   return rig.pixels(chain.newest(Resource::kReprojection), now.render);
 }
 
-TEST(TemporalReproject, ContrastMatchesTheReference) {
+TEST(TemporalReproject, MotionEdgesMatchTheReference) {
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
       unsigned seed = 0;
@@ -47,23 +46,20 @@ TEST(TemporalReproject, ContrastMatchesTheReference) {
                              .outside = std::nan("")};
         const TestFrame now = make_frame(rig, formats, spec);
         PassChain chain(testing::device(), PlanFacts({.transparents = false}, settings));
-        const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, nullptr);
-        const auto expected =
-            reference::reproject(now.reference, now.reference, {.output_width = 129, .output_height = 65});
-        for (std::size_t i = 0; i < moves.size(); ++i) {
-          if (std::isnan(expected[i].trust)) continue;
-          // Of each axis the difference, the scale and a product; two squares, their sum, a root of 3 last
-          // places.
-          ASSERT_NEAR(moves[i][3], expected[i].contrast, 24 * kRounding * expected[i].contrast + 0x1p-62)
-              << i;
+        const std::vector<Pixel> reprojections = reproject(rig, chain, now.inputs, nullptr);
+        const auto expected = testing::expected_reprojections(now.reference, now.reference,
+                                                              {.output_width = 129, .output_height = 65});
+        for (std::size_t i = 0; i < reprojections.size(); ++i) {
+          if (std::isnan(expected[i].value.trust)) continue;
+          ASSERT_NEAR(reprojections[i][3], expected[i].value.motion_edge, expected[i].bound.motion_edge.error) << i;
         }
       }
     }
   }
 }
 
-// An edge of motion in the first frame is known to the second, with a minus, and to no third.
-TEST(TemporalReproject, ContrastOfThePreviousFrameIsNotFedOn) {
+// A motion edge of the first frame is known to the second, with a minus, and to no third.
+TEST(TemporalReproject, AMotionEdgeOfThePreviousFrameIsNotFedOn) {
   const Extent render{12, 8};
   Rig rig;
   const auto frame = [&](double speed) {
@@ -79,13 +75,13 @@ TEST(TemporalReproject, ContrastOfThePreviousFrameIsNotFedOn) {
   TestFrame before = frame(.0625);  // 1.5 output pixels
   bool is_first = true;
   const double expected[] = {1.5, -1.5, 0, 0};
-  for (const double contrast : expected) {
-    const TestFrame now = frame(contrast > 0 ? .0625 : 0);
-    const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, is_first ? nullptr : &before.inputs);
+  for (const double motion_edge : expected) {
+    const TestFrame now = frame(motion_edge > 0 ? .0625 : 0);
+    const std::vector<Pixel> reprojections = reproject(rig, chain, now.inputs, is_first ? nullptr : &before.inputs);
     is_first = false;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
+    for (std::size_t i = 0; i < reprojections.size(); ++i) {
       const std::size_t x = i % 12;
-      EXPECT_EQ(moves[i][3], x == 5 || x == 6 ? contrast : 0) << i;
+      EXPECT_EQ(reprojections[i][3], x == 5 || x == 6 ? motion_edge : 0) << i;
     }
     before = now;
   }
@@ -102,7 +98,7 @@ void scatter_reactive(Rig& rig, TestFrame& frame, Storage storage, const FrameSp
   frame.inputs.reactive = rig.image(PixelFormat::kR8, storage, spec.render, reactive, spec.outside);
 }
 
-TEST(TemporalReproject, AnEarlierEdgeAndReactiveValuesAroundTakeTrust) {
+TEST(TemporalReproject, AnEarlierMotionEdgeAndReactiveValuesAroundTakeTrust) {
   std::int64_t decided = 0, compared = 0, gone = 0, earlier = 0, dimmed = 0;
   unsigned seed = 40;
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
@@ -124,26 +120,22 @@ TEST(TemporalReproject, AnEarlierEdgeAndReactiveValuesAroundTakeTrust) {
       }
       PassChain chain(testing::device(), PlanFacts({}, settings));
       reference::ReprojectOptions options{.reactive = true, .output_width = 129, .output_height = 65};
-      for (const Pixel& move : reproject(rig, chain, before.inputs, nullptr))
-        options.contrast_before.push_back(move[3]);
-      const std::vector<Pixel> moves = reproject(rig, chain, now.inputs, &before.inputs);
-      const auto expected = reference::reproject(now.reference, before.reference, options);
+      for (const Pixel& pixel : reproject(rig, chain, before.inputs, nullptr))
+        options.motion_edges_before.push_back(pixel[3]);
+      const std::vector<Pixel> reprojections = reproject(rig, chain, now.inputs, &before.inputs);
+      const auto expected = testing::expected_reprojections(now.reference, before.reference, options);
       options.reactive = false;
-      const auto opaque = reference::reproject(now.reference, before.reference, options);
-      for (std::size_t i = 0; i < moves.size(); ++i) {
+      const auto opaque = testing::expected_reprojections(now.reference, before.reference, options);
+      for (std::size_t i = 0; i < reprojections.size(); ++i) {
+        const auto& [value, bound, undecided] = expected[i];
         ++compared;
-        if (expected[i].undecided) continue;
+        if (undecided) continue;
         ++decided;
-        gone += expected[i].trust == 0 ? 1 : 0;
-        dimmed += expected[i].trust > 0 && expected[i].trust < opaque[i].trust ? 1 : 0;
-        // The place rounds by 8 * 2^-24 of the largest coordinate, and enters once on each axis; of the rest
-        // each factor rounds a few times.
-        const double allowed = (16 * expected[i].reach + 64) * kRounding;
-        ASSERT_NEAR(moves[i][2], expected[i].trust, allowed) << render.width << " " << i;
-        earlier += expected[i].contrast < 0 ? 1 : 0;
-        // Of this frame it rounds as above, that of the previous one is copied.
-        ASSERT_NEAR(moves[i][3], expected[i].contrast, 24 * kRounding * std::abs(expected[i].contrast))
-            << render.width << " " << i;
+        gone += value.trust == 0 ? 1 : 0;
+        dimmed += value.trust > 0 && value.trust < opaque[i].value.trust ? 1 : 0;
+        ASSERT_NEAR(reprojections[i][2], value.trust, bound.trust.error) << render.width << " " << i;
+        earlier += value.motion_edge < 0 ? 1 : 0;
+        ASSERT_NEAR(reprojections[i][3], value.motion_edge, bound.motion_edge.error) << render.width << " " << i;
       }
     }
   }

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 // The kernels of the temporal upscaler, each on its own, against its reference. How far a result may be off
-// follows from running error analysis in the reference; where a rounding turns a decision it says so, and
-// nothing is compared.
+// follows from running error analysis beside the reference; where a rounding may turn a decision nothing is
+// compared.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "error_table.h"
+#include "expected.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
@@ -50,82 +53,119 @@ std::vector<StageSpec> all_specs(const std::vector<Pattern>& patterns) {
   return specs;
 }
 
+struct ExpectedTile {
+  reference::Expected<reference::TileReprojection, reference::TileReprojectionOf<Bounded>> reprojection;
+  reference::Expected<reference::TileEvidence, reference::TileEvidenceOf<Bounded>> evidence;
+};
+
 class Temporal : public ::testing::TestWithParam<StageVariant> {
  protected:
-  void expect_near(const Bounded& expected, double actual, const std::string& what,
+  void expect_near(double expected, const Bounded& bound, double actual, const std::string& what,
                    PixelFormat stored = PixelFormat::kRGBA32F) {
-    const double allowed =
-        expected.error + testing::output_rounding(stored, std::abs(expected.value) + expected.error);
+    // The bound is that of the same value: what it is taken through differs by roundings of doubles.
+    ASSERT_NEAR(expected, bound.value, 1e-12 * std::max(1.0, std::abs(expected))) << what;
+    const double allowed = bound.error + testing::output_rounding(stored, std::abs(expected) + bound.error);
     ASSERT_TRUE(std::isfinite(actual)) << what;
-    ASSERT_NEAR(expected.value, actual, allowed) << what;
-    testing::record_error({.error = std::abs(expected.value - actual),
+    ASSERT_NEAR(expected, actual, allowed) << what;
+    testing::record_error({.error = std::abs(expected - actual),
                            .bound = allowed,
-                           .largest = std::abs(expected.value),
+                           .largest = std::abs(expected),
                            .stored = stored});
   }
 
-  void compare(const std::vector<reference::HistoryTexel>& expected, const std::vector<Pixel>& actual,
-               int width, PixelFormat stored, const std::string& what) {
+  // `reference`: what is expected of an output pixel, as for reference::expected_of.
+  template <typename Reference>
+  void compare(Reference reference, const std::vector<Pixel>& actual, Extent output, PixelFormat stored,
+               const std::string& what) {
+    const auto expected = testing::expected_pixels(output.width, output.height, reference);
     ASSERT_EQ(expected.size(), actual.size());
     for (std::size_t i = 0; i < actual.size(); ++i) {
       ++compared_;
       if (expected[i].undecided) continue;
       ++decided_;
       for (std::size_t c = 0; c < 4; ++c) {
-        expect_near(expected[i].value[c], actual[i][c],
-                    fmt::format("{}: pixel ({}, {}) channel {}", what, i % static_cast<std::size_t>(width),
-                                i / static_cast<std::size_t>(width), c),
-                    stored);
+        expect_near(
+            expected[i].value[c], expected[i].bound[c], actual[i][c],
+            fmt::format("{}: pixel ({}, {}) channel {}", what, i % static_cast<std::size_t>(output.width),
+                        i / static_cast<std::size_t>(output.width), c),
+            stored);
         if (HasFatalFailure()) return;
       }
     }
   }
 
-  void compare_tile(const reference::Tile& expected, const TemporalTile& actual, const std::string& what) {
+  void compare_resolve(const StageInputs& in, const std::vector<reference::Tile>& tiles,
+                       const reference::TemporalOptions& options, const std::vector<Pixel>& actual,
+                       const StageSpec& spec) {
+    const auto reference = [&]<typename Real>(Real, int x, int y) {
+      return reference::resolve_temporal<Real>(in.reference, tiles, options, x, y);
+    };
+    compare(reference, actual, spec.output, GetParam().history, what_of(spec));
+  }
+
+  static ExpectedTile expected_tile(const reference::TemporalInputs& in, int x, int y) {
+    const auto reprojection = reference::expected_of(
+        [&]<typename Real>(Real) { return reference::reproject_tile<Real>(in, x, y); });
+    const auto evidence = reference::expected_of([&]<typename Real>(Real) {
+      if constexpr (std::is_same_v<Real, double>)
+        return reference::judge_history(in, reprojection.value, x, y);
+      else
+        return reference::judge_history(in, reprojection.bound, x, y);
+    });
+    return {reprojection, evidence};
+  }
+
+  void compare_tile(const ExpectedTile& expected, const TemporalTile& actual, const std::string& what) {
     ++compared_;
-    if (expected.undecided) return;
-    ASSERT_EQ(expected.rigid, actual.rigid != 0) << what;
-    ASSERT_EQ(expected.plain, actual.plain != 0) << what;
-    ASSERT_EQ(expected.torn, actual.torn != 0) << what;
-    ASSERT_EQ(expected.step[0], actual.step_x) << what;
-    ASSERT_EQ(expected.step[1], actual.step_y) << what;
-    ASSERT_EQ(expected.source[0], static_cast<double>(actual.source_x)) << what;
-    ASSERT_EQ(expected.source[1], static_cast<double>(actual.source_y)) << what;
-    expect_near(expected.offset[0], static_cast<double>(actual.offset_x), what + " offset_x");
-    expect_near(expected.offset[1], static_cast<double>(actual.offset_y), what + " offset_y");
-    rigid_ += expected.rigid ? 1 : 0;
-    plain_ += expected.plain ? 1 : 0;
-    torn_ += expected.torn ? 1 : 0;
-    rigid_and_torn_ += expected.rigid && expected.torn ? 1 : 0;
-    if (expected.unsure) return;
+    const auto& [tile, tile_bound, tile_undecided] = expected.reprojection;
+    if (tile_undecided) return;
+    ASSERT_EQ(tile.is_rigid, actual.rigid != 0) << what;
+    ASSERT_EQ(tile.is_copyable, actual.plain != 0) << what;
+    ASSERT_EQ(tile.has_motion_edge, actual.torn != 0) << what;
+    ASSERT_EQ(tile.step[0], actual.step_x) << what;
+    ASSERT_EQ(tile.step[1], actual.step_y) << what;
+    ASSERT_EQ(tile.source_phase[0], static_cast<double>(actual.source_x)) << what;
+    ASSERT_EQ(tile.source_phase[1], static_cast<double>(actual.source_y)) << what;
+    expect_near(tile.phase[0], tile_bound.phase[0], static_cast<double>(actual.offset_x), what + " phase_x");
+    expect_near(tile.phase[1], tile_bound.phase[1], static_cast<double>(actual.offset_y), what + " phase_y");
+    rigid_ += tile.is_rigid ? 1 : 0;
+    copyable_ += tile.is_copyable ? 1 : 0;
+    motion_edges_ += tile.has_motion_edge ? 1 : 0;
+    rigid_motion_edges_ += tile.is_rigid && tile.has_motion_edge ? 1 : 0;
+    const auto& [evidence, bound, undecided] = expected.evidence;
+    if (undecided) return;
     ++decided_;
-    ASSERT_EQ(expected.brighter, static_cast<int>(actual.brighter)) << what;
-    expect_near(expected.brightening, static_cast<double>(actual.brightening), what + " brightening");
-    expect_near(expected.light, static_cast<double>(actual.light), what + " light");
-    expect_near(expected.history_error, static_cast<double>(actual.history_error), what + " history_error");
-    expect_near(expected.neighbour_error, static_cast<double>(actual.neighbour_error),
+    ASSERT_EQ(evidence.brighter, static_cast<int>(actual.brighter)) << what;
+    expect_near(evidence.brightening, bound.brightening, static_cast<double>(actual.brightening),
+                what + " brightening");
+    expect_near(evidence.light, bound.light, static_cast<double>(actual.light), what + " light");
+    expect_near(evidence.history_error, bound.history_error, static_cast<double>(actual.history_error),
+                what + " history_error");
+    expect_near(evidence.neighbour_error, bound.neighbour_error, static_cast<double>(actual.neighbour_error),
                 what + " neighbour_error");
   }
 
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
   std::int64_t rigid_ = 0;
-  std::int64_t plain_ = 0;
-  std::int64_t torn_ = 0;
-  std::int64_t rigid_and_torn_ = 0;
+  std::int64_t copyable_ = 0;
+  std::int64_t motion_edges_ = 0;
+  std::int64_t rigid_motion_edges_ = 0;
 };
 
 // Each tile's part of a total is cut to an integer.
-void add_tile(reference::TotalLight& total, double& allowed, const reference::Tile& tile) {
-  const double units = static_cast<double>(kLightUnits) / std::max(tile.samples, 1);
-  total.brightening += tile.brightening.value * units;
-  total.change += std::abs(tile.brightening.value) * units;
-  total.light += tile.light.value * units;
-  total.history_error += tile.history_error.value * units;
-  total.neighbour_error += tile.neighbour_error.value * units;
+void add_tile(reference::TotalLight& total, double& allowed, const ExpectedTile& expected) {
+  const reference::TileEvidence& tile = expected.evidence.value;
+  const auto& bound = expected.evidence.bound;
+  const double units = static_cast<double>(kLightUnits) / std::max(tile.count, 1);
+  total.brightening += tile.brightening * units;
+  total.change += std::abs(tile.brightening) * units;
+  total.light += tile.light * units;
+  total.history_error += tile.history_error * units;
+  total.neighbour_error += tile.neighbour_error * units;
   allowed += 1 + 2 * units *
-                     std::max({tile.brightening.error, tile.light.error, tile.history_error.error,
-                               tile.neighbour_error.error});
+                     std::max({bound.brightening.error, bound.light.error, bound.history_error.error,
+                               bound.neighbour_error.error});
 }
 
 TEST_P(Temporal, TilesMatchTheReferenceAtEverySizeAndScale) {
@@ -134,18 +174,20 @@ TEST_P(Temporal, TilesMatchTheReferenceAtEverySizeAndScale) {
   for (const StageSpec& spec : all_specs({Pattern::kNoise, Pattern::kNonFinite, Pattern::kImpulse})) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
-    const auto expected = reference::temporal_tiles(in.reference);
     const auto actual = stages.run_tiles(in);
     reference::TotalLight total;
     double allowed = 0;
-    bool unsure = false;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-      compare_tile(expected[i], actual.tiles[i], fmt::format("{}: tile {}", what_of(spec), i));
+    bool undecided = false;
+    for (std::size_t i = 0; i < actual.tiles.size(); ++i) {
+      const int tiles_x = in.reference.tiles_x();
+      const ExpectedTile expected =
+          expected_tile(in.reference, static_cast<int>(i) % tiles_x, static_cast<int>(i) / tiles_x);
+      compare_tile(expected, actual.tiles[i], fmt::format("{}: tile {}", what_of(spec), i));
       if (HasFatalFailure()) return;
-      add_tile(total, allowed, expected[i]);
-      unsure = unsure || expected[i].undecided || expected[i].unsure;
+      add_tile(total, allowed, expected);
+      undecided = undecided || expected.reprojection.undecided || expected.evidence.undecided;
     }
-    if (unsure) continue;
+    if (undecided) continue;
     ++totals;
     ASSERT_NEAR(total.brightening, actual.total.brightening, allowed) << what_of(spec);
     ASSERT_NEAR(total.change, actual.total.change, allowed) << what_of(spec);
@@ -155,52 +197,49 @@ TEST_P(Temporal, TilesMatchTheReferenceAtEverySizeAndScale) {
   }
   EXPECT_GE(decided_, compared_ * 3 / 4);
   EXPECT_GE(rigid_, compared_ / 4);
-  EXPECT_GE(plain_, compared_ / 8);
+  EXPECT_GE(copyable_, compared_ / 8);
   if (GetParam().moves) {
-    EXPECT_GE(rigid_ - plain_, compared_ / 32);
-    EXPECT_GE(rigid_and_torn_, compared_ / 64);
-    EXPECT_GE(torn_ - rigid_and_torn_, compared_ / 32);
-    EXPECT_GE(compared_ - torn_, compared_ / 4);
+    EXPECT_GE(rigid_ - copyable_, compared_ / 32);
+    EXPECT_GE(rigid_motion_edges_, compared_ / 64);
+    EXPECT_GE(motion_edges_ - rigid_motion_edges_, compared_ / 32);
+    EXPECT_GE(compared_ - motion_edges_, compared_ / 4);
   }
   EXPECT_GT(totals, 20);
 }
 
 TEST_P(Temporal, ResolveMatchesTheReferenceAtEverySizeScaleAndInput) {
-  const StageVariant& v = GetParam();
-  const TemporalStages stages(v);
+  const TemporalStages stages(GetParam());
   for (const StageSpec& spec : all_specs(testing::all_patterns())) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
     const auto tiles = stages.tiles(in, spec.seed);
     const auto actual = stages.run_resolve(rig, in, tiles);
-    compare(reference::resolve_temporal(in.reference, tiles, {}), actual.pixels, spec.output.width, v.history,
-            what_of(spec));
+    compare_resolve(in, tiles, {}, actual.pixels, spec);
     if (HasFatalFailure()) return;
   }
-  // Moves by whole pixels leave it to a rounding which texels hold the cubic in.
+  // Where a motion is whole pixels a rounding decides between which texels history is read.
   EXPECT_GE(decided_, compared_ * 3 / 4);
 }
 
-// What is copied without looking at each sample is what looking at them gives.
-TEST_P(Temporal, PlainTilesGiveTheSameBits) {
+// What is copied without a look at each sample's reprojection is what a look at them gives.
+TEST_P(Temporal, CopyableTilesGiveTheSameBits) {
   if (!GetParam().moves) return;  // all are
   const TemporalStages stages(GetParam());
   for (const StageSpec& spec : all_specs({Pattern::kNoise})) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
     auto tiles = stages.tiles(in, spec.seed);
-    const auto plain = stages.run_resolve(rig, in, tiles);
+    const auto copied = stages.run_resolve(rig, in, tiles);
     for (reference::Tile& tile : tiles)
-      tile.plain = false;
-    EXPECT_EQ(plain.bytes, stages.run_resolve(rig, in, tiles).bytes) << what_of(spec);
+      tile.reprojection.is_copyable = false;
+    EXPECT_EQ(copied.bytes, stages.run_resolve(rig, in, tiles).bytes) << what_of(spec);
   }
 }
 
 // What the presets change.
 TEST_P(Temporal, BilinearHistoryAndTrustMatchToo) {
-  const StageVariant& v = GetParam();
-  const TemporalStages stages(v);
-  if (!v.moves) return;  // they change nothing
+  const TemporalStages stages(GetParam());
+  if (!GetParam().moves) return;  // they change nothing
   for (const TemporalPreset preset : {TemporalPreset::kFast, TemporalPreset::kQuality}) {
     const bool fast = preset == TemporalPreset::kFast;
     const reference::TemporalOptions options{fast ? 4 : 16, !fast};
@@ -209,12 +248,11 @@ TEST_P(Temporal, BilinearHistoryAndTrustMatchToo) {
       const StageInputs in = stages.inputs(rig, spec);
       const auto tiles = stages.tiles(in, spec.seed);
       const auto actual = stages.run_resolve(rig, in, tiles, preset);
-      compare(reference::resolve_temporal(in.reference, tiles, options), actual.pixels, spec.output.width,
-              v.history, what_of(spec));
+      compare_resolve(in, tiles, options, actual.pixels, spec);
       if (HasFatalFailure()) return;
     }
   }
-  // Moves by whole pixels leave it to a rounding which texels hold the cubic in.
+  // Where a motion is whole pixels a rounding decides between which texels history is read.
   EXPECT_GE(decided_, compared_ * 3 / 4);
 }
 
@@ -280,8 +318,10 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
       const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first,
                                               !shown.background};
       const auto actual = stages.run_display(rig, in, in.reference.before, shown);
-      compare(reference::temporal_display(in.reference, in.reference.before, options), actual.pixels,
-              spec.output.width, v.resolved, what_of(spec));
+      const auto reference = [&]<typename Real>(Real, int x, int y) {
+        return reference::temporal_display<Real>(in.reference, in.reference.before, options, x, y);
+      };
+      compare(reference, actual.pixels, spec.output, v.resolved, what_of(spec));
       if (HasFatalFailure()) return;
     }
   }

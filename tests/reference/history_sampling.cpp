@@ -8,110 +8,137 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kHistoryCubic = -1;  // Keys' a
-constexpr double kSameOffset = .02;   // output pixels that offsets of copied texels may differ by
+// Keys' a of the history: -1 scores .04 dB above -.75 (docs/pipeline.md).
+constexpr double kHistorySharpness = -1;
+// Output pixels by which the phases of copied texels may differ from the phase that their tile assumes.
+constexpr double kSamePhase = .02;
+// Output pixels: beyond any viewport, and small enough for an int.
+constexpr double kFarthestMotion = 65536;
 
-// Whether the eight texels that a block of a rigid tile takes are all there, at one offset.
-bool copies(const TemporalInputs& in, const Tile& tile, int x, int y) {
-  const int first = x - tile.step[0];
+// The tile that holds texel (x, y), clamped to the edge.
+const TileReprojection& reprojection_before(const TemporalInputs& in, int x, int y) {
+  const int tile_x = std::clamp(x, 0, in.output_width - 1) / kTile;
+  const int tile_y = std::clamp(y, 0, in.output_height - 1) / kTile;
+  return in.before[index_of(in.tiles_x(), tile_x, tile_y)].reprojection;
+}
+
+// Whether the eight texels that a row of a rigid tile copies all exist and have the phase that it assumes.
+bool can_copy(const TemporalInputs& in, const TileReprojection& tile, int x, int y) {
+  const int first = x / kTile * kTile - tile.step[0];
   const int row = y - tile.step[1];
-  if (!tile.rigid || first < 0 || row < 0 || first + 8 > in.output_width || row >= in.output_height)
+  if (!tile.is_rigid || first < 0 || row < 0 || first + kTile > in.output_width || row >= in.output_height)
     return false;
-  for (const int column : {first, first + 7}) {
-    const Tile& from = in.tile_before(column / kTile, row / kTile);
+  for (const int column : {first, first + kTile - 1}) {
+    const TileReprojection& from = reprojection_before(in, column, row);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      if (std::abs(from.offset[axis].value - tile.source[axis]) > kSameOffset) return false;
+      if (std::abs(from.phase[axis] - tile.source_phase[axis]) > kSamePhase) return false;
     }
   }
   return true;
 }
 
-BoundedPixel sample_linear(const TemporalInputs& in, int x, int y, const Bounded& fx, const Bounded& fy) {
-  const auto texel = [&](int column, int row) {
-    return exact(in.history_at(std::clamp(x + column, 0, in.output_width - 1),
-                               std::clamp(y + row, 0, in.output_height - 1)));
-  };
-  const BoundedPixel t00 = texel(0, 0), t10 = texel(1, 0), t01 = texel(0, 1), t11 = texel(1, 1);
-  BoundedPixel result;
+template <typename Real>
+PixelOf<Real> sample_linear(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction) {
+  PixelOf<Real> result = {};
   for (std::size_t c = 0; c < 4; ++c) {
-    const Bounded upper = t00[c] + (t10[c] - t00[c]) * fx;
-    const Bounded lower = t01[c] + (t11[c] - t01[c]) * fx;
-    result[c] = upper + (lower - upper) * fy;
+    const auto on_row = [&](int row) {
+      const Real left = in.history_clamped(x, row)[c];
+      const Real right = in.history_clamped(x + 1, row)[c];
+      return left + (right - left) * fraction[0];
+    };
+    const Real upper = on_row(y);
+    result[c] = upper + (on_row(y + 1) - upper) * fraction[1];
   }
   return result;
+}
+
+// Of the four texels around a place, `f` past the second.
+template <typename Real>
+std::array<Real, 4> cubic_weights(const Real& f, double a) {
+  const Real rest = 1 - f;
+  const Real w0 = a * f * rest * rest;
+  const Real w1 = ((a + 2) * f - (a + 3)) * f * f + 1;
+  const Real w3 = a * rest * f * f;
+  return {w0, w1, 1 - w0 - w1 - w3, w3};
 }
 
 }  // namespace
 
-Taken take_history(const TemporalInputs& in, const Tile& tile, const Move& move, int x, int y,
-                   const TemporalOptions& options, bool& undecided) {
-  if (copies(in, tile, x / 8 * 8, y)) return {exact(in.history_at(x - tile.step[0], y - tile.step[1])), 0};
-  const std::array<int, 2> texel = {x, y};
-  const std::array<double, 2> moves = {move.x, move.y};
-  std::array<Bounded, 2> at;
-  std::array<int, 2> from;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const Bounded by = Bounded(moves[axis]) * rounded(in.move_scale(static_cast<int>(axis)));
-    at[axis] = clamp(by, -65536, 65536) + tile.offset[axis];
-    const int last = axis == 0 ? in.output_width - 1 : in.output_height - 1;
-    from[axis] = decide(
-        at[axis] + .5,
-        [&](double place) { return std::clamp(static_cast<int>(place) + texel[axis], 0, last) / kTile; },
-        undecided);
-  }
-  const Tile& source = in.tile_before(from[0], from[1]);
-  std::array<int, 2> step;
-  std::array<Bounded, 2> fraction;
-  Bounded between = 0;
-  bool lost = false;  // beyond the edges
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    at[axis] = at[axis] - source.offset[axis];
-    // The cubic is continuous, but from one texel to the next what it is held in is not.
-    step[axis] = floor_of(at[axis], undecided);
-    fraction[axis] = {at[axis].value - step[axis], at[axis].error};
-    const Bounded place = Bounded(texel[axis] + step[axis]) + fraction[axis];
-    const int size = axis == 0 ? in.output_width : in.output_height;
-    lost = lost || less(place, -.5, undecided) || less(size - .5, place, undecided);
-    between = between + fraction[axis] * (Bounded(1) - fraction[axis]);
-  }
-  const auto sample = [&] {
-    if (options.taps == 4) return sample_linear(in, x + step[0], y + step[1], fraction[0], fraction[1]);
-    return sample_cubic(in, x + step[0], y + step[1], fraction[0], fraction[1], kHistoryCubic);
-  };
-  Taken taken{sample(), min(Bounded(4) * between, 1)};
-  if (lost) taken.value[3] = 0;
-  return taken;
+const Pixel& TemporalInputs::history_clamped(int x, int y) const {
+  return history[index_of(output_width, std::clamp(x, 0, output_width - 1),
+                          std::clamp(y, 0, output_height - 1))];
 }
 
-BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,
-                          const Bounded& fraction_y, double a) {
-  const auto weights = [a](const Bounded& f) {
-    const Bounded rest = Bounded(1) - f;
-    const Bounded w0 = Bounded(a) * f * rest * rest;
-    const Bounded w1 = (Bounded(a + 2) * f - Bounded(a + 3)) * f * f + 1;
-    const Bounded w3 = Bounded(a) * rest * f * f;
-    return std::array<Bounded, 4>{w0, w1, Bounded(1) - w0 - w1 - w3, w3};
-  };
-  const auto wx = weights(fraction_x);
-  const auto wy = weights(fraction_y);
-  BoundedPixel result, least, most;
+template <typename Real>
+FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReprojection& tile,
+                                   const Reprojection& reprojection, const TemporalOptions& options, int x,
+                                   int y) {
+  FetchedHistory<Real> fetched;
+  if (can_copy(in, tile, x, y)) {
+    fetched.texel = as<Real>(in.history_clamped(x - tile.step[0], y - tile.step[1]));
+    return fetched;
+  }
+  const std::array<int, 2> pixel = {x, y};
+  const std::array<int, 2> size = {in.output_width, in.output_height};
+  const std::array<double, 2> motion = {reprojection.x, reprojection.y};
+  // From the pixel's centre to where its picture was.
+  std::array<Real, 2> way;
+  std::array<int, 2> near;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Real moved = Real(motion[axis]) * in.reprojection_scale(static_cast<int>(axis));
+    way[axis] = clamp(moved, -kFarthestMotion, kFarthestMotion) + tile.phase[axis];
+    near[axis] = pixel[axis] + truncate_within(way[axis] + .5, -pixel[axis], size[axis] - 1 - pixel[axis]);
+  }
+  // The texels there hold their picture at a phase of their own.
+  const TileReprojection& source = reprojection_before(in, near[0], near[1]);
+  std::array<int, 2> texel;
+  std::array<Real, 2> fraction;
+  Real between = 0;
+  bool is_outside = false;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Split<Real> at = split(way[axis] - source.phase[axis]);
+    texel[axis] = pixel[axis] + at.whole;
+    fraction[axis] = at.fraction;
+    const Real place = texel[axis] + fraction[axis];
+    is_outside = is_outside || place < -.5 || place > size[axis] - .5;
+    between += fraction[axis] * (1 - fraction[axis]);
+  }
+  fetched.texel = options.taps == 4 ? sample_linear(in, texel[0], texel[1], fraction)
+                                    : sample_cubic(in, texel[0], texel[1], fraction, kHistorySharpness);
+  if (is_outside) fetched.texel[3] = 0;
+  fetched.between = min(4 * between, 1);
+  return fetched;
+}
+
+template <typename Real>
+PixelOf<Real> sample_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
+                           double a) {
+  const std::array<Real, 4> wx = cubic_weights(fraction[0], a);
+  const std::array<Real, 4> wy = cubic_weights(fraction[1], a);
+  PixelOf<Real> result = {};
   for (std::size_t c = 0; c < 4; ++c) {
+    double low = in.history_clamped(x, y)[c];
+    double high = low;
     for (int row = 0; row < 4; ++row) {
       for (int column = 0; column < 4; ++column) {
-        const Bounded texel = in.history_at(std::clamp(x + column - 1, 0, in.output_width - 1),
-                                            std::clamp(y + row - 1, 0, in.output_height - 1))[c];
-        const auto i = static_cast<std::size_t>(column);
-        const auto j = static_cast<std::size_t>(row);
-        result[c] = result[c] + texel * wx[i] * wy[j];
-        if (row % 3 == 0 || column % 3 == 0) continue;
-        const bool first = row == 1 && column == 1;
-        least[c] = first ? texel : min(least[c], texel);
-        most[c] = first ? texel : max(most[c], texel);
+        const double texel = in.history_clamped(x + column - 1, y + row - 1)[c];
+        result[c] += texel * wx[static_cast<std::size_t>(column)] * wy[static_cast<std::size_t>(row)];
+        const bool is_inner = row % 3 != 0 && column % 3 != 0;
+        if (is_inner) low = std::min(low, texel);
+        if (is_inner) high = std::max(high, texel);
       }
     }
-    result[c] = clamp(result[c], least[c], most[c]);
+    result[c] = clamp(result[c], low, high);
   }
   return result;
 }
+
+template FetchedHistory<double> fetch_history(const TemporalInputs&, const TileReprojection&,
+                                              const Reprojection&, const TemporalOptions&, int, int);
+template FetchedHistory<Bounded> fetch_history(const TemporalInputs&, const TileReprojection&,
+                                               const Reprojection&, const TemporalOptions&, int, int);
+template PixelOf<double> sample_cubic(const TemporalInputs&, int, int, const std::array<double, 2>&, double);
+template PixelOf<Bounded> sample_cubic(const TemporalInputs&, int, int, const std::array<Bounded, 2>&,
+                                       double);
 
 }  // namespace quincunx::reference

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Where history is read, in double precision.
+// Reading history between its texels, for resolve_temporal and temporal_display.
 #pragma once
 
 #include "temporal.h"
 
 namespace quincunx::reference {
 
-// History where the pixel's picture was, and how far between texels that is.
-struct Taken {
-  BoundedPixel value;
-  Bounded between;
+// History where a pixel's picture was in the previous frame.
+template <typename Real>
+struct FetchedHistory {
+  PixelOf<Real> texel = {};  // colour, and in the fourth channel confidence
+  Real between = 0;          // how far between texels it was read: 0 at a texel's centre, 1 midway
 };
 
-Taken take_history(const TemporalInputs& in, const Tile& tile, const Move& move, int x, int y,
-                   const TemporalOptions& options, bool& undecided);
+// History of output pixel (x, y), whose tile is `tile` and whose nearest sample has `reprojection`.
+template <typename Real>
+FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReprojection& tile,
+                                   const Reprojection& reprojection, const TemporalOptions& options, int x,
+                                   int y);
 
-// The cubic (Keys 1981) at `fraction` past the second of four texels on either axis, held in the range of the
-// middle four; beyond the edges the outermost texel once more. (x, y): the first of the middle four.
-BoundedPixel sample_cubic(const TemporalInputs& in, int x, int y, const Bounded& fraction_x,
-                          const Bounded& fraction_y, double a);
+// History at texel (x, y) + fraction, fraction within [0, 1], by the cubic of Keys, "Cubic Convolution
+// Interpolation for Digital Image Processing", 1981, with his parameter `a`; clamped to the range of the
+// middle four of its 16 texels. Texels are clamped to the edge.
+template <typename Real>
+PixelOf<Real> sample_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
+                           double a);
 
 }  // namespace quincunx::reference

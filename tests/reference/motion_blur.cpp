@@ -1,4 +1,11 @@
 // SPDX-License-Identifier: MIT
+// motion_tiles, motion_neighbours, motion_blur: what a shutter would have seen, by the streaks of the surfaces.
+// A sample stands for a moment, the fraction f of the shutter's time ago: a surface with the streak s was at the
+// pixel p then if it is at p + f s now.
+//   nothing moves   the pixel itself
+//   all move alike  the mean of the colours at p + f s
+//   mixed           the mean over moments of the nearest surface that was at p: one with the longest streak
+//                   around, or one with the pixel's own. A surface counts if the streak found there agrees.
 #include "motion_blur.h"
 
 #include <algorithm>
@@ -6,18 +13,22 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "hash.h"
+
 namespace quincunx::reference {
 namespace {
 
-constexpr int kTile = 32;
-constexpr int kUnits = 64;
-constexpr int kMost = 8 * kTile * kUnits;
+constexpr int kTile = 32;                     // output pixels on either axis
+constexpr int kUnits = 64;                    // of a streak, in an output pixel
+constexpr int kLongest = 8 * kTile * kUnits;  // units: longer streaks are cut
+constexpr int kSteps = 256;                   // of the shutter's time
+constexpr float kNearer = 1.01f;              // ratio of depths from which one surface is nearer
 
-int whole(double velocity, float scale) {
+int units_of(double velocity, float scale) {
   if (!std::isfinite(velocity)) return 0;
   // One product of two floats, as the input is defined.
   const float streak = static_cast<float>(velocity) * scale;
-  return static_cast<int>(std::clamp(streak, -static_cast<float>(kMost), static_cast<float>(kMost)));
+  return static_cast<int>(std::clamp(streak, -static_cast<float>(kLongest), static_cast<float>(kLongest)));
 }
 
 struct Seen {
@@ -29,11 +40,10 @@ Seen seen_at(const BlurInput& input, int x, int y) {
   const Frame& frame = *input.frame;
   const int column = nearest_texel(x, input.output_width, frame.width, frame.jitter_x);
   const int row = nearest_texel(y, input.output_height, frame.height, frame.jitter_y);
-  const auto texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
-                     static_cast<std::size_t>(column);
+  const std::size_t texel = index_of(frame.width, column, row);
   Seen seen;
-  seen.streak = {whole(frame.velocity[texel][0], input.scale[0]),
-                 whole(frame.velocity[texel][1], input.scale[1])};
+  seen.streak = {units_of(frame.velocity[texel][0], input.scale[0]),
+                 units_of(frame.velocity[texel][1], input.scale[1])};
   const double depth = frame.depth[texel];
   seen.depth = depth > 0 ? static_cast<float>(depth) : 0;
   return seen;
@@ -50,7 +60,7 @@ bool longer(Streak a, Streak b) {
   return a.x != b.x ? a.x > b.x : a.y > b.y;
 }
 
-// All streaks of the pixels of a tile, boiled down.
+// The streaks of the pixels of a tile: the longest, and the range of each axis.
 struct Range {
   Streak longest;
   Streak least;
@@ -77,10 +87,8 @@ Range range_of(const BlurInput& input, int tile_x, int tile_y) {
   bool first = true;
   for (int y = row(tile_y * kTile); y <= bottom; ++y) {
     for (int x = column(tile_x * kTile); x <= right; ++x) {
-      const auto& velocity =
-          frame.velocity[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
-                         static_cast<std::size_t>(x)];
-      const Streak streak = {whole(velocity[0], input.scale[0]), whole(velocity[1], input.scale[1])};
+      const auto& velocity = frame.velocity[index_of(frame.width, x, y)];
+      const Streak streak = {units_of(velocity[0], input.scale[0]), units_of(velocity[1], input.scale[1])};
       const Range one = {streak, streak, streak};
       if (first) range = one;
       range.add(one);
@@ -88,13 +96,6 @@ Range range_of(const BlurInput& input, int tile_x, int tile_y) {
     }
   }
   return range.reach() < kUnits / 2 ? Range{} : range;
-}
-
-// pcg, one step.
-std::uint32_t hash(std::uint32_t value) {
-  const std::uint32_t state = value * 747796405u + 2891336453u;
-  const std::uint32_t word = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
-  return (word >> 22) ^ word;
 }
 
 struct Place {
@@ -108,7 +109,7 @@ int floor_divide(long value, long divisor) {
 }
 
 Place along(const BlurInput& input, Place from, Streak streak, int fraction) {
-  const long step = 256 * kUnits;
+  const long step = kSteps * kUnits;
   const auto axis = [&](int at, int units, int size) {
     return std::clamp(floor_divide(at * step + step / 2 + static_cast<long>(units) * fraction, step), 0,
                       size - 1);
@@ -122,10 +123,10 @@ bool moves_as(Streak streak, Streak expected) {
 }
 
 bool nearer(float a, float b) {
-  return a > b * 1.01f;
+  return a > b * kNearer;
 }
 
-// Where the colour that pixel p saw at a moment is now.
+// Where the surface that pixel p saw at a moment is now.
 Place place_seen(const BlurInput& input, const BlurTile& tile, Place p, int fraction) {
   const Seen own = seen_at(input, p.x, p.y);
   const Place passing = along(input, p, tile.longest, fraction);
@@ -184,12 +185,11 @@ Picture motion_blur(const BlurInput& input, const std::vector<Pixel>& resolved) 
     for (int x = 0; x < input.output_width; ++x) {
       const BlurTile& tile = tiles[static_cast<std::size_t>(y / kTile * columns + x / kTile)];
       const int samples = tile.kind == 0 ? 1 : tile.samples;
-      const int phase = static_cast<int>(
-          hash(hash(static_cast<std::uint32_t>(y) + hash(0)) + static_cast<std::uint32_t>(x)) >> 24);
+      const int phase = static_cast<int>(random_of(x, y, 0) >> 24);  // 1/256 of the time between two samples
       Pixel sum = {};
       double largest = 0;
       for (int k = 0; k < samples; ++k) {
-        const int fraction = (256 * k + phase) / samples;
+        const int fraction = (kSteps * k + phase) / samples;
         Place place = {x, y};
         if (tile.kind == 1) place = along(input, place, tile.longest, fraction);
         if (tile.kind == 2) place = place_seen(input, tile, place, fraction);

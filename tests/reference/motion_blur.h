@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the motion blur should give: places in whole numbers as the kernels define them, colours in double
-// precision.
+// motion_tiles, motion_neighbours and motion_blur: the specification. Places are whole numbers, as the kernels
+// define them, so that every device finds the same samples; colours are in double precision.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct BlurInput {
   std::array<float, 2> scale = {};
   int output_width = 0;
   int output_height = 0;
-  int most_samples = 8;
+  int most_samples = 8;  // of a pixel
 };
 
 struct BlurTile {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each pass should give, in double precision.
+// velocity_from_depth, resolve_quincunx, sharpen and present: the specification, in double precision.
 #pragma once
 
 #include <array>
@@ -15,26 +15,32 @@ struct CameraVelocity {
   double w_part;     // w of the previous position by its sum of magnitudes: small where terms cancel
 };
 
-// At each texel of the viewport. What was not before the previous camera (w <= 0) has 65504 twice.
+// velocity_from_depth: at each texel of the viewport. A surface that was not in front of the previous camera
+// (w <= 0) has a velocity of 65504 on both axes.
 std::vector<CameraVelocity> velocity_from_depth(const Frame& frame);
 
 enum class Weight { kMean, kVelocity };
 
-// out = (c0 + f c1) / (1 + f), f = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render
-// pixels of its own frame; c0, c1 by bilinear samples or, `nearest`, by one.
+// resolve_quincunx:
+//   out = (c0 + f c1) / (1 + f), f = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2))
+// v in render pixels of its own frame; c0, c1 bilinear or, with `nearest`, of the nearest sample. f is 0 where c1
+// or a velocity is not finite. Source: Binks, "Dynamic Resolution Rendering", 2012.
 Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight weight, bool nearest,
                          bool reactive, double k, int output_width, int output_height);
 
-// Each colour channel moves away from the mean of its four neighbours and stays in the range of the
-// five. `largest` is of all five.
+// sharpen: m the mean of a pixel's four neighbours, low and high the range of the five, S the sharpness,
+//   out = clamp(c + S g (c - m), low, high), g = (1 + |c|) / (1 + max(-low, high))
+// for red, green and blue each; alpha stays. `largest` is of all five. Neighbours are clamped to the edge.
+// Source: the cross of Lottes, AMD FidelityFX Contrast Adaptive Sharpening, 2019.
 Picture sharpen(const Picture& picture, double sharpness);
 
 enum class Curve { kClamp, kReinhard, kAces };
 
-// 255 * the sRGB encoding of tone-mapped colour, and 255 * alpha, before rounding.
-Pixel present_codes(const Pixel& resolved, Curve curve, double exposure);
+// present: 255 * the sRGB encoding of exposed, tone-mapped colour, and 255 * alpha, before it is rounded. kAces:
+// the fit of Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
+Pixel present(const Pixel& resolved, Curve curve, double exposure);
 
-// What the dither adds before truncation at a pixel, in [0, 1).
+// What the dither adds at a pixel before its codes are truncated, in [0, 1).
 double dither_offset(int x, int y);
 
 }  // namespace quincunx::reference

@@ -13,6 +13,17 @@ double sanitised(double value) {
   return value;
 }
 
+double texel_coordinate(int x, int output, int render, double jitter) {
+  return (x + 0.5) * render / output - 0.5 - jitter;
+}
+
+Between between_samples(double u, int size) {
+  if (size == 1) return {};
+  const double inside = std::clamp(u, 0.0, size - 1.0);
+  const int left = std::min(static_cast<int>(std::floor(inside)), size - 2);
+  return {left, left + 1, inside - left};
+}
+
 int nearest_texel(int x, int output, int render, double jitter) {
   const double position = (x + 0.5) * render / output;
   // Texels within two of the position are all that can be nearest.
@@ -29,8 +40,7 @@ int nearest_texel(int x, int output, int render, double jitter) {
 }
 
 std::array<Tap, 2> bilinear_taps(int x, int output, int render, double jitter) {
-  const double position = (x + 0.5) * render / output;
-  const double u = position - 0.5 - jitter;
+  const double u = texel_coordinate(x, output, render, jitter);
   const int left = static_cast<int>(std::floor(u));
   double right_weight = u - left;
   if (right_weight < 0x1p-25) right_weight = 0;
@@ -40,8 +50,11 @@ std::array<Tap, 2> bilinear_taps(int x, int output, int render, double jitter) {
 }
 
 const Pixel& texel_at(const Frame& frame, int x, int y) {
-  return frame.colour[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
-                      static_cast<std::size_t>(x)];
+  return frame.colour[index_of(frame.width, x, y)];
+}
+
+const Pixel& texel_clamped(const Frame& frame, int x, int y) {
+  return texel_at(frame, std::clamp(x, 0, frame.width - 1), std::clamp(y, 0, frame.height - 1));
 }
 
 void add(Sample& sample, const Pixel& texel, double weight) {
@@ -65,8 +78,7 @@ Sample sample_nearest(const Frame& frame, int x, int y, int output_width, int ou
 double reactive_at(const Frame& frame, int x, int y, int output_width, int output_height) {
   const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
   const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
-  return frame.reactive[static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
-                        static_cast<std::size_t>(column)];
+  return frame.reactive[index_of(frame.width, column, row)];
 }
 
 Sample sample_bilinear(const Frame& frame, int x, int y, int output_width, int output_height) {

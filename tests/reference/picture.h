@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Pictures of the references: plain double-precision values, one struct a pixel.
+// Frames and pictures of the references, and what several references need: where a pixel's centre lies among
+// the samples, and single samples.
 //
 // The references are scalar, direct and slow on purpose: they share no code with the kernels or their axis
 // tables.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace quincunx::reference {
 
-using Pixel = std::array<double, 4>;
+// Red, green, blue and alpha; linear, premultiplied.
+template <typename Real>
+using PixelOf = std::array<Real, 4>;
+using Pixel = PixelOf<double>;
+
+// Of element (x, y) among rows of `width` elements.
+inline std::size_t index_of(int width, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
 
 // One rendered frame as its viewport holds it: width * height values, row by row. NaN and infinities as they
 // are.
@@ -29,6 +39,8 @@ struct Frame {
 };
 
 const Pixel& texel_at(const Frame& frame, int x, int y);
+// Clamped to the edge.
+const Pixel& texel_clamped(const Frame& frame, int x, int y);
 
 struct Picture {
   int width = 0;
@@ -40,6 +52,17 @@ struct Picture {
 
 // NaN counts as 0, infinities as +-65504.
 double sanitised(double value);
+
+// Where the centre of output pixel x lies among the samples of an axis: at i it is that of texel i's sample.
+double texel_coordinate(int x, int output, int render, double jitter);
+
+// The samples on either side of a texel coordinate that is clamped to the edge, and how far it lies between.
+struct Between {
+  int left = 0;
+  int right = 0;
+  double fraction = 0;  // in [0, 1]
+};
+Between between_samples(double u, int size);
 
 // The texel whose sample lies nearest to output pixel x on an axis; of two equally near the lower one.
 int nearest_texel(int x, int output, int render, double jitter);
@@ -59,7 +82,7 @@ struct Sample {
   bool non_finite = false;
 };
 
-// The texel's sanitised colour, weighed; a weight of 0 leaves the sample as it is.
+// The texel's sanitised colour times a weight; a weight of 0 leaves the sample as it is.
 void add(Sample& sample, const Pixel& texel, double weight);
 
 // The reactive value of the nearest sample.

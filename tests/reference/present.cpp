@@ -9,7 +9,7 @@
 namespace quincunx::reference {
 namespace {
 
-// IEC 61966-2-1.
+// IEC 61966-2-1, 1999.
 double srgb(double linear) {
   return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
@@ -29,7 +29,7 @@ double tone_mapped(double x, Curve curve) {
 
 }  // namespace
 
-Pixel present_codes(const Pixel& resolved, Curve curve, double exposure) {
+Pixel present(const Pixel& resolved, Curve curve, double exposure) {
   Pixel codes = {};
   for (std::size_t c = 0; c < 3; ++c)
     codes[c] = 255 * srgb(tone_mapped(sanitised(resolved[c]) * exposure, curve));
@@ -38,7 +38,8 @@ Pixel present_codes(const Pixel& resolved, Curve curve, double exposure) {
 }
 
 double dither_offset(int x, int y) {
-  // The fractional part of x / g + y / g^2, where g^3 = g + 1, with 32 bits of each factor.
+  // The fractional part of x / g + y / g^2, where g^3 = g + 1, with 32 bits of each factor: the R2 sequence of
+  // Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences", 2018.
   const auto phase = static_cast<std::uint32_t>(static_cast<std::uint64_t>(x) * 3242174889u +
                                                 static_cast<std::uint64_t>(y) * 2447445414u);
   return static_cast<double>(phase >> 8) / 16777216.0;

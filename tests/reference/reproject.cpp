@@ -1,21 +1,41 @@
 // SPDX-License-Identifier: MIT
+// reproject: where what a sample shows was in the previous frame, and how far that is to be trusted. v, z:
+// velocity and depth of the sample; p: its place among the previous frame's samples if it stood still.
+//   (x, y)       -v in pixels of the previous frame
+//   trust        1 inside the previous viewport, 0 a pixel away from it ...
+//                ... times (1 - reactive) of both frames
+//                ... / (1 + K |v - v'|^2), v' the velocity of the previous frame there, both in render pixels
+//                ... 0 if all 2 x 2 previous depths are nearer than the sample: > 1.02 z + 2 |dz|
+//                ... times 1 - strength of the previous frame's motion edge there, if one of them is
+//   motion edge  the largest |v - v_neighbour| in 3 x 3, or the previous frame's there if that is larger
+// A depth is 1 / distance: the larger the nearer. |dz| takes on each axis the gentler side, so that thin
+// features hide nothing.
+// Source: found by measuring (docs/pipeline.md, tables of `reproject` and of the temporal upscaler).
 #include "reproject.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "motion_edge.h"
 
 namespace quincunx::reference {
 namespace {
 
-constexpr double kLargestMove = 65504;
-// Well above what single precision makes of a comparison, and far below what a scene shows.
-constexpr double kDoubt = 1e-5;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLargestMotion = 65504;  // pixels: beyond any viewport
+constexpr double kDepthTolerance = 1.02;  // times the sample's depth
+constexpr double kSlopeTolerance = 2;     // times the change of depth to the next sample
+// Texels around a place in which a reactive value takes trust, where pictures are accumulated: whatever a
+// pixel holds has come from that far. In this frame, and in the previous one.
+constexpr int kReactiveReach = 1;
+constexpr int kReactiveReachBefore = 2;
+constexpr double kReactiveUnit = 1. / 255;  // of the codes that reactive values are stored in
+
+// ---- Depth.
 
 double depth_at(const Frame& frame, int x, int y) {
-  return frame.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
-                     static_cast<std::size_t>(x)];
+  return frame.depth[index_of(frame.width, x, y)];
 }
 
 // -1 becomes 1, n becomes n - 2; in a viewport of one texel all become 0.
@@ -25,22 +45,28 @@ int reflected(int i, int size) {
   return i >= size ? 2 * (size - 1) - i : i;
 }
 
-double slope_at(const Frame& frame, int x, int y) {
-  const double centre = depth_at(frame, x, y);
-  const auto step = [&](int dx, int dy) {
+// A depth that is not finite does not count.
+template <typename Real>
+Real depth_slope(const Frame& frame, int x, int y) {
+  const auto difference = [&](int dx, int dy) {
     return std::abs(depth_at(frame, reflected(x + dx, frame.width), reflected(y + dy, frame.height)) -
-                    centre);
+                    depth_at(frame, x, y));
   };
-  return std::fmin(step(-1, 0), step(1, 0)) + std::fmin(step(0, -1), step(0, 1));
+  const Real across = std::fmin(difference(-1, 0), difference(1, 0));
+  const Real down = std::fmin(difference(0, -1), difference(0, 1));
+  return across + down;
 }
 
 struct DepthRange {
-  double least, most;
+  double least = 0;
+  double most = 0;
 };
 
-DepthRange depths_around(const Frame& frame, double at_x, double at_y) {
-  const int x = std::clamp(static_cast<int>(std::floor(at_x)), 0, std::max(frame.width - 2, 0));
-  const int y = std::clamp(static_cast<int>(std::floor(at_y)), 0, std::max(frame.height - 2, 0));
+// Of the 2 x 2 samples around a place in texel coordinates, clamped to the edge.
+template <typename Real>
+DepthRange depths_around(const Frame& frame, const std::array<Real, 2>& at) {
+  const int x = floor_within(at[0], 0, std::max(frame.width - 2, 0));
+  const int y = floor_within(at[1], 0, std::max(frame.height - 2, 0));
   const int right = std::min(x + 1, frame.width - 1);
   const int below = std::min(y + 1, frame.height - 1);
   const double upper_left = depth_at(frame, x, y), upper_right = depth_at(frame, right, y);
@@ -49,147 +75,143 @@ DepthRange depths_around(const Frame& frame, double at_x, double at_y) {
           std::fmax(std::fmax(upper_left, upper_right), std::fmax(lower_left, lower_right))};
 }
 
-// 1 inside the viewport, 0 a pixel away from it; `at` in texel coordinates.
-double inside(double at, double jitter, int size) {
-  const double from_edge = at + .5 + jitter;
-  return std::clamp(1 - std::max(-from_edge, from_edge - size), 0.0, 1.0);
+// ---- Places.
+
+struct Axis {
+  int size = 0, previous_size = 0;
+  double jitter = 0, previous_jitter = 0;
+};
+
+// The texel coordinate in the previous frame of sample i, if it stands still.
+template <typename Real>
+Real place_of_still(const Axis& axis, int i) {
+  const double step = static_cast<double>(axis.previous_size) / axis.size;
+  const double start = (.5 + axis.jitter) * step - .5 - axis.previous_jitter;
+  return i * Real(step) + start;
 }
 
-bool close_depths(double a, double b) {
-  return std::abs(a - b) <= kDoubt * (std::abs(a) + std::abs(b));
+// 1 inside the previous viewport, 0 a pixel away from it.
+template <typename Real>
+Real inside(const Real& at, const Axis& axis) {
+  const Real edge = -.5 - axis.previous_jitter;
+  return clamp(1 - max(edge - at, at - (edge + axis.previous_size)), 0, 1);
 }
 
-bool close_to_integer(double value, double doubt) {
-  return std::abs(value - std::nearbyint(value)) <= doubt;
-}
+// ---- What takes trust.
 
-// Index of the texel nearest to a place in texel coordinates.
-std::size_t nearest_at(const Frame& frame, double at_x, double at_y) {
-  const int x = std::clamp(static_cast<int>(std::floor(at_x + .5)), 0, frame.width - 1);
-  const int y = std::clamp(static_cast<int>(std::floor(at_y + .5)), 0, frame.height - 1);
-  return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
-}
-
-void apply_residual(Move& move, const Frame& current, const Frame& previous, std::size_t texel,
-                    std::size_t texel_before, double weight) {
-  const auto& v0 = current.velocity[texel];
-  const auto& v1 = previous.velocity[texel_before];
-  double squared = 0;
-  const int sizes[][2] = {{current.width, previous.width}, {current.height, previous.height}};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double now = std::sqrt(weight) * v0[axis] * current.velocity_scale[axis] * sizes[axis][0];
-    const double before = std::sqrt(weight) * v1[axis] * previous.velocity_scale[axis] * sizes[axis][1];
-    squared += (now - before) * (now - before);
-    move.speed += std::abs(now) + std::abs(before);
-  }
-  move.trust /= 1 + squared;
-  if (!std::isfinite(v1[0]) || !std::isfinite(v1[1])) move.trust = std::numeric_limits<double>::quiet_NaN();
-}
-
-// A neighbour whose difference is NaN does not count.
-double contrast_at(const Frame& current, const ReprojectOptions& options, int x, int y) {
-  const auto velocity_at = [&](int column, int row) {
-    return current.velocity[static_cast<std::size_t>(row) * static_cast<std::size_t>(current.width) +
-                            static_cast<std::size_t>(column)];
-  };
-  const auto& own = velocity_at(x, y);
-  double largest = 0;
-  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, current.height - 1); ++row) {
-    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, current.width - 1); ++column) {
-      const auto& other = velocity_at(column, row);
-      const double dx = (other[0] - own[0]) * current.velocity_scale[0] * options.output_width;
-      const double dy = (other[1] - own[1]) * current.velocity_scale[1] * options.output_height;
-      largest = std::fmax(largest, dx * dx + dy * dy);
-    }
-  }
-  return std::sqrt(std::min(largest, kLargestMove));
-}
-
-// Of the texels around (x, y), to `reach` on each side.
+// Of the texels up to `reach` away from (x, y): a code of 8 bits, 255 for 1.
 double largest_reactive(const Frame& frame, int x, int y, int reach) {
   double largest = 0;
   for (int row = std::max(y - reach, 0); row <= std::min(y + reach, frame.height - 1); ++row) {
     for (int column = std::max(x - reach, 0); column <= std::min(x + reach, frame.width - 1); ++column)
-      largest = std::max(largest, frame.reactive[static_cast<std::size_t>(row * frame.width + column)]);
+      largest = std::max(largest, frame.reactive[index_of(frame.width, column, row)]);
   }
-  return largest;
+  return std::nearbyint(255 * largest);
 }
 
-double reactive_trust(const Frame& current, const Frame& previous, bool around, int x, int y,
-                      std::size_t texel_before) {
-  const int before = static_cast<int>(texel_before);
-  if (!around) {
-    return (1 - current.reactive[static_cast<std::size_t>(y * current.width + x)]) *
-           (1 - previous.reactive[texel_before]);
-  }
-  return (1 - largest_reactive(current, x, y, 1)) *
-         (1 - largest_reactive(previous, before % previous.width, before / previous.width, 2));
+struct Velocity {
+  double x = 0;
+  double y = 0;
+
+  bool is_finite() const { return std::isfinite(x) && std::isfinite(y); }
+};
+
+Velocity velocity_at(const Frame& frame, int x, int y) {
+  const auto& velocity = frame.velocity[index_of(frame.width, x, y)];
+  return {velocity[0], velocity[1]};
 }
 
-// What is left of trust where something nearer was at an edge of motion.
-double left_by_edge(double contrast) {
-  const double t = std::clamp((contrast - .15) / .45, 0.0, 1.0);
-  return 1 - t * t * (3 - 2 * t);
+// K |v - v'|^2, each velocity in render pixels of its own frame.
+template <typename Real>
+Real squared_residual(const Frame& current, const Velocity& now, const Frame& previous,
+                      const Velocity& before, double weight) {
+  const double root = std::sqrt(weight);
+  const Real x = now.x * Real(root * current.velocity_scale[0] * current.width) -
+                 before.x * Real(root * previous.velocity_scale[0] * previous.width);
+  const Real y = now.y * Real(root * current.velocity_scale[1] * current.height) -
+                 before.y * Real(root * previous.velocity_scale[1] * previous.height);
+  return x * x + y * y;
 }
 
-Move move_of(const Frame& current, const Frame& previous, const ReprojectOptions& options, int x, int y) {
-  const auto texel =
-      static_cast<std::size_t>(y) * static_cast<std::size_t>(current.width) + static_cast<std::size_t>(x);
-  const double depth = current.depth[texel];
-  std::array<double, 2> velocity = current.velocity[texel];
-  const bool lost = !std::isfinite(velocity[0]) || !std::isfinite(velocity[1]) || !std::isfinite(depth);
-  if (lost) velocity = {0, 0};
-
-  Move move;
-  move.x = std::clamp(-velocity[0] * current.velocity_scale[0] * previous.width, -kLargestMove, kLargestMove);
-  move.y =
-      std::clamp(-velocity[1] * current.velocity_scale[1] * previous.height, -kLargestMove, kLargestMove);
-  const double still_x =
-      (x + .5 + current.jitter_x) / current.width * previous.width - .5 - previous.jitter_x;
-  const double still_y =
-      (y + .5 + current.jitter_y) / current.height * previous.height - .5 - previous.jitter_y;
-  const double at_x = still_x + move.x;
-  const double at_y = still_y + move.y;
-  move.reach = 2 + std::max(std::abs(still_x) + std::abs(move.x), std::abs(still_y) + std::abs(move.y));
-  move.trust =
-      inside(at_x, previous.jitter_x, previous.width) * inside(at_y, previous.jitter_y, previous.height);
-  const std::size_t texel_before = nearest_at(previous, at_x, at_y);
-  const bool accumulates = options.output_width > 0;
-  if (options.reactive) move.trust *= reactive_trust(current, previous, accumulates, x, y, texel_before);
-  if (options.residual_weight > 0)
-    apply_residual(move, current, previous, texel, texel_before, options.residual_weight);
-
-  const double limit = 1.02 * depth + 2 * slope_at(current, x, y);
-  const DepthRange before = depths_around(previous, at_x, at_y);
-  if (!(before.least <= limit) && !std::isnan(move.trust)) move.trust = 0;
-  const double earlier =
-      options.contrast_before.empty() ? 0 : std::fmax(options.contrast_before[texel_before], 0);
-  if (before.most > limit) move.trust *= left_by_edge(earlier);
-  if (lost) move.trust = std::numeric_limits<double>::quiet_NaN();
-  if (accumulates) {
-    move.contrast = contrast_at(current, options, x, y);
-    if (earlier > 0 && std::abs(earlier - move.contrast) <= kDoubt * earlier) move.undecided = true;
-    if (earlier > move.contrast) move.contrast = -earlier;
+// Output pixels a frame. A neighbour whose difference is NaN does not count.
+template <typename Real>
+Real motion_edge_at(const Frame& frame, const ReprojectOptions& options, int x, int y) {
+  const Velocity own = velocity_at(frame, x, y);
+  Real largest = 0;
+  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, frame.height - 1); ++row) {
+    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, frame.width - 1); ++column) {
+      const Velocity other = velocity_at(frame, column, row);
+      if (std::isnan(other.x - own.x) || std::isnan(other.y - own.y)) continue;
+      const Real dx = (Real(other.x) - own.x) * (frame.velocity_scale[0] * options.output_width);
+      const Real dy = (Real(other.y) - own.y) * (frame.velocity_scale[1] * options.output_height);
+      largest = max(largest, dx * dx + dy * dy);
+    }
   }
-
-  const double doubt = kDoubt * move.reach;
-  // The nearest texel changes half-way between two.
-  const double steps = options.residual_weight > 0 || options.reactive || accumulates ? 2 : 1;
-  move.undecided = move.undecided || close_to_integer(at_x * steps, doubt) ||
-                   close_to_integer(at_y * steps, doubt) || close_depths(before.least, limit) ||
-                   (accumulates && close_depths(before.most, limit));
-  return move;
+  return sqrt(min(largest, kLargestMotion));
 }
 
 }  // namespace
 
-std::vector<Move> reproject(const Frame& current, const Frame& previous, const ReprojectOptions& options) {
-  std::vector<Move> moves;
-  for (int y = 0; y < current.height; ++y) {
-    for (int x = 0; x < current.width; ++x)
-      moves.push_back(move_of(current, previous, options, x, y));
+template <typename Real>
+ReprojectionOf<Real> reproject(const Frame& current, const Frame& previous, const ReprojectOptions& options,
+                               int x, int y) {
+  const bool accumulates = options.output_width > 0;
+  const double depth = depth_at(current, x, y);
+  const Velocity velocity = velocity_at(current, x, y);
+  bool is_lost = !velocity.is_finite() || !std::isfinite(depth);
+  const Velocity known = is_lost ? Velocity{} : velocity;
+
+  const Axis columns = {current.width, previous.width, current.jitter_x, previous.jitter_x};
+  const Axis rows = {current.height, previous.height, current.jitter_y, previous.jitter_y};
+  ReprojectionOf<Real> result;
+  result.x =
+      clamp(-known.x * Real(current.velocity_scale[0] * previous.width), -kLargestMotion, kLargestMotion);
+  result.y =
+      clamp(-known.y * Real(current.velocity_scale[1] * previous.height), -kLargestMotion, kLargestMotion);
+  const std::array<Real, 2> at = {place_of_still<Real>(columns, x) + result.x,
+                                  place_of_still<Real>(rows, y) + result.y};
+  result.trust = inside(at[0], columns) * inside(at[1], rows);
+
+  // The previous frame's sample that is nearest to the place.
+  int before_x = 0;
+  int before_y = 0;
+  if (options.reactive || options.residual_weight > 0 || accumulates) {
+    before_x = floor_within(at[0] + .5, 0, previous.width - 1);
+    before_y = floor_within(at[1] + .5, 0, previous.height - 1);
   }
-  return moves;
+  if (options.reactive) {
+    const Real now = largest_reactive(current, x, y, accumulates ? kReactiveReach : 0);
+    const Real before =
+        largest_reactive(previous, before_x, before_y, accumulates ? kReactiveReachBefore : 0);
+    result.trust *= (1 - now * kReactiveUnit) * (1 - before * kReactiveUnit);
+  }
+  if (options.residual_weight > 0) {
+    const Velocity before = velocity_at(previous, before_x, before_y);
+    is_lost = is_lost || !before.is_finite();
+    if (!is_lost)
+      result.trust /=
+          1 + squared_residual<Real>(current, velocity, previous, before, options.residual_weight);
+  }
+
+  // Depths that are larger are nearer than the sample.
+  const Real limit = kDepthTolerance * Real(depth) + kSlopeTolerance * depth_slope<Real>(current, x, y);
+  const DepthRange depths = depths_around(previous, at);
+  const double edge_before =
+      options.motion_edges_before.empty()
+          ? 0
+          : std::fmax(options.motion_edges_before[index_of(previous.width, before_x, before_y)], 0);
+  if (!(depths.least <= limit)) result.trust = 0;
+  if (accumulates && depths.most > limit) result.trust *= 1 - motion_edge_strength(Real(edge_before));
+  if (is_lost) result.trust = kNan;
+
+  if (accumulates) {
+    result.motion_edge = motion_edge_at<Real>(current, options, x, y);
+    if (edge_before > 0 && edge_before > result.motion_edge) result.motion_edge = -edge_before;
+  }
+  return result;
 }
+
+template ReprojectionOf<double> reproject(const Frame&, const Frame&, const ReprojectOptions&, int, int);
+template ReprojectionOf<Bounded> reproject(const Frame&, const Frame&, const ReprojectOptions&, int, int);
 
 }  // namespace quincunx::reference

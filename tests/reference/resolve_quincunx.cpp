@@ -18,9 +18,7 @@ Speed speed_at(const Frame& frame, Weight weight, double k, int x, int y, int ou
   if (weight == Weight::kMean) return {};
   const int column = nearest_texel(x, output_width, frame.width, frame.jitter_x);
   const int row = nearest_texel(y, output_height, frame.height, frame.jitter_y);
-  const auto texel = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame.width) +
-                     static_cast<std::size_t>(column);
-  const std::array<double, 2> stored = frame.velocity[texel];
+  const std::array<double, 2> stored = frame.velocity[index_of(frame.width, column, row)];
   const std::array<double, 2> velocity = {stored[0] * frame.velocity_scale[0],
                                           stored[1] * frame.velocity_scale[1]};
   Speed speed;

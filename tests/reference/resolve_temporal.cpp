@@ -1,330 +1,414 @@
 // SPDX-License-Identifier: MIT
+// resolve_temporal: what one output pixel's history becomes with this frame. p: the pixel's centre, R: the
+// phase of its tile, s: the sample nearest to p + R, m and W: colour and confidence of history.
+//   fetch history     m, W at the place that s moved from; k, how far that lies between texels
+//   limit confidence  W <- min(W, 32); W <- W / (1 + .2 k W), and at most 8 where k > .01;
+//                     W <- min(W, trust / (1 + 1/32 - trust)); W <- W / (1 + 4 e W),
+//                     e = smooth_step(motion edge, .1, 1)
+//   reject            d = max(1 - trust, strength of the motion edge, rejection of the tile)
+//   relight           m <- gain m
+//   rectify           where d > 0: m moves by d of the way into mean +- .75 standard deviations of a cross of
+//                     five samples, as c / (1 + max c); W <- W (1 - d min(1, distance / (deviation + .02)))
+//   reseed            where W < .15: f = 1 - W / .15; m <- m + f (Gaussian of 3 x 3 samples - m); W <- .15
+//   accumulate        m <- m + (s - m) w / (W + w + .85 f); W <- min(W + w, 32);
+//                     w = (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2), d the distance of s
+// Source: accumulation and rectification after Karis, "High-Quality Temporal Supersampling", 2014, and AMD
+// FidelityFX Super Resolution 2.2.1; the rest found by measuring (docs/pipeline.md, whose dB are cited here).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "history_sampling.h"
+#include "motion_edge.h"
 
 namespace quincunx::reference {
 namespace {
 
-constexpr double kMost = 32;          // confidence that is ever kept
-constexpr double kMostResampled = 8;  // and once resampled
-constexpr double kStart = .15;        // confidence of what a frame alone shows
-constexpr double kReach = 1.05;       // output pixels, from where on a sample counts nothing
-constexpr double kLeastReach = .85;   // in a still tile
-constexpr double kBoxSize = .75;      // standard deviations
-constexpr double kFalloff = 2.5;      // of the Gaussian: 1 / (2 sigma^2), samples
-constexpr double kSameMotion = .15;   // output pixels a frame
-constexpr double kInertia = .85;      // of a Gaussian alone
-constexpr double kBoxMargin = .02;    // of confidence
+// Confidence, in weights of samples: what is ever kept (about 140 frames at scale .5), and once resampled.
+constexpr double kMostConfidence = 32;
+constexpr double kMostResampled = 8;
+// Of confidence, for each resampling midway between texels; .2 instead of .3 is worth .05 dB.
+constexpr double kResamplingCost = .2;
+// Part of the way between texels, from which on history counts as resampled.
+constexpr double kResampledFrom = .01;
+// Output pixels of a motion edge that begin to cost confidence, and that cost most; 4 instead of 2 as the cost
+// leaves fewer ghosts: pixels above 2/255 on a texture fall from .052 to .033 %.
+constexpr double kMotionEdgeCostsFrom = .1;
+constexpr double kMotionEdgeCostsMost = 1;
+constexpr double kMotionEdgeCost = 4;
+// Half the size of the box that history is clamped to, in standard deviations of the samples in a cross.
+constexpr double kBoxSize = .75;
+// Tone-mapped colour: added to the box's size where a distance is compared with it.
+constexpr double kBoxMargin = .02;
+constexpr double kLeastRest = 0x1p-16;  // of 1 - tone, against a division by 0 on the way back
+// Confidence below which history is reseeded, and which the seed of a single frame has.
+constexpr double kReseedBelow = .15;
+// Of a whole seed against its first sample, in weights of samples: worth .01 dB, .05 to .1 in first frames.
+constexpr double kSeedInertia = .85;
+// 1 / (2 sigma^2) of the seed's Gaussian, sigma = .45 samples.
+constexpr double kSeedFalloff = 2.5;
+// Output pixels a frame by which the motion of one surface's samples differs: ghosts .17 -> .06 at most.
+constexpr double kSameMotion = .15;
+constexpr double kLeastSimilarity = 0x1p-10;  // so that a seed exists where all samples differ
+// Output pixels from which on a sample has no weight, and the same in still tiles as W grows: 1.2 dB on still
+// pictures.
+constexpr double kReach = 1.05;
+constexpr double kLeastReach = .85;
+constexpr double kNarrowing = .1;       // for each unit of confidence
+constexpr double kLeastWeight = 1e-30;  // against a division by 0
 
-struct Place {
-  int nearest = 0;  // sample
-  Bounded past;     // how far the place lies past it, in samples
-  Bounded at;       // the place, held among the samples
+// ---- Reproject: the sample that an output pixel looks at.
+
+// On one axis, with distances in samples.
+template <typename Real>
+struct Nearest {
+  int sample = 0;
+  Real past = 0;  // from the sample to p + R, which may lie beyond the outermost sample
+  int left = 0;   // the samples on either side of p + R, clamped to the edge ...
+  int right = 0;
+  Real fraction = 0;  // ... and how far it lies between them
 };
 
-// Where an output pixel's picture lies among the samples; of what lies outside the nearest is the outermost.
-Place place_of(int x, int output, int render, double jitter, const Bounded& offset, bool& undecided) {
-  const double u = (x + .5) * render / output - .5 - jitter;
-  const double whole = std::floor(u);
-  const Bounded sum = rounded(u - whole) + offset / rounded(static_cast<double>(output) / render);
-  const Bounded place{sum.value + whole, sum.error};
-  const Bounded at = clamp(place, 0, render - 1);
-  const int nearest = decide(
-      at, [](double held) { return static_cast<int>(std::ceil(held - .5)); }, undecided);
-  return {nearest, place - nearest, at};
+template <typename Real>
+Nearest<Real> nearest_sample(int x, int output, int render, double jitter, double phase) {
+  const double u = texel_coordinate(x, output, render, jitter);
+  const int texel = static_cast<int>(std::floor(u));
+  const Real at = u - texel + phase / Real(static_cast<double>(output) / render);  // from that texel on
+  const int last = render - 1;
+  Nearest<Real> nearest;
+  nearest.sample = texel + round_down_within(at, -texel, last - texel);
+  nearest.past = at - (nearest.sample - texel);
+  nearest.left = texel + floor_within(at, -texel, std::max(last - 1, 0) - texel);
+  nearest.right = std::min(nearest.left + 1, last);
+  nearest.fraction = clamp(at - (nearest.left - texel), 0, nearest.right - nearest.left);
+  return nearest;
 }
 
-Bounded smooth_step(const Bounded& x, double low, double high) {
-  const Bounded t = clamp((x - rounded(low)) * rounded(1 / (high - low)), 0, 1);
-  return t * t * (Bounded(3) - Bounded(2) * t);
+template <typename Real>
+struct Neighbourhood {
+  Nearest<Real> x, y;
+};
+
+// ---- Trust in history, by what reproject found.
+
+// Of a sample without velocity or depth there is none.
+double known_trust(const Reprojection& sample) {
+  return std::isnan(sample.trust) ? 0 : std::max(sample.trust, 0.0);
 }
 
-Bounded largest_colour(const BoundedPixel& c) {
-  return max(max(c[0], c[1]), max(c[2], 0));
+template <typename Real>
+Real trust_between_samples(const TemporalInputs& in, const Neighbourhood<Real>& near) {
+  const auto trust = [&](int x, int y) { return Real(known_trust(in.reprojection_at(x, y))); };
+  const Real& fx = near.x.fraction;
+  const Real& fy = near.y.fraction;
+  const Real above = trust(near.x.left, near.y.left) * (1 - fx) + trust(near.x.right, near.y.left) * fx;
+  const Real below = trust(near.x.left, near.y.right) * (1 - fx) + trust(near.x.right, near.y.right) * fx;
+  return above * (1 - fy) + below * fy;
 }
 
-const Pixel& sample_at(const Frame& frame, int x, int y) {
-  return texel_at(frame, std::clamp(x, 0, frame.width - 1), std::clamp(y, 0, frame.height - 1));
-}
-
-// How far the sample (x, y) may show the same surface as the sample (own_x, own_y), by its motion.
-Bounded similarity(const TemporalInputs& in, int own_x, int own_y, int x, int y) {
-  if (in.moves.empty()) return 1;
-  const Move& own = in.move_of(own_x, own_y);
-  const Move& other = in.move_of(std::clamp(x, 0, in.frame.width - 1), std::clamp(y, 0, in.frame.height - 1));
-  const auto apart = [&](double from, double to, int axis) {
-    return (Bounded(to) - Bounded(from)) * rounded(in.move_scale(axis)) * (Bounded(1) / rounded(kSameMotion));
+// Where nothing moves only reactive values of both frames take trust.
+template <typename Real>
+Real trust_of_still(const TemporalInputs& in, int x, int y) {
+  if (in.frame.reactive.empty()) return 1;
+  const auto before = [](int sample, int size, int size_before) {
+    return truncate_within((sample + Real(.5)) * (static_cast<double>(size_before) / size), 0,
+                           size_before - 1);
   };
-  const Bounded across = apart(own.x, other.x, 0);
-  const Bounded down = apart(own.y, other.y, 1);
-  return max(Bounded(1) - across * across - down * down, 0x1p-10);
+  const int column = before(x, in.frame.width, in.previous_width);
+  const int row = before(y, in.frame.height, in.previous_height);
+  const Real now = in.frame.reactive[index_of(in.frame.width, x, y)];
+  const Real then = in.reactive_before[index_of(in.previous_width, column, row)];
+  return (1 - now) * (1 - then);
 }
 
-struct Pixels {
-  BoundedPixel colour;  // of history; its fourth is not used
-  Bounded confidence;
-  Bounded doubt;
-  Bounded inertia;  // of what began anew, against this frame's sample
+template <typename Real>
+Real trust_at(const TemporalInputs& in, const TemporalOptions& options, const Neighbourhood<Real>& near) {
+  if (in.reprojections.empty()) return trust_of_still<Real>(in, near.x.sample, near.y.sample);
+  if (options.bilinear_trust) return trust_between_samples(in, near);
+  return known_trust(in.reprojection_at(near.x.sample, near.y.sample));
+}
+
+// ---- What is known of a pixel.
+
+template <typename Real>
+struct Known {
+  PixelOf<Real> colour;  // of history; the fourth channel is not used
+  Real confidence;
+  Real rejection;    // in [0, 1]
+  Real inertia = 0;  // of a seed, against this frame's sample
 };
 
-Bounded most_confidence(const Bounded& trust) {
-  return trust / (Bounded(1 + 1 / kMost) - trust);
+// What a trust in [0, 1] leaves: 32 of a whole one, 1 of a half, 0 of none.
+template <typename Real>
+Real most_confidence(const Real& trust) {
+  return trust / (1 + 1 / kMostConfidence - trust);
 }
 
-Bounded weigh(const Taken& taken, const Bounded& trust, const Bounded& contrast, bool& undecided) {
-  Bounded w = clamp(taken.value[3], 0, kMost);
-  w = w / (Bounded(1) + rounded(.2) * taken.between * w);
-  if (less(rounded(.01), taken.between, undecided)) w = min(w, kMostResampled);
+template <typename Real>
+Real limit_confidence(const FetchedHistory<Real>& history, const Real& trust, double motion_edge) {
+  Real w = clamp(history.texel[3], 0, kMostConfidence);
+  w = w / (1 + kResamplingCost * history.between * w);
+  if (history.between > kResampledFrom) w = min(w, kMostResampled);
   w = min(w, most_confidence(trust));
-  return w / (Bounded(1) + Bounded(4) * smooth_step(contrast, .1, 1) * w);
+  const Real edge = smooth_step(Real(motion_edge), kMotionEdgeCostsFrom, kMotionEdgeCostsMost);
+  return w / (1 + kMotionEdgeCost * edge * w);
 }
 
-// Between tiles: on a row linear between the means of neighbours at their common edge, over rows between
-// middles.
-Bounded between_tiles(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y,
-                      Bounded Tile::*what) {
+// ---- Relight and reject: what temporal_light found in the tiles around.
+
+// On a row linear between the means of two tiles at their common edge, over rows between the tiles' middles.
+template <typename Real>
+Real between_tiles(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y,
+                   double TileLight::*what) {
   const auto edge = [&](int column, int row) {
     const auto tile = [&](int i) {
-      return tiles[static_cast<std::size_t>(row * in.tiles_x() + std::clamp(i, 0, in.tiles_x() - 1))].*what;
+      return Real(tiles[index_of(in.tiles_x(), std::clamp(i, 0, in.tiles_x() - 1), row)].light.*what);
     };
-    return Bounded(.5) * (tile(column - 1) + tile(column));
+    return .5 * (tile(column - 1) + tile(column));
   };
   const int middle = y - kTile / 2;
   const int above = std::max(middle, 0) / kTile;
   const int below = std::min(above + 1, in.tiles_y() - 1);
-  const Bounded down = middle < 0 ? 0 : (middle % kTile + .5) / kTile;
+  const double down = middle < 0 ? 0 : (middle % kTile + .5) / kTile;
+  const double along = (x % kTile + .5) / kTile;
   const auto at_edge = [&](int column) {
-    const Bounded upper = edge(column, above);
+    const Real upper = edge(column, above);
     return upper + (edge(column, below) - upper) * down;
   };
-  const Bounded left = at_edge(x / kTile);
-  const Bounded along = (x % kTile + .5) / kTile;
+  const Real left = at_edge(x / kTile);
   return left + (at_edge(x / kTile + 1) - left) * along;
 }
 
-BoundedPixel to_tone(const BoundedPixel& colour) {
-  const Bounded scale = Bounded(1) + largest_colour(colour);
+template <typename Real>
+void relight(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, Known<Real>& known) {
+  const auto gain = between_tiles<Real>(in, tiles, x, y, &TileLight::gain);
+  for (Real& value : known.colour)
+    value *= gain;
+}
+
+template <typename Real>
+void reject(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, Known<Real>& known) {
+  const auto rejection = between_tiles<Real>(in, tiles, x, y, &TileLight::rejection);
+  known.rejection = max(known.rejection, rejection);
+  known.confidence = min(known.confidence, most_confidence(1 - rejection));
+}
+
+// ---- Rectify.
+
+template <typename Real>
+Real brightest(const PixelOf<Real>& c) {
+  return max(max(c[0], c[1]), max(c[2], 0));
+}
+
+// Differences as the eye has them, rather than as light.
+template <typename Real>
+PixelOf<Real> to_tone(const PixelOf<Real>& colour) {
+  const Real scale = 1 + brightest(colour);
   return {colour[0] / scale, colour[1] / scale, colour[2] / scale, 0};
 }
 
+template <typename Real>
+PixelOf<Real> from_tone(const PixelOf<Real>& tone) {
+  const Real rest = max(1 - brightest(tone), kLeastRest);
+  return {tone[0] / rest, tone[1] / rest, tone[2] / rest, 0};
+}
+
+// What the samples around a pixel allow, in tone space.
+template <typename Real>
 struct Box {
-  BoundedPixel mean, deviation;
-  bool any = false;
+  PixelOf<Real> mean = {};
+  PixelOf<Real> deviation = {};  // times kBoxSize
+  bool is_known = false;         // there is a valid sample
 };
 
-Box box_at(const Frame& frame, int x, int y) {
+// Of the sample (x, y) and its four neighbours.
+template <typename Real>
+Box<Real> box_around(const Frame& frame, int x, int y) {
   const int cross[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
-  Box box;
-  BoundedPixel first, sum, squares;
-  double count = 0;
+  // Sums of the differences to the first sample: their squares lose no digits.
+  PixelOf<Real> first = {}, sum = {}, squares = {};
+  int count = 0;
   for (const auto& step : cross) {
-    const Pixel& sample = sample_at(frame, x + step[0], y + step[1]);
+    const Pixel& sample = texel_clamped(frame, x + step[0], y + step[1]);
     if (!is_valid(sample)) continue;
-    const BoundedPixel tone = to_tone(exact(sample));
+    const PixelOf<Real> tone = to_tone(as<Real>(sample));
     if (count == 0) first = tone;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Bounded difference = count == 0 ? Bounded(0) : tone[c] - first[c];
-      sum[c] = sum[c] + difference;
-      squares[c] = squares[c] + difference * difference;
+    for (std::size_t c = 0; c < 3 && count > 0; ++c) {
+      const Real difference = tone[c] - first[c];
+      sum[c] += difference;
+      squares[c] += difference * difference;
     }
     ++count;
   }
-  box.any = count > 0;
-  for (std::size_t c = 0; c < 3 && box.any; ++c) {
-    const Bounded mean = sum[c] / count;
+  Box<Real> box;
+  box.is_known = count > 0;
+  for (std::size_t c = 0; c < 3 && count > 0; ++c) {
+    const Real mean = sum[c] / count;
     box.mean[c] = first[c] + mean;
-    box.deviation[c] = Bounded(kBoxSize) * sqrt(max(squares[c] / count - mean * mean, 0));
+    box.deviation[c] = kBoxSize * sqrt(max(squares[c] / count - mean * mean, 0));
   }
   return box;
 }
 
 // Towards what the surroundings allow; confidence falls by how wrong history was.
-void rectify(Pixels& pixel, const Box& box) {
-  if (!box.any) return;
-  BoundedPixel tone = to_tone(pixel.colour);
-  Bounded distance = 0;
-  Bounded spread = 0;
-  bool stays = true;
+template <typename Real>
+void rectify(const Box<Real>& box, Known<Real>& known) {
+  if (!box.is_known) return;
+  PixelOf<Real> tone = to_tone(known.colour);
+  Real distance = 0;
+  Real spread = 0;
+  bool is_outside = false;
   for (std::size_t c = 0; c < 3; ++c) {
-    const Bounded low = box.mean[c] - box.deviation[c];
-    const Bounded high = box.mean[c] + box.deviation[c];
-    spread = spread + box.deviation[c];
-    bool unsure = false;
-    if (!less(tone[c], low, unsure) && !less(high, tone[c], unsure) && !unsure) continue;
-    stays = false;
-    const Bounded step = clamp(tone[c], low, high) - tone[c];
-    distance = distance + abs(step);
-    tone[c] = tone[c] + step * pixel.doubt;
+    const Real low = box.mean[c] - box.deviation[c];
+    const Real high = box.mean[c] + box.deviation[c];
+    spread += box.deviation[c];
+    if (seamless(tone[c] < low) || seamless(tone[c] > high)) {
+      const Real step = clamp(tone[c], low, high) - tone[c];
+      distance += abs(step);
+      tone[c] += step * known.rejection;
+      is_outside = true;
+    }
   }
-  const Bounded wrong = min(1, distance / (spread + rounded(kBoxMargin)));
-  pixel.confidence = pixel.confidence * (Bounded(1) - pixel.doubt * wrong);
-  if (stays) return;
-  const Bounded rest = max(Bounded(1) - largest_colour(tone), 0x1p-16);
-  for (std::size_t c = 0; c < 3; ++c)
-    pixel.colour[c] = tone[c] / rest;
+  known.confidence *= 1 - known.rejection * min(1, distance / (spread + kBoxMargin));
+  if (is_outside) known.colour = from_tone(tone);
 }
 
-struct Smooth {
-  BoundedPixel colour;
-  bool any = false;  // valid sample is near enough
+// ---- Reseed.
+
+// In (0, 1]: how far another sample may show the surface of `own`, by its motion. Those of another surface
+// would stay as a ghost when it has moved on.
+template <typename Real>
+Real similarity(const TemporalInputs& in, int own_x, int own_y, int x, int y) {
+  if (in.reprojections.empty()) return 1;
+  const Reprojection& own = in.reprojection_at(own_x, own_y);
+  const Reprojection& other =
+      in.reprojection_at(std::clamp(x, 0, in.frame.width - 1), std::clamp(y, 0, in.frame.height - 1));
+  const Real dx = (Real(other.x) - own.x) * in.reprojection_scale(0) / kSameMotion;
+  const Real dy = (Real(other.y) - own.y) * in.reprojection_scale(1) / kSameMotion;
+  return max(1 - dx * dx - dy * dy, kLeastSimilarity);
+}
+
+// A sample's weight times its luma weight 1 / max(1, brightest / 2): one sample shall not outshine the others.
+template <typename Real>
+Real luma_weighted(const Real& weight, const Pixel& sample) {
+  return weight / max(1, .5 * brightest(as<Real>(sample)));
+}
+
+template <typename Real>
+struct Seed {
+  PixelOf<Real> colour = {};
+  bool is_known = false;  // a valid sample is near enough
 };
 
-// A Gaussian of the frame's samples that move alike.
-Smooth smooth_at(const TemporalInputs& in, const Place& column, const Place& row, bool& undecided) {
-  BoundedPixel sum, stand_in;
-  Bounded weights = 0;
-  Smooth smooth;
-  for (int i = 0; i < 9; ++i) {
-    const int dx = i % 3 - 1;
-    const int dy = i / 3 - 1;
-    const int x = column.nearest + dx;
-    const int y = row.nearest + dy;
-    const Pixel& sample = sample_at(in.frame, x, y);
-    if (!is_valid(sample)) {
+// The Gaussian of those of the 3 x 3 samples that move alike. Without any valid one, the mean of what stands
+// in for them.
+template <typename Real>
+Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
+  PixelOf<Real> sum = {}, stand_in = {};
+  Real weights = 0;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const int x = near.x.sample + dx;
+      const int y = near.y.sample + dy;
+      const Pixel& sample = texel_clamped(in.frame, x, y);
+      if (!is_valid(sample)) {
+        for (std::size_t c = 0; c < 3; ++c)
+          stand_in[c] += Real(sanitised(sample[c])) * (1. / 9);
+        continue;
+      }
+      const Real across = dx - near.x.past;
+      const Real down = dy - near.y.past;
+      const Real gaussian = bell((across * across + down * down) * kSeedFalloff);
+      const Real weight =
+          luma_weighted(gaussian, sample) * similarity<Real>(in, near.x.sample, near.y.sample, x, y);
+      weights += weight;
       for (std::size_t c = 0; c < 3; ++c)
-        stand_in[c] = stand_in[c] + Bounded(sanitised(sample[c])) * rounded(1. / 9);
-      continue;
+        sum[c] += sample[c] * weight;
     }
-    const Bounded across = Bounded(dx) - column.past;
-    const Bounded down = Bounded(dy) - row.past;
-    const Bounded near = bell((across * across + down * down) * kFalloff);
-    const Bounded weight = near / max(1, Bounded(.5) * largest_colour(exact(sample))) *
-                           similarity(in, column.nearest, row.nearest, x, y);
-    weights = weights + weight;
-    for (std::size_t c = 0; c < 3; ++c)
-      sum[c] = sum[c] + Bounded(sample[c]) * weight;
   }
-  smooth.any = less(0, weights, undecided);
+  Seed<Real> seed;
+  seed.is_known = weights > 0;
   for (std::size_t c = 0; c < 3; ++c)
-    smooth.colour[c] = smooth.any ? sum[c] / weights : stand_in[c];
-  return smooth;
+    seed.colour[c] = seed.is_known ? sum[c] / weights : stand_in[c];
+  return seed;
 }
 
-// The less confident, the more of a Gaussian of the frame.
-void start(Pixels& pixel, const TemporalInputs& in, const Place& column, const Place& row, bool& undecided) {
-  if (pixel.confidence.value - pixel.confidence.error >= kStart) return;
-  const Smooth smooth = smooth_at(in, column, row, undecided);
-  const Bounded share = max(Bounded(1) - pixel.confidence / rounded(kStart), 0);
+// The less is known, the more of the seed.
+template <typename Real>
+void reseed(const TemporalInputs& in, const Neighbourhood<Real>& near, Known<Real>& known) {
+  if (!seamless(known.confidence < kReseedBelow)) return;
+  const Seed<Real> seed = seed_at(in, near);
+  const Real share = max(1 - known.confidence / kReseedBelow, 0);
   for (std::size_t c = 0; c < 3; ++c)
-    pixel.colour[c] = pixel.colour[c] + (smooth.colour[c] - pixel.colour[c]) * share;
-  pixel.inertia = rounded(kInertia) * share;
-  if (!smooth.any) less(pixel.confidence, rounded(kStart), undecided);
-  pixel.confidence = smooth.any ? max(pixel.confidence, rounded(kStart)) : Bounded(0);
+    known.colour[c] += (seed.colour[c] - known.colour[c]) * share;
+  known.inertia = kSeedInertia * share;
+  if (seed.is_known)
+    known.confidence = max(known.confidence, kReseedBelow);
+  else if (known.confidence < kReseedBelow)
+    known.confidence = 0;
 }
 
-HistoryTexel add_sample(const Pixels& pixel, const Pixel& sample, bool still,
-                        const std::array<Bounded, 2>& away) {
-  HistoryTexel texel;
-  Bounded weight = 0;
-  if (is_valid(sample)) {
-    const Bounded reach =
-        still ? max(rounded(kReach) - rounded(.1) * pixel.confidence, rounded(kLeastReach)) : rounded(kReach);
-    const Bounded near = max(Bounded(1) - (away[0] * away[0] + away[1] * away[1]) / (reach * reach), 0);
-    weight = near * near / max(1, Bounded(.5) * largest_colour(exact(sample)));
-  }
-  const Bounded total = pixel.confidence + weight;
-  const Bounded part =
-      weight.value == 0 && weight.error == 0 ? Bounded(0) : weight / max(total + pixel.inertia, 1e-30);
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Bounded& before = pixel.colour[c];
-    texel.value[c] = is_valid(sample) ? before + (Bounded(sample[c]) - before) * part : before;
-  }
-  texel.value[3] = min(total, kMost);
+// ---- Accumulate.
+
+// Of a sample `dx` and `dy` output pixels away.
+template <typename Real>
+Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, bool is_still,
+                   const Real& confidence) {
+  const Real reach = is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
+  const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
+  return luma_weighted<Real>(near * near, sample);
+}
+
+template <typename Real>
+PixelOf<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Real& weight) {
+  PixelOf<Real> texel = known.colour;
+  const Real total = known.confidence + weight;
+  const Real share = weight / max(total + known.inertia, kLeastWeight);
+  for (std::size_t c = 0; c < 3 && is_valid(sample); ++c)
+    texel[c] += (sample[c] - texel[c]) * share;
+  texel[3] = min(total, kMostConfidence);
   return texel;
 }
 
-double known_trust(const Move& move) {
-  return std::isnan(move.trust) ? 0 : std::max(move.trust, 0.0);
-}
-
-// Between samples.
-Bounded trust_between(const TemporalInputs& in, const Bounded& at_x, const Bounded& at_y) {
-  const int x = std::clamp(static_cast<int>(std::floor(at_x.value)), 0, std::max(in.frame.width - 2, 0));
-  const int y = std::clamp(static_cast<int>(std::floor(at_y.value)), 0, std::max(in.frame.height - 2, 0));
-  const int right = std::min(x + 1, in.frame.width - 1);
-  const int below = std::min(y + 1, in.frame.height - 1);
-  const Bounded fx = at_x - x;
-  const Bounded fy = at_y - y;
-  const auto on_row = [&](int row) {
-    return Bounded(known_trust(in.move_of(x, row))) * (Bounded(1) - fx) +
-           Bounded(known_trust(in.move_of(right, row))) * fx;
-  };
-  return on_row(y) * (Bounded(1) - fy) + on_row(below) * fy;
-}
-
-// Of the still sample (x, y), by the reactive values of both frames.
-Bounded trust_of_still(const TemporalInputs& in, int x, int y, bool& undecided) {
-  if (in.frame.reactive.empty()) return 1;
-  const auto before = [&](int sample, int size, int size_before) {
-    return decide((Bounded(sample) + .5) * rounded(static_cast<double>(size_before) / size),
-                  [&](double at) { return std::min(static_cast<int>(at), size_before - 1); }, undecided);
-  };
-  const int column = before(x, in.frame.width, in.previous_width);
-  const int row = before(y, in.frame.height, in.previous_height);
-  const double now = in.frame.reactive[static_cast<std::size_t>(y * in.frame.width + x)];
-  const double then = in.reactive_before[static_cast<std::size_t>(row * in.previous_width + column)];
-  return (Bounded(1) - rounded(now)) * (Bounded(1) - rounded(then));
-}
-
-Bounded trust_at(const TemporalInputs& in, const TemporalOptions& options, const Place& column,
-                 const Place& row, bool& undecided) {
-  if (in.moves.empty()) return trust_of_still(in, column.nearest, row.nearest, undecided);
-  if (options.bilinear_trust) return trust_between(in, column.at, row.at);
-  return known_trust(in.move_of(column.nearest, row.nearest));
-}
-
-HistoryTexel resolve(const TemporalInputs& in, const std::vector<Tile>& tiles, const TemporalOptions& options,
-                     int x, int y) {
-  const Frame& frame = in.frame;
-  const Tile& tile = tiles[static_cast<std::size_t>(y / kTile * in.tiles_x() + x / kTile)];
-  bool undecided = false;
-  const Place column = place_of(x, in.output_width, frame.width, frame.jitter_x, tile.offset[0], undecided);
-  const Place row = place_of(y, in.output_height, frame.height, frame.jitter_y, tile.offset[1], undecided);
-  Move move{.trust = 1};
-  if (!in.moves.empty()) move = in.move_of(column.nearest, row.nearest);
-  const Bounded trust = trust_at(in, options, column, row, undecided);
-
-  const double contrast = std::abs(move.contrast);
-  const Taken taken = take_history(in, tile, move, x, y, options, undecided);
-  Pixels pixel{taken.value, weigh(taken, trust, contrast, undecided),
-               max(Bounded(1) - trust, smooth_step(contrast, .15, .6)), 0};
-  const Bounded changed = between_tiles(in, tiles, x, y, &Tile::doubt);
-  pixel.doubt = max(pixel.doubt, changed);
-  pixel.confidence = min(pixel.confidence, most_confidence(Bounded(1) - changed));
-  const Bounded gain = between_tiles(in, tiles, x, y, &Tile::gain);
-  for (Bounded& value : pixel.colour)
-    value = value * gain;
-  if (pixel.doubt.value + pixel.doubt.error > 0) rectify(pixel, box_at(frame, column.nearest, row.nearest));
-  start(pixel, in, column, row, undecided);
-
-  const bool still = tile.rigid && tile.offset[0].value == 0 && tile.offset[1].value == 0 &&
-                     tile.step[0] == 0 && tile.step[1] == 0;
-  HistoryTexel texel = add_sample(pixel, sample_at(frame, column.nearest, row.nearest), still,
-                                  {column.past * rounded(in.spacing(0)), row.past * rounded(in.spacing(1))});
-  texel.undecided = undecided;
-  return texel;
+bool is_still(const TileReprojection& tile) {
+  return tile.is_rigid && tile.phase[0] == 0 && tile.phase[1] == 0 && tile.step[0] == 0 && tile.step[1] == 0;
 }
 
 }  // namespace
 
-Bounded bell(const Bounded& t) {
-  const Bounded rest = max(Bounded(1) - Bounded(.125) * t, 0);
-  const Bounded square = rest * rest;
-  const Bounded fourth = square * square;
-  return fourth * fourth;
+template <typename Real>
+PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                               const TemporalOptions& options, int x, int y) {
+  const Frame& frame = in.frame;
+  const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
+  const Neighbourhood<Real> near = {
+      nearest_sample<Real>(x, in.output_width, frame.width, frame.jitter_x, tile.phase[0]),
+      nearest_sample<Real>(y, in.output_height, frame.height, frame.jitter_y, tile.phase[1])};
+  const Pixel& sample = texel_clamped(frame, near.x.sample, near.y.sample);
+  Reprojection reprojection{.trust = 1};
+  if (!in.reprojections.empty()) reprojection = in.reprojection_at(near.x.sample, near.y.sample);
+  const Real trust = trust_at(in, options, near);
+  const double motion_edge = std::abs(reprojection.motion_edge);
+
+  const auto history = fetch_history<Real>(in, tile, reprojection, options, x, y);
+  Known<Real> known{history.texel, limit_confidence(history, trust, motion_edge),
+                    max(1 - trust, motion_edge_strength(Real(motion_edge)))};
+  reject(in, tiles, x, y, known);
+  relight(in, tiles, x, y, known);
+  if (seamless(known.rejection > 0)) rectify(box_around<Real>(frame, near.x.sample, near.y.sample), known);
+  reseed(in, near, known);
+
+  Real weight = 0;
+  if (is_valid(sample)) {
+    weight = sample_weight<Real>(sample, near.x.past * in.spacing(0), near.y.past * in.spacing(1),
+                                 is_still(tile), known.confidence);
+  }
+  return accumulate(known, sample, weight);
 }
 
-std::vector<HistoryTexel> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                                           const TemporalOptions& options) {
-  std::vector<HistoryTexel> updated;
-  for (int y = 0; y < in.output_height; ++y) {
-    for (int x = 0; x < in.output_width; ++x)
-      updated.push_back(resolve(in, tiles, options, x, y));
-  }
-  return updated;
-}
+template PixelOf<double> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
+                                          const TemporalOptions&, int, int);
+template PixelOf<Bounded> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
+                                           const TemporalOptions&, int, int);
 
 }  // namespace quincunx::reference

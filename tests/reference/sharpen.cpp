@@ -8,10 +8,11 @@
 namespace quincunx::reference {
 namespace {
 
+// Clamped to the edge.
 Pixel pixel_at(const Picture& picture, int x, int y) {
   const int column = std::clamp(x, 0, picture.width - 1);
   const int row = std::clamp(y, 0, picture.height - 1);
-  Pixel pixel = picture.pixels[static_cast<std::size_t>(row * picture.width + column)];
+  Pixel pixel = picture.pixels[index_of(picture.width, column, row)];
   for (double& value : pixel)
     value = sanitised(value);
   return pixel;

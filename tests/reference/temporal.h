@@ -1,113 +1,180 @@
 // SPDX-License-Identifier: MIT
-// What the kernels of the temporal upscaler should give, each on its own, in double precision, and how far
-// single precision may be from it.
+// The temporal upscaler, kernel by kernel: the specification, which docs/pipeline.md explains. Each function
+// makes what one work-item makes: one tile or one pixel. error_bound.h tells what `Real` may be.
+//
+// Pictures are accumulated in a *history* of the output's extent: colour m and confidence W of each texel, W
+// being the sum of the weights of the samples in it. Lengths are output pixels unless said otherwise.
 #pragma once
 
 #include <array>
 #include <vector>
 
-#include "bounded.h"
+#include "error_bound.h"
 #include "reproject.h"
 
 namespace quincunx::reference {
 
-constexpr int kTile = 8;  // output pixels
+constexpr int kTile = 8;  // output pixels on either axis
 
-using BoundedPixel = std::array<Bounded, 4>;
+// How a tile's texels take history over. In a rigid tile all samples move alike: its texels are copied, not
+// resampled, and their picture lies apart from their centres by a phase that is carried from frame to frame.
+template <typename Real>
+struct TileReprojectionOf {
+  std::array<Real, 2> phase = {};           // output pixels, within [-.5, .5]; 0 unless rigid
+  std::array<double, 2> source_phase = {};  // of the texels that are copied
+  std::array<int, 2> step = {};             // texel (x, y) is a copy of (x - step[0], y - step[1])
+  bool is_rigid = false;
+  bool is_copyable = false;      // rigid, all its samples are trusted, and no motion edge is near
+  bool has_motion_edge = false;  // one above kMotionEdgeBegins
+};
+using TileReprojection = TileReprojectionOf<double>;
 
-inline BoundedPixel exact(const Pixel& pixel) {
-  return {pixel[0], pixel[1], pixel[2], pixel[3]};
-}
+// What a tile's samples s say of the history h at their place, n being the mean of their four neighbours:
+// sums over the samples that judge, of luma, each divided by 1 + s + h.
+template <typename Real>
+struct TileEvidenceOf {
+  Real brightening = 0;      // s - h
+  Real light = 0;            // h
+  Real history_error = 0;    // |s - h|: history's as a forecast of the sample
+  Real neighbour_error = 0;  // |s - n|: the neighbours'
+  int count = 0;             // samples
+  int brighter = 0;  // those that are brighter than history by more than noise, less those that are darker
+};
+using TileEvidence = TileEvidenceOf<double>;
 
-// How the texels of a tile take history over, and what is known of it. Given to a stage the numbers are
-// exact.
+// What is made of it.
+template <typename Real>
+struct TileLightOf {
+  Real gain = 1;              // relighting gain: history times this has this frame's light
+  Real rejection = 0;         // of history, in [0, 1]
+  Real persistence = 0;       // in [-1, 1]: of a coherent change of light, over frames
+  Real flicker = 0;           // how far a sample's luma goes to and fro from frame to frame: aliasing
+  Real mean_brightening = 0;  // of a sample
+};
+using TileLight = TileLightOf<double>;
+
 struct Tile {
-  std::array<Bounded, 2> offset = {};
-  std::array<double, 2> source = {};
-  std::array<int, 2> step = {};
-  bool rigid = false;
-  bool plain = false;  // rigid, all samples are trusted, and there is no edge of motion
-  bool torn = false;   // there is an edge of motion that makes history doubtful
-  Bounded brightening, light, history_error, neighbour_error;
-  Bounded persistence, flicker, doubt;
-  Bounded gain = 1;
-  int samples = 0;   // that were judged
-  int brighter = 0;  // how many are brighter than history by more than noise, less those that are darker
-  bool undecided = false;  // a rounding may decide how history is taken over
-  bool unsure = false;     // or which texels, or what to believe
+  TileReprojection reprojection = {};
+  TileEvidence evidence = {};
+  TileLight light = {};
 };
 
-struct TotalLight {
-  double brightening = 0, change = 0, light = 0, history_error = 0, neighbour_error = 0;
+// The evidence of the whole picture: the sums over all tiles of their means, in units of 1 / kLightUnits.
+template <typename Real>
+struct TotalLightOf {
+  Real brightening = 0;
+  Real change = 0;  // |brightening| of each tile
+  Real light = 0, history_error = 0, neighbour_error = 0;
 };
+using TotalLight = TotalLightOf<double>;
 
-// What one frame meets.
+// What the kernels read.
 struct TemporalInputs {
-  Frame frame;  // colour, jitter
+  Frame frame;  // colour, jitter; reactive where nothing moves
   int previous_width = 0;
   int previous_height = 0;
-  std::vector<Move> moves;              // of each sample of the frame; empty: nothing moves
-  std::vector<double> reactive_before;  // of the previous viewport, where frame.reactive counts
+  std::vector<Reprojection> reprojections;  // of each sample of the frame; empty: nothing moves
+  std::vector<double> reactive_before;      // of the previous viewport, where frame.reactive counts
   int output_width = 0;
   int output_height = 0;
   std::vector<Pixel> history;  // of each output pixel: red, green, blue and confidence
   std::vector<Tile> before;    // of the previous frame
-  int judged_apart = 2;        // of how many samples one judges history: 2 or 4
+  int judged_apart = 2;        // one of this many samples judges history: 2 or 4
 
   int tiles_x() const { return (output_width + kTile - 1) / kTile; }
   int tiles_y() const { return (output_height + kTile - 1) / kTile; }
+  // Output pixels between neighbouring samples.
   double spacing(int axis) const {
     return axis == 0 ? static_cast<double>(output_width) / frame.width
                      : static_cast<double>(output_height) / frame.height;
   }
-  // From moves to output pixels.
-  double move_scale(int axis) const {
+  // Output pixels to each pixel of the previous viewport, the unit of reprojections.
+  double reprojection_scale(int axis) const {
     return axis == 0 ? static_cast<double>(output_width) / previous_width
                      : static_cast<double>(output_height) / previous_height;
   }
-  const Move& move_of(int x, int y) const {
-    return moves[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
-                 static_cast<std::size_t>(x)];
+  const Reprojection& reprojection_at(int x, int y) const {
+    return reprojections[index_of(frame.width, x, y)];
   }
-  const Pixel& history_at(int x, int y) const {
-    return history[static_cast<std::size_t>(y) * static_cast<std::size_t>(output_width) +
-                   static_cast<std::size_t>(x)];
-  }
-  // The outermost tile beyond the edges.
-  const Tile& tile_before(int tile_x, int tile_y) const;
+  // Clamped to the edge.
+  const Pixel& history_clamped(int x, int y) const;
 };
 
-// Whether a sample takes part: finite, and less than the largest half.
-bool is_valid(const Pixel& sample);
+// Inputs in the number type that a stage computes with.
+template <typename Real>
+PixelOf<Real> as(const Pixel& pixel) {
+  return {pixel[0], pixel[1], pixel[2], pixel[3]};
+}
+template <typename Real>
+TileEvidenceOf<Real> as(const TileEvidence& e) {
+  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter};
+}
+template <typename Real>
+TileLightOf<Real> as(const TileLight& l) {
+  return {l.gain, l.rejection, l.persistence, l.flicker, l.mean_brightening};
+}
+template <typename Real>
+TotalLightOf<Real> as(const TotalLight& t) {
+  return {t.brightening, t.change, t.light, t.history_error, t.neighbour_error};
+}
 
+// Whether a sample takes part: finite, and below the largest half, which stands for overflow.
+template <typename Real>
+bool is_valid(const PixelOf<Real>& sample) {
+  constexpr double kLargestHalf = 65504;
+  return abs(sample[0]) < kLargestHalf && abs(sample[1]) < kLargestHalf && abs(sample[2]) < kLargestHalf &&
+         abs(sample[3]) < kLargestHalf;
+}
+
+// temporal_tiles: how the tile is reprojected, and what its samples say of history at the places of
+// `reprojection`.
+template <typename Real>
+TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, int tile_y);
+template <typename Real>
+TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
+                                   int tile_x, int tile_y);
+// Of every tile, row by row.
 std::vector<Tile> temporal_tiles(const TemporalInputs& in);
 
-// Completes the tiles.
-void temporal_light(int tiles_x, int tiles_y, const std::vector<Tile>& before, const TotalLight& total,
-                    std::vector<Tile>& tiles);
+struct LightInputs {
+  int tiles_x = 0;
+  int tiles_y = 0;
+  std::vector<Tile> before;  // of the previous frame: their light
+  std::vector<Tile> tiles;   // of this frame: their motion edges and evidence
+  TotalLight total = {};
+};
+
+// temporal_light: of tile (x, y).
+template <typename Real>
+TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y);
 
 struct TemporalOptions {
-  int taps = 16;                // of history; 4: bilinear
-  bool bilinear_trust = false;  // else the nearest sample's
+  int taps = 16;                // texels of history that are read where it is resampled; 4: bilinear
+  bool bilinear_trust = false;  // trust between samples; else the nearest sample's
 };
 
-struct HistoryTexel {
-  BoundedPixel value;
-  bool undecided = false;  // a rounding may decide what it is made of
-};
-
-std::vector<HistoryTexel> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                                           const TemporalOptions& options);
+// resolve_temporal: the history texel of output pixel (x, y) after this frame.
+template <typename Real>
+PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                               const TemporalOptions& options, int x, int y);
 
 struct DisplayOptions {
   bool smooth = true;
-  bool alpha = true;  // bilinear, of the frame; else 1
+  bool alpha = true;  // this frame's, bilinear; else 1
 };
 
-std::vector<HistoryTexel> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                                           const DisplayOptions& options);
+// temporal_display: output pixel (x, y) of the picture that in.history holds.
+template <typename Real>
+PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                               const DisplayOptions& options, int x, int y);
 
-// (1 - t / 8)^8
-Bounded bell(const Bounded& t);
+// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
+template <typename Real>
+Real bell(const Real& t) {
+  const Real rest = max(1 - .125 * t, 0);
+  const Real square = rest * rest;
+  const Real fourth = square * square;
+  return fourth * fourth;
+}
 
 }  // namespace quincunx::reference

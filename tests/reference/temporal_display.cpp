@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: MIT
+// temporal_display: one output pixel of the picture that a history holds.
+//   m      history at p - R: the cubic of Keys, a = -.75, p being the pixel's centre and R its tile's phase
+//   where W < 1.5: (m (W + .02) + sum n e) / (W + .02 + 8 e) with the eight neighbours n, e = .3 exp(-2 W)
+//   alpha  this frame's, bilinear, or 1
+// Source: found by measuring (docs/pipeline.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
 #include <cstddef>
 
@@ -7,66 +12,75 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kDisplayCubic = -.75;  // Keys' a
-constexpr double kLittle = 1.5;         // confidence below which a pixel is smoothed
+constexpr double kDisplaySharpness = -.75;  // Keys' a
+constexpr double kSmoothedBelow = 1.5;      // confidence; above it smoothing would not be seen
+constexpr double kCentreWeight = .02;       // of the pixel, besides its confidence
+constexpr double kNeighbourWeight = .3;     // of each neighbour where nothing is known
+constexpr double kFalloff = 2;              // of the neighbours' weight, for each unit of confidence
 
-BoundedPixel smoothed(const TemporalInputs& in, int x, int y, const BoundedPixel& centre) {
-  const double confidence = in.history_at(x, y)[3];
-  const Bounded other = rounded(.3) * bell(2 * confidence);
-  const Bounded own = Bounded(confidence) + rounded(.02);
-  BoundedPixel sum;
+// History at the pixel's centre.
+template <typename Real>
+PixelOf<Real> picture_at(const TemporalInputs& in, const TileReprojection& tile, int x, int y) {
+  if (tile.phase[0] == 0 && tile.phase[1] == 0) return as<Real>(in.history_clamped(x, y));
+  std::array<int, 2> texel = {x, y};
+  std::array<Real, 2> fraction;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const int back = tile.phase[axis] > 0 ? 1 : 0;
+    texel[axis] -= back;
+    fraction[axis] = back - Real(tile.phase[axis]);
+  }
+  return sample_cubic(in, texel[0], texel[1], fraction, kDisplaySharpness);
+}
+
+template <typename Real>
+PixelOf<Real> smooth(const TemporalInputs& in, int x, int y, const PixelOf<Real>& centre) {
+  const Real confidence = in.history_clamped(x, y)[3];
+  const Real neighbour = kNeighbourWeight * bell(kFalloff * confidence);
+  const Real own = confidence + kCentreWeight;
+  PixelOf<Real> smoothed = {};
   for (std::size_t c = 0; c < 3; ++c) {
-    sum[c] = centre[c] * own;
-    for (int i = 0; i < 9; ++i) {
-      if (i == 4) continue;
-      const Pixel& texel = in.history_at(std::clamp(x + i % 3 - 1, 0, in.output_width - 1),
-                                         std::clamp(y + i / 3 - 1, 0, in.output_height - 1));
-      sum[c] = sum[c] + other * texel[c];
+    Real sum = centre[c] * own;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (dx != 0 || dy != 0) sum += neighbour * in.history_clamped(x + dx, y + dy)[c];
+      }
     }
-    sum[c] = sum[c] / (own + Bounded(8) * other);
+    smoothed[c] = sum / (own + 8 * neighbour);
   }
-  return sum;
+  return smoothed;
 }
 
-// Both fractions are rounded, and change it by twice the largest alpha; two steps between values of a
-// difference, a product and a sum each.
-Bounded alpha_at(const TemporalInputs& in, int x, int y) {
-  const Sample sample = sample_bilinear(in.frame, x, y, in.output_width, in.output_height);
-  return {sample.value[3], (4 + 2 * 6) * kUnit * sample.largest};
-}
-
-HistoryTexel display(const TemporalInputs& in, const Tile& tile, const DisplayOptions& options, int x,
-                     int y) {
-  const Pixel& own = in.history_at(x, y);
-  HistoryTexel texel;
-  texel.value = {own[0], own[1], own[2], 1};
-  if (tile.offset[0].value != 0 || tile.offset[1].value != 0) {
-    std::array<int, 2> first = {x, y};
-    std::array<Bounded, 2> fraction;
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      const int back = tile.offset[axis].value > 0 ? 1 : 0;
-      first[axis] -= back;
-      fraction[axis] = Bounded(back) - tile.offset[axis];
-    }
-    texel.value = sample_cubic(in, first[0], first[1], fraction[0], fraction[1], kDisplayCubic);
-  }
-  if (options.smooth && own[3] < kLittle) texel.value = smoothed(in, x, y, texel.value);
-  texel.value[3] = options.alpha ? alpha_at(in, x, y) : Bounded(1);
-  return texel;
+template <typename Real>
+Real alpha_at(const TemporalInputs& in, int x, int y) {
+  const Frame& frame = in.frame;
+  const Between column =
+      between_samples(texel_coordinate(x, in.output_width, frame.width, frame.jitter_x), frame.width);
+  const Between row =
+      between_samples(texel_coordinate(y, in.output_height, frame.height, frame.jitter_y), frame.height);
+  const auto on_row = [&](int i) {
+    const Real left = sanitised(texel_at(frame, column.left, i)[3]);
+    const Real right = sanitised(texel_at(frame, column.right, i)[3]);
+    return left + (right - left) * column.fraction;
+  };
+  const Real upper = on_row(row.left);
+  return upper + (on_row(row.right) - upper) * row.fraction;
 }
 
 }  // namespace
 
-std::vector<HistoryTexel> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                                           const DisplayOptions& options) {
-  std::vector<HistoryTexel> shown;
-  for (int y = 0; y < in.output_height; ++y) {
-    for (int x = 0; x < in.output_width; ++x) {
-      const Tile& tile = tiles[static_cast<std::size_t>(y / kTile * in.tiles_x() + x / kTile)];
-      shown.push_back(display(in, tile, options, x, y));
-    }
-  }
+template <typename Real>
+PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                               const DisplayOptions& options, int x, int y) {
+  const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
+  PixelOf<Real> shown = picture_at<Real>(in, tile, x, y);
+  if (options.smooth && in.history_clamped(x, y)[3] < kSmoothedBelow) shown = smooth(in, x, y, shown);
+  shown[3] = options.alpha ? alpha_at<Real>(in, x, y) : Real(1);
   return shown;
 }
+
+template PixelOf<double> temporal_display(const TemporalInputs&, const std::vector<Tile>&,
+                                          const DisplayOptions&, int, int);
+template PixelOf<Bounded> temporal_display(const TemporalInputs&, const std::vector<Tile>&,
+                                           const DisplayOptions&, int, int);
 
 }  // namespace quincunx::reference

@@ -1,4 +1,25 @@
 // SPDX-License-Identifier: MIT
+// temporal_light: of each tile whether the light has changed, and how far its history is to be rejected. B, L,
+// E, N, n: sums of brightening, light, history_error, neighbour_error and count over the tile and the eight
+// around it; mean: the tile's own brightening / count; b, k: its own brighter and count.
+//   relative     B / L
+//   coherent     |B| > .75 sum |brightening|, |relative| > .05, |B| > 3 N / sqrt(n), no motion edge in the nine
+//                tiles, and the samples agree: (sum of b) sign(relative) > .4 n, seven of ten
+//   persistence  p <- .6 p, + .4 sign(relative) if coherent
+//   gain         1 + relative if coherent and p sign(relative) > .62
+//   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light; then at once
+//                gain = 1 + that sum / light, where the samples agree on the same sign; a tile whose |B| > .5 sum
+//                |brightening| and whose relative differs by more than .3 of it, far from motion edges, keeps its
+//                own
+//   flicker      f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where their signs
+//                differ, else 0
+//   rejection    the largest of three, each within [0, 1]:
+//     by error   (E - e) / e, e = 1.6 N + .02, where |B| < .5 E
+//     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
+//                |brightening| > .15 light
+//     by cut     (E' - .95 N') / (.25 N' + 1) of the whole picture's sums, where E' > .03 L' and it is not relit
+// Source: found by measuring (docs/pipeline.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
+// of the whole picture.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,118 +29,156 @@
 namespace quincunx::reference {
 namespace {
 
+// Relighting. All are parts of the sums above.
+constexpr double kCoherent = .75;
+constexpr double kLeastChange = .05;   // of L
+constexpr double kAboveChance = 3;     // times N / sqrt(n), what aliasing alone may give
+constexpr double kAgreement = .4;      // of samples, brighter less darker: seven of ten; +.02 dB
+constexpr double kMemory = .6;         // of persistence, each frame
+constexpr double kPersistent = .62;    // two coherent frames give .4 + .6 * .4 = .64
+constexpr double kMostGain = 4;        // and 1 / 4 the least
+constexpr double kLeastLight = 1e-6;   // against a division by 0
+constexpr double kWholeCoherent = .8;  // of the whole picture
+constexpr double kOwnCoherent = .5;    // of a tile that goes its own way while the whole picture changes ...
+constexpr double kOwnDifference = .3;  // ... by a gain that differs by this part of the whole picture's
+
+// Rejection.
+constexpr double kWorse = 1.6;          // times N: history foretells worse than the neighbours do
+constexpr double kErrorFloor = .02;     // of the nine tiles' sums
+constexpr double kIncoherent = .5;      // |B| / E below which the error is no change of light
+constexpr double kMajority = 1.1;       // (|b| - 1)^2 / samples: a test of signs
+constexpr double kOwnChange = .15;      // of the tile's own light
+constexpr double kNeighbourShare = .8;  // of the neighbours' mean error, which is usual
+constexpr double kFlickerShare = 12;    // times flicker; without flicker -.08 dB
+constexpr double kUsualFloor = .01;     // mean change of luma of a sample
+constexpr double kChangeRange = .5;     // times what is usual, over which rejection grows to 1
+constexpr double kFlickerMemory = .9;   // each frame: about ten
+constexpr double kCut = .95;            // E / N of the whole picture after a cut; usual are .6 to .9
+constexpr double kCutRange = .25;       // of N, over which rejection grows to 1
+constexpr double kCutFloor = .03;       // of the whole picture's light
+
+template <typename Real>
 struct Sums {
-  Bounded brightening, change, light, history_error, neighbour_error;
-  double samples = 0;
-  double brighter = 0;
-  bool torn = false;
+  Real brightening = 0, change = 0, light = 0, history_error = 0, neighbour_error = 0;
+  int count = 0;
+  int brighter = 0;
+  bool has_motion_edge = false;
 };
 
-Sums sums_around(const std::vector<Tile>& tiles, int tiles_x, int tiles_y, int x, int y) {
-  Sums sums;
-  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, tiles_y - 1); ++row) {
-    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, tiles_x - 1); ++column) {
-      const Tile& tile = tiles[static_cast<std::size_t>(row * tiles_x + column)];
-      sums.brightening = sums.brightening + tile.brightening;
-      sums.change = sums.change + abs(tile.brightening);
-      sums.light = sums.light + tile.light;
-      sums.history_error = sums.history_error + tile.history_error;
-      sums.neighbour_error = sums.neighbour_error + tile.neighbour_error;
-      sums.samples += tile.samples;
-      sums.brighter += tile.brighter;
-      sums.torn = sums.torn || tile.torn;
+template <typename Real>
+Sums<Real> sums_around(const LightInputs& in, int x, int y) {
+  Sums<Real> sums;
+  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, in.tiles_y - 1); ++row) {
+    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, in.tiles_x - 1); ++column) {
+      const Tile& tile = in.tiles[index_of(in.tiles_x, column, row)];
+      sums.brightening += tile.evidence.brightening;
+      sums.change += std::abs(tile.evidence.brightening);
+      sums.light += tile.evidence.light;
+      sums.history_error += tile.evidence.history_error;
+      sums.neighbour_error += tile.evidence.neighbour_error;
+      sums.count += tile.evidence.count;
+      sums.brighter += tile.evidence.brighter;
+      sums.has_motion_edge = sums.has_motion_edge || tile.reprojection.has_motion_edge;
     }
   }
   return sums;
 }
 
-Bounded exact_count(double count) {
-  return rounded(count);  // an int beyond 2^24 is rounded
+// Whether the whole picture brightens or darkens as one.
+template <typename Real>
+bool is_relit(const TotalLightOf<Real>& total) {
+  const Real whole = abs(total.brightening);
+  return whole > kWholeCoherent * total.change && whole > kLeastChange * total.light;
 }
 
-// Where the whole picture brightens or darkens: by how much, of its light.
-bool whole_changes(const TotalLight& total, bool& unsure) {
-  const Bounded whole = abs(exact_count(total.brightening));
-  return less(rounded(.8) * exact_count(total.change), whole, unsure) &&
-         less(rounded(.05) * exact_count(total.light), whole, unsure);
-}
+// Persistence and gain.
+template <typename Real>
+void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, const TileLightOf<Real>& before,
+             TileLightOf<Real>& light) {
+  const Real relative = sums.brightening / max(sums.light, kLeastLight);
+  const Real coherence = abs(sums.brightening) / max(sums.change, kLeastLight);
+  const Real samples = sums.count;
+  const Real chance = sums.neighbour_error / sqrt(max(samples, 1));
+  const int sign = relative > 0 ? 1 : -1;
+  const bool agrees = sums.brighter * sign > kAgreement * samples;
+  const bool is_coherent = !sums.has_motion_edge && agrees && coherence > kCoherent &&
+                           abs(relative) > kLeastChange && abs(sums.brightening) > kAboveChance * chance;
+  const Real memory = kMemory;
+  light.persistence = memory * before.persistence;
+  if (is_coherent) light.persistence += (1 - memory) * sign;
+  light.gain = is_coherent && light.persistence * sign > kPersistent ? 1 + relative : Real(1);
 
-void judge_light(Tile& tile, const Sums& sums, const Tile& before, const TotalLight& total) {
-  const Bounded relative = sums.brightening / max(sums.light, rounded(1e-6));
-  const Bounded coherence = abs(sums.brightening) / max(sums.change, rounded(1e-6));
-  bool sign_unsure = false;
-  const double sign = less(0, relative, sign_unsure) ? 1 : -1;
-  const Bounded chance = sums.neighbour_error / sqrt(Bounded(std::max(sums.samples, 1.0)));
-  const bool agreed = less(rounded(.4) * sums.samples, sums.brighter * sign, tile.unsure);
-  const bool hit = !sums.torn && agreed && less(rounded(.75), coherence, tile.unsure) &&
-                   less(rounded(.05), abs(relative), tile.unsure) &&
-                   less(Bounded(3) * chance, abs(sums.brightening), tile.unsure);
-  tile.persistence = rounded(.6) * before.persistence;
-  if (hit) tile.persistence = tile.persistence + (Bounded(1) - rounded(.6)) * sign;
-  Bounded gain = 1;
-  if (hit && less(rounded(.62), tile.persistence * sign, tile.unsure)) gain = Bounded(1) + relative;
-  const Bounded whole = exact_count(total.brightening);
-  const bool same_sign = relative.value * whole.value > 0;
-  if (whole_changes(total, tile.unsure)) tile.unsure = tile.unsure || sign_unsure;
-  if (whole_changes(total, tile.unsure) && agreed && same_sign) {
-    const Bounded everywhere = whole / exact_count(total.light);
-    const bool own = !sums.torn && less(.5, coherence, tile.unsure) &&
-                     less(rounded(.3) * abs(everywhere), abs(relative - everywhere), tile.unsure);
-    gain = Bounded(1) + (own ? relative : everywhere);
+  if (is_relit(total) && agrees && relative * total.brightening > 0) {
+    const Real whole = total.brightening / total.light;
+    const bool is_own = !sums.has_motion_edge && coherence > kOwnCoherent &&
+                        abs(relative - whole) > kOwnDifference * abs(whole);
+    light.gain = 1 + (is_own ? relative : whole);
   }
-  tile.gain = clamp(gain, .25, 4);
+  light.gain = clamp(light.gain, 1 / kMostGain, kMostGain);
 }
 
-Bounded mean_brightening(const Tile& tile) {
-  return tile.brightening / Bounded(std::max(tile.samples, 1));
+template <typename Real>
+Real mean_brightening(const TileEvidenceOf<Real>& evidence) {
+  return evidence.brightening / std::max(evidence.count, 1);
 }
 
-// By how much a sample brightens and darkens in turn.
-Bounded reversal(const Tile& tile, const Tile& before, bool& unsure) {
-  if (!less(tile.brightening * before.brightening, 0, unsure)) return 0;
-  return min(abs(mean_brightening(tile)), abs(mean_brightening(before)));
+template <typename Real>
+Real update_flicker(const Real& mean_brightening, const TileLightOf<Real>& before) {
+  Real alternation = 0;
+  if (mean_brightening * before.mean_brightening < 0)
+    alternation = min(abs(mean_brightening), abs(before.mean_brightening));
+  const Real memory = kFlickerMemory;
+  return memory * before.flicker + (1 - memory) * alternation;
 }
 
-// Of a tile whose gain is 1 while more of its samples have become brighter, or darker, than chance gives.
-Bounded doubt_of_change(Tile& tile, const Bounded& neighbour_error) {
-  if (less(0, abs(tile.gain - 1), tile.unsure)) return 0;
-  const double majority = std::abs(tile.brighter) - 1;
-  if (majority <= 0 || majority * majority < 1.1 * tile.samples) return 0;
-  if (!less(rounded(.15) * tile.light, abs(tile.brightening), tile.unsure)) return 0;
-  const Bounded usual = rounded(.8) * neighbour_error + Bounded(12) * tile.flicker + rounded(.01);
-  return clamp((abs(mean_brightening(tile)) - usual) / (Bounded(.5) * usual), 0, 1);
+// History foretells the samples worse than their neighbours do, and not by a change of light.
+template <typename Real>
+Real rejection_by_error(const Sums<Real>& sums) {
+  if (abs(sums.brightening) >= kIncoherent * sums.history_error) return 0;
+  const Real allowed = kWorse * sums.neighbour_error + kErrorFloor;
+  return clamp((sums.history_error - allowed) / allowed, 0, 1);
 }
 
-// Of a picture that history foretells no better than the neighbours: it is another one.
-Bounded doubt_of_cut(const TotalLight& total, bool& unsure) {
-  if (whole_changes(total, unsure)) return 0;
-  const Bounded error = exact_count(total.history_error);
-  const Bounded allowed = exact_count(total.neighbour_error);
-  if (!less(rounded(.03) * exact_count(total.light), error, unsure)) return 0;
-  return clamp((error - rounded(.95) * allowed) / (Bounded(.25) * allowed + 1), 0, 1);
+// The tile's own samples agree that it is brighter or darker now, by more than aliasing has shown so far.
+template <typename Real>
+Real rejection_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& light,
+                         const Sums<Real>& sums) {
+  if (light.gain != 1) return 0;
+  const int majority = std::abs(evidence.brighter) - 1;
+  if (majority <= 0 || majority * majority < kMajority * evidence.count) return 0;
+  if (abs(evidence.brightening) <= kOwnChange * evidence.light) return 0;
+  const Real neighbours = sums.neighbour_error / std::max(sums.count, 1);
+  const Real usual = kNeighbourShare * neighbours + kFlickerShare * light.flicker + kUsualFloor;
+  return clamp((abs(light.mean_brightening) - usual) / (kChangeRange * usual), 0, 1);
+}
+
+// Over the whole picture history foretells no better than the neighbours: it shows another picture.
+template <typename Real>
+Real rejection_by_cut(const TotalLightOf<Real>& total) {
+  if (is_relit(total) || total.history_error <= kCutFloor * total.light) return 0;
+  return clamp((total.history_error - kCut * total.neighbour_error) / (kCutRange * total.neighbour_error + 1),
+               0, 1);
 }
 
 }  // namespace
 
-void temporal_light(int tiles_x, int tiles_y, const std::vector<Tile>& before, const TotalLight& total,
-                    std::vector<Tile>& tiles) {
-  const std::vector<Tile> given = tiles;
-  for (int y = 0; y < tiles_y; ++y) {
-    for (int x = 0; x < tiles_x; ++x) {
-      const auto i = static_cast<std::size_t>(y * tiles_x + x);
-      const Sums sums = sums_around(given, tiles_x, tiles_y, x, y);
-      Tile& tile = tiles[i];
-      judge_light(tile, sums, before[i], total);
-      tile.flicker = rounded(.9) * before[i].flicker +
-                     (Bounded(1) - rounded(.9)) * reversal(tile, before[i], tile.unsure);
-      const Bounded allowed = rounded(1.6) * sums.neighbour_error + rounded(.02);
-      Bounded doubt = 0;
-      if (less(abs(sums.brightening), Bounded(.5) * sums.history_error, tile.unsure))
-        doubt = clamp((sums.history_error - allowed) / allowed, 0, 1);
-      const Bounded around = sums.neighbour_error / Bounded(std::max(sums.samples, 1.0));
-      tile.doubt = max(max(doubt, doubt_of_change(tile, around)), doubt_of_cut(total, tile.unsure));
-    }
-  }
+template <typename Real>
+TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
+  const auto i = index_of(in.tiles_x, x, y);
+  const auto evidence = as<Real>(in.tiles[i].evidence);
+  const auto before = as<Real>(in.before[i].light);
+  const auto total = as<Real>(in.total);
+  const auto sums = sums_around<Real>(in, x, y);
+  TileLightOf<Real> light;
+  relight(sums, total, before, light);
+  light.mean_brightening = mean_brightening(evidence);
+  light.flicker = update_flicker(light.mean_brightening, before);
+  light.rejection =
+      max(max(rejection_by_error(sums), rejection_by_change(evidence, light, sums)), rejection_by_cut(total));
+  return light;
 }
+
+template TileLightOf<double> temporal_light(const LightInputs&, int, int);
+template TileLightOf<Bounded> temporal_light(const LightInputs&, int, int);
 
 }  // namespace quincunx::reference

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+// velocity_from_depth: of a scene in which only the camera moves. With a sample's clip coordinates
+// c = (2u - 1, 1 - 2v, depth, 1), jitter included, and p = clip_to_previous_clip c:
+//   velocity = (u, v) - ((p.x / p.w + 1) / 2, (1 - p.y / p.w) / 2), within +-65504 (a half's range)
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,8 +15,7 @@ namespace {
 constexpr double kLargest = 65504;  // the largest half
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Where the surface at depth `depth` and texture coordinate (u, v) was in the previous frame, and so its
-// velocity.
+// Of the surface that is seen at (u, v).
 CameraVelocity velocity_at(const Frame& frame, double u, double v, double depth) {
   const std::array<double, 4> clip = {2 * u - 1, 1 - 2 * v, depth, 1};
   std::array<double, 4> previous = {};
@@ -42,8 +44,7 @@ std::vector<CameraVelocity> velocity_from_depth(const Frame& frame) {
   std::vector<CameraVelocity> velocities;
   for (int y = 0; y < frame.height; ++y) {
     for (int x = 0; x < frame.width; ++x) {
-      const double depth = frame.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) +
-                                       static_cast<std::size_t>(x)];
+      const double depth = frame.depth[index_of(frame.width, x, y)];
       const double u = (x + 0.5 + frame.jitter_x) / frame.width;
       const double v = (y + 0.5 + frame.jitter_y) / frame.height;
       velocities.push_back(std::isfinite(depth) ? velocity_at(frame, u, v, depth)

@@ -11,13 +11,13 @@
 namespace quincunx::tools {
 namespace {
 
-// Of a method that accumulates: frames resolved before the first one that is asked for. Its picture depends on all
-// frames before it; still pictures grow better for some 100 of them, moving ones for ten.
-constexpr int kFramesOfHistory = 48;
+// An accumulated picture depends on all frames before it. So many are resolved before a chunk's first frame, and
+// not written: still pictures improve for some 100 frames, moving ones for ten.
+constexpr int kChunkHistoryFrames = 48;
 
 // Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
 int history_of(const ResolvePlan& plan) {
-  if (plan.accumulates()) return kFramesOfHistory;
+  if (plan.accumulates()) return kChunkHistoryFrames;
   return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
 }
 

@@ -20,7 +20,7 @@ struct BenchOptions : scenes::PictureOptions {
   std::vector<double> scales = {0.35, 0.5, 0.71, 0.85, 1};
   int warm_up = 2;  // frames before the measured ones, and before the timed ones
   // Before the measured ones, of methods that accumulate; at least warm_up.
-  int history_warm_up = scenes::kAccumulatedFrames;
+  int history_warm_up = scenes::kWarmUpFrames;
   int rounds = 5;
   int truth = 8;  // samples along each side of a pixel
   bool quick = false;
