@@ -48,7 +48,7 @@ std::uint64_t reproject_bytes(const ResolvePlan& plan, Extent render, Extent pre
   const PixelFormat velocity = plan.settings.velocity;
   std::uint64_t bytes = bytes_of(render, velocity) + bytes_of(render, PixelFormat::kR32F) +
                         bytes_of(previous_render, PixelFormat::kR32F) +
-                        static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+                        static_cast<std::uint64_t>(render.area()) * sizeof(Reprojection);
   if (plan.weighs_residual()) bytes += bytes_of(previous_render, velocity);
   if (plan.reads_reactive) bytes += reactive_bytes(render, previous_render);
   return bytes;
@@ -59,7 +59,7 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
                         bytes_of(previous_render, plan.settings.colour) +
                         bytes_of(plan.settings.output, plan.settings.resolved);
   if (plan.velocity != VelocitySource::kNone) {
-    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Reprojection);
   } else if (plan.reads_reactive) {
     bytes += reactive_bytes(render, previous_render);
   }
@@ -68,22 +68,25 @@ std::uint64_t reprojected_bytes(const ResolvePlan& plan, Extent render, Extent p
 
 std::uint64_t temporal_tiles_bytes(const ResolvePlan& plan, Extent render) {
   const ResolveSettings& settings = plan.settings;
-  std::uint64_t bytes = 2 * temporal_tile_bytes(settings.output) + bytes_of(render, settings.colour) +
+  const TileBytes tile = temporal_tile_bytes(settings.output);
+  std::uint64_t bytes = 2 * tile.reprojection + tile.evidence + bytes_of(render, settings.colour) +
                         bytes_of(settings.output, settings.temporal.history);
-  if (plan.follows()) bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+  if (plan.follows()) bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Reprojection);
   return bytes;
 }
 
 std::uint64_t temporal_light_bytes(const ResolvePlan& plan) {
-  return 3 * temporal_tile_bytes(plan.settings.output);
+  const TileBytes tile = temporal_tile_bytes(plan.settings.output);
+  return tile.reprojection + tile.evidence + 2 * tile.light;
 }
 
 std::uint64_t temporal_bytes(const ResolvePlan& plan, Extent render, Extent previous_render) {
   const ResolveSettings& settings = plan.settings;
-  std::uint64_t bytes = bytes_of(render, settings.colour) + 2 * temporal_tile_bytes(settings.output) +
+  const TileBytes tile = temporal_tile_bytes(settings.output);
+  std::uint64_t bytes = bytes_of(render, settings.colour) + 2 * tile.reprojection + tile.light +
                         2 * bytes_of(settings.output, settings.temporal.history);
   if (plan.follows()) {
-    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Move);
+    bytes += static_cast<std::uint64_t>(render.area()) * sizeof(Reprojection);
   } else if (plan.reads_reactive) {
     bytes += reactive_bytes(render, previous_render);
   }
@@ -94,8 +97,8 @@ std::uint64_t temporal_bytes(const ResolvePlan& plan, Extent render, Extent prev
 std::uint64_t temporal_display_bytes(const ResolvePlan& plan, Extent render) {
   const ResolveSettings& settings = plan.settings;
   const std::uint64_t alpha = plan.needs.background ? 0 : bytes_of(render, settings.colour);
-  return alpha + temporal_tile_bytes(settings.output) + bytes_of(settings.output, settings.temporal.history) +
-         bytes_of(settings.output, settings.resolved);
+  return alpha + temporal_tile_bytes(settings.output).reprojection +
+         bytes_of(settings.output, settings.temporal.history) + bytes_of(settings.output, settings.resolved);
 }
 
 std::uint64_t motion_tiles_bytes(const ResolveSettings& settings, Extent render) {

@@ -41,6 +41,20 @@ const char* curve(ToneMap tone_map) {
   return "TONE_CLAMP";
 }
 
+const char* view_name(TemporalView view) {
+  switch (view) {
+    case TemporalView::kPicture:
+      return "PICTURE";
+    case TemporalView::kConfidence:
+      return "CONFIDENCE";
+    case TemporalView::kRejection:
+      return "REJECTION";
+    case TemporalView::kPhase:
+      return "PHASE";
+  }
+  return "PICTURE";
+}
+
 }  // namespace
 
 std::string scale_options(const ResolveSettings& settings) {
@@ -75,7 +89,7 @@ std::string quincunx_options(const ResolvePlan& plan) {
 }
 
 std::string reproject_options(const ResolvePlan& plan) {
-  return fmt::format("-D REACTIVE={} -D RESIDUAL={} -D CONTRAST={} {}", plan.reads_reactive ? 1 : 0,
+  return fmt::format("-D REACTIVE={} -D RESIDUAL={} -D MOTION_EDGE={} {}", plan.reads_reactive ? 1 : 0,
                      plan.weighs_residual() ? 1 : 0, plan.accumulates() ? 1 : 0,
                      velocity_options(plan.settings));
 }
@@ -94,11 +108,14 @@ std::string temporal_tiles_options(const ResolvePlan& plan) {
 std::string temporal_options(const ResolvePlan& plan) {
   const TemporalPreset preset = plan.settings.temporal.preset;
   const bool moves = plan.follows();
-  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} {} -D HISTORY_FORMAT={}",
-                     moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0,
-                     moves && preset == TemporalPreset::kFast ? 4 : 16,
-                     moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
-                     source(plan.settings), history(plan.settings));
+  const TemporalView view = plan.settings.temporal.view;
+  std::string format;
+  if (view != TemporalView::kPicture) format = fmt::format(" -D OUTPUT_FORMAT={}", resolved(plan.settings));
+  return fmt::format(
+      "-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
+      moves ? 1 : 0, !moves && plan.reads_reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
+      moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST", view_name(view),
+      source(plan.settings), history(plan.settings), format);
 }
 
 std::string temporal_display_options(const ResolvePlan& plan) {

@@ -30,16 +30,16 @@ void set_positions(ReprojectParams& params, const FrameInputs& current, const Fr
   params.step_y = y.step;
   params.start_x = x.start;
   params.start_y = y.start;
-  params.move_x = static_cast<float>(-to_previous.x);
-  params.move_y = static_cast<float>(-to_previous.y);
+  params.motion_x = static_cast<float>(-to_previous.x);
+  params.motion_y = static_cast<float>(-to_previous.y);
   params.edge_x = -.5f - previous.jitter.x;
   params.edge_y = -.5f - previous.jitter.y;
 }
 
-void set_contrast(ReprojectParams& params, const FrameInputs& current, Extent output) {
+void set_motion_edge(ReprojectParams& params, const FrameInputs& current, Extent output) {
   const VelocityScale to_output = velocity_scale_to(current, output);
-  params.contrast_x = static_cast<float>(to_output.x);
-  params.contrast_y = static_cast<float>(to_output.y);
+  params.motion_edge_x = static_cast<float>(to_output.x);
+  params.motion_edge_y = static_cast<float>(to_output.y);
 }
 
 void set_speeds(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous,
@@ -61,14 +61,14 @@ MovePass::MovePass(const Device::Impl& device, const ResolvePlan& plan)
       reads_reactive_(plan.reads_reactive),
       reads_residual_(plan.weighs_residual()),
       kernel_(build_kernel(device, kernel_name(), reproject_options(plan))) {
-  const std::size_t bytes = sizeof(Move) * static_cast<std::size_t>(settings_.target.area());
+  const std::size_t bytes = sizeof(Reprojection) * static_cast<std::size_t>(settings_.target.area());
   moves_[0] = cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes);
   moves_[1] = plan.accumulates() ? cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes) : moves_[0];
 }
 
 void MovePass::forget(const cl::CommandQueue& queue) {
   queue.enqueueFillBuffer(moves_[newest_], cl_uint{0}, 0,
-                          sizeof(Move) * static_cast<std::size_t>(settings_.target.area()));
+                          sizeof(Reprojection) * static_cast<std::size_t>(settings_.target.area()));
 }
 
 ImageView MovePass::view() const {
@@ -86,10 +86,10 @@ void MovePass::enqueue(const cl::CommandQueue& queue, const FrameInputs& current
   params.velocity1 = layout_of(previous.velocity);
   params.depth0 = layout_of(current.depth);
   params.depth1 = layout_of(previous.depth);
-  params.moves = layout_of(view());
+  params.reprojection = layout_of(view());
   params.columns_per_item = columns_per_item(device_, current.render.width);
   set_positions(params, current, previous);
-  set_contrast(params, current, settings_.output);
+  set_motion_edge(params, current, settings_.output);
   if (reads_residual_) set_speeds(params, current, previous, settings_.quincunx.residual_weight);
   if (reads_reactive_) {
     params.reactive0 = layout_of(current.reactive);

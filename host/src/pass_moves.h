@@ -25,7 +25,7 @@ class MovePass {
   // What the next enqueue() finds of the frame before is nothing.
   void forget(const cl::CommandQueue& queue);
 
-  // What was written last: Move of each sample, the settings' target extent as RGBA32F.
+  // What was written last: Reprojection of each sample, the settings' target extent as RGBA32F.
   ImageView view() const;
 
  private:

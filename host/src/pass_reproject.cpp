@@ -58,7 +58,7 @@ void ReprojectPass::launch(const cl::CommandQueue& queue, PositionTables& tables
                            .output_height = extent.height,
                            .frame0 = {now.width, now.height, layout_of(current.colour), {}, {}},
                            .frame1 = {before.width, before.height, layout_of(previous.colour), {}, {}},
-                           .moves = moves_ ? layout_of(moves_->view()) : TexelLayout{},
+                           .reprojection = moves_ ? layout_of(moves_->view()) : TexelLayout{},
                            .output = layout_of(output),
                            .columns = tables.columns(),
                            .counter = counter.index,

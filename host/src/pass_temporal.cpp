@@ -5,6 +5,7 @@
 
 #include "kernel_options.h"
 #include "program_cache.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
@@ -19,20 +20,6 @@ Ratio ratio_of(Extent to, Extent from) {
           static_cast<float>(static_cast<double>(to.height) / from.height)};
 }
 
-int view_code(TemporalView view) {
-  switch (view) {
-    case TemporalView::kPicture:
-      return kViewPicture;
-    case TemporalView::kConfidence:
-      return kViewConfidence;
-    case TemporalView::kRejection:
-      return kViewRejection;
-    case TemporalView::kOffset:
-      return kViewOffset;
-  }
-  return kViewPicture;
-}
-
 }  // namespace
 
 Extent temporal_tiles(Extent output) {
@@ -40,8 +27,9 @@ Extent temporal_tiles(Extent output) {
           (output.height + kTemporalTile - 1) / kTemporalTile};
 }
 
-std::size_t temporal_tile_bytes(Extent output) {
-  return sizeof(TemporalTile) * static_cast<std::size_t>(temporal_tiles(output).area());
+TileBytes temporal_tile_bytes(Extent output) {
+  const auto count = static_cast<std::size_t>(temporal_tiles(output).area());
+  return {count * sizeof(TileReprojection), count * sizeof(TileEvidence), count * sizeof(TileLight)};
 }
 
 TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
@@ -61,8 +49,12 @@ TemporalPass::TemporalPass(const Device::Impl& device, const ResolvePlan& plan)
     history = cl::Buffer(device.context, CL_MEM_READ_WRITE,
                          static_cast<std::size_t>(settings_.output.area()) * texel);
   }
+  const TileBytes bytes = temporal_tile_bytes(settings_.output);
   for (cl::Buffer& tiles : tiles_)
-    tiles = cl::Buffer(device.context, CL_MEM_READ_WRITE, temporal_tile_bytes(settings_.output));
+    tiles = cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes.reprojection);
+  for (cl::Buffer& light : light_)
+    light = cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes.light);
+  evidence_ = cl::Buffer(device.context, CL_MEM_READ_WRITE, bytes.evidence);
 }
 
 ImageView TemporalPass::history() const {
@@ -83,7 +75,9 @@ void TemporalPass::forget(const cl::CommandQueue& queue) {
   const ImageView view = history();
   queue.enqueueFillBuffer(histories_[newest_], cl_uint{0}, 0,
                           static_cast<std::size_t>(view.extent.area()) * bytes_per_pixel(view.format));
-  queue.enqueueFillBuffer(tiles_[newest_], cl_uint{0}, 0, temporal_tile_bytes(settings_.output));
+  const TileBytes bytes = temporal_tile_bytes(settings_.output);
+  queue.enqueueFillBuffer(tiles_[newest_], cl_uint{0}, 0, bytes.reprojection);
+  queue.enqueueFillBuffer(light_[newest_], cl_uint{0}, 0, bytes.light);
   if (moves_) moves_->forget(queue);
   is_first_ = true;
 }
@@ -111,30 +105,31 @@ void TemporalPass::launch_tiles(const cl::CommandQueue& queue, const Frame& fram
   const Extent render = frame.current.render;
   const Extent tiles = temporal_tiles(output);
   const Ratio spacing = ratio_of(output, render);
-  const Ratio move = ratio_of(output, frame.previous.render);
+  const Ratio motion = ratio_of(output, frame.previous.render);
   const TemporalTileParams params{
       .frame = {render.width, render.height, layout_of(frame.current.colour), {}, {}},
       .output_width = output.width,
       .output_height = output.height,
       .tiles_x = tiles.width,
       .tiles_y = tiles.height,
-      .moves = moves_layout(),
+      .reprojection = reprojection_layout(),
       .spacing_x = spacing.x,
       .spacing_y = spacing.y,
       .start_x = (.5f + frame.current.jitter.x) * spacing.x,
       .start_y = (.5f + frame.current.jitter.y) * spacing.y,
-      .move_x = move.x,
-      .move_y = move.y,
+      .motion_x = motion.x,
+      .motion_y = motion.y,
       .judged_apart = settings_.temporal.preset == TemporalPreset::kFast ? 4 : 2};
   queue.enqueueFillBuffer(total_, cl_uint{0}, 0, sizeof(TotalLight));
   tiles_kernel_.setArg(0, params);
   set_memory(tiles_kernel_, 1, frame.current.colour.memory);
   // What a variant does not read may be any buffer.
-  set_memory(tiles_kernel_, 2, moves_or(frame.output));
+  set_memory(tiles_kernel_, 2, reprojection_or(frame.output));
   tiles_kernel_.setArg(3, histories_[newest_]);
   tiles_kernel_.setArg(4, tiles_[newest_]);
   tiles_kernel_.setArg(5, tiles_[1 - newest_]);
-  tiles_kernel_.setArg(6, total_);
+  tiles_kernel_.setArg(6, evidence_);
+  tiles_kernel_.setArg(7, total_);
   enqueue_rows(device_, queue, tiles_kernel_, tiles, 1, event);
 }
 
@@ -142,9 +137,11 @@ void TemporalPass::launch_light(const cl::CommandQueue& queue, cl::Event* event)
   const Extent tiles = temporal_tiles(settings_.output);
   light_kernel_.setArg(0, tiles.width);
   light_kernel_.setArg(1, tiles.height);
-  light_kernel_.setArg(2, tiles_[newest_]);
-  light_kernel_.setArg(3, total_);
-  light_kernel_.setArg(4, tiles_[1 - newest_]);
+  light_kernel_.setArg(2, tiles_[1 - newest_]);
+  light_kernel_.setArg(3, evidence_);
+  light_kernel_.setArg(4, total_);
+  light_kernel_.setArg(5, light_[newest_]);
+  light_kernel_.setArg(6, light_[1 - newest_]);
   enqueue_rows(device_, queue, light_kernel_, tiles, 1, event);
 }
 
@@ -155,24 +152,22 @@ void TemporalPass::launch_resolve(const cl::CommandQueue& queue, PositionTables&
   const Extent before = frame.previous.render;
   const Extent tiles = temporal_tiles(output);
   const Ratio spacing = ratio_of(output, now);
-  const Ratio move = ratio_of(output, before);
+  const Ratio motion = ratio_of(output, before);
   TemporalParams params{.output_width = output.width,
                         .output_height = output.height,
                         .frame0 = {now.width, now.height, layout_of(frame.current.colour), {}, {}},
                         .frame1 = {before.width, before.height, {}, {}, {}},
-                        .moves = moves_layout(),
+                        .reprojection = reprojection_layout(),
                         .output = layout_of(frame.output),
                         .columns = tables.columns(),
                         .counter = frame.counter.index,
                         .columns_per_item = columns_per_item(device_, output.width, kTemporalTile),
-                        .move_x = move.x,
-                        .move_y = move.y,
+                        .motion_x = motion.x,
+                        .motion_y = motion.y,
                         .spacing_x = spacing.x,
                         .spacing_y = spacing.y,
                         .tiles_x = tiles.width,
-                        .tiles_y = tiles.height,
-                        .view = view_code(settings_.temporal.view),
-                        .half_output = settings_.resolved == PixelFormat::kRGBA16F ? 1 : 0};
+                        .tiles_y = tiles.height};
   if (reads_reactive_) {
     params.frame0.reactive = layout_of(frame.current.reactive);
     params.frame1.reactive = layout_of(frame.previous.reactive);
@@ -180,15 +175,16 @@ void TemporalPass::launch_resolve(const cl::CommandQueue& queue, PositionTables&
   resolve_kernel_.setArg(0, params);
   resolve_kernel_.setArg(1, tables.get(queue, now, frame.current.jitter));
   set_memory(resolve_kernel_, 2, frame.current.colour.memory);
-  set_memory(resolve_kernel_, 3, moves_or(frame.output));
+  set_memory(resolve_kernel_, 3, reprojection_or(frame.output));
   set_memory(resolve_kernel_, 4, (reads_reactive_ ? frame.current.reactive : frame.current.colour).memory);
   set_memory(resolve_kernel_, 5, (reads_reactive_ ? frame.previous.reactive : frame.current.colour).memory);
   resolve_kernel_.setArg(6, histories_[newest_]);
   resolve_kernel_.setArg(7, tiles_[newest_]);
   resolve_kernel_.setArg(8, tiles_[1 - newest_]);
-  resolve_kernel_.setArg(9, histories_[1 - newest_]);
-  set_memory(resolve_kernel_, 10, frame.output.memory);
-  set_memory(resolve_kernel_, 11, frame.counter.memory);
+  resolve_kernel_.setArg(9, light_[1 - newest_]);
+  resolve_kernel_.setArg(10, histories_[1 - newest_]);
+  set_memory(resolve_kernel_, 11, frame.output.memory);
+  set_memory(resolve_kernel_, 12, frame.counter.memory);
   enqueue_rows(device_, queue, resolve_kernel_, output, params.columns_per_item, event);
 }
 

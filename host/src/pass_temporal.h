@@ -10,6 +10,7 @@
 #include "position_table.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
+#include "temporal/tile.h"
 
 namespace quincunx {
 
@@ -50,8 +51,10 @@ class TemporalPass {
                       cl::Event* event);
   void launch_display(const cl::CommandQueue& queue, PositionTables& tables, const Frame& frame,
                       cl::Event* event);
-  TexelLayout moves_layout() const { return moves_ ? layout_of(moves_->view()) : TexelLayout{}; }
-  cl_mem moves_or(const ImageView& other) const { return moves_ ? moves_->view().memory : other.memory; }
+  TexelLayout reprojection_layout() const { return moves_ ? layout_of(moves_->view()) : TexelLayout{}; }
+  cl_mem reprojection_or(const ImageView& other) const {
+    return moves_ ? moves_->view().memory : other.memory;
+  }
 
   const Device::Impl& device_;
   ResolveSettings settings_;
@@ -63,14 +66,19 @@ class TemporalPass {
   cl::Kernel resolve_kernel_;
   std::optional<cl::Kernel> display_kernel_;
   std::array<cl::Buffer, 2> histories_;
-  std::array<cl::Buffer, 2> tiles_;  // TemporalTile of each tile
+  std::array<cl::Buffer, 2> tiles_;  // TileReprojection of each tile
+  std::array<cl::Buffer, 2> light_;  // TileLight of each tile
+  cl::Buffer evidence_;              // TileEvidence of each tile
   cl::Buffer total_;                 // TotalLight
-  std::size_t newest_ = 0;           // of histories_ and tiles_
+  std::size_t newest_ = 0;           // of histories_, tiles_ and light_
   bool is_first_ = true;             // there is no history
 };
 
-// TemporalTiles of an output, and their memory.
+// Tiles of an output, and the memory that each kind of struct takes for all of them.
 Extent temporal_tiles(Extent output);
-std::size_t temporal_tile_bytes(Extent output);
+struct TileBytes {
+  std::size_t reprojection, evidence, light;
+};
+TileBytes temporal_tile_bytes(Extent output);
 
 }  // namespace quincunx

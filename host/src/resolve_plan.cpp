@@ -239,15 +239,19 @@ void plan_buffers(ResolvePlan& plan) {
       add_buffer(plan, fmt::format("depth{}", which), PixelFormat::kR32F, scaling);
     if (plan.reads_reactive) add_buffer(plan, fmt::format("reactive{}", which), PixelFormat::kR8, scaling);
   }
-  if (plan.follows()) add_buffer(plan, "moves", PixelFormat::kRGBA32F, Scaling::kScales, true);
+  if (plan.follows()) add_buffer(plan, "reprojection", PixelFormat::kRGBA32F, Scaling::kScales, true);
   for (const char* name : {"history", "updated history"}) {
     if (plan.accumulates()) add_buffer(plan, name, settings.temporal.history, Scaling::kFixed, true);
   }
   if (plan.accumulates()) {
-    const std::uint64_t bytes = temporal_tile_bytes(settings.output);
-    for (const char* name : {"tiles", "updated tiles"})
+    const TileBytes tile = temporal_tile_bytes(settings.output);
+    const auto add_tiles = [&](const char* name, std::uint64_t bytes) {
       plan.buffers.push_back(
           {name, temporal_tiles(settings.output), PixelFormat::kNone, Scaling::kFixed, bytes, true});
+    };
+    for (const char* name : {"tiles", "updated tiles"})
+      add_tiles(name, tile.reprojection + tile.light);
+    add_tiles("evidence of tiles", tile.evidence);
   }
   add_buffer(plan, "resolved", settings.resolved, Scaling::kFixed, true);
   if (plan.sharpens()) add_buffer(plan, "unsharpened", settings.resolved, Scaling::kFixed, true);

@@ -137,7 +137,8 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   std::vector<Pixel> moves;
   for (const reference::Move& move : out.moves)
     moves.push_back({move.x, move.y, move.trust, move.contrast});
-  in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
+  in.reprojection =
+      rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
   return in;
 }
 

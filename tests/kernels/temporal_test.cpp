@@ -81,18 +81,19 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     }
   }
 
-  void compare_tile(const reference::Tile& expected, const TemporalTile& actual, const std::string& what) {
+  void compare_tile(const reference::Tile& expected, const testing::KernelTile& actual,
+                    const std::string& what) {
     ++compared_;
     if (expected.undecided) return;
-    ASSERT_EQ(expected.rigid, actual.rigid != 0) << what;
-    ASSERT_EQ(expected.plain, actual.plain != 0) << what;
-    ASSERT_EQ(expected.torn, actual.torn != 0) << what;
+    ASSERT_EQ(expected.rigid, actual.is_rigid != 0) << what;
+    ASSERT_EQ(expected.plain, actual.is_copyable != 0) << what;
+    ASSERT_EQ(expected.torn, actual.has_motion_edge != 0) << what;
     ASSERT_EQ(expected.step[0], actual.step_x) << what;
     ASSERT_EQ(expected.step[1], actual.step_y) << what;
-    ASSERT_EQ(expected.source[0], static_cast<double>(actual.source_x)) << what;
-    ASSERT_EQ(expected.source[1], static_cast<double>(actual.source_y)) << what;
-    expect_near(expected.offset[0], static_cast<double>(actual.offset_x), what + " offset_x");
-    expect_near(expected.offset[1], static_cast<double>(actual.offset_y), what + " offset_y");
+    ASSERT_EQ(expected.source[0], static_cast<double>(actual.source_phase_x)) << what;
+    ASSERT_EQ(expected.source[1], static_cast<double>(actual.source_phase_y)) << what;
+    expect_near(expected.offset[0], static_cast<double>(actual.phase_x), what + " offset_x");
+    expect_near(expected.offset[1], static_cast<double>(actual.phase_y), what + " offset_y");
     rigid_ += expected.rigid ? 1 : 0;
     plain_ += expected.plain ? 1 : 0;
     torn_ += expected.torn ? 1 : 0;

@@ -64,7 +64,8 @@ TEST(Variants, EveryEmbeddedKernelHasRows) {
   const std::vector<Row> all = rows();
   for (const EmbeddedFile& file : embedded_kernel_files()) {
     if (!file.name.ends_with(".cl")) continue;
-    const std::string kernel(file.name.substr(0, file.name.size() - 3));
+    const std::size_t folder = file.name.rfind('/') + 1;  // 0 where there is none
+    const std::string kernel(file.name.substr(folder, file.name.size() - folder - 3));
     EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Row& row) { return row.kernel == kernel; }))
         << kernel;
   }
@@ -127,6 +128,16 @@ TEST(Variants, TheHostAsksForEveryRowAndNoOther) {
                   if (velocity != VelocitySource::kNone) expect_row("reproject", reproject_options(plan));
                   expect_row("temporal_tiles", temporal_tiles_options(plan));
                   expect_row("resolve_temporal", temporal_options(plan));
+                  // Formats mean nothing to views, which are listed with one of each.
+                  if (storage == Storage::kBuffer && colour == kRGBA16F && history == kRGBA16F &&
+                      resolved == kRGBA32F) {
+                    for (const TemporalView view :
+                         {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase}) {
+                      plan.settings.temporal.view = view;
+                      expect_row("resolve_temporal", temporal_options(plan));
+                    }
+                    plan.settings.temporal.view = TemporalView::kPicture;
+                  }
                   for (const bool background : {false, true}) {
                     plan.needs.background = background;
                     expect_row("temporal_display", temporal_display_options(plan));

@@ -23,7 +23,7 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
   static const std::map<std::string, TemporalView> kViews = {{"picture", TemporalView::kPicture},
                                                              {"confidence", TemporalView::kConfidence},
                                                              {"rejection", TemporalView::kRejection},
-                                                             {"offset", TemporalView::kOffset}};
+                                                             {"phase", TemporalView::kPhase}};
 
   add_choice(app, "--method", method_choices(),
              "point, bilinear, b-spline, catmull-rom, lanczos2, noise, noise-offset, "
@@ -41,7 +41,7 @@ void add_resolve_options(CLI::App& app, ResolveSettings& settings) {
       ->capture_default_str()
       ->type_name("K");
   add_choice(app, "--view", settings.temporal.view, kViews,
-             "What temporal shows: picture, confidence, rejection or offset (default: picture)");
+             "What temporal shows: picture, confidence, rejection or phase (default: picture)");
   app.add_option("--blur", settings.blur.shutter,
                  "Motion blur: part of a frame's time that the shutter is open, to 2")
       ->check(CLI::Range(0.0, 2.0))
