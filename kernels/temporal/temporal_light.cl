@@ -22,10 +22,10 @@
 // Reference: tests/reference/temporal_light.cpp
 #include "temporal/tile.h"
 
-// Thresholds. Those without another source were found by search on the development scenes.
+// Thresholds. They were found by search on the development scenes; what a measurement showed is in docs/pipeline.md.
 //
 // A change of light in 3x3 tiles.
-#define COHERENT 0.75f            // least coherence; the laboratory's .6 to .8
+#define COHERENT 0.75f            // least coherence
 #define LEAST_RELIGHT 0.05f       // least change, of the light
 #define AGREEING_MAJORITY 0.4f    // (samples for it - samples against it) / samples: seven of ten agree. +.02 dB
 #define NOISE_MULTIPLE 3.0f       // least change, in standard deviations of what aliasing alone gives
@@ -99,7 +99,7 @@ static inline LightChange change_of(const EvidenceAround* around) {
   return change;
 }
 
-// Whether it can be nothing else in this frame.
+// Whether nothing else than light explains it in this frame.
 static inline bool is_change_of_light(const LightChange* change, const EvidenceAround* around) {
   // What aliasing alone may give.
   const float chance = around->sum.neighbour_error / sqrt(max(around->sum.count, 1.0f));

@@ -5,10 +5,11 @@
 #include "temporal/frame_samples.h"
 #include "temporal/limit_confidence.h"
 
-// Found by search on the development scenes; output pixels.
+// In output pixels, found by search on the development scenes.
 #define REACH 1.05f        // where a sample's weight becomes 0
-#define LEAST_REACH 0.85f  // the same in still tiles once history is known well: +1.2 dB on still pictures
+#define LEAST_REACH 0.85f  // the same in still tiles once history is known well. +1.2 dB on still pictures
 #define NARROWING 0.1f     // from one to the other, for each unit of confidence
+
 #define LEAST_WEIGHT 1e-30f  // of all samples: keeps 0 / 0 from becoming NaN
 
 static inline bool stands_still(TileReprojection tile) {

@@ -9,8 +9,9 @@
 // Confidence, the sum of the weights of all samples in a texel, each 1 at most.
 #define MOST_CONFIDENCE 32.0f      // about 140 frames at scale .5
 #define HISTORY_SHARPNESS -1.0f    // the cubic's a; +.04 dB over -.75 (docs/pipeline.md)
-#define SAME_PHASE 0.02f           // output pixels: texels whose phases differ by more are not copied side by side
-#define FARTHEST_MOVE 65536.0f     // output pixels: keeps places within what an int8 can hold
+#define SAME_PHASE 0.02f           // output pixels: texels whose phases differ by more are not copied side by side;
+                                   // found by search on the development scenes
+#define FARTHEST_SOURCE 65536.0f   // output pixels: keeps places within what an int can hold
 enum { kResampledAhead = 3 * kTemporalTile };  // texels to prefetch: three blocks further along the row
 
 // What is fetched.
@@ -51,8 +52,8 @@ typedef struct SourcePlaces {
 static inline SourcePlaces source_places(__global const TileReprojection* previous, const TemporalParams* params,
                                          TileReprojection tile, const EightReprojections* motion, int x, int y) {
   const int8 columns = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-  float8 at_x = clamp(motion->x, -FARTHEST_MOVE, FARTHEST_MOVE) + tile.phase_x;
-  float8 at_y = clamp(motion->y, -FARTHEST_MOVE, FARTHEST_MOVE) + tile.phase_y;
+  float8 at_x = clamp(motion->x, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_x;
+  float8 at_y = clamp(motion->y, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_y;
   // Less the phase of the texels there.
   const int8 i = columns + convert_int8(at_x + 0.5f), j = y + convert_int8(at_y + 0.5f);
   const float2 p0 = phase_at(previous, params, i.s0, j.s0), p1 = phase_at(previous, params, i.s1, j.s1);

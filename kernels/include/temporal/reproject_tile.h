@@ -56,7 +56,7 @@ typedef struct ReprojectionRange {
 
 static inline ReprojectionRange range_of(__global const float* reprojection, TexelLayout layout, SampleRange samples) {
   const int2 first = samples.first, last = samples.last;
-  float16 least = (float16)(65536.0f), most = (float16)(-65536.0f);
+  float16 least = (float16)(65536.0f), most = (float16)(-65536.0f);  // beyond all that Reprojection holds
   int16 unknown = (int16)(0);
   const bool wide = last.x >= first.x + 3;
   for (int y = first.y; y <= last.y; ++y) {
