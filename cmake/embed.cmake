@@ -1,14 +1,17 @@
 # Text files as data of a target.
 #
-#   quincunx_embed(TARGET HEADER embedded_shaders.h FUNCTION ns::embedded_shader_files FILES a.glsl b.glsl)
+#   quincunx_embed(TARGET HEADER embedded_shaders.h FUNCTION ns::embedded_shader_files FILES a.glsl b.glsl
+#                  [ROOTS folder...])
 #
 # adds a generated source to TARGET that defines `std::span<const EmbeddedFile> FUNCTION()`, declared in HEADER. The
-# struct is that of kernels/embedded_file.h.
+# struct is that of kernels/embedded_file.h. A file's name is its path below the first of ROOTS that it lies in; without
+# ROOTS it is the file's name alone.
 #
 # As a script (-P) this file writes that source. Each file becomes an array of bytes, not a string literal: ISO C++
 # promises only 65536 characters in a literal.
 if(CMAKE_SCRIPT_MODE_FILE)
   string(REPLACE "|" ";" files "${FILES}")
+  string(REPLACE "|" ";" roots "${ROOTS}")
   string(REGEX REPLACE "::[^:]*$" "" namespace "${FUNCTION}")
   string(REGEX REPLACE "^.*::" "" function "${FUNCTION}")
   string(REPEAT "[0-9a-f]" 32 line)
@@ -20,6 +23,13 @@ if(CMAKE_SCRIPT_MODE_FILE)
     string(REGEX REPLACE "(${line})" "\\1\n    " hex "${hex}")
     string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
     get_filename_component(name "${file}" NAME)
+    foreach(root IN LISTS roots)
+      string(FIND "${file}" "${root}/" at)
+      if(at EQUAL 0)
+        file(RELATIVE_PATH name "${root}" "${file}")
+        break()
+      endif()
+    endforeach()
     string(APPEND arrays "constexpr unsigned char kText${index}[] = {  // ${name}\n    ${bytes}0x00};\n\n")
     string(APPEND rows "      {\"${name}\", text_of(kText${index})},\n")
     math(EXPR index "${index} + 1")
@@ -52,15 +62,16 @@ endif()
 
 set(QUINCUNX_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_FILE})
 function(quincunx_embed target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADER;FUNCTION" "FILES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "HEADER;FUNCTION" "FILES;ROOTS")
   list(TRANSFORM arg_FILES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE paths)
   list(JOIN paths "|" list)
+  list(JOIN arg_ROOTS "|" roots)
   string(REGEX REPLACE "^.*::" "" name "${arg_FUNCTION}")
   set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
   add_custom_command(
     OUTPUT ${source}
     COMMAND ${CMAKE_COMMAND} -D OUTPUT=${source} -D HEADER=${arg_HEADER} -D FUNCTION=${arg_FUNCTION}
-            -D "FILES=${list}" -P ${QUINCUNX_EMBED_SCRIPT}
+            -D "FILES=${list}" -D "ROOTS=${roots}" -P ${QUINCUNX_EMBED_SCRIPT}
     DEPENDS ${paths} ${QUINCUNX_EMBED_SCRIPT}
     COMMENT "Embedding the files of ${name}"
     VERBATIM)

@@ -8,7 +8,8 @@
 
 namespace quincunx {
 
-// Every kernels/*.cl and every kernels/include/*.h.
+// Every kernel and every header, named by its path below kernels/ or kernels/include/: "reproject.cl",
+// "temporal/temporal_light.cl", "temporal/history.h".
 std::span<const EmbeddedFile> embedded_kernel_files();
 
 }  // namespace quincunx

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// motion_blur: what a shutter would have seen that was open until now: each output pixel is the mean of what lay under it
-// at moments spread over that time.
+// motion_blur: what a shutter would have seen that was open until now: each output pixel is the mean of what lay under
+// it at moments spread over that time.
 //   params    in   extents, layouts, scale from velocity to streaks
 //   axes      in   AxisTap of each output column, then of each output row: the sample that a pixel sees
 //   blurs     in   TileBlur of motion_neighbours
@@ -10,14 +10,16 @@
 //   output    out  as source; another buffer
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h, of velocity and depth
-// A surface that moves by the streak s a shutter was at p, the fraction f of the shutter's time ago, if it is at p + f s now.
-// Two such surfaces are looked for: one that moves as the pixel's own surface does and, where that is another motion, one that
-// moves as the longest streak around does; of both the nearer. Where neither is found p saw what is hidden now: behind a nearer surface the other way
-// along the streak stands in, else what lies beyond the edge. Reads stop at the outermost pixels.
-// Source: McGuire et al. 2012; Guertin, McGuire, Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter", 2014.
+// A surface that moves by the streak s a shutter was at p, the fraction f of the shutter's time ago, if it is at p + f
+// s now. Two such surfaces are looked for: one that moves as the pixel's own surface does and, where that is another
+// motion, one that moves as the longest streak around does; of both the nearer. Where neither is found p saw what is
+// hidden now: behind a nearer surface the other way along the streak stands in, else what lies beyond the edge. Reads
+// stop at the outermost pixels.
+// Source: McGuire et al. 2012; Guertin, McGuire, Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter",
+// 2014.
 // Reference: tests/reference/motion_blur.cpp
 #include "hash.h"
-#include "motion.h"
+#include "motion/streaks.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
@@ -47,7 +49,8 @@ typedef struct Frame {
 
 // Where a surface that is at (x, y) after the moment `fraction` (of 256) was then seen from. Places are in 1 / (256 *
 // kStreakUnits) pixels on the way.
-static inline Places places_along(const MotionParams* params, int4 x, int y, int4 streak_x, int4 streak_y, int4 fraction) {
+static inline Places places_along(const MotionParams* params, int4 x, int y, int4 streak_x, int4 streak_y,
+                                  int4 fraction) {
   const int4 half_pixel = 256 * kStreakUnits / 2;
   const int4 along_x = (x * (256 * kStreakUnits) + half_pixel + streak_x * fraction) >> 14;
   const int4 along_y = ((int4)(y * (256 * kStreakUnits)) + half_pixel + streak_y * fraction) >> 14;
@@ -56,17 +59,17 @@ static inline Places places_along(const MotionParams* params, int4 x, int y, int
   return places;
 }
 
-static inline int4 nearest_of(__global const AxisTap* axis, int4 at) {
+static inline int4 nearest_at(__global const AxisTap* axis, int4 at) {
   return (int4)(axis[at.s0].nearest, axis[at.s1].nearest, axis[at.s2].nearest, axis[at.s3].nearest);
 }
 
 static inline Surfaces surfaces_at(const Frame* frame, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth, Places places) {
   const MotionParams* params = frame->params;
-  const int4 x = nearest_of(frame->columns, places.x);
-  const int4 y = nearest_of(frame->rows, places.y);
+  const int4 x = nearest_at(frame->columns, places.x);
+  const int4 y = nearest_at(frame->rows, places.y);
   const int8 streaks =
-      streaks_of(gather_velocity(velocity, params->velocity, x, y), params->scale_x, params->scale_y);
-  const Surfaces surfaces = {streaks.even, streaks.odd, gather_depth(depth, params->depth, x, y)};
+      streaks_of(load_velocity_at(velocity, params->velocity, x, y), params->scale_x, params->scale_y);
+  const Surfaces surfaces = {streaks.even, streaks.odd, load_settled_depth_at(depth, params->depth, x, y)};
   return surfaces;
 }
 

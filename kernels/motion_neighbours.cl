@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// motion_neighbours: for each tile of the output what can reach it, or be reached from it, while the shutter is open, and so
-// how its pixels are blurred.
+// motion_neighbours: for each tile of the output what can reach it, or be reached from it, while the shutter is open,
+// and so how its pixels are blurred.
 //   params   in   tiles_x, tiles_y, most_samples_log2
 //   tiles    in   TileStreaks of motion_tiles
 //   longest  in   longest[0]: the longest streak of all
 //   blurs    out  TileBlur of each tile
 // The number of samples is the power of two that leaves at most a pixel between two of them, within [4, most].
-// Source: McGuire et al. 2012; Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014 (classes).
+// Source: McGuire et al. 2012; Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014
+// (classes).
 // Reference: tests/reference/motion_blur.cpp
 #include "params.h"
 

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: MIT
-// reproject: where what each sample shows was in the previous frame, and how far what lies there now is to be trusted.
+// reproject: where the surface that each sample shows was in the previous frame, and how far history there is to be
+// trusted.
 //   trust = (1 - reactive0) (1 - reactive1) inside visible / (1 + K |v0 - v1|^2)
 //   inside   falls from 1 at the previous frame's edge to 0 a pixel beyond it
-//   visible  1 if one of the 2x2 previous depths there is not nearer than the sample's by more than a tolerance, else 0:
-//            d1 <= 1.02 d0 + 2 (the smaller difference of d0 to left and right + that to above and below); one-sided, so
-//            that thin things that fall between samples are not lost; d is reversed depth, near / distance
-//   v0, v1, reactive0, 1: of the sample and of the previous one nearest to where it was, reactive with CONTRAST the largest of
-//            3x3 and, in the previous frame, 5x5; v in render pixels a frame
+//   visible  1 if at least one of the 2x2 previous depths at that place does not lie in front of the sample's surface,
+//            else 0. A depth d1 lies in front of d0 if d1 > 1.02 d0 + 2 slope, d being reversed depth, near / distance;
+//            slope is the smaller difference of d0 to left and right + that to above and below. The test is one-sided,
+//            so that thin things that fall between samples are not lost
+//   v0, v1, reactive0, 1: of the sample, and of the previous sample nearest to the place where it was; v in render
+//            pixels a frame. With MOTION_EDGE reactive is the largest of 3x3 and, in the previous frame, of 5x5
 //
-//   params        in   viewports, layouts, scales
-//   velocity0, 1  in   RG16F or RG32F, viewports of frame n and n-1; velocity1 is not read where RESIDUAL is 0
-//   depth0, 1     in   R32F, the same viewports, reversed and infinite; a NaN among depths that are compared does not count
-//   reactive0, 1  in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
-//   previous_moves in  CONTRAST 1: what this kernel gave for frame n-1; all zero where there is none
-//   moves         out  Move of each sample of frame n
-// Options: REACTIVE  0 (default) | 1
-//          RESIDUAL  0 (default) | 1: K is not 0
-//          CONTRAST  0 (default) | 1: the moves hold how much the velocity differs from the eight neighbours', at most, or
-//                    that of frame n-1 where it was, negative, if that was more; and where something nearer was among the
-//                    2x2 previous depths and an edge of motion there, trust goes: what was accumulated there is that thing's
-//                    as well
+//   params                 in   viewports, layouts, scales
+//   velocity0, 1           in   RG16F or RG32F, viewports of frames n and n-1; RESIDUAL 0: velocity1 is not read
+//   depth0, 1              in   R32F, the same viewports, reversed and infinite; NaN does not count
+//   reactive0, 1           in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
+//   previous_reprojection  in   MOTION_EDGE 1: what this kernel wrote for frame n-1; all zero where there is none
+//   reprojection           out  Reprojection of each sample of frame n
+// Options: REACTIVE     0 (default) | 1
+//          RESIDUAL     0 (default) | 1: K is not 0
+//          MOTION_EDGE  0 (default) | 1: the motion edge at each sample is found as well. Where one of the 2x2 previous
+//                       depths lies in front of the sample's surface and there was a motion edge, the sample counts as
+//                       disoccluded: what accumulated there is the nearer surface's, too
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
-// A sample whose velocity or depth is not finite moves by 0, and its trust is NaN.
+// A sample whose velocity or depth is not finite stands still, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
-#include "motion_contrast.h"
 #include "texel_blocks.h"
 
 #ifndef REACTIVE
@@ -32,8 +32,8 @@
 #ifndef RESIDUAL
 #define RESIDUAL 0
 #endif
-#ifndef CONTRAST
-#define CONTRAST 0
+#ifndef MOTION_EDGE
+#define MOTION_EDGE 0
 #endif
 #if REACTIVE < 0 || REACTIVE > 1
 #error "REACTIVE must be 0 or 1"
@@ -41,18 +41,21 @@
 #if RESIDUAL < 0 || RESIDUAL > 1
 #error "RESIDUAL must be 0 or 1"
 #endif
-#if CONTRAST < 0 || CONTRAST > 1
-#error "CONTRAST must be 0 or 1"
+#if MOTION_EDGE < 0 || MOTION_EDGE > 1
+#error "MOTION_EDGE must be 0 or 1"
 #endif
 
-#include "reactive_around.h"
+#include "motion/find_motion_edges.h"
+#include "motion/reactive_around.h"
 
-#define DEPTH_TOLERANCE 1.02f
-#define SLOPE_TOLERANCE 2.0f
+#define FARTHEST_MOTION 65504.0f  // pixels of the previous frame: beyond any viewport
+// What counts as in front, found by search on the development scenes.
+#define DEPTH_TOLERANCE 1.02f     // ratio of reversed depths
+#define SLOPE_TOLERANCE 2.0f      // steps of depth from a sample to the next
 #define NAN_BITS 0x7fc00000
 
-// The depths of four neighbours of a row, from x on, which may be -1; beyond the edges what lies on the other side of the
-// outermost texel.
+// The depths of four neighbours of a row, from x on, which may be -1. Beyond the edges they are mirrored, so that a
+// slope has both sides.
 static inline float4 load_depth_reflected(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER
   if (x >= 0 && x + 3 < width) return vload4(0, texels + texel_index(layout, x, y));
@@ -102,18 +105,23 @@ static inline int4 non_finite_velocity(float8 velocity) {
   return non_finite_lanes(velocity.even) | non_finite_lanes(velocity.odd);
 }
 
-static inline void store_moves(__global float* moves, int index, int count, float4 x, float4 y, float4 trust,
-                               float4 contrast) {
-  __global float* first = moves + 4 * index;
-  vstore4((float4)(x.s0, y.s0, trust.s0, contrast.s0), 0, first);
-  if (count > 1) vstore4((float4)(x.s1, y.s1, trust.s1, contrast.s1), 1, first);
-  if (count > 2) vstore4((float4)(x.s2, y.s2, trust.s2, contrast.s2), 2, first);
-  if (count > 3) vstore4((float4)(x.s3, y.s3, trust.s3, contrast.s3), 3, first);
+// Reprojection of four samples.
+typedef struct FourReprojections {
+  float4 x, y, trust, motion_edge;
+} FourReprojections;
+
+// The first `count` of four.
+static inline void store_reprojections(__global float* reprojection, int index, int count, FourReprojections r) {
+  __global float* first = reprojection + 4 * index;
+  vstore4((float4)(r.x.s0, r.y.s0, r.trust.s0, r.motion_edge.s0), 0, first);
+  if (count > 1) vstore4((float4)(r.x.s1, r.y.s1, r.trust.s1, r.motion_edge.s1), 1, first);
+  if (count > 2) vstore4((float4)(r.x.s2, r.y.s2, r.trust.s2, r.motion_edge.s2), 2, first);
+  if (count > 3) vstore4((float4)(r.x.s3, r.y.s3, r.trust.s3, r.motion_edge.s3), 3, first);
 }
 
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
                         DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                        __global const float* previous_moves, __global float* moves) {
+                        __global const float* previous_reprojection, __global float* reprojection) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
@@ -127,23 +135,29 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float8 input = load_velocity_block(velocity0, params.velocity0, x, y, params.width);
     int4 lost = non_finite_lanes(depth) | non_finite_velocity(input);
     const float8 velocity = as_float8(select(as_int8(input), (int8)(0), both_axes(lost)));
-    const float4 move_x = clamp(velocity.even * params.move_x, -LARGEST_MOVE, LARGEST_MOVE);
-    const float4 move_y = clamp(velocity.odd * params.move_y, -LARGEST_MOVE, LARGEST_MOVE);
-    const float4 at_x = convert_float4(x + (int4)(0, 1, 2, 3)) * params.step_x + params.start_x + move_x;
-    const float4 at_y = row + move_y;
 
+    // Reproject.
+    FourReprojections found;
+    found.x = clamp(velocity.even * params.motion_x, -FARTHEST_MOTION, FARTHEST_MOTION);
+    found.y = clamp(velocity.odd * params.motion_y, -FARTHEST_MOTION, FARTHEST_MOTION);
+    const float4 at_x = convert_float4(x + (int4)(0, 1, 2, 3)) * params.step_x + params.start_x + found.x;
+    const float4 at_y = row + found.y;
+
+    // Compare depths.
     const float4 limit = depth * DEPTH_TOLERANCE + slope_of(&params, depth0, x, y, depth) * SLOPE_TOLERANCE;
     const DepthRange before = previous_depths(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
                                               clamp(floor_of(at_y), (int4)(0), last_y));
+
+    // Trust what was on the screen, not reactive, and moved alike.
     float4 trust = inside_of(at_x, params.edge_x, (float)params.previous_width) *
                    inside_of(at_y, params.edge_y, (float)params.previous_height);
-#if REACTIVE || RESIDUAL || CONTRAST
+#if REACTIVE || RESIDUAL || MOTION_EDGE
     const int4 nearest_x = clamp(floor_of(at_x + 0.5f), (int4)(0), (int4)(params.previous_width - 1));
     const int4 nearest_y = clamp(floor_of(at_y + 0.5f), (int4)(0), (int4)(params.previous_height - 1));
 #endif
 #if REACTIVE
-    trust *= 1.0f - reactive_block(&params, reactive0, x, y);
-    trust *= 1.0f - previous_reactive(&params, reactive1, nearest_x, nearest_y);
+    trust *= 1.0f - reactive_at(&params, reactive0, x, y);
+    trust *= 1.0f - previous_reactive_at(&params, reactive1, nearest_x, nearest_y);
 #endif
 #if RESIDUAL
     const float8 velocity_before = load_velocity_at(velocity1, params.velocity1, nearest_x, nearest_y);
@@ -152,17 +166,19 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
 #endif
-    trust = select((float4)(0.0f), trust, before.least <= limit);
-    trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
-#if CONTRAST
-    const float4 kept = 1.0f - edge_before(&params, previous_moves, nearest_x, nearest_y);
-    trust *= select((float4)(1.0f), kept, before.most > limit);
-    const float4 own = contrast_of(&params, velocity0, x, y, velocity);
-    const float4 earlier = contrast_before(&params, previous_moves, nearest_x, nearest_y);
-    const float4 contrast = select(own, -earlier, earlier > own);
+    trust = select((float4)(0.0f), trust, before.least <= limit);  // visible
+    found.trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));
+
+    // Find motion edges, and trust nothing that a nearer surface's edge has mixed in.
+#if MOTION_EDGE
+    const float4 edge = motion_edges_at(&params, velocity0, x, y, velocity);
+    const float4 previous_edge = previous_motion_edges(&params, previous_reprojection, nearest_x, nearest_y);
+    const float4 kept = 1.0f - edge_rejection((float8)(previous_edge, previous_edge)).lo;
+    found.trust *= select((float4)(1.0f), kept, before.most > limit);
+    found.motion_edge = select(edge, -previous_edge, previous_edge > edge);
 #else
-    const float4 contrast = (float4)(0.0f);
+    found.motion_edge = (float4)(0.0f);
 #endif
-    store_moves(moves, texel_index(params.moves, x, y), end - x, move_x, move_y, trust, contrast);
+    store_reprojections(reprojection, texel_index(params.reprojection, x, y), end - x, found);
   }
 }

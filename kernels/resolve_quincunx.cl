@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // resolve_quincunx: blend this frame with the previous one on the five-of-a-die pattern, in the seed's form.
 //   c0, c1 = this and the previous frame, each sampled at the pixel's centre less its jitter
-//   f      = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame;  out = (c0 + f c1) / (1 + f)
+//   f      = (1 - reactive0) (1 - reactive1) / (1 + K (|v0|^2 + |v1|^2)), v in render pixels a frame
+//   out    = (c0 + f c1) / (1 + f)
 //
 //   params             in   extents, layouts, velocity scales with sqrt(K) in them
 //   axes0, axes1       in   AxisTap of each output column, then row, for each frame's viewport and jitter
 //   colour0, colour1   in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
 //   velocity0, 1       in   RG16F or RG32F, the same viewports; the nearest sample; not read where WEIGHT is 0
-//   reactive0, 1       in   REACTIVE 1: R8, the nearest sample of each frame; 0: the frames may be mixed, 1: they may not
+//   reactive0, 1       in   REACTIVE 1: R8, the nearest sample of each frame; 0: frames may be mixed, 1: they may not
 //   output             out  RGBA32F or RGBA16F, output extent
-//   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
+//   non_finite         out  non_finite[params.counter] grows by the pixels with NaN or infinite input that counts
 // Options: SAMPLING  BILINEAR (default) | POINT: the nearest sample
 //          WEIGHT    1 by the speed of both frames (default) | 0 plain mean
 //          REACTIVE  0 (default) | 1
@@ -45,8 +46,8 @@ static inline int4 nearest_of(__global const AxisTap* columns) {
   return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
 }
 
-// Into *mean four pixels of one frame. `careful`, a constant, chooses the way; the plain one sets bit i of *non_finite where
-// pixel i met NaN or Inf.
+// Into *mean four pixels of one frame. `careful`, a constant, chooses the way; the slow one sets bit i of *non_finite
+// where pixel i met NaN or Inf.
 __attribute__((always_inline)) static inline void sample_frame(bool careful, COLOUR_TEXELS colour, SourceFrame frame,
                                                                __global const AxisTap* columns, AxisTap row,
                                                                FourPixels* mean, uint* non_finite) {
@@ -89,7 +90,7 @@ static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
   return mean;
 }
 
-// Pixels first to end of row y. The fast way (`careful` false) returns the largest magnitudes it met; the plain one
+// Pixels first to end of row y. The fast way (`careful` false) returns the largest magnitudes it met; the slow one
 // is right for NaN and Inf as well and adds the pixels that met them to *met.
 __attribute__((always_inline)) static inline int4 resolve_row(
     bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* axes0,
@@ -159,11 +160,11 @@ __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTa
   const int end = min(first + params.columns_per_item, params.output_width);
   uint met = 0;
   if (min(params.frame0.width, params.frame1.width) > 1) {
-    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1,
-                                     reactive0, reactive1, output, &met);
+    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0,
+                                     velocity1, reactive0, reactive1, output, &met);
     if (!any_reached_infinity(largest)) return;
   }
-  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, reactive1, output,
-              &met);
+  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, reactive1,
+              output, &met);
   if (met) atomic_add(non_finite + params.counter, met);
 }

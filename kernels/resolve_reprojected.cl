@@ -1,30 +1,33 @@
 // SPDX-License-Identifier: MIT
-// resolve_reprojected: this frame and the previous one where its surfaces have moved to, each sample weighted by its distance.
+// resolve_reprojected: this frame and the previous one where its surfaces have moved to, each sample weighted by its
+// distance.
 //   out = (sum w0 h c0 + g sum w1 h c1) / (sum w0 h + g sum w1 h)
-//   w1   of the 2x2 previous samples around q, the place in frame n-1 of what the sample nearest to the output pixel's centre p
-//        shows: (1 - d^2/r^2)^3 on each axis, d in render pixels
+//   w1   of the 2x2 previous samples around q, the place in frame n-1 of what the sample nearest to the output pixel's
+//        centre p shows: (1 - d^2/r^2)^3 on each axis, d in render pixels
 //   w0   of the 2x2 samples around p: g times the same + (1 - g) times bilinear's, so that without trust the picture is
 //        bilinear's, and becomes so steadily
 //   h    1 / max(2, largest of red, green and blue): one bright sample does not outshine the others
 //   g    the trust of that nearest sample
 //
 //   params              in   extents, layouts, falloffs 1 / r^2
-//   positions0, 1       in   of each output column, then row, in each frame's viewport: texels, then fractions as bits. A
-//                            position lies between samples `texel` and texel + 1, `fraction` of the way; texels may lie outside
+//   positions0, 1       in   of each output column, then row, in each frame's viewport: texels, then fractions as bits.
+//                            A position lies between samples `texel` and texel + 1, `fraction` of the way; texels may
+//                            lie outside
 //   colour0, colour1    in   RGBA16F or RGBA32F, viewports of frame n and n-1, linear, premultiplied
-//   moves               in   MOTION 1: of each sample of frame n, from reproject
-//   reactive0, 1        in   REACTIVE 1 with MOTION 0: R8 of both frames; g = (1 - reactive0) (1 - reactive1), nearest samples
+//   reprojection        in   MOTION 1: Reprojection of each sample of frame n, from reproject
+//   reactive0, 1        in   REACTIVE 1 with MOTION 0: R8 of both frames; g = (1 - reactive0) (1 - reactive1)
 //   output              out  RGBA32F or RGBA16F, output extent
-//   non_finite          out  non_finite[params.counter] grows by the pixels with NaN or infinite input of non-zero weight
+//   non_finite          out  non_finite[params.counter] grows by the pixels with NaN or infinite input that counts
 // Options: MOTION    1 (default) | 0: nothing moves, q = p, g = 1 but for REACTIVE
 //          REACTIVE  0 (default) | 1
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// Where a previous sample or the move is not finite, g is 0: nothing survives into the next frame.
+// Where a previous sample or the reprojection is not finite, g is 0: nothing survives into the next frame.
 // Reference: tests/reference/resolve_reprojected.cpp
 #include "texel.h"
 
 #include "distance_weights.h"
-#include "motion_options.h"
+#include "motion/motion_options.h"
+#include "positions.h"
 
 #define BRIGHT 2.0f  // see any_at_least_two
 
@@ -34,11 +37,12 @@ typedef struct Row {
   float fraction0, fraction1;
 } Row;
 
-static inline Row row_of(const ReprojectedParams* params, __global const int* positions0, __global const int* positions1,
-                         int y) {
+static inline Row row_of(const ReprojectedParams* params, __global const int* positions0,
+                         __global const int* positions1, int y) {
   const int texel = 2 * params->columns + y;
   const int fraction = texel + params->output_height;
-  const Row row = {positions0[texel], positions1[texel], as_float(positions0[fraction]), as_float(positions1[fraction])};
+  const Row row = {positions0[texel], positions1[texel], as_float(positions0[fraction]),
+                   as_float(positions1[fraction])};
   return row;
 }
 
@@ -49,15 +53,16 @@ static inline Positions columns_of(const ReprojectedParams* params, __global con
 
 #if MOTION
 // Of eight pixels, from the samples that are nearest to them.
-static inline Trusts trusts_of(const ReprojectedParams* params, __global const float* moves, int8 x, int y) {
-  Trusts trusts;
-  __global const float* row = moves + 4 * row_index(params->moves, y);
+static inline PixelMotion motion_of(const ReprojectedParams* params, __global const float* reprojection, int8 x,
+                                    int y) {
+  PixelMotion motion;
+  __global const float* row = reprojection + 4 * row_index(params->reprojection, y);
   const float4 m0 = vload4(x.s0, row), m1 = vload4(x.s1, row), m2 = vload4(x.s2, row), m3 = vload4(x.s3, row);
   const float4 m4 = vload4(x.s4, row), m5 = vload4(x.s5, row), m6 = vload4(x.s6, row), m7 = vload4(x.s7, row);
-  trusts.move_x = (float8)(m0.x, m1.x, m2.x, m3.x, m4.x, m5.x, m6.x, m7.x);
-  trusts.move_y = (float8)(m0.y, m1.y, m2.y, m3.y, m4.y, m5.y, m6.y, m7.y);
-  trusts.trust = (float8)(m0.z, m1.z, m2.z, m3.z, m4.z, m5.z, m6.z, m7.z);
-  return trusts;
+  motion.x = (float8)(m0.x, m1.x, m2.x, m3.x, m4.x, m5.x, m6.x, m7.x);
+  motion.y = (float8)(m0.y, m1.y, m2.y, m3.y, m4.y, m5.y, m6.y, m7.y);
+  motion.trust = (float8)(m0.z, m1.z, m2.z, m3.z, m4.z, m5.z, m6.z, m7.z);
+  return motion;
 }
 #elif REACTIVE
 // 1 - reactive of eight samples of a row.
@@ -73,19 +78,22 @@ static inline float8 careful_pair(COLOUR_TEXELS texels, const SourceFrame* frame
                   load_colour(texels, frame->colour, min(x + 1, frame->width - 1), row));
 }
 
-// The plain way for one pixel of any viewports and any values: NaN counts as 0, +-Inf as +-65504.
-static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, int x0, int y0,
-                                     int x1, int y1, float fraction0_x, float fraction0_y, float fraction1_x,
-                                     float fraction1_y, float move_trust, bool* met) {
-  const bool lost = (as_int(move_trust) & 0x7fffffff) >= NON_FINITE_BITS;
-  float trust = lost ? 0.0f : move_trust;
+// The slow path: one pixel of any viewports and any values: NaN counts as 0, +-Inf as +-65504.
+static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
+                                     int x0, int y0, int x1, int y1, float fraction0_x, float fraction0_y,
+                                     float fraction1_x, float fraction1_y, float found_trust, bool* met) {
+  const bool lost = (as_int(found_trust) & 0x7fffffff) >= NON_FINITE_BITS;
+  float trust = lost ? 0.0f : found_trust;
   const float8 now_x = (float8)(fraction0_x), now_y = (float8)(fraction0_y);
   const float8 before_x = (float8)(fraction1_x), before_y = (float8)(fraction1_y);
-  FourPairs samples = {careful_pair(colour0, &params->frame0, x0, y0), careful_pair(colour0, &params->frame0, x0, y0 + 1),
-                       careful_pair(colour1, &params->frame1, x1, y1), careful_pair(colour1, &params->frame1, x1, y1 + 1)};
+  const SourceFrame* frame0 = &params->frame0;
+  const SourceFrame* frame1 = &params->frame1;
+  FourPairs samples = {careful_pair(colour0, frame0, x0, y0), careful_pair(colour0, frame0, x0, y0 + 1),
+                       careful_pair(colour1, frame1, x1, y1), careful_pair(colour1, frame1, x1, y1 + 1)};
   Weights weights = weights_of(params, now_x, now_y, before_x, before_y, (float8)(trust));
-  const bool met_before = counts_non_finite(samples.before0, weights.before_x0.s0, weights.before_x1.s0, weights.before_y0.s0) ||
-                          counts_non_finite(samples.before1, weights.before_x0.s0, weights.before_x1.s0, weights.before_y1.s0);
+  const float left = weights.before_x0.s0, right = weights.before_x1.s0;
+  const bool met_before = counts_non_finite(samples.before0, left, right, weights.before_y0.s0) ||
+                          counts_non_finite(samples.before1, left, right, weights.before_y1.s0);
   if (met_before) weights = weights_of(params, now_x, now_y, before_x, before_y, (float8)(0.0f));
   *met = lost || met_before ||
          counts_non_finite(samples.now0, weights.now_x0.s0, weights.now_x1.s0, weights.now_y0.s0) ||
@@ -114,15 +122,15 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
     bool met = false;                                                                                                  \
     const float4 pixel = resolve_careful(&params, colour0, colour1, now_x.texel.i, now_y.texel.i, before_x.texel.i,    \
                                          before_y.texel.i, now_x.fraction.i, now_y.fraction.i, before_x.fraction.i,    \
-                                         before_y.fraction.i, trusts.trust.i, &met);                                   \
+                                         before_y.fraction.i, motion.trust.i, &met);                                   \
     store_output(output, params.output, x + n, y, pixel);                                                              \
     met_count += met;                                                                                                  \
   }
 
 __kernel void resolve_reprojected(const ReprojectedParams params, __global const int* positions0,
                                   __global const int* positions1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1,
-                                  __global const float* moves, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                                  OUTPUT_TEXELS output, __global uint* non_finite) {
+                                  __global const float* reprojection, REACTIVE_TEXELS reactive0,
+                                  REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -143,23 +151,23 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   for (int x = first; x < end; x += kReprojectedBlock) {
     const Positions now_x = moved_positions(columns_of(&params, positions0, x), (float8)(0.0f), frame0.width - 1);
 #if MOTION
-    const Trusts trusts = trusts_of(&params, moves, nearest_samples(now_x), nearest_samples(now_y).s0);
+    const PixelMotion motion = motion_of(&params, reprojection, nearest_samples(now_x), nearest_samples(now_y).s0);
 #else
-    Trusts trusts = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f)};
+    PixelMotion motion = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f)};
 #if REACTIVE
     const Positions still_x = moved_positions(columns_of(&params, positions1, x), (float8)(0.0f), frame1.width - 1);
     const Positions still_y = moved_positions(row1, (float8)(0.0f), frame1.height - 1);
-    trusts.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), nearest_samples(now_y).s0) *
+    motion.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), nearest_samples(now_y).s0) *
                    trust_of(reactive1, frame1.reactive, nearest_samples(still_x), nearest_samples(still_y).s0);
 #endif
 #endif
-    const Positions before_x = moved_positions(columns_of(&params, positions1, x), trusts.move_x, frame1.width - 1);
-    const Positions before_y = moved_positions(row1, trusts.move_y, frame1.height - 1);
+    const Positions before_x = moved_positions(columns_of(&params, positions1, x), motion.x, frame1.width - 1);
+    const Positions before_y = moved_positions(row1, motion.y, frame1.height - 1);
     if (pairs) {
       const Weights weights = weights_of(&params, now_x.fraction, now_y.fraction, before_x.fraction, before_y.fraction,
-                                         trusts.trust);
+                                         motion.trust);
       const int8 before = before_y.texel * frame1.colour.pitch + before_x.texel;
-      int8 bits = as_int8(trusts.trust);
+      int8 bits = as_int8(motion.trust);
       RESOLVE(s0);
       RESOLVE(s1);
       RESOLVE(s2);

@@ -23,14 +23,15 @@ __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* a
   if (params.source_width > 1) {
     for (int x = first; x < end; x += kBlock) {
       FourPixels colour;
-      sample_four(false, source, params.source, params.source_width, params.source_height, axes + x, row, &colour, &bits);
+      sample_four(false, source, params.source, params.source_width, params.source_height, axes + x, row, &colour,
+                  &bits);
       largest = largest_of(largest, colour);
       store_four(output, params.output, x, y, end, colour);
     }
   }
   if (!any_reached_infinity(largest)) return;
 
-  // Rare: once more, the plain way.
+  // Rare: once more, on the slow path.
   uint met = 0;
   for (int x = first; x < end; x += kBlock) {
     FourPixels colour;

@@ -2,17 +2,17 @@
 // scale_filter: each output pixel is a weighted mean of the samples around its centre, by a separable filter of any
 // width: bicubic B-spline and Catmull-Rom, Lanczos-2, and the tent that bilinear becomes above scale 1.
 //   params      in   extents, layouts, taps of each axis
-//   spans       in   FilterSpan of each output column, then row; behind them the weights, taps of each column, then row.
-//                    The filter, the jitter and the widening above scale 1 are in them
+//   spans       in   FilterSpan of each output column, then row; behind them the weights, taps of each column, then
+//                    row. The filter, the jitter and the widening above scale 1 are in them
 //   source      in   RGBA16F or RGBA32F, viewport of params.source_width x source_height, linear, premultiplied
 //   output      out  RGBA32F or RGBA16F, output extent
 //   non_finite  out  non_finite[params.counter] grows by the pixels with a NaN or infinite sample of non-zero weight
 // Options: TAPS   4 (default) taps on both axes | 0 as many as params says
 //          CLAMP  0 (default) | 1: to the range of the samples next to the centre, so that negative lobes do not ring
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// Rows first, for the columns that a run of output pixels reads; then columns: each sample is loaded and weighed once a row.
-// Source: Sigg and Hadwiger, "Fast Third-Order Texture Filtering", 2005; Keys, "Cubic Convolution Interpolation for Digital
-// Image Processing", 1981; Duchon, "Lanczos Filtering in One and Two Dimensions", 1979.
+// Rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a row.
+// Source: Sigg and Hadwiger, "Fast Third-Order Texture Filtering", 2005; Keys, "Cubic Convolution Interpolation for
+// Digital Image Processing", 1981; Duchon, "Lanczos Filtering in One and Two Dimensions", 1979.
 // Reference: tests/reference/scale.cpp
 #include "multiply_add.h"
 #include "sanitise.h"
@@ -42,8 +42,8 @@
 #define INNER_Y params->inner_y
 #endif
 
-// Columns of a run of output pixels, each the weighted mean of its rows and, for CLAMP, the range of its inner rows and,
-// in the end, of the INNER_X columns from there on.
+// Columns of a run of output pixels, each the weighted mean of its rows and, for CLAMP, the range of its inner rows
+// and, in the end, of the INNER_X columns from there on.
 typedef struct Columns {
   float4 mean[kFilterColumns];
 #if CLAMP
@@ -56,7 +56,8 @@ static inline float16 four_texels(COLOUR_TEXELS source, TexelLayout layout, int 
   return load_colour4(source, colour_row(source, layout, y), x);
 }
 
-// The four columns from texel x on. min() and max() leave open what NaN gives, in one instruction: the mean tells of it.
+// The four columns from texel x on. min() and max() leave open what NaN gives, in one instruction: the mean tells of
+// it.
 static inline void filter_four_columns(const FilterParams* params, COLOUR_TEXELS source, FilterSpan row,
                                        __global const float* weights, int x, Columns* columns, int i) {
   const TexelLayout layout = params->source;
@@ -107,8 +108,8 @@ static inline void filter_rows(const FilterParams* params, COLOUR_TEXELS source,
 #endif
 }
 
-// One pixel from filtered columns that start at `base`. Collects the largest magnitude before the clamp, which NaN and Inf
-// reach through any weight: 0 * Inf is NaN.
+// One pixel from filtered columns that start at `base`. Collects the largest magnitude before the clamp, which NaN and
+// Inf reach through any weight: 0 * Inf is NaN.
 static inline float4 filter_columns(const FilterParams* params, const Columns* columns, int base, FilterSpan span,
                                     __global const float* weights, int4* largest) {
   const float4* taps = columns->mean + (span.base - base);
@@ -129,10 +130,11 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
   return mean;
 }
 
-// The plain way for one pixel of any viewport and any values: NaN counts as 0, +-Inf as +-65504. Sums in the order of the
+// The slow path: one pixel of any viewport and any values. NaN counts as 0, +-Inf as +-65504. Sums in the order of the
 // functions above, so that a pixel comes out the same to the last bit whichever way it went.
 static inline float4 filter_careful(const FilterParams* params, COLOUR_TEXELS source, FilterSpan column, FilterSpan row,
-                                    __global const float* column_weights, __global const float* row_weights, bool* met) {
+                                    __global const float* column_weights, __global const float* row_weights,
+                                    bool* met) {
   const int right = params->source_width - 1;
   const int below = params->source_height - 1;
   float4 mean = 0.0f;
@@ -187,7 +189,7 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
   }
   if (!any_reached_infinity(largest)) return;
 
-  // Rare: once more, the plain way.
+  // Rare: once more, on the slow path.
   uint met_count = 0;
   for (int x = first; x < end; ++x) {
     bool met = false;

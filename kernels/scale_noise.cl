@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// scale_noise: each output pixel takes the sample nearest to its centre, with film grain: colour times 1 + amplitude * n, n
-// in [-1, 1) at random, of mean 0, one for all three colours of a pixel. Black stays black, alpha as it is.
+// scale_noise: each output pixel takes the sample nearest to its centre, with film grain: colour times 1 + amplitude *
+// n, n in [-1, 1) at random, of mean 0, one for all three colours of a pixel. Black stays black, alpha as it is.
 //   params      in   extents and layouts, amplitude in [0, 1], seed: another seed gives another pattern
 //   axes        in   AxisTap of each output column, then of each output row; jitter is in them
 //   source      in   RGBA16F or RGBA32F, viewport of params.scale.source_width x source_height, linear, premultiplied

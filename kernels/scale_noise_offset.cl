@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// scale_noise_offset: each output pixel takes one sample, that which a place drawn evenly from a square around the pixel's
-// centre falls into. The square is a texel wide, which gives the four samples around the centre bilinear's weights as
-// probabilities: bilinear in the mean of many pixels or frames, and no blur in any one. Above scale 1 the square is as wide as
-// the output pixel.
-//   params      in   extents and layouts; seed: another seed gives another pattern; reach: the square. Not read: amplitude
+// scale_noise_offset: each output pixel takes one sample, that which a place drawn evenly from a square around the
+// pixel's centre falls into. The square is a texel wide, which gives the four samples around the centre bilinear's
+// weights as probabilities: bilinear in the mean of many pixels or frames, and no blur in any one. Above scale 1 the
+// square is as wide as the output pixel.
+//   params      in   extents and layouts; seed: another seed gives another pattern; reach: the square. Not read:
+//                    amplitude
 //   axes        in   AxisTap of each output column, then of each output row; jitter is in them
 //   source      in   RGBA16F or RGBA32F, viewport of params.scale.source_width x source_height, linear, premultiplied
 //   output      out  RGBA32F or RGBA16F, output extent
@@ -15,8 +16,8 @@
 #include "sanitise.h"
 #include "texel.h"
 
-// The texel of each of four places: `weight` texels right of the centre of `base`, moved by random * reach, random in 0 to
-// 65535. In 2^-24 texels, so that no rounding moves a place.
+// The texel of each of four places: `weight` texels right of the centre of `base`, moved by random * reach, random in 0
+// to 65535. In 2^-24 texels, so that no rounding moves a place.
 static inline int4 texels_at(int4 base, float4 weight, int4 random, int reach, int last) {
   const int4 place = convert_int4(weight * 0x1p24f) + (random - 0x8000) * reach + 0x800000;
   return clamp(base + (place >> 24), (int4)(0), (int4)(last));

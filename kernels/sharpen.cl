@@ -53,8 +53,8 @@ static inline float16 sharpened(Cross cross, float16 contrast, float sharpness) 
   return select(moved, cross.centre, (int16)(alpha, alpha, alpha, alpha));
 }
 
-static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output, const SharpenParams* params, int x, int y,
-                                   int end) {
+static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output, const SharpenParams* params, int x,
+                                   int y, int end) {
   const Cross cross = load_careful_cross(source, params, x, y);
   const float16 colour = sharpened(cross, contrast_of(cross), params->sharpness);
   const FourPixels pixels = {colour.s0123, colour.s4567, colour.s89ab, colour.scdef};

@@ -42,6 +42,7 @@ __kernel void velocity_from_depth(const VelocityParams params, DEPTH_TEXELS dept
     const float4 settled = as_float4(select(as_int4(input), (int4)(0), lost));
     const float8 moved = velocity_of(convert_float4(column), ndc_y, settled, &params.camera);
     const int8 lost_pairs = (int8)(lost.s0, lost.s0, lost.s1, lost.s1, lost.s2, lost.s2, lost.s3, lost.s3);
-    store_velocity4(velocity, params.velocity, x, y, end, as_float8(select(as_int8(moved), (int8)(0x7fc00000), lost_pairs)));
+    const float8 found = as_float8(select(as_int8(moved), (int8)(0x7fc00000), lost_pairs));
+    store_velocity4(velocity, params.velocity, x, y, end, found);
   }
 }

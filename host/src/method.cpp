@@ -113,8 +113,8 @@ const char* name_of(TemporalView view) {
       return "confidence";
     case TemporalView::kRejection:
       return "rejection";
-    case TemporalView::kOffset:
-      return "offset";
+    case TemporalView::kPhase:
+      return "phase";
   }
   return "unknown";
 }

@@ -32,16 +32,16 @@ void set_positions(ReprojectParams& params, const FrameInputs& current, const Fr
   params.step_y = y.step;
   params.start_x = x.start;
   params.start_y = y.start;
-  params.move_x = static_cast<float>(-to_previous.x);
-  params.move_y = static_cast<float>(-to_previous.y);
+  params.motion_x = static_cast<float>(-to_previous.x);
+  params.motion_y = static_cast<float>(-to_previous.y);
   params.edge_x = -.5f - previous.jitter.x;
   params.edge_y = -.5f - previous.jitter.y;
 }
 
-void set_contrast(ReprojectParams& params, const FrameInputs& current, Extent output) {
+void set_motion_edge(ReprojectParams& params, const FrameInputs& current, Extent output) {
   const VelocityScale to_output = velocity_scale_to(current, output);
-  params.contrast_x = static_cast<float>(to_output.x);
-  params.contrast_y = static_cast<float>(to_output.y);
+  params.motion_edge_x = static_cast<float>(to_output.x);
+  params.motion_edge_y = static_cast<float>(to_output.y);
 }
 
 void set_speeds(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous,
@@ -71,12 +71,12 @@ class ReprojectPass : public Pass {
     params.velocity1 = layout_if_used(frame, Resource::kPreviousVelocity);
     params.depth0 = layout_of(frame[Resource::kDepth]);
     params.depth1 = layout_of(frame[Resource::kPreviousDepth]);
-    params.moves = layout_of(frame[Resource::kReprojection]);
+    params.reprojection = layout_of(frame[Resource::kReprojection]);
     params.columns_per_item = columns_per_item(device(), current.render.width);
     params.reactive0 = layout_if_used(frame, Resource::kReactive);
     params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
     set_positions(params, current, previous);
-    set_contrast(params, current, frame.output);
+    set_motion_edge(params, current, frame.output);
     if (facts().weighs_residual()) set_speeds(params, current, previous, settings().quincunx.residual_weight);
     bind(params, frame[Resource::kVelocity], view_or(frame, Resource::kPreviousVelocity, Resource::kVelocity),
          frame[Resource::kDepth], frame[Resource::kPreviousDepth],
@@ -95,7 +95,7 @@ void plan_reproject(const PlanFacts& facts, PassList& list) {
   const PixelFormat velocity = facts.settings.velocity;
   PassSpec spec{
       .kernel = "reproject",
-      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D CONTRAST={} {}",
+      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D MOTION_EDGE={} {}",
                              facts.reads_reactive() ? 1 : 0, facts.weighs_residual() ? 1 : 0,
                              facts.accumulates() ? 1 : 0, velocity_options(facts.settings)),
       .reason = "the method: where each sample was, and whether it could be seen",
@@ -105,7 +105,7 @@ void plan_reproject(const PlanFacts& facts, PassList& list) {
                {Resource::kReprojection, Access::kWrite, Area::kViewport, PixelFormat::kRGBA32F}},
       .make = make_pass<ReprojectPass>,
       .frames = facts.accumulates() ? Frames::kSparse : Frames::kWithHistory};
-  if (facts.accumulates()) {  // edges of motion in the previous frame
+  if (facts.accumulates()) {  // motion edges of the previous frame
     spec.uses.push_back(
         {Resource::kPreviousReprojection, Access::kRead, Area::kPreviousViewport, PixelFormat::kRGBA32F});
   }

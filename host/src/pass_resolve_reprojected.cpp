@@ -39,7 +39,7 @@ class ResolveReprojectedPass : public Pass {
                    layout_of(frame[Resource::kPreviousColour]),
                    {},
                    layout_if_used(frame, Resource::kPreviousReactive)},
-        .moves = layout_if_used(frame, Resource::kReprojection),
+        .reprojection = layout_if_used(frame, Resource::kReprojection),
         .output = layout_of(frame[picture()]),
         .columns = tables.columns(),
         .counter = frame.counter.index,

@@ -5,22 +5,23 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
 
-int view_code(TemporalView view) {
+const char* view_option(TemporalView view) {
   switch (view) {
     case TemporalView::kPicture:
-      return kViewPicture;
+      return "PICTURE";
     case TemporalView::kConfidence:
-      return kViewConfidence;
+      return "CONFIDENCE";
     case TemporalView::kRejection:
-      return kViewRejection;
-    case TemporalView::kOffset:
-      return kViewOffset;
+      return "REJECTION";
+    case TemporalView::kPhase:
+      return "PHASE";
   }
-  return kViewPicture;
+  return "PICTURE";
 }
 
 class ResolveTemporalPass : public Pass {
@@ -35,7 +36,7 @@ class ResolveTemporalPass : public Pass {
     const Extent before = frame.previous.render;
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
     const Ratio spacing = ratio_of(output, now);
-    const Ratio move = ratio_of(output, before);
+    const Ratio motion = ratio_of(output, before);
     PositionTables& tables = frame.tables.positions();
     // A debug view is written here, the picture by temporal_display.
     const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
@@ -48,25 +49,23 @@ class ResolveTemporalPass : public Pass {
                    {},
                    layout_if_used(frame, Resource::kReactive)},
         .frame1 = {before.width, before.height, {}, {}, layout_if_used(frame, Resource::kPreviousReactive)},
-        .moves = layout_if_used(frame, Resource::kReprojection),
+        .reprojection = layout_if_used(frame, Resource::kReprojection),
         .output = layout_of(frame[shown]),
         .columns = tables.columns(),
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(device(), output.width, kTemporalTile),
-        .move_x = move.x,
-        .move_y = move.y,
+        .motion_x = motion.x,
+        .motion_y = motion.y,
         .spacing_x = spacing.x,
         .spacing_y = spacing.y,
         .tiles_x = tiles.width,
-        .tiles_y = tiles.height,
-        .view = view_code(settings().temporal.view),
-        .half_output = settings().resolved == PixelFormat::kRGBA16F ? 1 : 0};
+        .tiles_y = tiles.height};
     bind(params, tables.get(frame.queue, now, frame.current.jitter), frame[Resource::kColour],
-         view_or(frame, Resource::kReprojection, Resource::kTiles),
+         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          view_or(frame, Resource::kReactive, Resource::kColour),
          view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
-         frame[Resource::kPreviousTiles], frame[Resource::kTiles], frame[Resource::kHistory], frame[shown],
-         frame.counter);
+         frame[Resource::kPreviousTileReprojection], frame[Resource::kTileReprojection],
+         frame[Resource::kTileLight], frame[Resource::kHistory], frame[shown], frame.counter);
     launch(frame, output, params.columns_per_item, event);
   }
 };
@@ -75,10 +74,13 @@ std::string options_of(const PlanFacts& facts, bool reactive) {
   const ResolveSettings& settings = facts.settings;
   const TemporalPreset preset = settings.temporal.preset;
   const bool moves = facts.reprojects();
-  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} {} -D HISTORY_FORMAT={}",
+  std::string format;
+  if (!facts.shows_picture()) format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
+  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
                      moves ? 1 : 0, reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
                      moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
-                     colour_options(settings), precision_of(settings.temporal.history));
+                     view_option(settings.temporal.view), colour_options(settings),
+                     precision_of(settings.temporal.history), format);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "params.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
@@ -21,7 +22,8 @@ constexpr struct {
     {Resource::kDepth, Resource::kPreviousDepth},
     {Resource::kReactive, Resource::kPreviousReactive},
     {Resource::kReprojection, Resource::kPreviousReprojection},
-    {Resource::kTiles, Resource::kPreviousTiles},
+    {Resource::kTileReprojection, Resource::kPreviousTileReprojection},
+    {Resource::kTileLight, Resource::kPreviousTileLight},
     {Resource::kHistory, Resource::kPreviousHistory},
 };
 
@@ -54,10 +56,16 @@ const char* name_of(Resource resource) {
       return "reprojection";
     case Resource::kPreviousReprojection:
       return "reprojection of the previous frame";
-    case Resource::kTiles:
-      return "tiles";
-    case Resource::kPreviousTiles:
-      return "tiles of the previous frame";
+    case Resource::kTileReprojection:
+      return "tile reprojection";
+    case Resource::kPreviousTileReprojection:
+      return "tile reprojection of the previous frame";
+    case Resource::kTileEvidence:
+      return "tile evidence";
+    case Resource::kTileLight:
+      return "tile light";
+    case Resource::kPreviousTileLight:
+      return "tile light of the previous frame";
     case Resource::kTotalLight:
       return "total light";
     case Resource::kHistory:

@@ -5,6 +5,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
@@ -29,7 +30,7 @@ class TemporalDisplayPass : public Pass {
         .columns_per_item = columns_per_item(device(), output.width, kTemporalTile),
         .first = frame.has_history ? 0 : 1};
     bind(params, tables.get(frame.queue, render, frame.current.jitter), frame[Resource::kColour],
-         frame[Resource::kTiles], frame[Resource::kHistory], frame[picture()]);
+         frame[Resource::kTileReprojection], frame[Resource::kHistory], frame[picture()]);
     launch(frame, output, params.columns_per_item, event);
   }
 };
@@ -45,7 +46,7 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
                                        settings.temporal.preset == TemporalPreset::kFast ? 0 : 1,
                                        scale_options(settings), precision_of(settings.temporal.history)),
                 .reason = "the method: the history's picture",
-                .uses = {{Resource::kTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+                .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
                          {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
                          {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
                 .make = make_pass<TemporalDisplayPass>,

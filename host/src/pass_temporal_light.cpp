@@ -2,6 +2,7 @@
 // temporal_light: where the light has changed, and where the picture has.
 #include "pass.h"
 #include "pass_list.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
@@ -12,8 +13,8 @@ class TemporalLightPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
-    bind(tiles.width, tiles.height, frame[Resource::kPreviousTiles], frame[Resource::kTotalLight],
-         frame[Resource::kTiles]);
+    bind(tiles.width, tiles.height, frame[Resource::kTileReprojection], frame[Resource::kTileEvidence],
+         frame[Resource::kTotalLight], frame[Resource::kPreviousTileLight], frame[Resource::kTileLight]);
     launch(frame, tiles, 1, event);
   }
 };
@@ -26,9 +27,11 @@ void plan_temporal_light(const PlanFacts& facts, PassList& list) {
       {.kernel = "temporal_light",
        .options = "",
        .reason = "the method: where the light has changed",
-       .uses = {{Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+                {Resource::kTileEvidence, Access::kRead, Area::kTiles, {}, sizeof(TileEvidence)},
                 {Resource::kTotalLight, Access::kRead, Area::kWhole, {}, sizeof(TotalLight)},
-                {Resource::kTiles, Access::kUpdate, Area::kTiles, {}, sizeof(TemporalTile)}},
+                {Resource::kPreviousTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
+                {Resource::kTileLight, Access::kWrite, Area::kTiles, {}, sizeof(TileLight)}},
        .make = make_pass<TemporalLightPass>,
        .frames = Frames::kSparse});
 }

@@ -5,6 +5,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx {
 namespace {
@@ -19,24 +20,24 @@ class TemporalTilesPass : public Pass {
     const Extent render = current.render;
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
     const Ratio spacing = ratio_of(output, render);
-    const Ratio move = ratio_of(output, frame.previous.render);
+    const Ratio motion = ratio_of(output, frame.previous.render);
     const TemporalTileParams params{
         .frame = {render.width, render.height, layout_of(frame[Resource::kColour]), {}, {}},
         .output_width = output.width,
         .output_height = output.height,
         .tiles_x = tiles.width,
         .tiles_y = tiles.height,
-        .moves = layout_if_used(frame, Resource::kReprojection),
+        .reprojection = layout_if_used(frame, Resource::kReprojection),
         .spacing_x = spacing.x,
         .spacing_y = spacing.y,
         .start_x = (.5f + current.jitter.x) * spacing.x,
         .start_y = (.5f + current.jitter.y) * spacing.y,
-        .move_x = move.x,
-        .move_y = move.y,
+        .motion_x = motion.x,
+        .motion_y = motion.y,
         .judged_apart = settings().temporal.preset == TemporalPreset::kFast ? 4 : 2};
-    bind(params, frame[Resource::kColour], view_or(frame, Resource::kReprojection, Resource::kTiles),
-         frame[Resource::kPreviousHistory], frame[Resource::kPreviousTiles], frame[Resource::kTiles],
-         frame[Resource::kTotalLight]);
+    bind(params, frame[Resource::kColour], view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
+         frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],
+         frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
     launch(frame, tiles, 1, event);
   }
 };
@@ -53,8 +54,9 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
       .reason = "the method: which tiles move as a whole",
       .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
-               {Resource::kTiles, Access::kWrite, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+               {Resource::kTileReprojection, Access::kWrite, Area::kTiles, {}, sizeof(TileReprojection)},
+                         {Resource::kTileEvidence, Access::kWrite, Area::kTiles, {}, sizeof(TileEvidence)},
                {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
       .make = make_pass<TemporalTilesPass>,
       .frames = Frames::kSparse};

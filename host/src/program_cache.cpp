@@ -37,6 +37,15 @@ std::string_view embedded(std::string_view name) {
   throw std::out_of_range(fmt::format("no embedded kernel file '{}'", name));
 }
 
+// The embedded file of a kernel, in whatever folder it lies.
+std::string_view path_of(const std::string& kernel) {
+  const std::string name = kernel + ".cl", in_folder = "/" + name;
+  for (const EmbeddedFile& file : embedded_kernel_files()) {
+    if (file.name == name || file.name.ends_with(in_folder)) return file.name;
+  }
+  throw std::out_of_range(fmt::format("no embedded kernel '{}'", kernel));
+}
+
 // Device compilers have no search path to our headers, so includes are expanded here.
 void expand(std::string_view name, std::set<std::string>& seen, std::string& out) {
   if (!seen.insert(std::string(name)).second) return;
@@ -147,7 +156,7 @@ BuildError::BuildError(const std::string& kernel, const std::string& options, co
 std::string kernel_source(const std::string& name) {
   std::string source;
   std::set<std::string> seen;
-  expand(name + ".cl", seen, source);
+  expand(path_of(name), seen, source);
   return source;
 }
 

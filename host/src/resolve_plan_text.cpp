@@ -63,13 +63,13 @@ std::string ResolvePlan::explain() const {
   }
   text += "\nBuffers\n";
   for (const PlannedBuffer& buffer : buffers) {
-    fmt::format_to(out, "  {:<36} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
+    fmt::format_to(out, "  {:<40} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
                    buffer.extent.height, name_of(buffer.format), name_of(buffer.scaling),
                    size_text(buffer.bytes), buffer.owned ? "the service's" : "the caller's");
   }
   text += "\nLeft out\n";
   for (const LeftOut& left : left_out)
-    fmt::format_to(out, "  {:<36} {}\n", left.what, left.why);
+    fmt::format_to(out, "  {:<40} {}\n", left.what, left.why);
   return text;
 }
 

@@ -11,7 +11,7 @@ static inline float4 weigh_taps(float8 upper, float8 lower, AxisTap column, Axis
   return pair.lo * column.weight0 + pair.hi * column.weight1;
 }
 
-// The plain way for any viewport and any values: NaN counts as 0, +-Inf as +-65504. Sets *non_finite when a tap of
+// The slow path, for any viewport and any values: NaN counts as 0, +-Inf as +-65504. Sets *non_finite when a tap of
 // non-zero weight is either.
 static inline float4 sample_careful(COLOUR_TEXELS texels, TexelLayout layout, int width, int height, AxisTap column,
                                     AxisTap row, bool* non_finite) {
@@ -30,16 +30,16 @@ static inline float4 sample_careful(COLOUR_TEXELS texels, TexelLayout layout, in
                     column, row);
 }
 
-// The fast way: a viewport at least two texels wide, all taps finite. NaN and Inf pass through any weight, 0 * Inf being
-// NaN: all taps are finite if the mean is.
+// The fast way: a viewport at least two texels wide, all taps finite. NaN and Inf pass through any weight, 0 * Inf
+// being NaN: all taps are finite if the mean is.
 static inline float4 sample_finite(COLOUR_TEXELS texels, COLOUR_ROW upper, COLOUR_ROW lower, AxisTap column,
                                    AxisTap row) {
   return weigh_taps(load_colour_pair(texels, upper, column.base), load_colour_pair(texels, lower, column.base), column,
                     row);
 }
 
-// Into *mean the four pixels whose columns start at `columns`. `careful`, a constant, chooses the way; the plain one sets bit i of
-// *non_finite where pixel i met NaN or Inf.
+// Into *mean the four pixels whose columns start at `columns`. `careful`, a constant, chooses the way; the slow one
+// sets bit i of *non_finite where pixel i met NaN or Inf.
 __attribute__((always_inline)) static inline void sample_four(bool careful, COLOUR_TEXELS texels,
                                                                     TexelLayout layout, int width, int height,
                                                                     __global const AxisTap* columns,

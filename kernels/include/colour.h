@@ -10,8 +10,8 @@
 
 // 255 * the sRGB encoding of x in [0, 1.05], plus `offset`: 255 * 1.055 * x^(1/2.4) - 255 * 0.055 but for the linear
 // part. Error below 0.004 code values: 0.001 from the polynomial of log2 and 0.0006 from its rounding, 0.0015 from the
-// power, the rest rounding. Both polynomials are minimax fits. The bits of x, read as an integer, are 2^23 (log2 x + 127)
-// but for what depends on the mantissa alone. The power is taken as the fourth power of
+// power, the rest rounding. Both polynomials are minimax fits. The bits of x, read as an integer, are 2^23 (log2 x +
+// 127) but for what depends on the mantissa alone. The power is taken as the fourth power of
 // 2^(5/48 log2 x + log2(255 * 1.055) / 4): no root, no division, and no second split into exponent and mantissa.
 static inline float16 srgb_code(float16 x, float16 offset) {
   const int16 bits = as_int16(x);
@@ -22,7 +22,8 @@ static inline float16 srgb_code(float16 x, float16 offset) {
   log2_x = log2_x * m + (-3.550792932510376f * 0x1p23f);
   log2_x = log2_x * m + ((5.091711044311523f - 1.0f) * 0x1p23f);
   log2_x = log2_x * m + convert_float16(bits);
-  const float16 quarter = log2_x * (5.0f / 48.0f * 0x1p-23f) + (2.017899108947830f - 128.8003640174865723f * 5.0f / 48.0f);
+  const float16 quarter =
+      log2_x * (5.0f / 48.0f * 0x1p-23f) + (2.017899108947830f - 128.8003640174865723f * 5.0f / 48.0f);
   // 2^quarter on [1.15, 2.03].
   float16 root = 0.028843291103839874f * quarter + -0.015382448211312294f;
   root = root * quarter + 0.3591001331806183f;

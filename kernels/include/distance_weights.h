@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Sampling two frames by distance, for resolve_reprojected: eight output pixels at a time.
+// Weights of the samples of two frames by their distance, for resolve_reprojected: eight output pixels at a time.
 #pragma once
 
 #include "multiply_add.h"
 #include "sanitise.h"
 
-// Positions of eight pixels on one axis: between samples `texel` and texel + 1, `fraction` of the way.
-typedef struct Positions {
-  int8 texel;
-  float8 fraction;
-} Positions;
+// Reprojection of eight pixels: pixels of the previous frame, and the trust of what lies there.
+typedef struct PixelMotion {
+  float8 x, y, trust;
+} PixelMotion;
 
-// Moves of eight pixels.
-typedef struct Trusts {
-  float8 move_x, move_y, trust;
-} Trusts;
-
-// Of the 2x2 samples of both frames: a sample's weight is the product of its column's and its row's. All eight of a pixel
-// add up to 1.
+// Of the 2x2 samples of both frames: a sample's weight is the product of its column's and its row's. All eight of a
+// pixel add up to 1.
 typedef struct Weights {
   float8 now_x0, now_x1, now_y0, now_y1;
   float8 before_x0, before_x1, before_y0, before_y1;
@@ -39,50 +33,14 @@ typedef struct FourPairs {
   float8 now0, now1, before0, before1;
 } FourPairs;
 
-// Moves positions, by less than 2^24, anywhere.
-static inline Positions shifted_positions(Positions at, float8 by) {
-  const float8 sum = at.fraction + by;
-  int8 step = convert_int8(sum);
-  step += convert_float8(step) > sum;  // towards minus infinity
-  const Positions shifted = {at.texel + step, sum - convert_float8(step)};
-  return shifted;
-}
-
-// Brings positions into an axis of last + 1 samples: what lies beyond stands at its outermost sample. Then texel + 1 exists,
-// too, unless last is 0.
-static inline Positions held_positions(Positions at, int last) {
-  Positions held;
-  held.texel = clamp(at.texel, (int8)(0), (int8)(max(last - 1, 0)));
-  held.fraction = select(at.fraction, (float8)(0.0f), at.texel < 0);
-  held.fraction = select(held.fraction, (float8)(last > 0 ? 1.0f : 0.0f), at.texel >= last);
-  return held;
-}
-
-static inline Positions moved_positions(Positions at, float8 by, int last) {
-  return held_positions(shifted_positions(at, by), last);
-}
-
-// The samples nearest to positions; of two equally near ones the upper/left.
-static inline int8 nearest_samples(Positions at) {
-  return at.texel - (at.fraction > 0.5f);
-}
-
 // (1 - d^2 / r^2)^3, close to a Gaussian of sigma .41 r; 0 from d = r on. `falloff` is 1 / r^2.
 static inline float8 distance_weight(float8 distance, float falloff) {
   const float8 rest = max(1.0f - distance * distance * falloff, (float8)(0.0f));
   return rest * rest * rest;
 }
 
-// (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
-static inline float8 bell(float8 t) {
-  const float8 rest = max(1.0f - 0.125f * t, 0.0f);
-  const float8 square = rest * rest;
-  const float8 fourth = square * square;
-  return fourth * fourth;
-}
-
-static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, float8 now_y, float8 before_x, float8 before_y,
-                                 float8 trust) {
+static inline Weights weights_of(const ReprojectedParams* params, float8 now_x, float8 now_y, float8 before_x,
+                                 float8 before_y, float8 trust) {
   const float8 rest = 1.0f - trust;
   const float8 left = 1.0f - now_x;
   const float8 above = 1.0f - now_y;
@@ -114,13 +72,6 @@ static inline float4 blend_samples(FourPairs samples, PixelWeights w) {
 
 static inline int8 bits_of(FourPairs samples) {
   return as_int8(samples.now0) | as_int8(samples.now1) | as_int8(samples.before0) | as_int8(samples.before1);
-}
-
-// Whether one of many floats that were or-ed is 2 or more in magnitude, infinite or NaN: all of those, and no other, have the
-// highest bit of the exponent.
-static inline bool any_at_least_two(int4 bits) {
-  const long2 halves = as_long2(bits & 0x40000000);
-  return (halves.x | halves.y) != 0;
 }
 
 // Of each sample of a pair, in all its lanes: 1 / max(bright, largest of red, green and blue).

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Random values that belong to a pixel of the output: the same on every device and in every run.
-// Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020: the permuted congruential generator in one step.
+// Source: Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020: the permuted congruential generator in one
+// step.
 #pragma once
 
 static inline uint hash_of(uint value) {

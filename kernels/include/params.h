@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Structs that host and kernels share. 4-byte scalars only, so that both sides lay them out alike on every device.
+// Those of the temporal upscaler are in temporal/tile.h and temporal/temporal_params.h.
 #pragma once
 
 #ifdef __cplusplus
@@ -59,14 +60,15 @@ typedef struct NoiseParams {
   ScaleParams scale;
   unsigned seed;
   float amplitude;  // of scale_noise, in [0, 1]
-  int reach_x;      // of scale_noise_offset, in 1/256 texels, [256, 250 * 256]: how far apart the places lie that a pixel
-  int reach_y;      // may look at
+  // Of scale_noise_offset, in 1/256 texels, [256, 250 * 256]: how far apart the places lie that a pixel may look at.
+  int reach_x;
+  int reach_y;
 } NoiseParams;
 QUINCUNX_CHECK_SIZE(NoiseParams, 60);
 
 // What one output column (or row) reads of its axis through a filter of N taps: texels base to base + N - 1, which lie
-// inside the viewport; in one of fewer than N, those beyond it have weight 0 and must not be read. Texels inner to inner
-// + M - 1 are the M samples next to the centre, which bound the result where ringing is clamped.
+// inside the viewport; in one of fewer than N, those beyond it have weight 0 and must not be read. Texels inner to
+// inner + M - 1 are the M samples next to the centre, which bound the result where ringing is clamped.
 typedef struct FilterSpan {
   int base;
   int inner;
@@ -126,16 +128,17 @@ typedef struct ResolveParams {
 } ResolveParams;
 QUINCUNX_CHECK_SIZE(ResolveParams, 8 + 2 * 32 + 8 + 12 + 16);
 
-// Of one sample: what it shows is at its own place + (x, y) in the previous frame, in pixels of that, within +-65504.
-typedef struct Move {
-  float x;
-  float y;
-  float trust;  // in [0, 1]: what the previous frame counts there; NaN: the sample's velocity or depth is not finite
-  // The largest difference of velocity to the eight neighbours, output pixels; negative: that of the previous frame there,
-  // which is more. 0 where not asked for.
-  float contrast;
-} Move;
-QUINCUNX_CHECK_SIZE(Move, 16);
+// Of one sample of this frame: the surface that it shows was at the sample's own place + (x, y) in the previous frame.
+// Written by reproject.
+typedef struct Reprojection {
+  float x, y;   // pixels of the previous frame's viewport, within +-65504
+  float trust;  // in [0, 1]: of what the previous frame holds there; NaN: the sample's velocity or depth is not finite
+  // The motion edge at the sample: the largest difference of velocity to its eight neighbours, output pixels a frame.
+  // If that of the previous frame at the place above was larger, it stands here as a negative number. 0 without
+  // MOTION_EDGE.
+  float motion_edge;
+} Reprojection;
+QUINCUNX_CHECK_SIZE(Reprojection, 16);
 
 typedef struct ReprojectParams {
   int width;  // the viewport of this frame
@@ -148,17 +151,17 @@ typedef struct ReprojectParams {
   TexelLayout depth1;
   TexelLayout reactive0;
   TexelLayout reactive1;
-  TexelLayout moves;
+  TexelLayout reprojection;
   int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
-  // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands still:
-  // (i * step_x + start_x, j * step_y + start_y).
+  // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands
+  // still: (i * step_x + start_x, j * step_y + start_y).
   float step_x, step_y, start_x, start_y;
-  float move_x, move_y;  // from velocity0 to pixels of the previous frame, on the way back
+  float motion_x, motion_y;  // from velocity0 to pixels of the previous frame, backwards in time
   float edge_x, edge_y;  // the left and the upper edge of the previous frame, as texel coordinates
   // From the units of the velocity source to sqrt(K) render pixels, per frame.
   float speed0_x, speed0_y;
   float speed1_x, speed1_y;
-  float contrast_x, contrast_y;  // from velocity0 to output pixels
+  float motion_edge_x, motion_edge_y;  // from velocity0 to output pixels
 } ReprojectParams;
 QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 56 + 4 + 56);
 
@@ -167,7 +170,7 @@ typedef struct ReprojectedParams {
   int output_height;
   SourceFrame frame0;  // this frame
   SourceFrame frame1;  // the previous one
-  TexelLayout moves;
+  TexelLayout reprojection;
   TexelLayout output;
   int columns;           // in the position tables: texels of the columns, then fractions; then the same of the rows
   int counter;           // index into non_finite
@@ -176,87 +179,6 @@ typedef struct ReprojectedParams {
   float falloff1_x, falloff1_y;
 } ReprojectedParams;
 QUINCUNX_CHECK_SIZE(ReprojectedParams, 8 + 2 * 32 + 16 + 12 + 16);
-
-// A history texel is the accumulated colour and, in place of alpha, its confidence: the sum of the weights of the samples in it.
-typedef struct TemporalParams {
-  int output_width;
-  int output_height;
-  SourceFrame frame0;  // this frame
-  SourceFrame frame1;  // the previous one: only the viewport and reactive
-  TexelLayout moves;
-  TexelLayout output;
-  int columns;           // in the position table, as in ReprojectedParams
-  int counter;           // index into non_finite
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kReprojectedBlock
-  float move_x, move_y;        // from pixels of the previous viewport to output pixels
-  float spacing_x, spacing_y;  // output pixels between neighbouring samples
-  int tiles_x;                 // of TemporalTile
-  int tiles_y;
-  int view;                    // kView...
-  int half_output;             // of a view: RGBA16F
-} TemporalParams;
-QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 16);
-
-// What resolve_temporal shows: nothing, for the picture follows; or what it knows.
-enum { kViewPicture = 0, kViewConfidence = 1, kViewRejection = 2, kViewOffset = 3 };
-
-enum { kTemporalTile = 8 };  // output pixels, as many as resolve_temporal makes at once
-
-// What a tile's pixels share. In a rigid tile all moves alike: its texels are copied, not resampled, and hold the picture at an
-// offset from their centres that is carried along.
-typedef struct TemporalTile {
-  float offset_x, offset_y;  // where its texels' picture lies from their centres, output pixels, within [-.5, .5]
-  float source_x, source_y;  // the same of the texels it takes
-  int step_x, step_y;        // texel (x, y) takes (x - step_x, y - step_y)
-  int rigid;                 // 0: offsets are 0
-  int plain;                 // 1: rigid, its moves trust all samples, and there is no edge of motion
-  int torn;                  // 1: there is an edge of motion that makes history doubtful, or was one in the previous frame
-  // Of its samples: how much brighter they are than history says, history's light, and the errors of history and of the
-  // neighbours as forecasts; brightness as the eye has it, not light.
-  float brightening, light, history_error, neighbour_error;
-  float count;     // of the samples that say so
-  float brighter;  // how many of them are brighter by more than noise, less those that are darker
-  float persistence;  // of a change of light, in [-1, 1], over frames
-  float flicker;      // how far a sample's brightening goes to and fro from frame to frame: aliasing
-  float doubt;        // of history, in [0, 1]
-  float gain;         // of history's light, to be this frame's
-} TemporalTile;
-QUINCUNX_CHECK_SIZE(TemporalTile, 76);
-
-// Of all tiles, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are very many: whether the light of the whole picture has changed.
-typedef struct TotalLight {
-  int brightening, change, light;  // sum of signed brightenings, of their magnitudes, and of the light
-  int history_error, neighbour_error;
-} TotalLight;
-QUINCUNX_CHECK_SIZE(TotalLight, 20);
-enum { kLightUnits = 2048 };
-
-typedef struct TemporalTileParams {
-  SourceFrame frame;
-  int output_width;
-  int output_height;
-  int tiles_x;
-  int tiles_y;
-  TexelLayout moves;
-  // The centre of sample (i, j) in output pixels: (i * spacing_x + start_x, j * spacing_y + start_y).
-  float spacing_x, spacing_y;
-  float start_x, start_y;
-  float move_x, move_y;  // as in TemporalParams
-  int judged_apart;      // 2 or 4: of how many samples one is asked
-} TemporalTileParams;
-QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 28);
-
-typedef struct TemporalDisplayParams {
-  int output_width;
-  int output_height;
-  SourceFrame frame0;
-  TexelLayout output;
-  int tiles_x;
-  int columns;           // of the position table
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
-  int first;             // 1: no frame came before
-} TemporalDisplayParams;
-QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 16);
 
 // The motion blur looks at the output in tiles, and measures streaks in fixed point.
 enum {
@@ -338,7 +260,6 @@ typedef struct ClearParams {
 } ClearParams;
 QUINCUNX_CHECK_SIZE(ClearParams, 52);
 
-#undef QUINCUNX_CHECK_SIZE
 #ifdef __cplusplus
 }  // namespace quincunx
 #endif

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Non-finite values, told by their bits: right even where a user's build options let a compiler drop isnan() and isinf().
+// Non-finite and large values, told by their bits: right even where a user's build options let a compiler drop isnan()
+// and isinf().
 #pragma once
 
 // The magnitude from which a value may count as infinite, as bits: 2^127. Half the largest float, so that a weighted
@@ -41,12 +42,19 @@ static inline bool any_reached_infinity(int4 largest) {
   return (hits.x | hits.y) != 0;
 }
 
+// Whether one of many floats whose bits were or-ed is 2 or more in magnitude, infinite or NaN: all of those, and no
+// other, have the highest bit of the exponent.
+static inline bool any_at_least_two(int4 bits) {
+  const long2 halves = as_long2(bits & 0x40000000);
+  return (halves.x | halves.y) != 0;
+}
+
 // How many of four bits belong to the first `count` pixels.
 static inline uint count_bits(uint bits, int count) {
   return popcount(bits & ((1u << min(count, 4)) - 1u));
 }
 
-// Of lanes that are 0 or -1 each.
+// Whether one of eight lanes, 0 or -1 each, is -1.
 static inline bool any_lane(int8 lanes) {
   const long4 longs = as_long4(lanes);
   const long2 pairs = longs.lo | longs.hi;

@@ -133,8 +133,8 @@ static inline float8 load_colour_pair(COLOUR_TEXELS texels, COLOUR_ROW row, uint
 #endif
 }
 
-// The colour texels (x, y) and (x + 1, y), which `index` = y * pitch + x of a buffer's first row gives as well; an image has
-// no index.
+// The colour texels (x, y) and (x + 1, y), which `index` = y * pitch + x of a buffer's first row gives as well; an
+// image has no index.
 static inline float8 load_colour_pair_at(COLOUR_TEXELS texels, COLOUR_ROW first_row, int index, int x, int y) {
 #if SOURCE_STORAGE == IMAGE
   return load_colour_pair(texels, y, x);
@@ -202,7 +202,7 @@ static inline float4 load_depth4(DEPTH_TEXELS texels, TexelLayout layout, int4 x
 #endif
 }
 
-// The depths of four neighbours of a row, from x on; beyond `width` the last texel once more.
+// The depths of four neighbours of a row, from x on, clamped to the edge.
 static inline float4 load_depth_block(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER
   if (x + 3 < width) return vload4(0, texels + texel_index(layout, x, y));
@@ -288,9 +288,9 @@ static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, i
 #endif
 }
 
-// The 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel with too much
-// to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache instead of four,
-// arrive in time without.
+// The 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel with too
+// much to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache instead of
+// four, arrive in time without.
 static inline void will_read_resolved16(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
 #if SOURCE_FORMAT == FLOAT
   RESOLVED_TEXELS first = texels + 4 * texel_index(layout, x, y);

@@ -4,7 +4,7 @@
 
 #include "texel.h"
 
-// The columns x to x + 3 of a viewport `width` wide; beyond its edges the outermost one once more.
+// The columns x to x + 3 of a viewport `width` wide, clamped to its edge.
 static inline int4 block_columns(int x, int width) {
   return clamp(x + (int4)(0, 1, 2, 3), (int4)(0), (int4)(width - 1));
 }

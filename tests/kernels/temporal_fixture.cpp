@@ -18,38 +18,41 @@ std::string name_of(const StageVariant& v) {
                      quincunx::name_of(v.resolved));
 }
 
-TemporalTile to_kernel(const reference::Tile& tile) {
+KernelTile to_kernel(const reference::Tile& tile) {
   const auto number = [](double value) { return static_cast<float>(value); };
   const auto& [reprojection, evidence, light] = tile;
-  return {.offset_x = number(reprojection.phase[0]),
-          .offset_y = number(reprojection.phase[1]),
-          .source_x = number(reprojection.source_phase[0]),
-          .source_y = number(reprojection.source_phase[1]),
-          .step_x = reprojection.step[0],
-          .step_y = reprojection.step[1],
-          .rigid = reprojection.is_rigid ? 1 : 0,
-          .plain = reprojection.is_copyable ? 1 : 0,
-          .torn = reprojection.has_motion_edge ? 1 : 0,
-          .brightening = number(evidence.brightening),
-          .light = number(evidence.light),
-          .history_error = number(evidence.history_error),
-          .neighbour_error = number(evidence.neighbour_error),
-          .count = static_cast<float>(evidence.count),
-          .brighter = static_cast<float>(evidence.brighter),
-          .persistence = number(light.persistence),
-          .flicker = number(light.flicker),
-          .doubt = number(light.rejection),
-          .gain = number(light.gain)};
+  KernelTile made;
+  static_cast<TileReprojection&>(made) = {.phase_x = number(reprojection.phase[0]),
+                                          .phase_y = number(reprojection.phase[1]),
+                                          .source_phase_x = number(reprojection.source_phase[0]),
+                                          .source_phase_y = number(reprojection.source_phase[1]),
+                                          .step_x = reprojection.step[0],
+                                          .step_y = reprojection.step[1],
+                                          .is_rigid = reprojection.is_rigid ? 1 : 0,
+                                          .is_copyable = reprojection.is_copyable ? 1 : 0,
+                                          .has_motion_edge = reprojection.has_motion_edge ? 1 : 0};
+  static_cast<TileEvidence&>(made) = {.brightening = number(evidence.brightening),
+                                      .light = number(evidence.light),
+                                      .history_error = number(evidence.history_error),
+                                      .neighbour_error = number(evidence.neighbour_error),
+                                      .count = static_cast<float>(evidence.count),
+                                      .brighter = static_cast<float>(evidence.brighter)};
+  static_cast<TileLight&>(made) = {.gain = number(light.gain),
+                                   .rejection = number(light.rejection),
+                                   .persistence = number(light.persistence),
+                                   .flicker = number(light.flicker),
+                                   .mean_brightening = number(light.mean_brightening)};
+  return made;
 }
 
-reference::Tile to_reference(const TemporalTile& tile) {
+reference::Tile to_reference(const KernelTile& tile) {
   const auto number = [](float value) { return static_cast<double>(value); };
-  return {.reprojection = {.phase = {number(tile.offset_x), number(tile.offset_y)},
-                           .source_phase = {number(tile.source_x), number(tile.source_y)},
+  return {.reprojection = {.phase = {number(tile.phase_x), number(tile.phase_y)},
+                           .source_phase = {number(tile.source_phase_x), number(tile.source_phase_y)},
                            .step = {tile.step_x, tile.step_y},
-                           .is_rigid = tile.rigid != 0,
-                           .is_copyable = tile.plain != 0,
-                           .has_motion_edge = tile.torn != 0},
+                           .is_rigid = tile.is_rigid != 0,
+                           .is_copyable = tile.is_copyable != 0,
+                           .has_motion_edge = tile.has_motion_edge != 0},
           .evidence = {.brightening = number(tile.brightening),
                        .light = number(tile.light),
                        .history_error = number(tile.history_error),
@@ -57,10 +60,10 @@ reference::Tile to_reference(const TemporalTile& tile) {
                        .count = static_cast<int>(tile.count),
                        .brighter = static_cast<int>(tile.brighter)},
           .light = {.gain = number(tile.gain),
-                    .rejection = number(tile.doubt),
+                    .rejection = number(tile.rejection),
                     .persistence = number(tile.persistence),
                     .flicker = number(tile.flicker),
-                    .mean_brightening = number(tile.brightening / std::max(tile.count, 1.f))}};
+                    .mean_brightening = number(tile.mean_brightening)}};
 }
 
 PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {
@@ -95,11 +98,13 @@ cl::Kernel kernel(const std::string& name, const std::string& options) {
   return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
 }
 
-cl::Buffer tiles_to_device(const std::vector<reference::Tile>& tiles) {
-  std::vector<TemporalTile> made;
+// One of the structs that make a KernelTile, of each tile.
+template <typename Part>
+std::vector<Part> parts_of(const std::vector<reference::Tile>& tiles) {
+  std::vector<Part> parts;
   for (const reference::Tile& tile : tiles)
-    made.push_back(to_kernel(tile));
-  return to_device(made);
+    parts.push_back(to_kernel(tile));
+  return parts;
 }
 
 SourceFrame source_of(const StageInputs& in) {
@@ -125,45 +130,56 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   params.output_height = r.output_height;
   params.tiles_x = count.width;
   params.tiles_y = count.height;
-  params.moves = variant_.moves ? layout_of(in.moves) : TexelLayout{};
+  params.reprojection = variant_.moves ? layout_of(in.reprojection) : TexelLayout{};
   params.spacing_x = to_float(r.spacing(0));
   params.spacing_y = to_float(r.spacing(1));
   params.start_x = to_float((.5 + r.frame.jitter_x) * r.spacing(0));
   params.start_y = to_float((.5 + r.frame.jitter_y) * r.spacing(1));
-  params.move_x = to_float(r.reprojection_scale(0));
-  params.move_y = to_float(r.reprojection_scale(1));
+  params.motion_x = to_float(r.reprojection_scale(0));
+  params.motion_y = to_float(r.reprojection_scale(1));
   params.judged_apart = r.judged_apart;
-  const cl::Buffer before = tiles_to_device(r.before);
-  const cl::Buffer now = to_device(std::vector<TemporalTile>(r.before.size()));
+  const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
+  const cl::Buffer now = to_device(std::vector<TileReprojection>(r.before.size()));
+  const cl::Buffer evidence = to_device(std::vector<TileEvidence>(r.before.size()));
   const cl::Buffer total = to_device(std::vector<TotalLight>(1));
   cl::Kernel tiles =
       kernel("temporal_tiles", spec_of(facts(TemporalPreset::kBalanced), "temporal_tiles").options);
   tiles.setArg(0, params);
   set_memory(tiles, 1, in.frame.colour.memory);
-  set_memory(tiles, 2, variant_.moves ? in.moves.memory : before());
+  set_memory(tiles, 2, variant_.moves ? in.reprojection.memory : before());
   const cl::Buffer known = history(in);
   tiles.setArg(3, known);
   tiles.setArg(4, before);
   tiles.setArg(5, now);
-  tiles.setArg(6, total);
+  tiles.setArg(6, evidence);
+  tiles.setArg(7, total);
   enqueue_rows(impl(), impl().queue, tiles, count, 1, nullptr);
-  return {from_device<TemporalTile>(now, r.before.size()), from_device<TotalLight>(total, 1).front()};
+  const auto reprojections = from_device<TileReprojection>(now, r.before.size());
+  const auto found = from_device<TileEvidence>(evidence, r.before.size());
+  Tiles made{{}, from_device<TotalLight>(total, 1).front()};
+  for (std::size_t i = 0; i < found.size(); ++i)
+    made.tiles.push_back({reprojections[i], found[i], {}});
+  return made;
 }
 
-std::vector<TemporalTile> TemporalStages::run_light(Extent tiles, const std::vector<reference::Tile>& before,
-                                                    const TotalLight& total,
-                                                    const std::vector<reference::Tile>& now) const {
-  const cl::Buffer changed = tiles_to_device(now);
+std::vector<TileLight> TemporalStages::run_light(Extent tiles, const std::vector<reference::Tile>& before,
+                                                 const TotalLight& total,
+                                                 const std::vector<reference::Tile>& now) const {
+  const cl::Buffer reprojections = to_device(parts_of<TileReprojection>(now));
+  const cl::Buffer evidence = to_device(parts_of<TileEvidence>(now));
+  const cl::Buffer previous = to_device(parts_of<TileLight>(before));
+  const cl::Buffer changed = to_device(std::vector<TileLight>(now.size()));
+  const cl::Buffer sums = to_device(std::vector<TotalLight>{total});
   cl::Kernel light = kernel("temporal_light", "");
   light.setArg(0, tiles.width);
   light.setArg(1, tiles.height);
-  const cl::Buffer previous = tiles_to_device(before);
-  const cl::Buffer sums = to_device(std::vector<TotalLight>{total});
-  light.setArg(2, previous);
-  light.setArg(3, sums);
-  light.setArg(4, changed);
+  light.setArg(2, reprojections);
+  light.setArg(3, evidence);
+  light.setArg(4, sums);
+  light.setArg(5, previous);
+  light.setArg(6, changed);
   enqueue_rows(impl(), impl().queue, light, tiles, 1, nullptr);
-  return from_device<TemporalTile>(changed, now.size());
+  return from_device<TileLight>(changed, now.size());
 }
 
 TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& in,
@@ -184,36 +200,37 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
     params.frame0.reactive = layout_of(in.frame.reactive);
     params.frame1.reactive = layout_of(in.reactive_before);
   }
-  params.moves = variant_.moves ? layout_of(in.moves) : TexelLayout{};
-  params.view = kViewPicture;
+  params.reprojection = variant_.moves ? layout_of(in.reprojection) : TexelLayout{};
   params.output = layout_of(view);
   params.columns = tables.columns();
   params.counter = counter.index;
   params.columns_per_item = columns_per_item(impl(), output.width, kReprojectedBlock);
-  params.move_x = to_float(r.reprojection_scale(0));
-  params.move_y = to_float(r.reprojection_scale(1));
+  params.motion_x = to_float(r.reprojection_scale(0));
+  params.motion_y = to_float(r.reprojection_scale(1));
   params.spacing_x = to_float(r.spacing(0));
   params.spacing_y = to_float(r.spacing(1));
   params.tiles_x = r.tiles_x();
   params.tiles_y = r.tiles_y();
   const std::size_t bytes = r.history.size() * bytes_per_pixel(variant_.history);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
-  const cl::Buffer before = tiles_to_device(r.before);
+  const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
   cl::Kernel resolve = kernel("resolve_temporal", spec_of(facts(preset), "resolve_temporal").options);
   resolve.setArg(0, params);
   resolve.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(resolve, 2, in.frame.colour.memory);
-  set_memory(resolve, 3, variant_.moves ? in.moves.memory : before());
+  set_memory(resolve, 3, variant_.moves ? in.reprojection.memory : before());
   set_memory(resolve, 4, (variant_.reactive ? in.frame.reactive : in.frame.colour).memory);
   set_memory(resolve, 5, (variant_.reactive ? in.reactive_before : in.frame.colour).memory);
   const cl::Buffer known = history(in);
-  const cl::Buffer now = tiles_to_device(tiles);
+  const cl::Buffer now = to_device(parts_of<TileReprojection>(tiles));
+  const cl::Buffer light = to_device(parts_of<TileLight>(tiles));
   resolve.setArg(6, known);
   resolve.setArg(7, before);
   resolve.setArg(8, now);
-  resolve.setArg(9, updated);
-  set_memory(resolve, 10, view.memory);
-  set_memory(resolve, 11, counter.memory);
+  resolve.setArg(9, light);
+  resolve.setArg(10, updated);
+  set_memory(resolve, 11, view.memory);
+  set_memory(resolve, 12, counter.memory);
   enqueue_rows(impl(), impl().queue, resolve, output, params.columns_per_item, nullptr);
   Result result{from_device<unsigned char>(updated, bytes), {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);
@@ -242,7 +259,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   display.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(display, 2, in.frame.colour.memory);
   const cl::Buffer known = history(in);
-  const cl::Buffer now = tiles_to_device(tiles);
+  const cl::Buffer now = to_device(parts_of<TileReprojection>(tiles));
   display.setArg(3, now);
   display.setArg(4, known);
   set_memory(display, 5, view.memory);

@@ -10,6 +10,7 @@
 #include "kernel_fixture.h"
 #include "params.h"
 #include "position_table.h"
+#include "temporal/temporal_params.h"
 
 namespace quincunx::testing {
 
@@ -36,12 +37,12 @@ struct StageSpec {
 };
 
 // What a stage reads. Zones of the picture move as one or each sample on its own; the history's confidences
-// range from 0 to 32, its tiles' offsets change from zone to zone.
+// range from 0 to 32, its tiles' phases change from zone to zone.
 struct StageInputs {
   reference::TemporalInputs reference;
   FrameInputs frame;
   ImageView reactive_before;
-  ImageView moves;
+  ImageView reprojection;
 };
 
 template <typename Element>
@@ -64,8 +65,11 @@ std::vector<unsigned char> bytes_of(const std::vector<Element>& elements) {
   return {first, first + elements.size() * sizeof(Element)};
 }
 
-TemporalTile to_kernel(const reference::Tile& tile);
-reference::Tile to_reference(const TemporalTile& tile);
+// All that the kernels keep of a tile.
+struct KernelTile : TileReprojection, TileEvidence, TileLight {};
+
+KernelTile to_kernel(const reference::Tile& tile);
+reference::Tile to_reference(const KernelTile& tile);
 
 class TemporalStages {
  public:
@@ -78,12 +82,12 @@ class TemporalStages {
   std::vector<reference::Tile> tiles(const StageInputs& in, unsigned seed) const;
 
   struct Tiles {
-    std::vector<TemporalTile> tiles;
+    std::vector<KernelTile> tiles;  // but for TileLight
     TotalLight total;
   };
   Tiles run_tiles(const StageInputs& in) const;
-  std::vector<TemporalTile> run_light(Extent tiles, const std::vector<reference::Tile>& before,
-                                      const TotalLight& total, const std::vector<reference::Tile>& now) const;
+  std::vector<TileLight> run_light(Extent tiles, const std::vector<reference::Tile>& before,
+                                   const TotalLight& total, const std::vector<reference::Tile>& now) const;
 
   struct Result {
     std::vector<unsigned char> bytes;

@@ -138,7 +138,8 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   std::vector<Pixel> moves;
   for (const reference::Reprojection& move : out.reprojections)
     moves.push_back({move.x, move.y, move.trust, move.motion_edge});
-  in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
+  in.reprojection =
+      rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render, moves, spec.outside, spec.tight);
   return in;
 }
 

@@ -37,7 +37,7 @@ class Finder {
   float below(double limit) { return static_cast<float>(limit * uniform()); }
 
   void add_tile(Findings& found, int round, double lean) {
-    TemporalTile tile{};
+    testing::KernelTile tile{};
     tile.light = below(30);
     tile.history_error = below(round % 4 == 1 ? 30 : 10);
     tile.neighbour_error = below(6);
@@ -49,7 +49,7 @@ class Finder {
       tile.brighter = std::copysign(tile.count, tile.brighter);
       tile.brightening = std::copysign(tile.history_error, tile.brighter);
     }
-    tile.torn = round % 7 < 3 && uniform() < .06 ? 1 : 0;
+    tile.has_motion_edge = round % 7 < 3 && uniform() < .06 ? 1 : 0;
     add_to_total(found.total, tile, round);
     found.tiles.push_back(testing::to_reference(tile));
     tile.persistence = static_cast<float>(2 * uniform() - 1);
@@ -58,7 +58,7 @@ class Finder {
     found.before.push_back(testing::to_reference(tile));
   }
 
-  static void add_to_total(TotalLight& total, const TemporalTile& tile, int round) {
+  static void add_to_total(TotalLight& total, const testing::KernelTile& tile, int round) {
     total.brightening += static_cast<int>(tile.brightening * 40);
     total.change += static_cast<int>(std::abs(tile.brightening) * 40);
     total.light += static_cast<int>(tile.light * 40);
@@ -153,7 +153,7 @@ TEST(TemporalLight, MatchesTheReference) {
       expect_near(value.flicker, bound.flicker, actual[i].flicker, what + "flicker");
       if (undecided) continue;
       expect_near(value.gain, bound.gain, actual[i].gain, what + "gain");
-      expect_near(value.rejection, bound.rejection, actual[i].doubt, what + "rejection");
+      expect_near(value.rejection, bound.rejection, actual[i].rejection, what + "rejection");
       expect_near(value.persistence, bound.persistence, actual[i].persistence, what + "persistence");
       if (HasFatalFailure()) return;
     }

@@ -150,7 +150,7 @@ TEST(TemporalStill, OffsetsFollowAPan) {
       stages.inputs(rig, {.output = {64, 64}, .render = {32, 40}, .previous = {32, 40}, .seed = 2});
   const double move = -.37 * 32 / 64;
   in.reference.reprojections.assign(32 * 40, {.x = move, .trust = 1});
-  in.moves =
+  in.reprojection =
       rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, {32, 40}, constant({32, 40}, {move, 0, 1, 0}), 0);
   in.reference.before.assign(64, {});
   const double expected[] = {.37, -.26, .11, .48, -.15, .22, -.41};
@@ -158,11 +158,11 @@ TEST(TemporalStill, OffsetsFollowAPan) {
   for (std::size_t i = 0; i < std::size(expected); ++i) {
     const auto made = stages.run_tiles(in).tiles;
     for (std::size_t t = 0; t < made.size(); ++t) {
-      ASSERT_EQ(made[t].rigid, 1) << "frame " << i << " tile " << t;
+      ASSERT_EQ(made[t].is_rigid, 1) << "frame " << i << " tile " << t;
       ASSERT_EQ(made[t].step_x, steps[i]);
       ASSERT_EQ(made[t].step_y, 0);
       // A move is rounded twice and its sum once, every frame.
-      ASSERT_NEAR(static_cast<double>(made[t].offset_x), expected[i],
+      ASSERT_NEAR(static_cast<double>(made[t].phase_x), expected[i],
                   static_cast<double>(4 * (i + 1)) * kRounding);
       in.reference.before[t] = testing::to_reference(made[t]);
     }
@@ -234,7 +234,7 @@ testing::StageInputs two_surfaces(Rig& rig, const testing::TemporalStages& stage
     moves.push_back({left ? speed / 2 : 0, 0, trust, 0});
   }
   in.frame.colour = rig.image(PixelFormat::kRGBA16F, Storage::kBuffer, kRender, colour, 0);
-  in.moves = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, kRender, moves, 0);
+  in.reprojection = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, kRender, moves, 0);
   in.reference.before.assign(in.reference.before.size(), {});
   return in;
 }

@@ -115,19 +115,19 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     return {reprojection, evidence};
   }
 
-  void compare_tile(const ExpectedTile& expected, const TemporalTile& actual, const std::string& what) {
+  void compare_tile(const ExpectedTile& expected, const testing::KernelTile& actual, const std::string& what) {
     ++compared_;
     const auto& [tile, tile_bound, tile_undecided] = expected.reprojection;
     if (tile_undecided) return;
-    ASSERT_EQ(tile.is_rigid, actual.rigid != 0) << what;
-    ASSERT_EQ(tile.is_copyable, actual.plain != 0) << what;
-    ASSERT_EQ(tile.has_motion_edge, actual.torn != 0) << what;
+    ASSERT_EQ(tile.is_rigid, actual.is_rigid != 0) << what;
+    ASSERT_EQ(tile.is_copyable, actual.is_copyable != 0) << what;
+    ASSERT_EQ(tile.has_motion_edge, actual.has_motion_edge != 0) << what;
     ASSERT_EQ(tile.step[0], actual.step_x) << what;
     ASSERT_EQ(tile.step[1], actual.step_y) << what;
-    ASSERT_EQ(tile.source_phase[0], static_cast<double>(actual.source_x)) << what;
-    ASSERT_EQ(tile.source_phase[1], static_cast<double>(actual.source_y)) << what;
-    expect_near(tile.phase[0], tile_bound.phase[0], static_cast<double>(actual.offset_x), what + " phase_x");
-    expect_near(tile.phase[1], tile_bound.phase[1], static_cast<double>(actual.offset_y), what + " phase_y");
+    ASSERT_EQ(tile.source_phase[0], static_cast<double>(actual.source_phase_x)) << what;
+    ASSERT_EQ(tile.source_phase[1], static_cast<double>(actual.source_phase_y)) << what;
+    expect_near(tile.phase[0], tile_bound.phase[0], static_cast<double>(actual.phase_x), what + " phase_x");
+    expect_near(tile.phase[1], tile_bound.phase[1], static_cast<double>(actual.phase_y), what + " phase_y");
     rigid_ += tile.is_rigid ? 1 : 0;
     copyable_ += tile.is_copyable ? 1 : 0;
     motion_edges_ += tile.has_motion_edge ? 1 : 0;

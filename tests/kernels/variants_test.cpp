@@ -64,7 +64,8 @@ TEST(Variants, EveryEmbeddedKernelHasRows) {
   const std::vector<Row> all = rows();
   for (const EmbeddedFile& file : embedded_kernel_files()) {
     if (!file.name.ends_with(".cl")) continue;
-    const std::string kernel(file.name.substr(0, file.name.size() - 3));
+    const std::size_t folder = file.name.rfind('/') + 1;  // 0 where there is none
+    const std::string kernel(file.name.substr(folder, file.name.size() - folder - 3));
     EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const Row& row) { return row.kernel == kernel; }))
         << kernel;
   }
@@ -112,6 +113,15 @@ std::vector<PlanFacts> all_facts() {
       for (const PixelFormat history : {kRGBA16F, kRGBA32F}) {
         settings.temporal = {.preset = preset, .history = history};
         add_needs(settings);
+        // Formats mean nothing to views, which are listed with one of each.
+        if (settings.storage != Storage::kBuffer || settings.colour != kRGBA16F || history != kRGBA16F ||
+            settings.resolved != kRGBA32F) {
+          continue;
+        }
+        for (const TemporalView view : {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase}) {
+          settings.temporal.view = view;
+          add_needs(settings);
+        }
       }
     }
   };

@@ -113,7 +113,7 @@ TEST(ServiceSharpen, WhatIsPresentedIsSharpened) {
 TEST(ServiceSharpen, ZeroAndViewsRunNothing) {
   ServiceRig off({}, {.method = Method::kTemporal}, kOutput, kOutput);
   ServiceRig view({},
-                  {.method = Method::kTemporal, .temporal = {.view = TemporalView::kOffset}, .sharpness = 1},
+                  {.method = Method::kTemporal, .temporal = {.view = TemporalView::kPhase}, .sharpness = 1},
                   kOutput, kOutput);
   for (ServiceRig* rig : {&off, &view}) {
     const std::vector<std::string> kernels = kernels_of(rig->dispatch(rig->upload(frame_of(0))));

@@ -29,7 +29,7 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
   static const std::map<std::string, TemporalView> kViews = {{"picture", TemporalView::kPicture},
                                                              {"confidence", TemporalView::kConfidence},
                                                              {"rejection", TemporalView::kRejection},
-                                                             {"offset", TemporalView::kOffset}};
+                                                             {"phase", TemporalView::kPhase}};
 
   add_choice(app, "--method", method_choices(), method_list() + " (default: quincunx)",
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
@@ -44,7 +44,7 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       .show_default()
       .type_name("K");
   add_choice(app, "--view", settings.temporal.view, kViews,
-             "What temporal shows: picture, confidence, rejection or offset (default: picture)");
+             "What temporal shows: picture, confidence, rejection or phase (default: picture)");
   app.add_option("--blur", settings.blur.shutter,
                  "Motion blur: part of a frame's time that the shutter is open, to 2")
       .in_range(0.0, 2.0)

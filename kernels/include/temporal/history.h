@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The history of the temporal upscaler: always a tight buffer of the output extent, RGB and confidence in each texel.
+// A layer of the temporal upscaler's history, and how its texels are loaded and stored. This is the only place that
+// knows how a layer lies in memory: a tight buffer of the output extent, row by row, in each texel red, green and blue
+// and, in place of alpha, their confidence, the sum of the weights of the samples in it.
 //
 // Option: HISTORY_FORMAT  FLOAT (default) | HALF
 #pragma once
@@ -21,31 +23,48 @@
 #define STORED_HISTORY __global float*
 #endif
 
-static inline float4 load_history(HISTORY_TEXELS texels, int index) {
+// A layer to read: all that a frame knows of the frames before it.
+typedef struct HistoryLayer {
+  HISTORY_TEXELS texels;
+  int width, height;  // the output extent
+} HistoryLayer;
+
+static inline float4 load_history(HistoryLayer layer, int index) {
 #if HISTORY_FORMAT == HALF
-  return vload_half4(index, texels);
+  return vload_half4(index, layer.texels);
 #else
-  return vload4(index, texels);
+  return vload4(index, layer.texels);
 #endif
 }
 
-// Eight pixels of a row, in fours.
+// Eight texels of a row, in fours. Not an array: PoCL keeps those in memory.
 typedef struct EightTexels {
   float16 left, right;
 } EightTexels;
 
+static inline EightTexels eight_texels(float4 t0, float4 t1, float4 t2, float4 t3, float4 t4, float4 t5, float4 t6,
+                                       float4 t7) {
+  const EightTexels texels = {(float16)(t0, t1, t2, t3), (float16)(t4, t5, t6, t7)};
+  return texels;
+}
+
 // The texels index to index + 3.
-static inline float16 load_history4(HISTORY_TEXELS texels, int index) {
+static inline float16 load_history4(HistoryLayer layer, int index) {
 #if HISTORY_FORMAT == HALF
-  return load_half_texels4(texels, index);
+  return load_half_texels4(layer.texels, index);
 #else
-  return vload16(0, texels + 4 * index);
+  return vload16(0, layer.texels + 4 * index);
 #endif
 }
 
-static inline EightTexels load_history8(HISTORY_TEXELS texels, int index) {
-  const EightTexels row = {load_history4(texels, index), load_history4(texels, index + 4)};
+static inline EightTexels load_history8(HistoryLayer layer, int index) {
+  const EightTexels row = {load_history4(layer, index), load_history4(layer, index + 4)};
   return row;
+}
+
+// The texel at `index`, which may lie anywhere, is read soon.
+static inline void will_read_history(HistoryLayer layer, int index) {
+  WILL_READ(layer.texels + 4 * index);
 }
 
 // Each value to the four channels of a texel.
@@ -58,7 +77,7 @@ static inline float8 confidences(EightTexels texels) {
   return (float8)(texels.left.s37bf, texels.right.s37bf);
 }
 
-// Finite values. Halves are rounded to the nearest: the samples differ by more than their steps.
+// Finite values. Halves are rounded to the nearest, not dithered: the samples differ by more than their steps.
 static inline void store_history(STORED_HISTORY texels, int index, float4 value) {
 #if HISTORY_FORMAT == HALF
   vstore_half4_rte(clamp(value, -65504.0f, 65504.0f), index, texels);

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Options of the kernels that follow surfaces. MOTION: 1 (default) | 0, nothing moves; REACTIVE: 0 (default) | 1
+// Options of the kernels that follow surfaces.
+//
+//   MOTION    1 (default): they read what reproject wrote | 0: nothing moves
+//   REACTIVE  0 (default) | 1: they read reactive values themselves
 #pragma once
 
 #ifndef MOTION

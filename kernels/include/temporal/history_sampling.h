@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Reading the history between texels.
+// Reading a layer of history between its texels.
 //
 // Option: TAPS  16 (default): cubic | 4: bilinear
 #pragma once
 
-#include "history.h"
 #include "multiply_add.h"
+#include "temporal/history.h"
 
 #ifndef TAPS
 #define TAPS 16
@@ -14,46 +14,41 @@
 #error "TAPS must be 16 or 4"
 #endif
 
-// 4x4 texels around a place between the middle four.
+// The 4x4 texels around a place that lies between the middle four.
 typedef struct Neighbourhood {
   float16 row0, row1, row2, row3;
 } Neighbourhood;
 
 // The texels from (x, y) on, all inside.
-static inline Neighbourhood load_neighbourhood(HISTORY_TEXELS texels, int width, int x, int y) {
+static inline Neighbourhood load_neighbourhood(HistoryLayer layer, int x, int y) {
+  const int width = layer.width;
   const int index = y * width + x;
-  const Neighbourhood around = {load_history4(texels, index), load_history4(texels, index + width),
-                                load_history4(texels, index + 2 * width), load_history4(texels, index + 3 * width)};
+  const Neighbourhood around = {load_history4(layer, index), load_history4(layer, index + width),
+                                load_history4(layer, index + 2 * width), load_history4(layer, index + 3 * width)};
   return around;
 }
-
-enum { kResampledAhead = 3 * kTemporalTile };  // texels
 
 // Four rows from (x, y) on, which may be anywhere.
-static inline void will_read_rows(HISTORY_TEXELS texels, int width, int x, int y) {
-  HISTORY_TEXELS first = texels + 4 * (y * width + x);
-  WILL_READ(first);
-  WILL_READ(first + 4 * width);
-  WILL_READ(first + 8 * width);
-  WILL_READ(first + 12 * width);
+static inline void will_read_rows(HistoryLayer layer, int x, int y) {
+  for (int row = 0; row < 4; ++row)
+    will_read_history(layer, (y + row) * layer.width + x);
 }
 
-static inline float16 load_clamped4(HISTORY_TEXELS texels, int width, int height, int x, int y) {
-  const int row = clamp(y, 0, height - 1) * width;
-  const int last = width - 1;
-  return (float16)(load_history(texels, row + clamp(x, 0, last)), load_history(texels, row + clamp(x + 1, 0, last)),
-                   load_history(texels, row + clamp(x + 2, 0, last)), load_history(texels, row + clamp(x + 3, 0, last)));
+static inline float16 load_clamped4(HistoryLayer layer, int x, int y) {
+  const int row = clamp(y, 0, layer.height - 1) * layer.width;
+  const int last = layer.width - 1;
+  return (float16)(load_history(layer, row + clamp(x, 0, last)), load_history(layer, row + clamp(x + 1, 0, last)),
+                   load_history(layer, row + clamp(x + 2, 0, last)), load_history(layer, row + clamp(x + 3, 0, last)));
 }
 
-// The same anywhere; beyond the edges the outermost texel once more.
-static inline Neighbourhood load_neighbourhood_clamped(HISTORY_TEXELS texels, int width, int height, int x, int y) {
-  const Neighbourhood around = {load_clamped4(texels, width, height, x, y), load_clamped4(texels, width, height, x, y + 1),
-                                load_clamped4(texels, width, height, x, y + 2),
-                                load_clamped4(texels, width, height, x, y + 3)};
+// The same anywhere, clamped to the edge.
+static inline Neighbourhood load_neighbourhood_clamped(HistoryLayer layer, int x, int y) {
+  const Neighbourhood around = {load_clamped4(layer, x, y), load_clamped4(layer, x, y + 1),
+                                load_clamped4(layer, x, y + 2), load_clamped4(layer, x, y + 3)};
   return around;
 }
 
-// The weights of one axis, of the texels before and after a place; where TAPS is 4 the outer ones are 0.
+// Of eight places on one axis the weights of the four texels around each; where TAPS is 4 the outer two are 0.
 typedef struct Cubic {
   float8 w0, w1, w2, w3;
 } Cubic;
@@ -74,8 +69,23 @@ static inline Cubic cubic_weights(float8 f, float a) {
 #endif
 }
 
+// The same by place: the four weights of each.
+typedef struct EightWeights {
+  float4 p0, p1, p2, p3, p4, p5, p6, p7;
+} EightWeights;
+
+static inline EightWeights weights_by_place(Cubic w) {
+  const EightWeights weights = {
+      (float4)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0), (float4)(w.w0.s1, w.w1.s1, w.w2.s1, w.w3.s1),
+      (float4)(w.w0.s2, w.w1.s2, w.w2.s2, w.w3.s2), (float4)(w.w0.s3, w.w1.s3, w.w2.s3, w.w3.s3),
+      (float4)(w.w0.s4, w.w1.s4, w.w2.s4, w.w3.s4), (float4)(w.w0.s5, w.w1.s5, w.w2.s5, w.w3.s5),
+      (float4)(w.w0.s6, w.w1.s6, w.w2.s6, w.w3.s6), (float4)(w.w0.s7, w.w1.s7, w.w2.s7, w.w3.s7)};
+  return weights;
+}
+
 static inline float4 blend_columns(float16 row, float4 w) {
-  const float8 pair = MULTIPLY_ADD(row.lo, (float8)((float4)(w.x), (float4)(w.y)), row.hi * (float8)((float4)(w.z), (float4)(w.w)));
+  const float8 outer = row.hi * (float8)((float4)(w.z), (float4)(w.w));
+  const float8 pair = MULTIPLY_ADD(row.lo, (float8)((float4)(w.x), (float4)(w.y)), outer);
   return pair.lo + pair.hi;
 }
 
@@ -93,10 +103,11 @@ static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4
   return min(max(blend_columns(rows, x), min(least.s4567, least.s89ab)), max(most.s4567, most.s89ab));
 }
 
-// At a place with weights x and y among the 4x4 texels from (x0, y0) on; `inside`: they are all there.
-static inline float4 sample_history(HISTORY_TEXELS texels, int width, int height, int x0, int y0, bool inside, float4 x, float4 y) {
-  const Neighbourhood around = inside ? load_neighbourhood(texels, width, x0, y0)
-                                      : load_neighbourhood_clamped(texels, width, height, x0, y0);
+// History at a place with weights x and y among the 4x4 texels from (x0, y0) on; `inside`: they are all there, else
+// they are clamped to the edge.
+static inline float4 sample_history(HistoryLayer layer, int x0, int y0, bool inside, float4 x, float4 y) {
+  const Neighbourhood around =
+      inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
 #if TAPS == 4
   return blend_middle(around, x, y);
 #else
@@ -109,8 +120,9 @@ typedef struct TwelveTexels {
   float16 first, second, third;
 } TwelveTexels;
 
-static inline TwelveTexels load_history12(HISTORY_TEXELS texels, int index) {
-  const TwelveTexels row = {load_history4(texels, index), load_history4(texels, index + 4), load_history4(texels, index + 8)};
+static inline TwelveTexels load_history12(HistoryLayer layer, int index) {
+  const TwelveTexels row = {load_history4(layer, index), load_history4(layer, index + 4),
+                            load_history4(layer, index + 8)};
   return row;
 }
 
@@ -143,11 +155,12 @@ static inline float16 blend_inner(float16 row1, float16 row2, float4 y) {
   return MULTIPLY_ADD(row1, (float16)(y.y), row2 * y.z);
 }
 
-// What sample_history gives for eight places in a row that lie alike among their texels: the first from (x0, y0) on. All
-// twelve columns are inside.
-static inline EightTexels sample_history_row(HISTORY_TEXELS texels, int width, int x0, int y0, float4 x, float4 y) {
+// What sample_history gives for eight places of a row that lie alike among their texels, the first among those from
+// (x0, y0) on. All twelve columns are inside.
+static inline EightTexels sample_history_row(HistoryLayer layer, int x0, int y0, float4 x, float4 y) {
+  const int width = layer.width;
   const int index = y0 * width + x0;
-  const TwelveTexels row1 = load_history12(texels, index + width), row2 = load_history12(texels, index + 2 * width);
+  const TwelveTexels row1 = load_history12(layer, index + width), row2 = load_history12(layer, index + 2 * width);
 #if TAPS == 4
   const TwelveTexels rows = {blend_inner(row1.first, row2.first, y), blend_inner(row1.second, row2.second, y),
                              blend_inner(row1.third, row2.third, y)};
@@ -156,7 +169,7 @@ static inline EightTexels sample_history_row(HISTORY_TEXELS texels, int width, i
                            MULTIPLY_ADD(near.right, (float16)(x.y), far.right * x.z)};
   return sum;
 #else
-  const TwelveTexels row0 = load_history12(texels, index), row3 = load_history12(texels, index + 3 * width);
+  const TwelveTexels row0 = load_history12(layer, index), row3 = load_history12(layer, index + 3 * width);
   const TwelveTexels rows = {blend_outer(row0.first, row1.first, row2.first, row3.first, y),
                              blend_outer(row0.second, row1.second, row2.second, row3.second, y),
                              blend_outer(row0.third, row1.third, row2.third, row3.third, y)};

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Streaks: how far a surface moves over the output while the shutter is open, in whole units of 1 / kStreakUnits output
+// pixels, so that every device finds the same samples.
+#pragma once
+
+#include "sanitise.h"
+#include "texel_blocks.h"
+
+// Two streaks, x and y in turn for each of four texels, from velocities in the units of their target. NaN and Inf are
+//                         0.
+static inline int8 streaks_of(float8 velocity, float scale_x, float scale_y) {
+  const float8 scaled = velocity * (float8)(scale_x, scale_y, scale_x, scale_y, scale_x, scale_y, scale_x, scale_y);
+  const int8 bits = as_int8(velocity);
+  const float8 settled = as_float8(select(as_int8(scaled), (int8)(0), (bits & 0x7fffffff) >= NON_FINITE_BITS));
+  return convert_int8(clamp(settled, (float)-kLongestStreak, (float)kLongestStreak));
+}
+
+// The depths of four texels anywhere; NaN and negative ones count as infinitely far.
+static inline float4 load_settled_depth_at(DEPTH_TEXELS texels, TexelLayout layout, int4 x, int4 y) {
+  const float4 depth = load_depth_at(texels, layout, x, y);
+  const int4 bits = as_int4(depth);
+  return as_float4(select((int4)(0), bits, (bits > 0) & (bits <= 0x7f800000)));
+}

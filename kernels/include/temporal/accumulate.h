@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Adding this frame's samples to history: the nearest one to each of eight pixels of a row.
+#pragma once
+
+#include "temporal/frame_samples.h"
+#include "temporal/limit_confidence.h"
+
+// In output pixels, found by search on the development scenes.
+#define REACH 1.05f        // where a sample's weight becomes 0
+#define LEAST_REACH 0.85f  // the same in still tiles once history is known well. +1.2 dB on still pictures
+#define NARROWING 0.1f     // from one to the other, for each unit of confidence
+
+#define LEAST_WEIGHT 1e-30f  // of all samples: keeps 0 / 0 from becoming NaN
+
+static inline bool stands_still(TileReprojection tile) {
+  return tile.is_rigid && tile.phase_x == 0.0f && tile.phase_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
+}
+
+// (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.
+static inline float8 distance_weights(const TemporalParams* params, TileReprojection tile,
+                                      const NearestSamples* nearest, float8 confidence) {
+  const float8 away_x = nearest->from_x * params->spacing_x;
+  const float away_y = nearest->from_y * params->spacing_y;
+  const float8 narrowed = max(REACH - NARROWING * confidence, LEAST_REACH);
+  const float8 reach = stands_still(tile) ? narrowed : (float8)(REACH);
+  const float8 near = max(1.0f - (away_x * away_x + away_y * away_y) / (reach * reach), 0.0f);
+  return near * near;
+}
+
+// False: none is brighter than 2 or invalid, and their luma weights are all 1.
+static inline bool may_be_bright(EightTexels samples) {
+  const int16 bits = as_int16(samples.left) | as_int16(samples.right);
+  const int8 half_bits = bits.lo | bits.hi;
+  return any_at_least_two(half_bits.lo | half_bits.hi);
+}
+
+// The luma weight of a sample. An invalid one has none and becomes black.
+static inline float luma_weight_or_none(float4* sample) {
+  if (is_valid(*sample)) return luma_weight(*sample);
+  *sample = (float4)(0.0f);
+  return 0.0f;
+}
+
+// Multiplies the weights of eight samples by their luma weights. Returns how many of the first `count` are not finite.
+static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count) {
+  float4 sample[8];
+  float luma[8];
+  uint met = 0;
+  vstore16(samples->left, 0, (float*)sample);
+  vstore16(samples->right, 1, (float*)sample);
+  for (int i = 0; i < 8; ++i) {
+    if (i < count && any_non_finite4(sample[i])) met += 1;
+    luma[i] = luma_weight_or_none(&sample[i]);
+  }
+  samples->left = vload16(0, (const float*)sample);
+  samples->right = vload16(1, (const float*)sample);
+  *weight *= vload8(0, luma);
+  return met;
+}
+
+// m + (s - m) part, and in w their confidence.
+static inline float16 add_samples(float16 m, float16 s, float4 part, float4 confidence) {
+  const float16 sum = m + (s - m) * to_four_texels(part);
+  const int16 last = (int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1);
+  return select(sum, to_four_texels(confidence), last);
+}
+
+// The updated history: each sample moves it by weight / (confidence + weight), less by the inertia of what was
+// reseeded.
+static inline EightTexels accumulate(EightTexels history, float8 known, float8 inertia, EightTexels samples,
+                                     float8 weight) {
+  const float8 total = known + weight;
+  const float8 part = weight / max(total + inertia, LEAST_WEIGHT);
+  const float8 confidence = min(total, MOST_CONFIDENCE);
+  const EightTexels sum = {add_samples(history.left, samples.left, part.lo, confidence.lo),
+                           add_samples(history.right, samples.right, part.hi, confidence.hi)};
+  return sum;
+}

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+// Rectification and reseeding of eight output pixels, one by one: slow, and seldom needed.
+#pragma once
+
+#include "temporal/limit_confidence.h"
+#include "temporal/rectify.h"
+#include "temporal/reseed.h"
+
+// How much a seed resists its first sample, of a whole seed: that sample is in the seed already. +.01 dB, +.05 to +.1
+// in first frames (docs/pipeline.md).
+#define INERTIA 0.85f
+
+// Eight pixels as arrays.
+typedef struct EightPixels {
+  float4 history[8];
+  float confidence[8], rejection[8], from_x[8];
+  float inertia[8];
+  int x[8];
+} EightPixels;
+
+static inline void correct_pixel(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                 EightPixels* pixels, int i, int y, float from_y) {
+  float4 m = pixels->history[i];
+  float w = pixels->confidence[i];
+  pixels->inertia[i] = 0.0f;
+  if (pixels->rejection[i] > 0.0f) {
+    const ToneBox box = tone_box(colour, frame, pixels->x[i], y);
+    m = rectify(m, w, pixels->rejection[i], &box);
+    w = m.w;
+  }
+  if (w < LEAST_CONFIDENCE) {
+    const float4 seed = seed_of(colour, frame, motion, pixels->x[i], y, pixels->from_x[i], from_y);
+    m += (seed - m) * (1.0f - w / LEAST_CONFIDENCE);
+    pixels->inertia[i] = INERTIA * (1.0f - w / LEAST_CONFIDENCE);
+    w = seed.w > 0.0f ? LEAST_CONFIDENCE : 0.0f;
+  }
+  pixels->history[i] = m;
+  pixels->confidence[i] = w;
+}
+
+static inline bool needs_correction(const Evidence* evidence) {
+  return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < LEAST_CONFIDENCE));
+}
+
+// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least. Returns its
+// inertia: how much it resists this frame's sample, as a weight.
+static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                     const NearestSamples* nearest, EightTexels* history, Evidence* evidence) {
+  EightPixels pixels;
+  vstore16(history->left, 0, (float*)pixels.history);
+  vstore16(history->right, 1, (float*)pixels.history);
+  vstore8(evidence->confidence, 0, pixels.confidence);
+  vstore8(evidence->rejection, 0, pixels.rejection);
+  vstore8(nearest->from_x, 0, pixels.from_x);
+  vstore8(nearest->x, 0, pixels.x);
+  for (int i = 0; i < 8; ++i)
+    correct_pixel(colour, frame, motion, &pixels, i, nearest->y, nearest->from_y);
+  history->left = vload16(0, (const float*)pixels.history);
+  history->right = vload16(1, (const float*)pixels.history);
+  evidence->confidence = vload8(0, pixels.confidence);
+  return vload8(0, pixels.inertia);
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Fetching history: what a layer of the previous frame holds of eight output pixels of a row, in one tile.
+#pragma once
+
+#include "sanitise.h"
+#include "temporal/history_sampling.h"
+#include "temporal/reprojection.h"
+
+// Confidence, the sum of the weights of all samples in a texel, each 1 at most.
+#define MOST_CONFIDENCE 32.0f      // about 140 frames at scale .5
+#define HISTORY_SHARPNESS -1.0f    // the cubic's a; +.04 dB over -.75 (docs/pipeline.md)
+#define SAME_PHASE 0.02f           // output pixels: texels whose phases differ by more are not copied side by side;
+                                   // found by search on the development scenes
+#define FARTHEST_SOURCE 65536.0f   // output pixels: keeps places within what an int can hold
+enum { kResampledAhead = 3 * kTemporalTile };  // texels to prefetch: three blocks further along the row
+
+// What is fetched.
+typedef struct FetchedHistory {
+  EightTexels texels;
+  float8 confidence;              // within [0, MOST_CONFIDENCE]; 0 from beyond the previous picture's edges
+  float8 fraction_x, fraction_y;  // where between texels it was read; 0 where it was copied
+} FetchedHistory;
+
+// The phase of the previous texels around texel (x, y), clamped to the edge.
+static inline float2 phase_at(__global const TileReprojection* tiles, const TemporalParams* params, int x, int y) {
+  const int tile_x = clamp(x, 0, params->output_width - 1) / kTemporalTile;
+  const int tile_y = clamp(y, 0, params->output_height - 1) / kTemporalTile;
+  __global const TileReprojection* tile = tiles + tile_y * params->tiles_x + tile_x;
+  return (float2)(tile->phase_x, tile->phase_y);
+}
+
+// Whether the tile's pixels from (x, y) on are copied: it is rigid, and the eight texels that it takes are all inside
+// and have the phase that it takes them for.
+static inline bool is_copied(__global const TileReprojection* previous, const TemporalParams* params,
+                             TileReprojection tile, int x, int y) {
+  const int from_x = x - tile.step_x, from_y = y - tile.step_y;
+  const bool inside = from_x >= 0 && from_y >= 0 && from_x + kTemporalTile <= params->output_width &&
+                      from_y < params->output_height;
+  if (!tile.is_rigid || !inside) return false;
+  const float2 wanted = (float2)(tile.source_phase_x, tile.source_phase_y);
+  const float2 left = fabs(phase_at(previous, params, from_x, from_y) - wanted);
+  const float2 right = fabs(phase_at(previous, params, from_x + kTemporalTile - 1, from_y) - wanted);
+  return max(max(left.x, left.y), max(right.x, right.y)) <= SAME_PHASE;
+}
+
+// Where the pictures of eight pixels were in the previous history: on each axis the first of the four texels around
+// each place, and the fraction of the way between the middle two.
+typedef struct SourcePlaces {
+  Positions x, y;
+} SourcePlaces;
+
+static inline SourcePlaces source_places(__global const TileReprojection* previous, const TemporalParams* params,
+                                         TileReprojection tile, const EightReprojections* motion, int x, int y) {
+  const int8 columns = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  float8 at_x = clamp(motion->x, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_x;
+  float8 at_y = clamp(motion->y, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_y;
+  // Less the phase of the texels there.
+  const int8 i = columns + convert_int8(at_x + 0.5f), j = y + convert_int8(at_y + 0.5f);
+  const float2 p0 = phase_at(previous, params, i.s0, j.s0), p1 = phase_at(previous, params, i.s1, j.s1);
+  const float2 p2 = phase_at(previous, params, i.s2, j.s2), p3 = phase_at(previous, params, i.s3, j.s3);
+  const float2 p4 = phase_at(previous, params, i.s4, j.s4), p5 = phase_at(previous, params, i.s5, j.s5);
+  const float2 p6 = phase_at(previous, params, i.s6, j.s6), p7 = phase_at(previous, params, i.s7, j.s7);
+  at_x -= (float8)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x);
+  at_y -= (float8)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y);
+  int8 whole_x = convert_int8(at_x), whole_y = convert_int8(at_y);
+  whole_x += convert_float8(whole_x) > at_x;  // towards minus infinity
+  whole_y += convert_float8(whole_y) > at_y;
+  const SourcePlaces places = {{columns + whole_x - 1, at_x - convert_float8(whole_x)},
+                               {y + whole_y - 1, at_y - convert_float8(whole_y)}};
+  return places;
+}
+
+// Whether the 4x4 texels from (x, y) on lie inside, for all eight pixels.
+static inline bool lie_inside(int8 x, int8 y, int width, int height) {
+  return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) >> 31);
+}
+
+// On one axis, whether pictures were beyond the edges.
+static inline int8 lie_outside(Positions from, int size) {
+  const float8 at = convert_float8(from.texel + 1) + from.fraction;
+  return (at < -0.5f) | (at > (float)size - 0.5f);
+}
+
+static inline float8 held_confidence(EightTexels texels) {
+  return clamp(confidences(texels), 0.0f, MOST_CONFIDENCE);
+}
+
+// History at eight places, between texels.
+static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces from) {
+  const int8 x = from.x.texel, y = from.y.texel;
+  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
+  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
+  const bool inside = lie_inside(x, y, layer.width, layer.height);
+  will_read_rows(layer, x.s0 + kResampledAhead, y.s0);
+  const EightTexels texels = eight_texels(sample_history(layer, x.s0, y.s0, inside, wx.p0, wy.p0),
+                                          sample_history(layer, x.s1, y.s1, inside, wx.p1, wy.p1),
+                                          sample_history(layer, x.s2, y.s2, inside, wx.p2, wy.p2),
+                                          sample_history(layer, x.s3, y.s3, inside, wx.p3, wy.p3),
+                                          sample_history(layer, x.s4, y.s4, inside, wx.p4, wy.p4),
+                                          sample_history(layer, x.s5, y.s5, inside, wx.p5, wy.p5),
+                                          sample_history(layer, x.s6, y.s6, inside, wx.p6, wy.p6),
+                                          sample_history(layer, x.s7, y.s7, inside, wx.p7, wy.p7));
+  int8 outside = (int8)(0);
+  if (!inside) outside = lie_outside(from.x, layer.width) | lie_outside(from.y, layer.height);
+  const float8 confidence = select(held_confidence(texels), (float8)(0.0f), outside);
+  const FetchedHistory fetched = {texels, confidence, from.x.fraction, from.y.fraction};
+  return fetched;
+}
+
+// The eight texels from (x, y) on as they are.
+static inline FetchedHistory copy_history(HistoryLayer layer, int x, int y) {
+  const EightTexels texels = load_history8(layer, y * layer.width + x);
+  const FetchedHistory fetched = {texels, held_confidence(texels), (float8)(0.0f), (float8)(0.0f)};
+  return fetched;
+}
+
+// What a layer holds of the tile's pixels from (x, y) on.
+static inline FetchedHistory fetch_history(HistoryLayer layer, __global const TileReprojection* previous,
+                                           const TemporalParams* params, TileReprojection tile, bool copied,
+                                           const EightReprojections* motion, int x, int y) {
+  if (copied) return copy_history(layer, x - tile.step_x, y - tile.step_y);
+  return resample_history(layer, source_places(previous, params, tile, motion, x, y));
+}

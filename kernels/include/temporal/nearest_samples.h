@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Which sample of this frame lies nearest to each of eight output pixels of a row, in one tile.
+#pragma once
+
+#include "positions.h"
+#include "temporal/temporal_params.h"
+
+// A pixel's picture lies at its centre + the tile's phase. All eight share their row, as y's lanes do.
+typedef struct NearestSamples {
+  int8 x;        // columns of the viewport
+  int y;         // row
+  // From the sample to the pixel's picture, in samples; beyond the outermost samples more than half of one.
+  float8 from_x;
+  float from_y;
+  Positions between_x, between_y;  // the same place, clamped to the viewport: between which samples it lies
+} NearestSamples;
+
+// Of output row y, without a phase.
+static inline Positions row_position(const TemporalParams* params, __global const int* positions, int y) {
+  const int texel = positions[2 * params->columns + y];
+  const float fraction = as_float(positions[2 * params->columns + params->output_height + y]);
+  const Positions row = {(int8)(texel), (float8)(fraction)};
+  return row;
+}
+
+// Of the pixels from column x on.
+static inline NearestSamples find_nearest_samples(const TemporalParams* params, __global const int* positions, int x,
+                                                  Positions row, TileReprojection tile) {
+  const Positions column = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
+  const Positions place_x = shifted_positions(column, (float8)(tile.phase_x / params->spacing_x));
+  const Positions place_y = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+  NearestSamples nearest;
+  nearest.between_x = held_positions(place_x, params->frame0.width - 1);
+  nearest.between_y = held_positions(place_y, params->frame0.height - 1);
+  nearest.x = nearest_samples(nearest.between_x);
+  nearest.y = nearest_samples(nearest.between_y).s0;
+  nearest.from_x = place_x.fraction + convert_float8(place_x.texel - nearest.x);
+  nearest.from_y = place_y.fraction.s0 + (float)(place_y.texel.s0 - nearest.y);
+  return nearest;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Which samples lie in a tile, and how it takes history over if they move alike.
+#pragma once
+
+#include "motion/motion_edge.h"
+#include "motion/motion_options.h"
+#include "temporal/temporal_params.h"
+#include "texel.h"
+
+// Found by search on the development scenes; output pixels.
+#define RIGID_RANGE 0.05f   // by how much the motion of a rigid tile's samples may differ on an axis
+#define STILL_MOTION 1e-4f  // what velocity's rounding leaves of none
+
+enum { kReprojectionAhead = 8 };  // samples to prefetch
+
+// The tile that holds output position (x, y), clamped to the edge.
+static inline int tile_at(const TemporalTileParams* params, float x, float y) {
+  const int tile_x = clamp((int)x / kTemporalTile, 0, params->tiles_x - 1);
+  const int tile_y = clamp((int)y / kTemporalTile, 0, params->tiles_y - 1);
+  return tile_y * params->tiles_x + tile_x;
+}
+
+// The samples from `first` to `last`, each a column and a row.
+typedef struct SampleRange {
+  int2 first, last;
+} SampleRange;
+
+// Those whose centres lie in a tile; at least one.
+static inline SampleRange samples_in_tile(const TemporalTileParams* params, float2 corner) {
+  const int2 limit = (int2)(params->frame.width - 1, params->frame.height - 1);
+  const float2 spacing = (float2)(params->spacing_x, params->spacing_y);
+  const float2 start = (float2)(params->start_x, params->start_y);
+  const int2 first = clamp(convert_int2(ceil((corner - start) / spacing)), (int2)(0), limit);
+  const int2 last = clamp(convert_int2(ceil((corner + (float)kTemporalTile - start) / spacing)) - 1, first, limit);
+  const SampleRange range = {first, last};
+  return range;
+}
+
+#if MOTION
+// The same and the next samples around them.
+static inline SampleRange widened(const TemporalTileParams* params, SampleRange range) {
+  const int2 limit = (int2)(params->frame.width - 1, params->frame.height - 1);
+  const SampleRange around = {max(range.first - 1, (int2)(0)), min(range.last + 1, limit)};
+  return around;
+}
+
+static inline float16 four_times(float4 value) {
+  return (float16)(value, value, value, value);
+}
+
+// The range of each field of Reprojection; lanes of `unknown` are not 0 where one is NaN.
+typedef struct ReprojectionRange {
+  float4 least, most;
+  int4 unknown;
+} ReprojectionRange;
+
+static inline ReprojectionRange range_of(__global const float* reprojection, TexelLayout layout, SampleRange samples) {
+  const int2 first = samples.first, last = samples.last;
+  float16 least = (float16)(65536.0f), most = (float16)(-65536.0f);  // beyond all that Reprojection holds
+  int16 unknown = (int16)(0);
+  const bool wide = last.x >= first.x + 3;
+  for (int y = first.y; y <= last.y; ++y) {
+    __global const float* row = reprojection + 4 * row_index(layout, y);
+    WILL_READ(row + 4 * (last.x + kReprojectionAhead));
+    WILL_READ(row + 4 * (last.x + kReprojectionAhead + 4));
+    for (int x = first.x; x <= last.x; x += wide ? 4 : 1) {
+      const float16 four = wide ? vload16(0, row + 4 * min(x, last.x - 3)) : four_times(vload4(x, row));
+      least = min(least, four);
+      most = max(most, four);
+      unknown |= four != four;
+    }
+  }
+  const float8 least8 = min(least.lo, least.hi), most8 = max(most.lo, most.hi);
+  const int8 unknown8 = unknown.lo | unknown.hi;
+  const ReprojectionRange range = {min(least8.lo, least8.hi), max(most8.lo, most8.hi), unknown8.lo | unknown8.hi};
+  return range;
+}
+
+// How a tile takes history over whose samples, and the next ones around it, have these reprojections.
+static inline TileReprojection reproject_tile(const TemporalTileParams* params, ReprojectionRange found,
+                                              __global const TileReprojection* previous, float2 corner) {
+  TileReprojection tile = {.is_rigid = 0};
+  const float edge = max(found.most.w, -found.least.w);
+  tile.has_motion_edge = edge > EDGE_REJECTS_FROM ? 1 : 0;
+  const float2 least = found.least.xy, most = found.most.xy;
+  const float2 scale = (float2)(params->motion_x, params->motion_y);
+  const float2 range = (most - least) * scale;
+  const bool known = found.unknown.z == 0 && found.least.z >= 0.0f;
+  if (!known || !(range.x <= RIGID_RANGE && range.y <= RIGID_RANGE)) return tile;
+
+  const float2 mean = 0.5f * (most + least) * scale;
+  const float2 motion = select(mean, (float2)(0.0f), fabs(mean) < (float2)(STILL_MOTION));
+  const float2 source = corner + 0.5f * (float)kTemporalTile + motion;
+  // What comes in from beyond the edges takes the outermost tile's phase, so that a long pan stays of one piece.
+  const int from = tile_at(params, source.x, source.y);
+  tile.source_phase_x = previous[from].phase_x;
+  tile.source_phase_y = previous[from].phase_y;
+  const float2 place = (float2)(tile.source_phase_x, tile.source_phase_y) - motion;
+  const float2 step = floor(place + 0.5f);
+  tile.phase_x = place.x - step.x;
+  tile.phase_y = place.y - step.y;
+  tile.step_x = (int)step.x;
+  tile.step_y = (int)step.y;
+  tile.is_rigid = 1;
+  tile.is_copyable = found.least.z == 1.0f && edge <= EDGE_COSTS_FROM ? 1 : 0;
+  return tile;
+}
+#endif

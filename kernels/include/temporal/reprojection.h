@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// The reprojection of eight output pixels of a row: that of the sample nearest to each.
+//
+// Option: TRUST  NEAREST (default): the nearest sample's | BILINEAR: between samples
+#pragma once
+
+#include "motion/motion_options.h"
+#include "temporal/nearest_samples.h"
+#include "texel.h"
+
+#define NEAREST 1
+#define BILINEAR 2
+#ifndef TRUST
+#define TRUST NEAREST
+#endif
+#if TRUST != NEAREST && TRUST != BILINEAR
+#error "TRUST must be NEAREST or BILINEAR"
+#endif
+
+// As Reprojection, but in output pixels; trust is never NaN, and a motion edge of either frame is positive.
+typedef struct EightReprojections {
+  float8 x, y, trust, motion_edge;
+} EightReprojections;
+
+// Of pixels that stand still.
+static inline EightReprojections no_motion(void) {
+  const EightReprojections none = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f), (float8)(0.0f)};
+  return none;
+}
+
+#if MOTION
+#if TRUST == BILINEAR
+// Of eight samples of row y the trust; NaN is none.
+static inline float8 trust_at(__global const float* reprojection, TexelLayout layout, int8 x, int y) {
+  __global const float* trust = reprojection + 4 * row_index(layout, y) + 2;
+  const int8 at = 4 * x;
+  return fmax((float8)(trust[at.s0], trust[at.s1], trust[at.s2], trust[at.s3], trust[at.s4], trust[at.s5],
+                       trust[at.s6], trust[at.s7]), (float8)(0.0f));
+}
+
+static inline float8 bilinear_trust(const TemporalParams* params, __global const float* reprojection,
+                                    const NearestSamples* nearest) {
+  const TexelLayout layout = params->reprojection;
+  const int8 left = nearest->between_x.texel, right = min(left + 1, (int8)(params->frame0.width - 1));
+  const int above = nearest->between_y.texel.s0, below = min(above + 1, params->frame0.height - 1);
+  const float8 x = nearest->between_x.fraction, y = nearest->between_y.fraction;
+  const float8 upper = trust_at(reprojection, layout, left, above) * (1.0f - x) +
+                       trust_at(reprojection, layout, right, above) * x;
+  const float8 lower = trust_at(reprojection, layout, left, below) * (1.0f - x) +
+                       trust_at(reprojection, layout, right, below) * x;
+  return upper * (1.0f - y) + lower * y;
+}
+#endif
+
+static inline EightReprojections load_reprojections(const TemporalParams* params, __global const float* reprojection,
+                                                    const NearestSamples* nearest) {
+  const int8 x = nearest->x;
+  __global const float* row = reprojection + 4 * row_index(params->reprojection, nearest->y);
+  const float4 r0 = vload4(x.s0, row), r1 = vload4(x.s1, row), r2 = vload4(x.s2, row), r3 = vload4(x.s3, row);
+  const float4 r4 = vload4(x.s4, row), r5 = vload4(x.s5, row), r6 = vload4(x.s6, row), r7 = vload4(x.s7, row);
+  EightReprojections found;
+  found.x = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x) * params->motion_x;
+  found.y = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y) * params->motion_y;
+  found.motion_edge = fabs((float8)(r0.w, r1.w, r2.w, r3.w, r4.w, r5.w, r6.w, r7.w));
+#if TRUST == BILINEAR
+  found.trust = bilinear_trust(params, reprojection, nearest);
+#else
+  found.trust = fmax((float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z), (float8)(0.0f));  // NaN is none
+#endif
+  return found;
+}
+#elif REACTIVE
+// Where nothing moves: what the reactive values of both frames leave of trust.
+static inline float8 trust_of_reactive(const TemporalParams* params, REACTIVE_TEXELS reactive0,
+                                       REACTIVE_TEXELS reactive1, const NearestSamples* nearest) {
+  const SourceFrame now = params->frame0, before = params->frame1;
+  const float ratio_x = (float)before.width / (float)now.width, ratio_y = (float)before.height / (float)now.height;
+  const int8 x = min(convert_int8((convert_float8(nearest->x) + 0.5f) * ratio_x), (int8)(before.width - 1));
+  const int y = min((int)(((float)nearest->y + 0.5f) * ratio_y), before.height - 1);
+  return (1.0f - (float8)(load_reactive4(reactive0, now.reactive, nearest->x.lo, nearest->y),
+                          load_reactive4(reactive0, now.reactive, nearest->x.hi, nearest->y))) *
+         (1.0f - (float8)(load_reactive4(reactive1, before.reactive, x.lo, y),
+                          load_reactive4(reactive1, before.reactive, x.hi, y)));
+}
+#endif
+
+// Whether history may be taken as it is, without a look at the pixels' reprojection: their texels are `copied`, and all
+// their samples trust them.
+static inline bool is_taken_whole(TileReprojection tile, bool copied) {
+#if REACTIVE && !MOTION
+  return false;
+#else
+  return copied && tile.is_copyable;
+#endif
+}
+
+// Reprojects the pixels.
+static inline EightReprojections reproject_pixels(const TemporalParams* params, __global const float* reprojection,
+                                                  REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                                                  const NearestSamples* nearest) {
+#if MOTION
+  return load_reprojections(params, reprojection, nearest);
+#else
+  EightReprojections still = no_motion();
+#if REACTIVE
+  still.trust = trust_of_reactive(params, reactive0, reactive1, nearest);
+#endif
+  return still;
+#endif
+}

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Parameters of the temporal upscaler's kernels.
+#pragma once
+
+#include "params.h"
+#include "temporal/tile.h"
+
+#ifdef __cplusplus
+namespace quincunx {
+#endif
+
+typedef struct TemporalTileParams {
+  SourceFrame frame;
+  int output_width;
+  int output_height;
+  int tiles_x;
+  int tiles_y;
+  TexelLayout reprojection;
+  // The centre of sample (i, j) in output pixels: (i * spacing_x + start_x, j * spacing_y + start_y).
+  float spacing_x, spacing_y;
+  float start_x, start_y;
+  float motion_x, motion_y;  // from Reprojection's pixels of the previous viewport to output pixels
+  int judged_apart;          // 2 or 4: one of so many samples judges history
+} TemporalTileParams;
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 28);
+
+typedef struct TemporalParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;  // this frame
+  SourceFrame frame1;  // the previous one: only the viewport and reactive
+  TexelLayout reprojection;
+  TexelLayout output;          // of a debug view
+  int columns;                 // in the position table, as in ReprojectedParams
+  int counter;                 // index into non_finite
+  int columns_per_item;        // pixels that a work-item makes: a multiple of kTemporalTile
+  float motion_x, motion_y;    // from Reprojection's pixels of the previous viewport to output pixels
+  float spacing_x, spacing_y;  // output pixels between neighbouring samples
+  int tiles_x;
+  int tiles_y;
+} TemporalParams;
+QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 8);
+
+typedef struct TemporalDisplayParams {
+  int output_width;
+  int output_height;
+  SourceFrame frame0;
+  TexelLayout output;
+  int tiles_x;
+  int columns;           // of the position table
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
+  int first;             // 1: no frame came before
+} TemporalDisplayParams;
+QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 16);
+
+#ifdef __cplusplus
+}  // namespace quincunx
+#endif

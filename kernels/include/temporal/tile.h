@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What the temporal upscaler keeps of each tile of kTemporalTile^2 output pixels, one struct for each owner and
+// lifetime:
+//
+//   struct             written by      read by                                                    lives for
+//   TileReprojection   temporal_tiles  temporal_light, resolve_temporal and temporal_display in   two frames
+//                                      the same frame, temporal_tiles and resolve_temporal in
+//                                      the next
+//   TileEvidence       temporal_tiles  temporal_light in the same frame                           one frame
+//   TotalLight         temporal_tiles  temporal_light in the same frame                           one frame
+//   TileLight          temporal_light  resolve_temporal in the same frame, temporal_light in the  two frames
+//                                      next
+//
+// Each is an array of the output's tiles, row by row; of TotalLight there is one. What lives for two frames has a
+// buffer for each, and the previous frame's is all zero where there is no history.
+#pragma once
+
+#include "params.h"
+
+#ifdef __cplusplus
+namespace quincunx {
+#endif
+
+enum { kTemporalTile = 8 };  // output pixels: as many as resolve_temporal and temporal_display make at once
+
+// Where a tile's history comes from. In a *rigid* tile everything moves alike. Its texels are copied from the previous
+// history by a whole number of texels and never resampled, so that nothing blurs. What is left of the motion is carried
+// along as the tile's *phase*: its texels hold the picture at their centres + phase.
+typedef struct TileReprojection {
+  float phase_x, phase_y;                // output pixels, within [-.5, .5]; 0 if the tile is not rigid
+  float source_phase_x, source_phase_y;  // the phase of the previous texels that a rigid tile takes
+  int step_x, step_y;                    // texel (x, y) of a rigid tile takes (x - step_x, y - step_y)
+  int is_rigid;                          // 0 or 1
+  // 0 or 1: rigid, all of its samples are trusted, and there is no motion edge that costs confidence. resolve_temporal
+  // may copy such a tile without a look at its samples' reprojection.
+  int is_copyable;
+  int has_motion_edge;  // 0 or 1: somewhere in it there is a motion edge, or was one in the previous frame
+} TileReprojection;
+QUINCUNX_CHECK_SIZE(TileReprojection, 36);
+
+// What a tile's samples say of the history at their places. Sums over its judged samples; s and h are the lumas of
+// sample and history, and each difference is divided by 1 + s + h: brightness as the eye has it, not light.
+typedef struct TileEvidence {
+  float brightening;      // s - h
+  float light;            // h
+  float history_error;    // |s - h|: history's error as a forecast of the sample
+  float neighbour_error;  // |s - n|, n the mean of the four neighbours: their error as a forecast of it
+  float count;            // of the judged samples
+  float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
+} TileEvidence;
+QUINCUNX_CHECK_SIZE(TileEvidence, 24);
+
+// Whether the light of a tile has changed, and what is to be done about its history.
+typedef struct TileLight {
+  float gain;         // the relighting gain: history's light times this is this frame's; 1 where light has not changed
+  float rejection;    // of history, in [0, 1]: how far it is brought into the range of this frame's samples
+  float persistence;  // of a change of light over frames, in [-1, 1]: positive where it brightens
+  float flicker;      // how far the mean brightening alternates from frame to frame, averaged over frames: aliasing
+  float mean_brightening;  // TileEvidence's brightening / count, for the next frame
+} TileLight;
+QUINCUNX_CHECK_SIZE(TileLight, 20);
+
+// The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
+//                                       many
+// that an int would overflow: whether the light has changed everywhere, or the picture is another one.
+typedef struct TotalLight {
+  int brightening;  // sum over tiles of their signed means
+  int change;       // of the magnitudes of those means
+  int light;
+  int history_error, neighbour_error;
+} TotalLight;
+QUINCUNX_CHECK_SIZE(TotalLight, 20);
+enum { kLightUnits = 2048 };
+
+#ifdef __cplusplus
+}  // namespace quincunx
+#endif

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// resolve_temporal: adds this frame's samples to a history of the output's size, which follows the surfaces.
+//   m  history's colour where the pixel's picture was in the previous frame: a texel's own in a rigid tile, else a
+//      cubic, clamped to the range of the middle four texels
+//   W  its confidence, the sum of the weights of the samples in it: at most 32, or 8 once resampled, less what
+//      resampling, disocclusion, reactive values, motion edges and a change of light take
+//   m += (s - m) w / (W + w)
+//   s  the nearest sample; d its distance from the pixel's picture, output pixels
+//   w  its weight, (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2);
+//      r = 1.05, in still tiles down to .85 as W grows
+// Only where something speaks against history is it brought into the range of the samples there: doing so everywhere
+// would cost more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.
+//
+//   params          in   extents, layouts, distances
+//   positions       in   of each output column, then row, in the viewport, as in resolve_reprojected
+//   colour          in   RGBA16F or RGBA32F, viewport, linear, premultiplied
+//   reprojection    in   MOTION 1: Reprojection of each sample, from reproject with MOTION_EDGE 1
+//   reactive0, 1    in   REACTIVE 1: R8 of both frames, viewports
+//   history         in   the layer of the previous frame; all zero where there is none
+//   previous_tiles  in   TileReprojection of each tile, of the previous frame
+//   tiles           in   the same of this frame
+//   light           in   TileLight of each tile, of this frame
+//   updated         out  the layer of this frame
+//   view            out  VIEW other than PICTURE: RGBA32F or RGBA16F, output extent
+//   non_finite      out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
+// Options: MOTION    1 (default) | 0: nothing moves
+//          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
+//          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs
+//          TRUST     NEAREST (default) | BILINEAR: between samples
+//          VIEW      PICTURE (default): temporal_display makes the picture | CONFIDENCE | REJECTION | PHASE, as in
+//                    temporal/debug_view.h
+//          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT (of a view) as in texel.h
+//          HISTORY_FORMAT as in temporal/history.h
+// Reference: tests/reference/resolve_temporal.cpp
+#include "temporal/accumulate.h"
+#include "temporal/correct_history.h"
+#include "temporal/debug_view.h"
+#include "temporal/fetch_history.h"
+#include "temporal/limit_confidence.h"
+#include "temporal/nearest_samples.h"
+#include "temporal/relight.h"
+#include "temporal/reprojection.h"
+#include "texel.h"
+
+__kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
+                               __global const float* reprojection, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                               HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
+                               __global const TileReprojection* tiles, __global const TileLight* light,
+                               STORED_HISTORY updated, OUTPUT_TEXELS view, __global uint* non_finite) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.output_width || y >= params.output_height) return;
+
+  const int end = min(first + params.columns_per_item, params.output_width);
+  const SourceFrame frame = params.frame0;
+  const HistoryLayer layer = {history, params.output_width, params.output_height};
+  const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
+  const Positions row = row_position(&params, positions, y);
+  EdgeLight right = light_at_edge(light, &params, first, y);
+  uint met_count = 0;
+  for (int x = first; x < end; x += kTemporalTile) {
+    const TileReprojection tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
+
+    // Reproject.
+    const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
+    const bool copied = is_copied(previous_tiles, &params, tile, x, y);
+    const bool whole = is_taken_whole(tile, copied);
+    EightReprojections motion = no_motion();
+    if (!whole) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
+
+    // Fetch history, and limit its confidence.
+    const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, copied, &motion, x, y);
+    Evidence evidence = full_evidence(&fetched);
+    if (!whole) evidence = limit_confidence(&fetched, &motion);
+
+    // Relight.
+    const EdgeLight left = right;
+    right = light_at_edge(light, &params, x + kTemporalTile, y);
+    reject_by_light(&evidence, left, right);
+    EightTexels known = relight(fetched.texels, left, right);
+
+    // Rectify and reseed.
+    float8 inertia = (float8)(0.0f);
+    if (needs_correction(&evidence))
+      inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &evidence);
+
+    // Accumulate.
+    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence);
+    if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
+    const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
+
+    // Store.
+    store_history8(updated, y * params.output_width + x, end - x, sum);
+#if VIEW == CONFIDENCE
+    store_view(view, params.output, x, y, end, view_confidence(sum));
+#elif VIEW == REJECTION
+    store_view(view, params.output, x, y, end, view_rejection(&motion, left, right));
+#elif VIEW == PHASE
+    store_view(view, params.output, x, y, end, view_phase(tile, &fetched));
+#endif
+  }
+  if (met_count > 0) atomic_add(non_finite + params.counter, met_count);
+}

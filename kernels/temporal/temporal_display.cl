@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+// temporal_display: the picture of a history: resampled at the pixels' centres where a tile has a phase, and smoothed
+// where little is known. It is not fed back.
+//   A pixel of confidence W < 1.5 becomes a weighted mean: it counts W + .02 and its eight neighbours .3 exp(-2 W)
+//   each. The picture of a first frame is not smoothed: it would lose what it has of fine texture.
+//
+//   params     in   extents, layouts
+//   positions  in   ALPHA 1: of each output column, then row, in the viewport, as in resolve_reprojected
+//   colour     in   ALPHA 1: RGBA16F or RGBA32F, viewport: alpha is bilinear's of this frame
+//   tiles      in   TileReprojection of each tile, of this frame
+//   history    in   the layer of this frame
+//   output     out  RGBA32F or RGBA16F, output extent
+// Options: ALPHA   1 (default) | 0: the picture is opaque
+//          SMOOTH  1 (default) | 0
+//          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
+// Reference: tests/reference/temporal_display.cpp
+#include "positions.h"
+#include "temporal/history_sampling.h"
+#include "temporal/smooth.h"
+#include "temporal/temporal_params.h"
+#include "texel.h"
+
+#ifndef ALPHA
+#define ALPHA 1
+#endif
+#ifndef SMOOTH
+#define SMOOTH 1
+#endif
+#if ALPHA < 0 || ALPHA > 1
+#error "ALPHA must be 0 or 1"
+#endif
+#if SMOOTH < 0 || SMOOTH > 1
+#error "SMOOTH must be 0 or 1"
+#endif
+
+#define DISPLAY_SHARPNESS -0.75f  // the cubic's a: found by search on the development scenes
+
+// How the pixels of a tile are resampled: which texel is the first of the four around the centre of each, and their
+// weights on each axis.
+typedef struct Display {
+  int step_x, step_y;  // the first of the four lies so many texels before the pixel's own
+  float4 wx, wy;
+  bool has_phase;  // false: nothing needs to be resampled
+} Display;
+
+static inline Display display_of(TileReprojection tile) {
+  Display display;
+  display.has_phase = tile.phase_x != 0.0f || tile.phase_y != 0.0f;
+  display.step_x = 1 + (tile.phase_x > 0.0f);
+  display.step_y = 1 + (tile.phase_y > 0.0f);
+  const Cubic x = cubic_weights((float8)((float)(display.step_x - 1) - tile.phase_x), DISPLAY_SHARPNESS);
+  const Cubic y = cubic_weights((float8)((float)(display.step_y - 1) - tile.phase_y), DISPLAY_SHARPNESS);
+  display.wx = (float4)(x.w0.s0, x.w1.s0, x.w2.s0, x.w3.s0);
+  display.wy = (float4)(y.w0.s0, y.w1.s0, y.w2.s0, y.w3.s0);
+  return display;
+}
+
+// What history holds of eight pixels, and what is shown of it.
+typedef struct Pixels {
+  EightTexels own, shown;
+} Pixels;
+
+// Of the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
+static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, int x, int y) {
+  float4 own[8], shown[8];
+  for (int i = 0; i < 8; ++i) {
+    const int column = min(x + i, layer.width - 1);
+    own[i] = load_history(layer, y * layer.width + column);
+    shown[i] = own[i];
+    if (display->has_phase) {
+      const int first_x = column - display->step_x, first_y = y - display->step_y;
+      shown[i] = sample_history(layer, first_x, first_y, false, display->wx, display->wy);
+    }
+  }
+  const Pixels pixels = {{vload16(0, (const float*)own), vload16(1, (const float*)own)},
+                         {vload16(0, (const float*)shown), vload16(1, (const float*)shown)}};
+  return pixels;
+}
+
+// The same where all texels that it needs are inside.
+static inline Pixels load_pixels(HistoryLayer layer, const Display* display, int x, int y) {
+  const EightTexels own = load_history8(layer, y * layer.width + x);
+  Pixels pixels = {own, own};
+  if (display->has_phase) {
+    const int first_x = x - display->step_x, first_y = y - display->step_y;
+    pixels.shown = sample_history_row(layer, first_x, first_y, display->wx, display->wy);
+  }
+  return pixels;
+}
+
+// Whether all texels that load_pixels() and load_around() need are inside.
+static inline bool lies_inside(HistoryLayer layer, const Display* display, int x, int y) {
+  const int first_y = y - display->step_y;
+  return x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
+}
+
+#if ALPHA
+static inline Positions position_at(__global const int* positions, int texel, int fraction, int last) {
+  const Positions at = {(int8)(positions[texel]), (float8)(as_float(positions[fraction]))};
+  return moved_positions(at, (float8)(0.0f), last);
+}
+
+static inline float alpha_at(const TemporalDisplayParams* params, COLOUR_TEXELS colour, Positions row,
+                             Positions column) {
+  const SourceFrame frame = params->frame0;
+  const int x = column.texel.s0, y = row.texel.s0;
+  const int right = min(x + 1, frame.width - 1), below = min(y + 1, frame.height - 1);
+  const float4 alphas = sanitise4((float4)(
+      load_colour(colour, frame.colour, x, y).w, load_colour(colour, frame.colour, right, y).w,
+      load_colour(colour, frame.colour, x, below).w, load_colour(colour, frame.colour, right, below).w));
+  const float2 between = alphas.xz + (alphas.yw - alphas.xz) * column.fraction.s0;
+  return between.x + (between.y - between.x) * row.fraction.s0;
+}
+#endif
+
+// One pixel, if it lies before `end`.
+static inline void store_pixel(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, float4 texel,
+                               float alpha) {
+  if (x < end) store_output(output, layout, x, y, (float4)(texel.xyz, alpha));
+}
+
+static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, EightTexels texels,
+                                const float* alphas) {
+  store_pixel(output, layout, x, y, end, texels.left.s0123, alphas[0]);
+  store_pixel(output, layout, x + 1, y, end, texels.left.s4567, alphas[1]);
+  store_pixel(output, layout, x + 2, y, end, texels.left.s89ab, alphas[2]);
+  store_pixel(output, layout, x + 3, y, end, texels.left.scdef, alphas[3]);
+  store_pixel(output, layout, x + 4, y, end, texels.right.s0123, alphas[4]);
+  store_pixel(output, layout, x + 5, y, end, texels.right.s4567, alphas[5]);
+  store_pixel(output, layout, x + 6, y, end, texels.right.s89ab, alphas[6]);
+  store_pixel(output, layout, x + 7, y, end, texels.right.scdef, alphas[7]);
+}
+
+__kernel void temporal_display(const TemporalDisplayParams params, __global const int* positions, COLOUR_TEXELS colour,
+                               __global const TileReprojection* tiles, HISTORY_TEXELS history, OUTPUT_TEXELS output) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.output_width || y >= params.output_height) return;
+
+  const HistoryLayer layer = {history, params.output_width, params.output_height};
+  const int end = min(first + params.columns_per_item, params.output_width);
+#if ALPHA
+  const int rows = 2 * params.columns;
+  const Positions row = position_at(positions, rows + y, rows + params.output_height + y, params.frame0.height - 1);
+#endif
+  for (int x = first; x < end; x += kTemporalTile) {
+    // Resample.
+    const Display display = display_of(tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile]);
+    const bool inside = lies_inside(layer, &display, x, y);
+    Pixels pixels = inside ? load_pixels(layer, &display, x, y) : gather_pixels(layer, &display, x, y);
+
+    // Smooth.
+#if SMOOTH
+    const float8 confidence = confidences(pixels.own);
+    if (!params.first && any_lane(confidence < LITTLE_CONFIDENCE)) {
+      const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
+      pixels.shown = smooth_little_known(pixels.shown, around, confidence);
+    }
+#endif
+
+    // Store, with this frame's alpha.
+    float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+#if ALPHA
+    for (int i = 0; i < min(end - x, 8); ++i) {
+      const Positions column = position_at(positions, x + i, params.columns + x + i, params.frame0.width - 1);
+      alphas[i] = alpha_at(&params, colour, row, column);
+    }
+#endif
+    store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
+  }
+}

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+// temporal_light: whether the light has changed in each tile, from the evidence in it and in the eight tiles around it.
+//   relative   sum of brightenings / sum of light: the change of light
+//   coherence  |sum of brightenings| / sum of their magnitudes: how far tiles agree
+//   gain       the relighting gain: a coherent change that persists for two frames gives 1 + relative; aliased texture
+//              changes its sign before that. Where the whole picture changes one way the gain is given at once. Where
+//              surfaces move apart a change of light cannot be told from one of surface: the gain is 1, or the whole
+//              picture's
+//   rejection  the largest of three, clamped to [0, 1]:
+//     by error   history foretells the samples much worse than their neighbours do, and not because light has changed
+//     by cut     over the whole picture history foretells no better than the neighbours: it is another picture
+//     by change  the tile's own samples agree that it is brighter or darker now, by more than its aliasing has shown in
+//                flicker and in the neighbours' error, as in the first frames of a moving highlight
+//
+//   tiles_x, tiles_y  in   how many tiles there are
+//   tiles             in   TileReprojection of each tile: motion edges
+//   evidence          in   TileEvidence of each tile
+//   total             in   TotalLight: of all tiles
+//   previous          in   TileLight of each tile, of the previous frame
+//   light             out  TileLight of each tile
+// Options: none
+// Reference: tests/reference/temporal_light.cpp
+#include "temporal/tile.h"
+
+// Thresholds. They were found by search on the development scenes; what a measurement showed is in docs/pipeline.md.
+//
+// A change of light in 3x3 tiles.
+#define COHERENT 0.75f            // least coherence
+#define LEAST_RELIGHT 0.05f       // least change, of the light
+#define AGREEING_MAJORITY 0.4f    // (samples for it - samples against it) / samples: seven of ten agree. +.02 dB
+#define NOISE_MULTIPLE 3.0f       // least change, in standard deviations of what aliasing alone gives
+#define PERSISTENCE_MEMORY 0.6f   // of persistence, from one frame to the next
+#define PERSISTENT 0.62f          // least persistence: after two frames it is 1 - .6^2 = .64, after one .4
+#define MOST_GAIN 4.0f            // either way
+// A change of light of the whole picture.
+#define WHOLE_COHERENT 0.8f       // least coherence
+#define DIFFERENCE_FROM_WHOLE 0.3f  // of the whole picture's change: a tile whose change differs by more keeps its own
+#define DIFFERING_COHERENT 0.5f   // least coherence of such a tile
+// Rejection by error.
+#define ERROR_RATIO 1.6f          // of history's error to the neighbours', from which on it rejects
+#define ERROR_FLOOR 0.02f         // luma, summed over 3x3 tiles: less is no error
+#define INCOHERENT 0.5f           // of the error: a larger part that is brightening may be a change of light
+// Rejection by cut. Without one the ratio is .6 to .9.
+#define CUT_RATIO 0.95f           // of history's error to the neighbours', from which on it rejects
+#define CUT_RANGE 0.25f           // by how much more of the neighbours' error it rejects wholly
+#define CUT_FLOOR 0.03f           // of the light: less is no error
+// Rejection by change.
+#define SIGN_TEST 1.1f            // least majority, in squared standard deviations of a fair coin
+#define LEAST_CHANGE 0.15f        // of the tile's light
+#define NEIGHBOUR_SHARE 0.8f      // of the neighbours' error that is usual
+#define FLICKER_SHARE 12.0f       // of flicker that is usual: an aliased tile is more often near its mean than far
+#define CHANGE_FLOOR 0.01f        // luma: usual anyway
+#define CHANGE_RANGE 0.5f         // by how much more of what is usual it rejects wholly
+#define FLICKER_MEMORY 0.9f       // of flicker, from one frame to the next. Without flicker -.08 dB, still -.8
+
+#define SMALLEST_SUM 1e-6f  // keeps 0 / 0 from becoming NaN
+
+// The evidence of 3x3 tiles.
+typedef struct EvidenceAround {
+  TileEvidence sum;
+  float change;  // of the magnitudes of the brightenings
+  bool has_motion_edge;
+} EvidenceAround;
+
+static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
+                                          int tiles_x, int tiles_y, int x, int y) {
+  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, false};
+  for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
+    for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
+      const int i = row * tiles_x + column;
+      const TileEvidence tile = evidence[i];
+      around.sum.brightening += tile.brightening;
+      around.sum.light += tile.light;
+      around.sum.history_error += tile.history_error;
+      around.sum.neighbour_error += tile.neighbour_error;
+      around.sum.count += tile.count;
+      around.sum.brighter += tile.brighter;
+      around.change += fabs(tile.brightening);
+      around.has_motion_edge = around.has_motion_edge || tiles[i].has_motion_edge;
+    }
+  }
+  return around;
+}
+
+// A change of light in 3x3 tiles.
+typedef struct LightChange {
+  float relative, coherence;
+  float direction;  // 1: brighter, -1: darker
+  bool is_agreed;   // by the samples
+} LightChange;
+
+static inline LightChange change_of(const EvidenceAround* around) {
+  const TileEvidence sum = around->sum;
+  LightChange change;
+  change.relative = sum.brightening / max(sum.light, SMALLEST_SUM);
+  change.coherence = fabs(sum.brightening) / max(around->change, SMALLEST_SUM);
+  change.direction = change.relative > 0.0f ? 1.0f : -1.0f;
+  change.is_agreed = sum.brighter * change.direction > AGREEING_MAJORITY * sum.count;
+  return change;
+}
+
+// Whether nothing else than light explains it in this frame.
+static inline bool is_change_of_light(const LightChange* change, const EvidenceAround* around) {
+  // What aliasing alone may give.
+  const float chance = around->sum.neighbour_error / sqrt(max(around->sum.count, 1.0f));
+  return !around->has_motion_edge && change->is_agreed && change->coherence > COHERENT &&
+         fabs(change->relative) > LEAST_RELIGHT && fabs(around->sum.brightening) > NOISE_MULTIPLE * chance;
+}
+
+static inline bool is_whole_picture_relit(const TotalLight* total) {
+  const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
+  return fabs(whole) > WHOLE_COHERENT * change && fabs(whole) > LEAST_RELIGHT * light;
+}
+
+// The gain of a tile in a picture that is relit: the whole picture's, which is surer than what one tile finds, unless
+// the tile's own differs much.
+static inline float gain_of_whole(const LightChange* change, const EvidenceAround* around, const TotalLight* total) {
+  const float everywhere = (float)total->brightening / (float)total->light;
+  const bool differs = !around->has_motion_edge && change->coherence > DIFFERING_COHERENT &&
+                       fabs(change->relative - everywhere) > DIFFERENCE_FROM_WHOLE * fabs(everywhere);
+  return 1.0f + (differs ? change->relative : everywhere);
+}
+
+// How far the mean brightening alternates: the smaller of two frames' whose signs differ.
+static inline float alternation(float now, float before) {
+  return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
+}
+
+static inline float rejection_by_error(const TileEvidence* sum) {
+  const float allowed = ERROR_RATIO * sum->neighbour_error + ERROR_FLOOR;
+  const bool incoherent = fabs(sum->brightening) < INCOHERENT * sum->history_error;
+  return incoherent ? (sum->history_error - allowed) / allowed : 0.0f;
+}
+
+static inline float rejection_by_cut(const TotalLight* total) {
+  const float error = (float)total->history_error, usual = (float)total->neighbour_error;
+  if (!(error > CUT_FLOOR * (float)total->light)) return 0.0f;
+  return (error - CUT_RATIO * usual) / (CUT_RANGE * usual + 1.0f);
+}
+
+static inline float rejection_by_change(const TileEvidence* tile, float mean_brightening, float flicker,
+                                        float neighbour_error) {
+  // A test of signs, corrected as for few samples: three must all agree.
+  const float majority = fabs(tile->brighter) - 1.0f;
+  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST * tile->count;
+  if (!is_agreed || fabs(tile->brightening) <= LEAST_CHANGE * tile->light) return 0.0f;
+  const float usual = NEIGHBOUR_SHARE * neighbour_error + FLICKER_SHARE * flicker + CHANGE_FLOOR;
+  return (fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual);
+}
+
+__kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
+                             __global const TileEvidence* evidence, __global const TotalLight* total,
+                             __global const TileLight* previous, __global TileLight* light) {
+  const int x = get_global_id(0), y = get_global_id(1);
+  if (x >= tiles_x || y >= tiles_y) return;
+
+  const int i = y * tiles_x + x;
+  const TileEvidence own = evidence[i];
+  const TileLight before = previous[i];
+  const TotalLight whole = *total;
+  const EvidenceAround around = sum_evidence(tiles, evidence, tiles_x, tiles_y, x, y);
+  const LightChange change = change_of(&around);
+  TileLight tile;
+
+  // Relighting gain.
+  const bool changes = is_change_of_light(&change, &around);
+  tile.persistence = PERSISTENCE_MEMORY * before.persistence +
+                     (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
+  float gain = changes && tile.persistence * change.direction > PERSISTENT ? 1.0f + change.relative : 1.0f;
+  const bool relit = is_whole_picture_relit(&whole);
+  if (relit && change.is_agreed && change.relative * (float)whole.brightening > 0.0f)
+    gain = gain_of_whole(&change, &around, &whole);
+  tile.gain = clamp(gain, 1.0f / MOST_GAIN, MOST_GAIN);
+
+  // Flicker.
+  tile.mean_brightening = own.brightening / max(own.count, 1.0f);
+  tile.flicker = FLICKER_MEMORY * before.flicker +
+                 (1.0f - FLICKER_MEMORY) * alternation(tile.mean_brightening, before.mean_brightening);
+
+  // Rejection.
+  const float by_error = rejection_by_error(&around.sum);
+  const float by_cut = relit ? 0.0f : rejection_by_cut(&whole);
+  const float mean_error = around.sum.neighbour_error / max(around.sum.count, 1.0f);
+  const float by_change =
+      tile.gain == 1.0f ? rejection_by_change(&own, tile.mean_brightening, tile.flicker, mean_error) : 0.0f;
+  tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
+  light[i] = tile;
+}

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// temporal_tiles: how history is taken over in each tile of kTemporalTile^2 output pixels, and what the tile's samples
+// say of it.
+//   A tile is rigid if its samples, and the next ones around it, move alike within .05 output pixels. With r the phase
+//   of the previous tile that its middle comes from and v the way that it has come, both in output pixels, it takes
+//   texels round(r + v) away and has the phase r + v - round(r + v).
+//   Of the evidence see TileEvidence: sums over one of judged_apart samples of each row, in a pattern that is staggered
+//   from row to row. Samples that are not trusted do not count.
+//
+//   params          in   viewport, layouts, scales
+//   colour          in   RGBA16F or RGBA32F, viewport
+//   reprojection    in   MOTION 1: Reprojection of each sample, from reproject with MOTION_EDGE 1
+//   history         in   the layer of the previous frame
+//   previous_tiles  in   TileReprojection of each tile, of the previous frame
+//   tiles           out  the same of this frame
+//   evidence        out  TileEvidence of each tile
+//   total           out  TotalLight: grows by each tile's part
+// Options: MOTION  1 (default) | 0: nothing moves, and all tiles are rigid
+//          SOURCE_STORAGE, SOURCE_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
+// Reference: tests/reference/temporal_tiles.cpp
+#include "temporal/frame_samples.h"
+#include "temporal/history.h"
+#include "temporal/reproject_tile.h"
+#include "temporal/temporal_params.h"
+#include "texel.h"
+
+// Found by search on the development scenes.
+#define KNOWN_CONFIDENCE 0.1f  // from which a texel of history is asked: less than one reseeded in the last frame has
+#define SURE_TRUST 0.9f        // from which a sample is asked
+#define LUMA_NOISE 0.01f       // relative change of luma that says nothing. +.03 dB, together with no gain at edges
+
+enum { kJudgedAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
+
+// What is known of the previous frame, and how to get there.
+typedef struct Past {
+  __global const float* reprojection;
+  HistoryLayer history;
+  __global const TileReprojection* previous_tiles;
+} Past;
+
+static inline float luma(float4 colour) {
+  return max(0.25f * (colour.x + colour.z) + 0.5f * colour.y, 0.0f);
+}
+
+// The place of sample (x, y) in the previous history, output pixels; false if the sample is not trusted.
+static inline bool find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile, int x,
+                                   int y, float2* at) {
+  float at_x = (float)x * params->spacing_x + params->start_x;
+  float at_y = (float)y * params->spacing_y + params->start_y;
+#if MOTION
+  const float4 found = vload4(texel_index(params->reprojection, x, y), past->reprojection);
+  if (!(found.z > SURE_TRUST)) return false;
+  if (!tile.is_rigid) {
+    at_x += found.x * params->motion_x;
+    at_y += found.y * params->motion_y;
+    const int source = tile_at(params, at_x, at_y);
+    at_x -= past->previous_tiles[source].phase_x;
+    at_y -= past->previous_tiles[source].phase_y;
+  }
+#endif
+  if (tile.is_rigid) {
+    at_x -= tile.phase_x + (float)tile.step_x;
+    at_y -= tile.phase_y + (float)tile.step_y;
+  }
+  *at = (float2)(at_x, at_y);
+  return true;
+}
+
+// Adds what sample (x, y) says of history.
+static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, const Past* past,
+                                const TemporalTileParams* params, TileReprojection tile, int x, int y) {
+  float2 at;
+  if (!find_in_history(past, params, tile, x, y, &at)) return;
+  const int width = params->output_width, height = params->output_height;
+  if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < (float)width && at.y < (float)height)) return;
+  const int index = (int)at.y * width + (int)at.x;
+  will_read_history(past->history, index + kJudgedAhead);
+  const float4 before = load_history(past->history, index);
+  const float4 sample = sample_at(colour, &params->frame, x, y);
+  if (before.w < KNOWN_CONFIDENCE || !is_valid(sample)) return;
+
+  const float4 left = sample_at(colour, &params->frame, x - 1, y);
+  const float4 right = sample_at(colour, &params->frame, x + 1, y);
+  const float4 above = sample_at(colour, &params->frame, x, y - 1);
+  const float4 below = sample_at(colour, &params->frame, x, y + 1);
+  const float4 around = 0.25f * (left + right + above + below);
+  const float own = luma(sample), known = luma(before);
+  const float scale = 1.0f / (1.0f + own + known);
+  const float change = (own - known) * scale;
+  evidence->brightening += change;
+  evidence->light += known * scale;
+  evidence->history_error += fabs(change);
+  evidence->neighbour_error += is_valid(around) ? fabs(own - luma(around)) * scale : 0.0f;
+  evidence->brighter += (change > LUMA_NOISE ? 1.0f : 0.0f) - (change < -LUMA_NOISE ? 1.0f : 0.0f);
+  evidence->count += 1.0f;
+}
+
+// The first column from `first` on that is judged in row y: those where column + y * apart / 2 is a multiple of
+// `apart`, a power of two.
+static inline int first_judged(int first, int y, int apart) {
+  const int shifted = first + apart / 2 * y;
+  return first + (-shifted & (apart - 1));
+}
+
+static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, const Past* past, const TemporalTileParams* params,
+                                           TileReprojection tile, SampleRange samples) {
+  const int2 first = samples.first, last = samples.last;
+  const int apart = params->judged_apart;
+  TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  for (int y = first.y - 1; y <= last.y + 1; ++y)
+    will_read_colour(colour, params->frame.colour, last.x + kColourAhead, y);
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first_judged(first.x, y, apart); x <= last.x; x += apart)
+      judge_sample(&evidence, colour, past, params, tile, x, y);
+  }
+  return evidence;
+}
+
+// Adds the means of a tile to those of the picture, in units that leave no total beyond an int.
+static inline void add_to_total(__global TotalLight* total, const TemporalTileParams* params, TileEvidence tile) {
+  const float most = min((float)kLightUnits, 0x1p30f / ((float)params->tiles_x * (float)params->tiles_y));
+  const float units = most / max(tile.count, 1.0f);
+  atomic_add(&total->brightening, convert_int(tile.brightening * units));
+  atomic_add(&total->change, convert_int(fabs(tile.brightening) * units));
+  atomic_add(&total->light, convert_int(tile.light * units));
+  atomic_add(&total->history_error, convert_int(tile.history_error * units));
+  atomic_add(&total->neighbour_error, convert_int(tile.neighbour_error * units));
+}
+
+__kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colour, __global const float* reprojection,
+                             HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
+                             __global TileReprojection* tiles, __global TileEvidence* evidence,
+                             __global TotalLight* total) {
+  const int tile_x = get_global_id(0), tile_y = get_global_id(1);
+  if (tile_x >= params.tiles_x || tile_y >= params.tiles_y) return;
+
+  const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
+  const SampleRange samples = samples_in_tile(&params, corner);
+#if MOTION
+  const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
+  const TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
+#else
+  const TileReprojection tile = {.is_rigid = 1, .is_copyable = 1};
+#endif
+  const Past past = {reprojection, {history, params.output_width, params.output_height}, previous_tiles};
+  const TileEvidence found_evidence = gather_evidence(colour, &past, &params, tile, samples);
+  add_to_total(total, &params, found_evidence);
+  const int i = tile_y * params.tiles_x + tile_x;
+  tiles[i] = tile;
+  evidence[i] = found_evidence;
+}
