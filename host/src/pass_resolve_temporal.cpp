@@ -96,8 +96,9 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
       .reason = "the method: this frame added to the history",
       .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {Resource::kPreviousTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
-               {Resource::kTiles, Access::kRead, Area::kTiles, {}, sizeof(TemporalTile)},
+               {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+                         {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+                         {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
                {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
       .make = make_pass<ResolveTemporalPass>,
       .frames = Frames::kSparse};

@@ -118,6 +118,10 @@ bool ResolvePlan::keeps_previous_frame() const {
   return PlanFacts(needs, settings).keeps_previous_frame();
 }
 
+bool ResolvePlan::reads_history(Extent render) const {
+  return keeps_previous_frame() && !(accumulates() && is_dense(render, settings.output));
+}
+
 bool ResolvePlan::blurs() const {
   return PlanFacts(needs, settings).blurs();
 }

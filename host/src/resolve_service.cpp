@@ -48,8 +48,7 @@ struct ResolveService::Impl {
   ClearRegionPass* clear_pass(const ImageView& image) const;
   // A dense frame has left no history.
   bool has_history(const FrameInputs& inputs) const {
-    return plan.keeps_previous_frame() && has_previous && !inputs.reset &&
-           !(plan.accumulates() && is_dense(previous.render, plan.settings.output));
+    return has_previous && !inputs.reset && plan.reads_history(previous.render);
   }
 
   Device device;
@@ -163,7 +162,7 @@ FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutpu
     const PassFrame frame = impl_->chain.frame(inputs, has_history ? &impl_->previous : nullptr, outputs,
                                                {impl_->counter(), impl_->ring.index_of(slot)});
     slot.report.used_previous =
-        has_history && !(impl_->plan.accumulates() && is_dense(inputs.render, output));
+        has_history && impl_->plan.reads_history(inputs.render);
     impl_->enqueue(frame, outputs, slot);
     impl_->ring.commit();
     impl_->previous = inputs;
@@ -233,7 +232,7 @@ Result<TileKinds> ResolveService::tile_kinds() const {
 Result<ImageView> ResolveService::history() const {
   const ResolvePlan& plan = impl_->plan;
   if (!plan.accumulates()) return Status::invalid("the plan accumulates no history; choose the method temporal");
-  if (!impl_->has_previous || is_dense(impl_->previous.render, plan.settings.output)) return ImageView();
+  if (!impl_->has_previous || !plan.reads_history(impl_->previous.render)) return ImageView();
   return impl_->chain.newest(Resource::kHistory);
 }
 

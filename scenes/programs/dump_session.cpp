@@ -172,7 +172,7 @@ Status DumpSession::resolve_next() {
 Status DumpSession::collect_history() {
   const DrawnFrame& next = source_->oldest();
   const ResolvePlan& plan = service_->plan();
-  const bool reads_past = !next.reset && !plan.is_dense(next.view.render);
+  const bool reads_past = !next.reset && plan.reads_history(next.view.render);
   if (!plan.accumulates()) {
     planes_[Stage::kHistory] =
         colour_planes(current_->view.render, colour_of(current_->targets), tools::ChannelType::kHalf);

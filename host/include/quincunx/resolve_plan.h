@@ -137,6 +137,9 @@ struct ResolvePlan {
   bool keeps_previous_frame() const;  // some images of a frame are read by the next dispatch, too
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
+  // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
+  // dense, from 1.56 a pixel on, that a frame alone is the better picture.
+  bool reads_history(Extent render) const;
   std::string explain() const;        // a page of plain text
 
   friend bool operator==(const ResolvePlan&, const ResolvePlan&) = default;
