@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // scale_filter: each output pixel is a weighted mean of the samples around its centre, by a separable filter of any
-// width: bicubic B-spline and Catmull-Rom, Lanczos-2, and the tent that bilinear becomes above scale 1.
+// width: every separable filter of the table in host/src/method.cpp, and the tent that bilinear becomes above scale 1.
 //   params      in   extents, layouts, taps of each axis
 //   spans       in   FilterSpan of each output column, then row; behind them the weights, taps of each column, then
 //                    row. The filter, the jitter and the widening above scale 1 are in them
@@ -11,9 +11,7 @@
 //          CLAMP  0 (default) | 1: to the range of the samples next to the centre, so that negative lobes do not ring
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a row.
-// Source: Sigg and Hadwiger, "Fast Third-Order Texture Filtering", 2005; Keys, "Cubic Convolution Interpolation for
-// Digital Image Processing", 1981; Duchon, "Lanczos Filtering in One and Two Dimensions", 1979.
-// Reference: tests/reference/scale.cpp
+// The table names the source of each filter.   Reference: tests/reference/scale_filter.cpp
 #include "multiply_add.h"
 #include "sanitise.h"
 #include "texel.h"

@@ -10,7 +10,7 @@ source scripts/packages.sh
 ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick
 configure_and_build release quincunx-dump
 
-methods=(point bilinear b-spline catmull-rom lanczos2 noise noise-offset quincunx:mean quincunx:velocity
+methods=(point bilinear b-spline catmull-rom mitchell lanczos2 lanczos3 noise noise-offset quincunx:mean quincunx:velocity
   quincunx:reprojected)
 work=build/filters
 rm -rf "$work"

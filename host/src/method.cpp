@@ -13,19 +13,25 @@ double tent(double d) {
   return std::max(1 - d, 0.0);
 }
 
-// A cubic of the family of Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", 1988.
+// Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", 1988, recommend B = C = 1/3.
 double cubic(double d, double b, double c) {
   if (d >= 2) return 0;
   if (d < 1) return (((12 - 9 * b - 6 * c) * d + (-18 + 12 * b + 6 * c)) * d * d + 6 - 2 * b) / 6;
   return (((-b - 6 * c) * d + (6 * b + 30 * c)) * d + (-12 * b - 48 * c)) * d / 6 + (8 * b + 24 * c) / 6;
 }
 
+// Sigg and Hadwiger, "Fast Third-Order Texture Filtering", 2005.
 double b_spline(double d) {
   return cubic(d, 1, 0);
 }
 
+// Keys, "Cubic Convolution Interpolation for Digital Image Processing", 1981.
 double catmull_rom(double d) {
   return cubic(d, 0, .5);
+}
+
+double mitchell(double d) {
+  return cubic(d, 1. / 3, 1. / 3);
 }
 
 double sinc(double x) {
@@ -45,7 +51,9 @@ constexpr MethodInfo kMethods[] = {
     {Method::kBilinear, "bilinear", "four samples", {1, tent}},
     {Method::kBSpline, "b-spline", "16 samples, cubic: smooth, never rings", {2, b_spline}},
     {Method::kCatmullRom, "catmull-rom", "16 samples, cubic: sharp", {2, catmull_rom, true}},
+    {Method::kMitchell, "mitchell", "16 samples, cubic: between smooth and sharp", {2, mitchell, true}},
     {Method::kLanczos2, "lanczos2", "16 samples, windowed sinc", {2, lanczos<2>, true}},
+    {Method::kLanczos3, "lanczos3", "36 samples, windowed sinc: sharper, rings further", {3, lanczos<3>, true}},
     {Method::kNoise, "noise", "the nearest sample with film grain"},
     {Method::kNoiseOffset, "noise-offset", "one of bilinear's samples, by chance"},
     {Method::kQuincunx, "quincunx", "both frames, the previous one less where anything moves"},

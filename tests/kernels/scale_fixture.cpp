@@ -103,8 +103,8 @@ double ScaleRig::relative_error(Extent render, Extent output) const {
   if (variant_.method == Method::kNoise) return kGrainError;
   if (takes_one_sample(variant_.method)) return 0;
   if (variant_.method == Method::kBilinear && !larger(render, output)) return kBilinearError;
-  const Filter filter = filter_of(variant_.method);
-  return filter_error(filter_taps(filter, render.width, output.width),
+  const Filter& filter = filter_of(variant_.method);
+  return filter_error(variant_.method, filter_taps(filter, render.width, output.width),
                       filter_taps(filter, render.height, output.height));
 }
 

@@ -18,15 +18,18 @@ constexpr double kRounding = 0x1p-24;
 // largest tap: below 8 * 2^-24 of it.
 constexpr double kBilinearError = 8 * kRounding;
 
-// The largest sum of the magnitudes of a filter's weights: 1.25 for Catmull-Rom and Lanczos-2 half-way
-// between two texels, and nowhere more than this (FilterTable.WeightsSumToOne holds that).
-constexpr double kLargestWeightSum = 1.3;
+// The largest sum of the magnitudes of a filter's weights, which is that half-way between two texels: 1.25 for
+// Catmull-Rom and Lanczos-2, 1.55 for Lanczos-3, and nowhere more than this (FilterTable.WeightsSumToOne holds that).
+constexpr double largest_weight_sum(Method method) {
+  return method == Method::kLanczos3 ? 1.56 : 1.3;
+}
 
 // A filter of N taps on an axis rounds N weights, N products and N - 1 sums, each by 2^-24 of what stands
 // there: (N + 1) L times the largest tap, L being the sum of the weights' magnitudes. The other axis scales
 // that by its own L and adds its own: (N + M + 2) L^2. The clamp to the range of samples adds nothing.
-constexpr double filter_error(int taps_x, int taps_y) {
-  return (taps_x + taps_y + 2) * kLargestWeightSum * kLargestWeightSum * kRounding;
+constexpr double filter_error(Method method, int taps_x, int taps_y) {
+  const double sum = largest_weight_sum(method);
+  return (taps_x + taps_y + 2) * sum * sum * kRounding;
 }
 
 // 1 + amplitude * n <= 2 takes five roundings (the amplitude, n, their product, the sum, the product with the

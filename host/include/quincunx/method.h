@@ -18,7 +18,9 @@ enum class Method {
   kBilinear,     // four samples
   kBSpline,      // 16 samples, cubic B-spline: smooth, never rings (Sigg and Hadwiger 2005)
   kCatmullRom,   // 16 samples, cubic: sharp
+  kMitchell,     // 16 samples, cubic with B = C = 1/3: between smooth and sharp (Mitchell and Netravali 1988)
   kLanczos2,     // 16 samples, windowed sinc, for comparison (Duchon 1979)
+  kLanczos3,     // 36 samples, windowed sinc: sharper, and rings further (Duchon 1979)
   kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
   kNoiseOffset,  // one of bilinear's four samples, at random by their weights (Binks 2012)
   kQuincunx,     // this frame and the previous one on the five-of-a-die pattern

@@ -65,8 +65,8 @@ struct ResolveSettings {
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;  // of the present pass: +- half a code value, fixed pattern
-  bool clamp_ringing =
-      true;             // kCatmullRom, kLanczos2: stay in the range of the 2x2 samples next to the centre
+  // Of filters that ring (SeparableFilter::rings): stay in the range of the 2x2 samples next to the centre.
+  bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
   QuincunxSettings quincunx = {};

@@ -58,7 +58,7 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       .show_default()
       .type_name("AMOUNT");
   app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
-               "Let catmull-rom and lanczos2 overshoot at edges");
+               "Let catmull-rom, mitchell and lanczos overshoot at edges");
   app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
       .check(complain_beyond_one)
       .show_default()
