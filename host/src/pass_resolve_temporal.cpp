@@ -76,11 +76,12 @@ std::string options_of(const PlanFacts& facts, bool reactive) {
   const bool moves = facts.reprojects();
   std::string format;
   if (!facts.shows_picture()) format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
-  return fmt::format("-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
-                     moves ? 1 : 0, reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
-                     moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
-                     view_option(settings.temporal.view), colour_options(settings),
-                     precision_of(settings.temporal.history), format);
+  return fmt::format(
+      "-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
+      moves ? 1 : 0, reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
+      moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
+      view_option(settings.temporal.view), colour_options(settings), precision_of(settings.temporal.history),
+      format);
 }
 
 }  // namespace
@@ -94,12 +95,13 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
       .kernel = "resolve_temporal",
       .options = options_of(facts, reactive),
       .reason = "the method: this frame added to the history",
-      .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-               {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-                         {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-                         {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
-               {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
+      .uses =
+          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
+           {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
       .make = make_pass<ResolveTemporalPass>,
       .frames = Frames::kSparse};
   if (facts.reprojects())

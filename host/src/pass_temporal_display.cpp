@@ -41,16 +41,17 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.accumulates() || !facts.shows_picture()) return;
   const ResolveSettings& settings = facts.settings;
   const bool alpha = !facts.needs.background;
-  PassSpec spec{.kernel = "temporal_display",
-                .options = fmt::format("-D ALPHA={} -D SMOOTH={} {} -D HISTORY_FORMAT={}", alpha ? 1 : 0,
-                                       settings.temporal.preset == TemporalPreset::kFast ? 0 : 1,
-                                       scale_options(settings), precision_of(settings.temporal.history)),
-                .reason = "the method: the history's picture",
-                .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-                         {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
-                .make = make_pass<TemporalDisplayPass>,
-                .frames = Frames::kSparse};
+  PassSpec spec{
+      .kernel = "temporal_display",
+      .options = fmt::format("-D ALPHA={} -D SMOOTH={} {} -D HISTORY_FORMAT={}", alpha ? 1 : 0,
+                             settings.temporal.preset == TemporalPreset::kFast ? 0 : 1,
+                             scale_options(settings), precision_of(settings.temporal.history)),
+      .reason = "the method: the history's picture",
+      .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+               {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+               {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+      .make = make_pass<TemporalDisplayPass>,
+      .frames = Frames::kSparse};
   if (alpha) spec.uses.push_back({Resource::kColour, Access::kRead, Area::kViewport, settings.colour});
   list.passes.push_back(std::move(spec));
 }

@@ -35,7 +35,8 @@ class TemporalTilesPass : public Pass {
         .motion_x = motion.x,
         .motion_y = motion.y,
         .judged_apart = settings().temporal.preset == TemporalPreset::kFast ? 4 : 2};
-    bind(params, frame[Resource::kColour], view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
+    bind(params, frame[Resource::kColour],
+         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],
          frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
     launch(frame, tiles, 1, event);
@@ -52,12 +53,13 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
       .options = fmt::format("-D MOTION={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
                              colour_options(settings), precision_of(settings.temporal.history)),
       .reason = "the method: which tiles move as a whole",
-      .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-               {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-               {Resource::kTileReprojection, Access::kWrite, Area::kTiles, {}, sizeof(TileReprojection)},
-                         {Resource::kTileEvidence, Access::kWrite, Area::kTiles, {}, sizeof(TileEvidence)},
-               {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
+      .uses =
+          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileReprojection, Access::kWrite, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileEvidence, Access::kWrite, Area::kTiles, {}, sizeof(TileEvidence)},
+           {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
       .make = make_pass<TemporalTilesPass>,
       .frames = Frames::kSparse};
   if (facts.reprojects())

@@ -161,8 +161,7 @@ FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutpu
     const bool has_history = impl_->has_history(inputs);
     const PassFrame frame = impl_->chain.frame(inputs, has_history ? &impl_->previous : nullptr, outputs,
                                                {impl_->counter(), impl_->ring.index_of(slot)});
-    slot.report.used_previous =
-        has_history && impl_->plan.reads_history(inputs.render);
+    slot.report.used_previous = has_history && impl_->plan.reads_history(inputs.render);
     impl_->enqueue(frame, outputs, slot);
     impl_->ring.commit();
     impl_->previous = inputs;
@@ -231,7 +230,8 @@ Result<TileKinds> ResolveService::tile_kinds() const {
 
 Result<ImageView> ResolveService::history() const {
   const ResolvePlan& plan = impl_->plan;
-  if (!plan.accumulates()) return Status::invalid("the plan accumulates no history; choose the method temporal");
+  if (!plan.accumulates())
+    return Status::invalid("the plan accumulates no history; choose the method temporal");
   if (!impl_->has_previous || !plan.reads_history(impl_->previous.render)) return ImageView();
   return impl_->chain.newest(Resource::kHistory);
 }

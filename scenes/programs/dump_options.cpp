@@ -85,8 +85,7 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
     }
   };
   if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
-  if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal)
-    options.warm_up = kWarmUpFrames;
+  if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal) options.warm_up = kWarmUpFrames;
   return std::nullopt;
 }
 

@@ -32,7 +32,8 @@ TEST(FilterTable, WeightsSumToOne) {
             magnitudes += std::abs(weight);
           }
           // Each weight is rounded once, by 2^-25 of itself at most or to 0 from below 2^-25.
-          ASSERT_NEAR(sum, 1, (magnitudes + taps) * 0x1p-25) << method.name << " " << render << " pixel " << x;
+          ASSERT_NEAR(sum, 1, (magnitudes + taps) * 0x1p-25)
+              << method.name << " " << render << " pixel " << x;
           largest = std::max(largest, magnitudes);
         }
       }

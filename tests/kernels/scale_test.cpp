@@ -131,8 +131,8 @@ TEST_P(Scale, TwoRunsAgreeBitForBit) {
 
 // All but Lanczos reproduce a linear picture: sampled at jittered places it must come back in place.
 TEST_P(Scale, JitterIsTakenBack) {
-  if (testing::takes_one_sample(GetParam().method) ||
-      GetParam().method == Method::kLanczos2 || GetParam().method == Method::kLanczos3) {
+  if (testing::takes_one_sample(GetParam().method) || GetParam().method == Method::kLanczos2 ||
+      GetParam().method == Method::kLanczos3) {
     return;
   }
   const Extent output{128, 64};

@@ -55,6 +55,7 @@ class Finder {
     tile.persistence = static_cast<float>(2 * uniform() - 1);
     tile.flicker = uniform() < .5 ? below(.01) : below(.2);
     if (uniform() < .5) tile.brightening *= static_cast<float>(-2 * uniform());
+    tile.mean_brightening = tile.brightening / std::max(tile.count, 1.f);
     found.before.push_back(testing::to_reference(tile));
   }
 

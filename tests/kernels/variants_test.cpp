@@ -118,7 +118,8 @@ std::vector<PlanFacts> all_facts() {
             settings.resolved != kRGBA32F) {
           continue;
         }
-        for (const TemporalView view : {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase}) {
+        for (const TemporalView view :
+             {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase}) {
           settings.temporal.view = view;
           add_needs(settings);
         }

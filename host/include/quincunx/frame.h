@@ -50,8 +50,8 @@ struct FrameOutputs {
   ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
 };
 
-// Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and the
-// resolved one where it does not. An empty view leaves its picture out.
+// Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and
+// the resolved one where it does not. An empty view leaves its picture out.
 FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented);
 
 struct PassReport {

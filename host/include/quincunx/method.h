@@ -71,7 +71,7 @@ enum class TemporalView : std::uint8_t {
   kConfidence,  // how much is known of a pixel: 1 (white) is all that is ever kept
   kRejection,   // why history is doubted: red hidden, off screen or reactive; green a motion edge; blue a
                 // change
-  kPhase,      // where between texels history was read: red x, green y; blue: how far it moved
+  kPhase,       // where between texels history was read: red x, green y; blue: how far it moved
 };
 
 enum class ToneMap { kClamp, kReinhard, kAces };

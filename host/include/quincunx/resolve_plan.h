@@ -140,7 +140,7 @@ struct ResolvePlan {
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.
   bool reads_history(Extent render) const;
-  std::string explain() const;        // a page of plain text
+  std::string explain() const;  // a page of plain text
 
   friend bool operator==(const ResolvePlan&, const ResolvePlan&) = default;
 };

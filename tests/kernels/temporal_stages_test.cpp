@@ -115,7 +115,8 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
     return {reprojection, evidence};
   }
 
-  void compare_tile(const ExpectedTile& expected, const testing::KernelTile& actual, const std::string& what) {
+  void compare_tile(const ExpectedTile& expected, const testing::KernelTile& actual,
+                    const std::string& what) {
     ++compared_;
     const auto& [tile, tile_bound, tile_undecided] = expected.reprojection;
     if (tile_undecided) return;

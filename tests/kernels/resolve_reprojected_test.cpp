@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: MIT
+// The reprojected form of the two-frame resolve: where samples were, and the picture made of both frames.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "../reference/reproject.h"
+#include "expected.h"
+#include "kernel_fixture.h"
+#include "pass_rig.h"
+#include "sample_reach.h"
+
+namespace quincunx {
+namespace {
+
+using testing::FrameFormats;
+using testing::FrameSpec;
+using testing::Pattern;
+using testing::Pixel;
+using testing::Rig;
+using testing::TestFrame;
+
+constexpr double kRounding = 0x1p-24;
+constexpr double kDenormal = 0x1p-126;
+
+// A fraction is rounded to 2^-25; moved, the sum rounds by 2^-24 of fraction + motion. Of (1 - d^2/r^2)^3 the
+// slope is below 2 for r >= .875; its square, product, difference and cube add 11 roundings, the mixing with
+// bilinear's 3 more, all of values below 1. A sample's weight is the product of two such.
+double weight_error(double motion) {
+  const double position = .5 * kRounding + (1 + std::abs(motion)) * kRounding;
+  return 2 * (2 * position + 14 * kRounding);
+}
+
+// What follows the weights: normalised (a sum of products and a division), weighed by brightness (two
+// roundings and a division), 8 products and 7 sums.
+constexpr double kBlendError = 24 * kRounding;
+
+struct Variant {
+  bool moves = true;
+  bool reactive = false;
+  bool residual = false;
+  Storage storage = Storage::kBuffer;
+  PixelFormat colour = PixelFormat::kRGBA16F;
+  PixelFormat velocity = PixelFormat::kRG16F;
+  PixelFormat resolved = PixelFormat::kRGBA32F;
+};
+
+std::string name_of(const Variant& v) {
+  return fmt::format("{}{}{}_{}_{}_{}_to_{}", v.moves ? "moving" : "still", v.residual ? "_residual" : "",
+                     v.reactive ? "_reactive" : "", v.storage == Storage::kImage ? "image" : "buffer",
+                     quincunx::name_of(v.colour), quincunx::name_of(v.velocity),
+                     quincunx::name_of(v.resolved));
+}
+
+class Reprojected : public ::testing::TestWithParam<Variant> {
+ protected:
+  Reprojected() {
+    const Variant& v = GetParam();
+    settings_ = {.colour = v.colour, .velocity = v.velocity, .resolved = v.resolved, .storage = v.storage};
+    settings_.present = false;
+    settings_.quincunx.form = TwoFrameForm::kReprojected;
+    settings_.quincunx.residual_weight = v.residual ? .5f : 0;
+    formats_ = {.storage = v.storage,
+                .colour = v.colour,
+                .velocity = v.velocity,
+                .with_velocity = v.moves,
+                .with_depth = v.moves,
+                .with_reactive = v.reactive};
+  }
+
+  // One for all frames of an output, up to twice its size.
+  PassChain& chain_for(Extent output) {
+    if (!chain_ || settings_.output != output) {
+      const Variant& v = GetParam();
+      settings_.output = output;
+      settings_.target = {2 * output.width + 3, 2 * output.height};
+      const SceneNeeds needs{.moving_objects = v.moves, .camera_motion = v.moves, .transparents = v.reactive};
+      chain_.emplace(testing::device(), PlanFacts(needs, settings_));
+    }
+    return *chain_;
+  }
+
+  struct Run {
+    std::vector<unsigned char> bytes;
+    std::vector<Pixel> pixels;
+    std::vector<reference::Reprojection> reprojections;
+    std::int64_t non_finite = 0;
+  };
+
+  Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
+    PassChain& chain = chain_for(output);
+    const ImageView view = rig.output(settings_.resolved, output);
+    const Counter counter = rig.counter();
+    FrameReport report;
+    chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
+              report, nullptr);
+    Run run{rig.bytes(view, output), {}, {}, rig.count(counter)};
+    run.pixels = testing::decode(settings_.resolved, run.bytes);
+    if (const ImageView found = chain.newest(Resource::kReprojection)) {
+      for (const Pixel& pixel : rig.pixels(found, current.inputs.render))
+        run.reprojections.push_back({pixel[0], pixel[1], pixel[2]});
+    } else {
+      run.reprojections.assign(current.reference.colour.size(), {0, 0, 1});
+    }
+    return run;
+  }
+
+  TestFrame frame(Rig& rig, const FrameSpec& spec) { return with_motion(make_frame(rig, formats_, spec)); }
+  TestFrame frame(Rig& rig, const FrameSpec& spec, const std::vector<Pixel>& colour) {
+    return with_motion(make_frame(rig, formats_, spec, colour));
+  }
+
+  TestFrame with_motion(TestFrame made) const {
+    made.inputs.velocity_scale = {-.5f, .75f};
+    made.reference.velocity_scale = {-.5, .75};
+    return made;
+  }
+
+  void compare_reprojections(const Run& run, const TestFrame& current, const TestFrame& previous,
+                             const std::string& what) {
+    const Variant& v = GetParam();
+    if (!v.moves) return;
+    const auto expected = testing::expected_reprojections(
+        current.reference, previous.reference,
+        {.reactive = v.reactive, .residual_weight = static_cast<double>(settings_.quincunx.residual_weight)});
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      const auto& [value, bound, undecided] = expected[i];
+      const reference::Reprojection& actual = run.reprojections[i];
+      ASSERT_NEAR(value.x, actual.x, bound.x.error) << what << ", sample " << i;
+      ASSERT_NEAR(value.y, actual.y, bound.y.error) << what << ", sample " << i;
+      ++compared_;
+      if (undecided) continue;
+      ++decided_;
+      ASSERT_EQ(std::isnan(value.trust), std::isnan(actual.trust)) << what << ", sample " << i;
+      if (std::isnan(value.trust)) continue;
+      ASSERT_NEAR(value.trust, actual.trust, bound.trust.error) << what << ", sample " << i;
+    }
+  }
+
+  // The picture from the device's own reprojections, so that no rounding before it matters.
+  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) {
+    Rig rig;
+    const TestFrame current = frame(rig, now);
+    const TestFrame previous = frame(rig, before);
+    const Run run = resolve(rig, current, previous, output);
+    const std::string what =
+        fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
+                    before.render.height, output.width, output.height, testing::name_of(now.colour));
+    compare_reprojections(run, current, previous, what);
+    if (HasFatalFailure()) return;
+    const auto expected =
+        reference::resolve_reprojected(current.reference, previous.reference, run.reprojections,
+                                       !GetParam().moves && GetParam().reactive, output.width, output.height);
+    const auto bound = [&](std::size_t i) {
+      return weight_error(expected.motion[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
+             16 * kDenormal + testing::output_rounding(settings_.resolved, expected.largest[i]);
+    };
+    testing::expect_close(expected, run.pixels, bound, what, settings_.resolved);
+    EXPECT_GE(run.non_finite, expected.non_finite) << what;
+    EXPECT_LE(run.non_finite, expected.non_finite + expected.undecided) << what;
+  }
+
+  ResolveSettings settings_;
+  std::optional<PassChain> chain_;
+  FrameFormats formats_;
+  std::int64_t compared_ = 0;
+  std::int64_t decided_ = 0;
+};
+
+TEST_P(Reprojected, MatchesTheReferenceAtEverySizeScaleAndInput) {
+  const double scales[][4] = {{.05, .1, .1, .05}, {.5, .71, .5, .71},   {.71, .5, .9, .6},
+                              {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
+  unsigned seed = 0;
+  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{130, 65}}) {
+    for (const auto& scale : scales) {
+      for (const Pattern pattern : testing::all_patterns()) {
+        // One input for each of the largest pictures: the reference is slow.
+        ++seed;
+        if (output.width == 130 && seed % 6 != 0 && pattern != Pattern::kNonFinite) continue;
+        const Pattern velocity = pattern == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise;
+        compare({.render = testing::scaled(output, scale[0], scale[1]),
+                 .jitter = {.25f, .25f},
+                 .colour = pattern,
+                 .velocity = velocity,
+                 .seed = seed},
+                {.render = testing::scaled(output, scale[2], scale[3]),
+                 .jitter = {-.25f, -.5f},
+                 .colour = pattern,
+                 .velocity = velocity,
+                 .seed = seed + 50},
+                output);
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+  // Where roundings decide everywhere, nothing was compared.
+  EXPECT_GE(decided_, compared_ * 9 / 10);
+}
+
+// From nothing over less than a rounding to far beyond the screen; and a row of the widest screens.
+TEST_P(Reprojected, AnySpeedAndTheWidestRowsMatchToo) {
+  const Variant& v = GetParam();
+  if (v.storage == Storage::kImage) return;  // images end at 8192 on some devices, the margin included
+  for (const double pixels : {0.0, 1e-6, .5, 400.0, 1e6}) {
+    compare({.render = {45, 23}, .jitter = {.25f, .25f}, .seed = 3, .speed = pixels / 45},
+            {.render = {60, 31}, .jitter = {-.25f, -.25f}, .seed = 4, .speed = pixels / 60}, {64, 33});
+    if (HasFatalFailure()) return;
+  }
+  compare({.render = {5816, 2}, .jitter = {.25f, .25f}, .seed = 5, .speed = 2e-4},
+          {.render = {5600, 3}, .jitter = {-.25f, -.25f}, .seed = 6, .speed = 2e-4}, {8192, 3});
+}
+
+TEST_P(Reprojected, PoisonOutsideTheViewportChangesNoBit) {
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
+    Rig rig;
+    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
+    FrameSpec before{.render = {render.width, render.height + 2}, .jitter = {.5f, .5f}, .seed = 4};
+    const Run clean = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
+    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+      now.outside = before.outside = poison;
+      const Run poisoned = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
+      EXPECT_EQ(clean.bytes, poisoned.bytes) << render.width << "x" << render.height << ", poison " << poison;
+      EXPECT_EQ(poisoned.non_finite, 0);
+    }
+  }
+}
+
+// Under a memory checker this also shows that nothing beyond the viewport is read.
+TEST_P(Reprojected, ATightImageGivesTheSameBits) {
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{13, 7}}) {
+    Rig rig;
+    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
+    FrameSpec before{.render = {render.height, render.width}, .jitter = {.5f, .5f}, .seed = 4};
+    const Run roomy = resolve(rig, frame(rig, now), frame(rig, before), {16, 9});
+    now.tight = before.tight = true;
+    EXPECT_EQ(roomy.bytes, resolve(rig, frame(rig, now), frame(rig, before), {16, 9}).bytes);
+  }
+}
+
+TEST_P(Reprojected, TwoRunsAgreeBitForBit) {
+  Rig rig;
+  const TestFrame current =
+      frame(rig, {.render = {183, 92}, .jitter = {.25f, .25f}, .colour = Pattern::kNonFinite});
+  const TestFrame previous = frame(rig, {.render = {150, 99}, .jitter = {-.25f, -.25f}, .seed = 2});
+  EXPECT_EQ(resolve(rig, current, previous, {257, 129}).bytes,
+            resolve(rig, current, previous, {257, 129}).bytes);
+}
+
+// The fast and the careful way through a block give the same bits.
+TEST_P(Reprojected, ANonFiniteTexelChangesItsFootprintOnly) {
+  const Extent output{90, 40};
+  const Extent render = testing::scaled(output, .71, .71);
+  const std::vector<Pixel> clean = pattern_pixels(Pattern::kNoise, render, 9);
+  std::vector<Pixel> spoilt = clean;
+  spoilt[static_cast<std::size_t>(12 * render.width + 20)] = {std::nan(""), 1, 1, 1};
+  const FrameSpec spec{.render = render, .jitter = {.25f, .25f}};
+  Rig rig;
+  const TestFrame previous = frame(rig, {.render = render, .jitter = {-.25f, -.25f}, .seed = 8});
+  const Run before = resolve(rig, frame(rig, spec, clean), previous, output);
+  const Run after = resolve(rig, frame(rig, spec, spoilt), previous, output);
+  int changed = 0;
+  for (int y = 0; y < output.height; ++y) {
+    for (int x = 0; x < output.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * output.width + x);
+      if (before.pixels[i] == after.pixels[i]) continue;
+      ++changed;
+      EXPECT_LT(std::abs((x + .5) * .71 - 20.75), 1.1) << x << ", " << y;
+      EXPECT_LT(std::abs((y + .5) * .71 - 12.75), 1.1) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(changed, 0);
+  EXPECT_GE(after.non_finite, changed);
+}
+
+// A previous frame that is NaN throughout leaves no trace: the picture is bilinear's of this one, where
+// nothing is bright.
+TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
+  Rig rig;
+  const Extent output{64, 33};
+  std::vector<Pixel> dark = pattern_pixels(Pattern::kNoise, {45, 23}, 1);
+  for (Pixel& pixel : dark) {
+    for (double& value : pixel)
+      value /= 2;
+  }
+  const TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}}, dark);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<Pixel> spoilt(60 * 40, Pixel{std::nan(""), infinity, 1, -infinity});
+  const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}}, spoilt);
+  const Run run = resolve(rig, current, previous, output);
+  for (int y = 0; y < output.height; ++y) {
+    for (int x = 0; x < output.width; ++x) {
+      const reference::Sample bilinear =
+          reference::sample_bilinear(current.reference, x, y, output.width, output.height);
+      const Pixel& pixel = run.pixels[static_cast<std::size_t>(y * output.width + x)];
+      for (std::size_t c = 0; c < 4; ++c) {
+        // Eight weights at most, each off by its error, over a sum of 1.
+        ASSERT_NEAR(pixel[c], bilinear.value[c],
+                    (8 * weight_error(0) + kBlendError) * bilinear.largest +
+                        testing::output_rounding(settings_.resolved, bilinear.largest))
+            << x << ", " << y;
+      }
+    }
+  }
+}
+
+std::vector<Variant> variants() {
+  using enum PixelFormat;
+  std::vector<Variant> all;
+  for (const bool reactive : {false, true}) {
+    for (const PixelFormat resolved : {kRGBA32F, kRGBA16F}) {
+      for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
+        all.push_back({.moves = false, .reactive = reactive, .colour = colour, .resolved = resolved});
+        all.push_back({.reactive = reactive, .colour = colour, .resolved = resolved});
+      }
+      all.push_back({.moves = false, .reactive = reactive, .storage = Storage::kImage, .resolved = resolved});
+    }
+    for (const bool residual : {false, true}) {
+      all.push_back({.reactive = reactive, .residual = residual, .velocity = kRG32F});
+      all.push_back({.reactive = reactive, .residual = residual, .storage = Storage::kImage});
+    }
+    all.push_back({.reactive = reactive, .residual = true});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, Reprojected, ::testing::ValuesIn(variants()),
+                         [](const auto& instance) { return name_of(instance.param); });
+
+}  // namespace
+}  // namespace quincunx
