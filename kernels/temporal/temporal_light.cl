@@ -22,7 +22,7 @@
 // Reference: tests/reference/temporal_light.cpp
 #include "temporal/tile.h"
 
-// Thresholds. They were found by search on the development scenes; what a measurement showed is in docs/pipeline.md.
+// Thresholds. They were found by search on the development scenes; what a measurement showed is in docs/temporal.md.
 //
 // A change of light in 3x3 tiles.
 #define COHERENT 0.75f            // least coherence

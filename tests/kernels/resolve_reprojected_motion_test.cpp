@@ -68,7 +68,7 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
   }
 }
 
-// A bright surface in front of a still background has moved on: what it uncovered shows none of it.
+// A bright surface in front of a still background has moved on: what it disoccluded shows none of it.
 TEST(ReprojectedMotion, WhatWasHiddenLeavesNoGhost) {
   const PlanFacts facts = reprojected_facts({96, 48}, {64, 32});
   const FrameFormats formats{.with_velocity = true, .with_depth = true};

@@ -55,7 +55,8 @@ TEST_P(Scale, TheWidestRowsMatchToo) {
 
 // All but the B-spline go through the samples; grain is none at scale 1.
 TEST_P(Scale, IsTheIdentityAtScaleOneWithoutJitter) {
-  if (GetParam().method == Method::kBSpline) return;
+  // These two mix a sample with its neighbours everywhere.
+  if (GetParam().method == Method::kBSpline || GetParam().method == Method::kMitchell) return;
   for (const Pattern pattern : {Pattern::kNoise, Pattern::kExtremes}) {
     Rig rig;
     const Extent extent{67, 33};

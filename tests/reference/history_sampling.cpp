@@ -8,7 +8,7 @@
 namespace quincunx::reference {
 namespace {
 
-// Keys' a of the history: -1 scores .04 dB above -.75 (docs/pipeline.md).
+// Keys' a of the history: -1 scores .04 dB above -.75 (docs/temporal.md).
 constexpr double kHistorySharpness = -1;
 // Output pixels by which the phases of copied texels may differ from the phase that their tile assumes.
 constexpr double kSamePhase = .02;

@@ -7,7 +7,7 @@
 namespace quincunx::reference {
 
 // Output pixels a frame: a difference of velocity from which a motion edge counts, and from which it counts
-// fully. docs/pipeline.md, temporal upscaler, step 1.
+// fully. docs/temporal.md, section reproject.
 constexpr double kMotionEdgeBegins = .15;
 constexpr double kMotionEdgeEnds = .6;
 

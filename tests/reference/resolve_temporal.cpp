@@ -13,7 +13,7 @@
 //   accumulate        m <- m + (s - m) w / (W + w + .85 f); W <- min(W + w, 32);
 //                     w = (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2), d the distance of s
 // Source: accumulation and rectification after Karis, "High-Quality Temporal Supersampling", 2014, and AMD
-// FidelityFX Super Resolution 2.2.1; the rest found by measuring (docs/pipeline.md, whose dB are cited here).
+// FidelityFX Super Resolution 2.2.1; the rest found by measuring (docs/temporal.md, whose dB are cited here).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

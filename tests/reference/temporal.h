@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The temporal upscaler, kernel by kernel: the specification, which docs/pipeline.md explains. Each function
+// The temporal upscaler, kernel by kernel: the specification, which docs/temporal.md explains. Each function
 // makes what one work-item makes: one tile or one pixel. error_bound.h tells what `Real` may be.
 //
 // Pictures are accumulated in a *history* of the output's extent: colour m and confidence W of each texel, W

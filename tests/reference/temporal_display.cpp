@@ -3,7 +3,7 @@
 //   m      history at p - R: the cubic of Keys, a = -.75, p being the pixel's centre and R its tile's phase
 //   where W < 1.5: (m (W + .02) + sum n e) / (W + .02 + 8 e) with the eight neighbours n, e = .3 exp(-2 W)
 //   alpha  this frame's, bilinear, or 1
-// Source: found by measuring (docs/pipeline.md): smoothing what little is known of is worth .1 dB.
+// Source: found by measuring (docs/temporal.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
 #include <cstddef>
 

@@ -18,7 +18,7 @@
 //     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
 //                |brightening| > .15 light
 //     by cut     (E' - .95 N') / (.25 N' + 1) of the whole picture's sums, where E' > .03 L' and it is not relit
-// Source: found by measuring (docs/pipeline.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
+// Source: found by measuring (docs/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
 // of the whole picture.
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 //   phase, step   R' - M = step + phase, step the nearest integer
 //   evidence      sum of (s - h) k, h k, |s - h| k and |s - n| k, k = 1 / (1 + s + h): luma of the sample s, of
 //                 history h at its place, of the mean n of its four neighbours
-// Source: found by measuring (docs/pipeline.md): carrying a phase instead of resampling gives .7 dB, and 1.6
+// Source: found by measuring (docs/temporal.md): carrying a phase instead of resampling gives .7 dB, and 1.6
 // to 2.2 dB on pans.
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ constexpr double kStill = 1e-4;
 // last frame has .15, and counts.
 constexpr double kTrusted = .9;
 constexpr double kKnown = .1;
-// Change of luma that says nothing. Not to count smaller ones is worth .03 dB (docs/pipeline.md).
+// Change of luma that says nothing. Not to count smaller ones is worth .03 dB (docs/temporal.md).
 constexpr double kNoise = .01;
 
 struct Range {

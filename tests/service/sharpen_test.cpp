@@ -52,9 +52,9 @@ std::vector<std::string> kernels_of(const FrameReport& report) {
 
 // The third frame: were its history sharpened too, it would leave the range of what sharpness 0 gives.
 TEST(ServiceSharpen, EveryMethodsPictureWithinItsOwnRange) {
-  for (const Method method :
-       {Method::kPoint, Method::kBilinear, Method::kBSpline, Method::kCatmullRom, Method::kLanczos2,
-        Method::kNoise, Method::kNoiseOffset, Method::kQuincunx, Method::kTemporal}) {
+  for (const Method method : {Method::kPoint, Method::kBilinear, Method::kBSpline, Method::kCatmullRom,
+                              Method::kMitchell, Method::kLanczos2, Method::kLanczos3, Method::kNoise,
+                              Method::kNoiseOffset, Method::kQuincunx, Method::kTemporal}) {
     const std::vector<Pixel> plain = third_picture(method, 0);
     const std::vector<Pixel> sharp = third_picture(method, 1);
     int changed = 0;

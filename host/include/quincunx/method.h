@@ -62,7 +62,7 @@ enum class Sampling : std::uint8_t {
   kBilinear,  // four samples
 };
 
-// What kTemporal spends. Each is the best picture found at its cost; docs/pipeline.md has the figures.
+// What kTemporal spends. Each is the best picture found at its cost; docs/temporal.md has the figures.
 enum class TemporalPreset : std::uint8_t { kFast, kBalanced, kQuality };
 
 // What the resolved picture of kTemporal shows.

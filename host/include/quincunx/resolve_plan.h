@@ -30,7 +30,7 @@ struct QuincunxSettings {
   Sampling sampling = Sampling::kBilinear;
   float velocity_weight = 1;  // K of kVelocity; >= 0
   // kReprojected: K of a factor 1/(1 + K|v0 - v1|^2), v1 of the previous sample there, in render pixels a
-  // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion uncover each other.
+  // frame; 0 leaves it out, which is cheaper. It wins where surfaces with other motion disocclude each other.
   float residual_weight = 0;
 
   friend bool operator==(const QuincunxSettings&, const QuincunxSettings&) = default;

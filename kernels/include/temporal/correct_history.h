@@ -7,7 +7,7 @@
 #include "temporal/reseed.h"
 
 // How much a seed resists its first sample, of a whole seed: that sample is in the seed already. +.01 dB, +.05 to +.1
-// in first frames (docs/pipeline.md).
+// in first frames (docs/temporal.md).
 #define INERTIA 0.85f
 
 // Eight pixels as arrays.

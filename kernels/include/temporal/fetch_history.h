@@ -8,7 +8,7 @@
 
 // Confidence, the sum of the weights of all samples in a texel, each 1 at most.
 #define MOST_CONFIDENCE 32.0f      // about 140 frames at scale .5
-#define HISTORY_SHARPNESS -1.0f    // the cubic's a; +.04 dB over -.75 (docs/pipeline.md)
+#define HISTORY_SHARPNESS -1.0f    // the cubic's a; +.04 dB over -.75 (docs/temporal.md)
 #define SAME_PHASE 0.02f           // output pixels: texels whose phases differ by more are not copied side by side;
                                    // found by search on the development scenes
 #define FARTHEST_SOURCE 65536.0f   // output pixels: keeps places within what an int can hold

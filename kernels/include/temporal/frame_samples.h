@@ -31,7 +31,7 @@ static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout,
 }
 
 // The luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright sample does
-// not outshine the others. (Worth .65 dB over the laboratory's sequences, 3.6 on sparkles: docs/pipeline.md.)
+// not outshine the others. (Worth .65 dB over the laboratory's sequences, 3.6 on sparkles: docs/temporal.md.)
 static inline float luma_weight(float4 sample) {
   return 1.0f / max(1.0f, 0.5f * largest_colour(sample));
 }

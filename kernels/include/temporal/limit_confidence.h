@@ -6,13 +6,13 @@
 #include "temporal/fetch_history.h"
 
 // A reseeded texel has this confidence, and one of less is reseeded: a Gaussian of this frame's samples is nearer to
-// truth then. It was found in the laboratory of docs/pipeline.md, as RESAMPLED_CONFIDENCE was.
+// truth then. It was found in the laboratory of docs/temporal.md, as RESAMPLED_CONFIDENCE was.
 #define LEAST_CONFIDENCE 0.15f
 #define RESAMPLED_CONFIDENCE 8.0f  // at most, of what was resampled: it blurs with each frame
-#define RESAMPLING_COST 0.2f       // q in W / (1 + q W) half-way between texels; +.05 dB over .3 (docs/pipeline.md)
+#define RESAMPLING_COST 0.2f       // q in W / (1 + q W) half-way between texels; +.05 dB over .3 (docs/temporal.md)
 #define RESAMPLED_FROM 0.01f       // of 1: less than this share of the way to half-way between texels is no resampling
 #define EDGE_COST 4.0f             // the same q at a whole motion edge. Over 2: -.02 dB, and pixels with a ghost above
-                                   // 2/255 on a texture fall from .052 to .033 % (docs/pipeline.md)
+                                   // 2/255 on a texture fall from .052 to .033 % (docs/temporal.md)
 
 // What is known of history.
 typedef struct Evidence {

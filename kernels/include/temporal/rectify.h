@@ -2,7 +2,7 @@
 // Rectification: history that is rejected is brought into the range of this frame's samples around the pixel, in tone
 // space, c / (1 + max c), where differences are as the eye has them rather than as light. After Karis, "High-Quality
 // Temporal Supersampling", 2014, but only where something speaks against history: applied everywhere, as is usual, it
-// costs .5 dB, on still pictures 6 (docs/pipeline.md).
+// costs .5 dB, on still pictures 6 (docs/temporal.md).
 #pragma once
 
 #include "temporal/frame_samples.h"

@@ -7,9 +7,9 @@
 #include "temporal/bell.h"
 #include "temporal/frame_samples.h"
 
-#define SEED_FALLOFF 2.5f    // 1 / (2 sigma^2), sigma .45 samples, as in the laboratory of docs/pipeline.md
+#define SEED_FALLOFF 2.5f    // 1 / (2 sigma^2), sigma .45 samples, as in the laboratory of docs/temporal.md
 #define SAME_MOTION 0.15f    // output pixels a frame: surfaces whose motion differs by more are not the same. Ghosts
-                             // fell from .17 to .06 at most, for -.01 dB (docs/pipeline.md)
+                             // fell from .17 to .06 at most, for -.01 dB (docs/temporal.md)
 #define LEAST_SIMILARITY 0x1p-10f  // not 0: the only valid sample counts whatever it shows
 
 // Where the samples' motion is read, and its scale to output pixels.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Smoothing of what is shown of little confidence: eight output pixels of a row at a time. +.1 dB (docs/pipeline.md).
+// Smoothing of what is shown of little confidence: eight output pixels of a row at a time. +.1 dB (docs/temporal.md).
 #pragma once
 
 #include "temporal/bell.h"
