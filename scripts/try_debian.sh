@@ -51,7 +51,7 @@ root=$(realpath -m "${QUINCUNX_DEBIAN_FOLDER:-build/debian}")/$suite
 # In the reverse order of mounting; also before a removal, which must never go through a mount.
 unmount_all() {
   local path
-  for path in dev/shm dev/pts dev proc; do
+  for path in dev/shm dev/pts dev sys proc; do
     if mountpoint -q "$root/$path"; then
       umount "$root/$path" || umount -l "$root/$path"
     fi
@@ -79,6 +79,7 @@ if [[ -e /etc/resolv.conf ]]; then
 fi
 
 mount -t proc proc "$root/proc"
+mount -t sysfs -o ro sysfs "$root/sys"  # PoCL learns from it how much memory and how many processors there are
 mount -t tmpfs -o mode=755,size=1M tmpfs "$root/dev"
 mkdir "$root/dev/pts" "$root/dev/shm"
 for node in "null 3" "zero 5" "full 7" "random 8" "urandom 9"; do

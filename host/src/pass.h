@@ -103,8 +103,7 @@ class Pass {
     return frame[uses(resource) ? resource : other];
   }
   TexelLayout layout_if_used(const PassFrame& frame, Resource resource) const;
-  // The picture that the method makes.
-  Resource picture() const { return facts_.sharpens() ? Resource::kUnsharpened : Resource::kResolved; }
+  Resource picture() const { return picture_of(facts_); }
 
   // As enqueue_rows().
   void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event) {

@@ -6,16 +6,18 @@ namespace {
 
 // In the order in which they run.
 constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
-    plan_velocity_from_depth,  // the camera's motion
-    plan_reproject,            // where samples were
+    plan_velocity_from_depth,
+    plan_reproject,
+    // The picture: from many frames, from two, or from one.
     plan_temporal_tiles,
     plan_temporal_light,
     plan_resolve_temporal,
-    plan_temporal_display,  // many frames
+    plan_temporal_display,
     plan_resolve_quincunx,
-    plan_resolve_reprojected,  // two frames
+    plan_resolve_reprojected,
     plan_scale,
-    plan_scale_filter,  // one frame
+    plan_scale_filter,
+    // What is made of the picture.
     plan_sharpen,
     plan_motion_tiles,
     plan_motion_neighbours,

@@ -23,9 +23,4 @@ void plan_motion_blur(const PlanFacts& facts, PassList& list);
 void plan_present(const PlanFacts& facts, PassList& list);
 void plan_clear_region(const PlanFacts& facts, PassList& list);
 
-// The picture that the method makes, before sharpening.
-inline Resource picture_of(const PlanFacts& facts) {
-  return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
-}
-
 }  // namespace quincunx

@@ -53,8 +53,13 @@ enum class Resource : std::uint8_t {
 };
 constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
 
+// The picture that the method makes, before sharpening.
+inline Resource picture_of(const PlanFacts& facts) {
+  return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+}
+
 const char* name_of(Resource resource);  // "colour of the previous frame"
-// The resource of the previous frame that becomes of `resource`, or itself where none does.
+// What `resource` is to the next frame; itself where no pass of the next frame can read it.
 Resource previous_of(Resource resource);
 bool is_previous(Resource resource);
 
@@ -117,7 +122,7 @@ struct FrameExtents {
 
 Extent extent_of(Area area, const FrameExtents& extents);
 
-// Read and written in a frame, each element once; what a pass both reads and writes twice.
+// Bytes read and written in a frame: each element counts once, twice where the pass both reads and writes it.
 std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents);
 
 // The passes of a plan in the order in which they run, and why the others are not in it. Pure.

@@ -4,7 +4,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+
 #include <spdlog/spdlog.h>
+#include <cstdlib>
 
 #include <string>
 #include <utility>
@@ -41,6 +43,10 @@ Status give_up(const std::string& what) {
 Result<std::unique_ptr<Window>> Window::create(Extent size, const std::string& title, bool vsync) {
   glfwSetErrorCallback(note_error);
   end_when_display_is_lost();
+#ifdef GLFW_PLATFORM_X11
+  // Wayland cannot be had without this folder, and its library would complain about that on its own.
+  if (std::getenv("XDG_RUNTIME_DIR") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (glfwInit() != GLFW_TRUE) return give_up("no window could be opened");
   glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
