@@ -14,7 +14,6 @@ Fails, with one line for each finding, on
 import argparse
 import os
 import re
-import subprocess
 import sys
 
 LONGEST_LINE = 120
@@ -34,10 +33,7 @@ STRING = re.compile(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])\'')
 
 
 def files_of(folder):
-    """The files of the project: those that git knows or would, else all that do not lie in a build or hidden folder."""
-    listed = subprocess.run(["git", "-C", folder, "ls-files", "-co", "--exclude-standard"], capture_output=True, text=True)
-    if listed.returncode == 0:
-        return [name for name in listed.stdout.splitlines() if os.path.isfile(os.path.join(folder, name))]
+    """The files of the project: all that do not lie in a folder that is hidden or made by a build."""
     found = []
     for path, folders, names in os.walk(folder):
         folders[:] = [name for name in folders if not name.startswith(".") and name not in ("build", "out")]
