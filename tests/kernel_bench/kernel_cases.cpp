@@ -18,6 +18,7 @@ struct Scene {
   SceneNeeds needs = {.transparents = false};
   ResolveSettings settings;
   FrameInputs current, previous;
+  ImageView unsharpened = {};  // what sharpen reads; the service's own memory holds nothing yet
 };
 
 Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
@@ -43,9 +44,9 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
   }
   Stage::add(
       cases, std::move(what),
-      [chain, passes, &stage, outputs, current = scene.current,
-       previous = scene.previous](cl::Event* events) {
-        const PassFrame frame = chain->frame(current, &previous, outputs, stage.counter());
+      [chain, passes, &stage, outputs, scene](cl::Event* events) {
+        PassFrame frame = chain->frame(scene.current, &scene.previous, outputs, stage.counter());
+        if (scene.unsharpened) frame[Resource::kUnsharpened] = scene.unsharpened;
         for (Pass* pass : passes)
           PassChain::enqueue(*pass, frame, events++);
       },
@@ -171,6 +172,7 @@ void add_sharpens(std::vector<Case>& cases, Stage& stage) {
     Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
     scene.settings.resolved = resolved;
     scene.settings.sharpness = .5f;
+    scene.unsharpened = stage.noise(stage.output(), resolved, 1);
     add_passes(cases, stage,
                {.name = fmt::format("sharpen {}", resolved == PixelFormat::kRGBA32F ? "float" : "half"),
                 .wanted = 2},
