@@ -58,7 +58,8 @@ struct PassSetup {
 struct PassFrame {
   const cl::CommandQueue& queue;
   PassTables& tables;
-  FrameInputs current = {};   // with the service's velocity where that comes from the camera
+  FrameInputs current =
+      {};  // `views` may hold another velocity: the one that the service makes from the camera
   FrameInputs previous = {};  // the current one where there is no history
   bool has_history = false;
   Extent output = {};

@@ -23,11 +23,6 @@ void clear_sums(const PassFrame& frame, const PassSpec& spec) {
   }
 }
 
-bool is_picture(Resource resource) {
-  return resource == Resource::kUnsharpened || resource == Resource::kResolved ||
-         resource == Resource::kBlurred;
-}
-
 Image allocate_image(const Device& device, Extent extent, PixelFormat format, Storage storage) {
   Result<Image> made = device.allocate(extent, format, storage);
   if (!made.ok()) throw AllocationError(made.status());
@@ -69,32 +64,29 @@ PassChain::PassChain(const Device& device, const PlanFacts& facts)
     passes_.push_back(spec.make(setup, spec));
   needed_.resize(passes_.size());
   for (const ResourceUse& use : resources_) {
-    if (use.written && !is_previous(use.resource) && use.resource != Resource::kPresented)
-      allocate(use, keeps(use.resource));
+    if (use.written && !is_previous(use.resource) && use.resource != Resource::kPresented) allocate(use);
+    kept_[index_of(use.resource)] = keeps(use.resource);
   }
 }
 
-// Whether a pass of the next frame reads it.
-bool PassChain::keeps(Resource resource) const {
-  const Resource previous = previous_of(resource);
-  return previous != resource &&
-         std::any_of(resources_.begin(), resources_.end(),
-                     [previous](const ResourceUse& use) { return use.resource == previous; });
+bool PassChain::has(Resource resource) const {
+  return std::any_of(resources_.begin(), resources_.end(),
+                     [resource](const ResourceUse& use) { return use.resource == resource; });
 }
 
-void PassChain::allocate(const ResourceUse& use, bool keeps_previous) {
+void PassChain::allocate(const ResourceUse& use) {
   const ResolveSettings& settings = facts_.settings;
   const Extent extent = extent_of(use.largest.area, {settings.target, settings.target, settings.output});
-  const Storage storage = storage_of(use.resource, settings);
   Owned& owned = owned_.emplace_back(Owned{use.resource, {}});
-  for (std::size_t i = 0; i < (keeps_previous ? 2 : 1); ++i) {
-    if (is_picture(use.resource) || storage == Storage::kImage) {
-      owned.images[i] = allocate_image(device_, extent, use.largest.format, storage);
+  for (std::size_t i = 0; i < (keeps(use.resource) ? 2 : 1); ++i) {
+    if (use.largest.format != PixelFormat::kNone) {
+      owned.images[i] =
+          allocate_image(device_, extent, use.largest.format, storage_of(use.resource, settings));
       continue;
     }
-    const cl::Buffer buffer(device_.impl()->context, CL_MEM_READ_WRITE,
-                            static_cast<std::size_t>(extent.area()) * use.largest.element_bytes());
-    owned.images[i] = Image::borrow({.memory = buffer(), .format = use.largest.format, .extent = extent});
+    const cl::Buffer records(device_.impl()->context, CL_MEM_READ_WRITE,
+                             static_cast<std::size_t>(extent.area()) * use.largest.record_bytes);
+    owned.images[i] = Image::borrow({.memory = records(), .extent = extent});
   }
 }
 
@@ -161,13 +153,10 @@ void PassChain::forget(const PassFrame& frame) {
 
 // Marks the passes whose results the outputs or the next frame need, from the last to the first.
 void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs) {
-  std::array<bool, kResources> wanted{};
+  std::array<bool, kResources> wanted = kept_;
   wanted[index_of(Resource::kResolved)] = true;
   wanted[index_of(Resource::kBlurred)] = static_cast<bool>(outputs.blurred);
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);
-  for (const ResourceUse& use : resources_) {
-    if (keeps(use.resource)) wanted[index_of(use.resource)] = true;
-  }
   for (std::size_t i = passes_.size(); i-- > 0;) {
     const std::vector<Use>& uses = passes_[i]->spec().uses;
     needed_[i] = passes_[i]->takes_part(frame) && std::any_of(uses.begin(), uses.end(), [&](const Use& use) {

@@ -50,6 +50,9 @@ class PassChain {
   // Afterwards the frame's resources are those of the previous frame.
   void run(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
 
+  // Whether a pass reads or writes it.
+  bool has(Resource resource) const;
+
   // The pass of a kernel; null where the plan has none.
   Pass* find(std::string_view kernel) const;
   // Enqueues one pass alone.
@@ -65,10 +68,13 @@ class PassChain {
     std::array<Image, 2> images;  // the second only where the previous frame's is read, too
   };
 
-  void allocate(const ResourceUse& use, bool keeps_previous);
+  void allocate(const ResourceUse& use);
   void forget(const PassFrame& frame);
   void mark_needed(const PassFrame& frame, const FrameOutputs& outputs);
-  bool keeps(Resource resource) const;
+  // Whether a pass of the next frame reads it.
+  bool keeps(Resource resource) const {
+    return previous_of(resource) != resource && has(previous_of(resource));
+  }
 
   Device device_;
   PlanFacts facts_;
@@ -76,8 +82,9 @@ class PassChain {
   std::vector<ResourceUse> resources_;
   std::vector<std::unique_ptr<Pass>> passes_;
   std::vector<Owned> owned_;
-  std::vector<bool> needed_;  // of each pass in the frame that runs
-  std::size_t next_ = 0;      // the image of each pair that the next frame writes
+  std::array<bool, kResources> kept_ = {};  // keeps(), of each resource
+  std::vector<bool> needed_;                // of each pass in the frame that runs
+  std::size_t next_ = 0;                    // the image of each pair that the next frame writes
 };
 
 }  // namespace quincunx

@@ -111,11 +111,7 @@ void plan_reproject(const PlanFacts& facts, PassList& list) {
   }
   if (facts.weighs_residual())
     spec.uses.push_back({Resource::kPreviousVelocity, Access::kRead, Area::kPreviousViewport, velocity});
-  if (facts.reads_reactive()) {
-    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
-    spec.uses.push_back(
-        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
-  }
+  if (facts.reads_reactive()) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   list.passes.push_back(std::move(spec));
 }
 

@@ -82,16 +82,8 @@ void plan_resolve_quincunx(const PlanFacts& facts, PassList& list) {
                          {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
                 .make = make_pass<ResolveQuincunxPass>,
                 .frames = Frames::kWithHistory};
-  if (facts.weighs_velocity()) {
-    spec.uses.push_back({Resource::kVelocity, Access::kRead, Area::kViewport, settings.velocity});
-    spec.uses.push_back(
-        {Resource::kPreviousVelocity, Access::kRead, Area::kPreviousViewport, settings.velocity});
-  }
-  if (facts.reads_reactive()) {
-    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
-    spec.uses.push_back(
-        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
-  }
+  if (facts.weighs_velocity()) read_both_frames(spec.uses, Resource::kVelocity, settings.velocity);
+  if (facts.reads_reactive()) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   list.passes.push_back(std::move(spec));
 }
 

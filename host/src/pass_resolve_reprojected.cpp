@@ -75,11 +75,7 @@ void plan_resolve_reprojected(const PlanFacts& facts, PassList& list) {
                 .frames = Frames::kWithHistory};
   if (facts.reprojects())
     spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
-  if (reactive) {
-    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
-    spec.uses.push_back(
-        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
-  }
+  if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   list.passes.push_back(std::move(spec));
 }
 

@@ -106,11 +106,7 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
       .frames = Frames::kSparse};
   if (facts.reprojects())
     spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
-  if (reactive) {
-    spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
-    spec.uses.push_back(
-        {Resource::kPreviousReactive, Access::kRead, Area::kPreviousViewport, PixelFormat::kR8});
-  }
+  if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   if (!facts.shows_picture())
     spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved});
   list.passes.push_back(std::move(spec));

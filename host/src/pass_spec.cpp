@@ -102,6 +102,11 @@ bool is_previous(Resource resource) {
                      [resource](const auto& kept) { return kept.before == resource; });
 }
 
+void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat format) {
+  uses.push_back({resource, Access::kRead, Area::kViewport, format});
+  uses.push_back({previous_of(resource), Access::kRead, Area::kPreviousViewport, format});
+}
+
 Extent extent_of(Area area, const FrameExtents& extents) {
   switch (area) {
     case Area::kViewport:
@@ -123,7 +128,7 @@ Extent extent_of(Area area, const FrameExtents& extents) {
 std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents) {
   std::uint64_t bytes = 0;
   for (const Use& use : spec.uses) {
-    const std::uint64_t times = use.access == Access::kRead || use.access == Access::kWrite ? 1 : 2;
+    const std::uint64_t times = use.access == Access::kAccumulate ? 2 : 1;
     bytes += times * static_cast<std::uint64_t>(extent_of(use.area, extents).area()) * use.element_bytes();
   }
   return bytes;

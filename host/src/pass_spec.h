@@ -66,7 +66,6 @@ bool is_previous(Resource resource);
 enum class Access : std::uint8_t {
   kRead,
   kWrite,
-  kUpdate,      // read and written
   kAccumulate,  // set to zero before the pass, which adds to it
 };
 
@@ -115,6 +114,9 @@ struct PassSpec {
   Viewports viewports = Viewports::kAll;
 };
 
+// Adds to a pass's uses that it reads an input of this frame and of the previous one.
+void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat format);
+
 // The extents that uses follow.
 struct FrameExtents {
   Extent render, previous_render, output;
@@ -122,7 +124,7 @@ struct FrameExtents {
 
 Extent extent_of(Area area, const FrameExtents& extents);
 
-// Bytes read and written in a frame: each element counts once, twice where the pass both reads and writes it.
+// Bytes read and written in a frame: each element counts once, or twice where the pass adds to it.
 std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents);
 
 // The passes of a plan in the order in which they run, and why the others are not in it. Pure.

@@ -17,7 +17,7 @@ struct PlanFacts {
   bool has_velocity() const { return velocity != VelocitySource::kNone; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
-  bool keeps_previous_frame() const { return accumulates() || resolves_two_frames(); }
+  bool keeps_previous_frame() const { return uses_earlier_frames(settings.method); }
   bool has_form(TwoFrameForm form) const { return resolves_two_frames() && settings.quincunx.form == form; }
   bool weighs_velocity() const { return has_velocity() && has_form(TwoFrameForm::kVelocity); }
   bool reprojects() const {  // where each sample was in the previous frame is computed

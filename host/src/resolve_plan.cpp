@@ -111,11 +111,11 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
 }
 
 bool ResolvePlan::accumulates() const {
-  return PlanFacts(needs, settings).accumulates();
+  return settings.method == Method::kTemporal;
 }
 
 bool ResolvePlan::keeps_previous_frame() const {
-  return PlanFacts(needs, settings).keeps_previous_frame();
+  return uses_earlier_frames(settings.method);
 }
 
 bool ResolvePlan::reads_history(Extent render) const {

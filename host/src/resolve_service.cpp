@@ -76,10 +76,7 @@ void ResolveService::Impl::warm_up() {
 Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
   if (!has_history(inputs)) return {};
   const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
-    const bool is_read = std::any_of(
-        plan.buffers.begin(), plan.buffers.end(),
-        [&](const PlannedBuffer& buffer) { return buffer.name == name_of(previous_of(resource)); });
-    return is_read && now.memory == before.memory && now.offset == before.offset;
+    return chain.has(previous_of(resource)) && now.memory == before.memory && now.offset == before.offset;
   };
   const char* shared = nullptr;
   if (is_shared(Resource::kColour, inputs.colour, previous.colour)) {
