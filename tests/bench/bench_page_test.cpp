@@ -26,6 +26,7 @@ constexpr Extent kCrop{16, 8};
 constexpr int kPictures = 3;  // truth and two methods
 
 constexpr const char* kProbe = R"(<script>
+probe.wait();
 (async () => {
   const all = (selector) => [...document.querySelectorAll(selector)];
   const pause = () => new Promise((done) => setTimeout(done, 20));
@@ -35,7 +36,7 @@ constexpr const char* kProbe = R"(<script>
   const button = (name) => all("#viewer button").find((b) => b.textContent === name);
   // Waits until the pictures have changed; gives up where they do not.
   const settled = async (before) => {
-    for (let i = 0; i < 100 && JSON.stringify(pixels()) === before; ++i) await pause();
+    for (let i = 0; i < 1000 && JSON.stringify(pixels()) === before; ++i) await pause();
     return pixels();
   };
   const choose = async (select, index) => {
@@ -44,7 +45,7 @@ constexpr const char* kProbe = R"(<script>
     select.dispatchEvent(new Event("change"));
     return settled(before);
   };
-  for (let i = 0; i < 100 && !all("#viewer .stage[data-ready]").length; ++i) await pause();
+  for (let i = 0; i < 1000 && !all("#viewer .stage[data-ready]").length; ++i) await pause();
   await pause();
   const seen = window.seen;
   seen.points = all("#plot .point").map((p) => p.dataset.method);
@@ -85,10 +86,17 @@ constexpr const char* kProbe = R"(<script>
   button("wipe").click();
   const wipe = document.querySelector("#viewer .wipe");
   seen.wiped = [10, 90].map((value) => { wipe.value = value; wipe.dispatchEvent(new Event("input")); return canvases[0].style.clipPath; });
-  const output = document.createElement("pre");
-  output.id = "probe";
-  output.textContent = JSON.stringify(seen);
-  document.body.append(output);
+  probe.end();
+})();
+</script>)";
+
+// Only waits until the page has drawn, which it does when it knows its width.
+constexpr const char* kPatience = R"(<script>
+probe.wait();
+(async () => {
+  for (let i = 0; i < 1000 && !document.querySelector("#plot .point"); ++i)
+    await new Promise((done) => setTimeout(done, 20));
+  probe.end();
 })();
 </script>)";
 
@@ -186,8 +194,9 @@ TEST_F(PageInBrowser, DrawsItsPlotsSortsItsTablesAndSwitchesItsPictures) {
 
 TEST_F(PageInBrowser, ShowsSomething) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  browse(page_of(sample_of_two_scenes(), sample_gallery()),
-         "--hide-scrollbars --window-size=900,1600 --screenshot='" + folder_.file("shot.png") + "'");
+  std::string page = page_of(sample_of_two_scenes(), sample_gallery());
+  page = with(with(std::move(page), "<head>", kListener), "</body>", kPatience);
+  browse(page, "--hide-scrollbars --window-size=900,1600 --screenshot='" + folder_.file("shot.png") + "'");
   const auto shot = tools::read_image(folder_.file("shot.png"));
   ASSERT_TRUE(shot.ok()) << shot.status().message();
   EXPECT_EQ(shot->extent, (Extent{900, 1600}));
@@ -202,8 +211,9 @@ TEST_F(PageInBrowser, ShowsSomething) {
 
 TEST_F(PageInBrowser, WithoutPicturesHasNoViewer) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  const std::string dom =
-      browse(with(page_of(testing::sample_result(), {}), "<head>", kListener), "--dump-dom");
+  std::string page = page_of(testing::sample_result(), {});
+  page = with(with(std::move(page), "<head>", kListener), "</body>", kPatience);
+  const std::string dom = browse(page, "--dump-dom");
   EXPECT_EQ(text_of("err").find("CONSOLE"), std::string::npos) << text_of("err");
   EXPECT_EQ(dom.find("<a href=\"#pictures\""), std::string::npos);  // no link leads there
   EXPECT_NE(dom.find("class=\"point"), std::string::npos);

@@ -17,10 +17,11 @@ using testing::with;
 using Json = nlohmann::json;
 
 constexpr const char* kProbe = R"(<script>
+probe.wait();
 (async () => {
   const all = (selector) => [...document.querySelectorAll(selector)];
   const pause = () => new Promise((done) => setTimeout(done, 20));
-  for (let i = 0; i < 100 && !all("#time-plot svg").length; ++i) await pause();
+  for (let i = 0; i < 1000 && !all("#time-plot svg").length; ++i) await pause();
   const seen = window.seen;
   const choose = (id, value) => {
     const select = document.getElementById(id);
@@ -46,10 +47,7 @@ constexpr const char* kProbe = R"(<script>
   seen.drops = all("#time-plot .drop").map((mark) => mark.getAttribute("aria-label"));
   seen.pathsWithoutNumbers = all("svg path").filter((p) => /NaN|undefined|Infinity/.test(p.getAttribute("d"))).length;
   seen.title = document.getElementById("time-plot").textContent;
-  const output = document.createElement("pre");
-  output.id = "probe";
-  output.textContent = JSON.stringify(seen);
-  document.body.append(output);
+  probe.end();
 })();
 </script>)";
 
