@@ -270,6 +270,28 @@ void add_railing(MeshBuilder& iron, const Railing& shape) {
   }
 }
 
+void add_wire_fence(MeshBuilder& wire, float length, float height) {
+  constexpr float kMesh = 0.11f;
+  constexpr float kWire = 0.0022f;
+  const int count = static_cast<int>((length + height) / kMesh);
+  for (int i = 0; i < count; ++i) {
+    const float start = static_cast<float>(i) * kMesh - height;
+    for (const bool rising : {true, false}) {
+      const auto x_at = [&](float y) { return rising ? start + y : start + height - y; };
+      const float low = rising ? std::max(0.0f, -start) : std::max(0.0f, start + height - length);
+      const float high = rising ? std::min(height, length - start) : std::min(height, start + height);
+      if (high - low < 0.01f) continue;
+      const float z = rising ? kWire : -kWire;
+      const std::array<glm::vec3, 2> path{{{x_at(low), low + 0.05f, z}, {x_at(high), high + 0.05f, z}}};
+      wire.tube(path, kWire, 4);
+    }
+  }
+  for (float x = 0; x <= length + 0.01f; x += 2.4f)
+    wire.rod({x, 0, -0.03f}, {x, height + 0.15f, -0.03f}, 0.025f, 10);
+  for (const float y : {0.05f, height + 0.05f})
+    wire.rod({0, y, -0.03f}, {length, y, -0.03f}, 0.014f, 8);
+}
+
 void add_steps(MeshBuilder& stone, float length, int count, float rise, float tread) {
   for (int i = 0; i < count; ++i) {
     const float top = static_cast<float>(i + 1) * rise;

@@ -53,6 +53,9 @@ struct Railing {
 };
 void add_railing(MeshBuilder& iron, const Railing& shape);
 
+// A lattice of diamonds from crossing wires, a frame of posts and rails around it; along x from 0.
+void add_wire_fence(MeshBuilder& wire, float length, float height);
+
 // Steps that rise towards -z; the top step's front edge lies at z = 0.
 void add_steps(MeshBuilder& stone, float length, int count, float rise, float tread);
 

@@ -23,5 +23,10 @@ Scene make_zoom(std::uint64_t seed);
 Scene make_cut(std::uint64_t seed);
 Scene make_sparkles(std::uint64_t seed);
 Scene make_shadows(std::uint64_t seed);
+Scene make_cables(std::uint64_t seed);
+Scene make_spokes(std::uint64_t seed);
+Scene make_twigs(std::uint64_t seed);
+Scene make_fence(std::uint64_t seed);
+Scene make_crossings(std::uint64_t seed);
 
 }  // namespace quincunx::scenes

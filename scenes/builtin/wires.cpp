@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "builtin/architecture.h"
 #include "builtin/props.h"
 #include "builtin/scenes.h"
 
@@ -11,29 +11,6 @@ namespace quincunx::scenes {
 namespace {
 
 constexpr double kDuration = 8;
-
-// A lattice of diamonds from crossing wires, a frame of posts and rails around it; along x from 0.
-void add_fence(MeshBuilder& wire, float length, float height) {
-  constexpr float kMesh = 0.11f;
-  constexpr float kWire = 0.0022f;
-  const int count = static_cast<int>((length + height) / kMesh);
-  for (int i = 0; i < count; ++i) {
-    const float start = static_cast<float>(i) * kMesh - height;
-    for (const bool rising : {true, false}) {
-      const auto x_at = [&](float y) { return rising ? start + y : start + height - y; };
-      const float low = rising ? std::max(0.0f, -start) : std::max(0.0f, start + height - length);
-      const float high = rising ? std::min(height, length - start) : std::min(height, start + height);
-      if (high - low < 0.01f) continue;
-      const float z = rising ? kWire : -kWire;
-      const std::array<glm::vec3, 2> path{{{x_at(low), low + 0.05f, z}, {x_at(high), high + 0.05f, z}}};
-      wire.tube(path, kWire, 4);
-    }
-  }
-  for (float x = 0; x <= length + 0.01f; x += 2.4f)
-    wire.rod({x, 0, -0.03f}, {x, height + 0.15f, -0.03f}, 0.025f, 10);
-  for (const float y : {0.05f, height + 0.05f})
-    wire.rod({0, y, -0.03f}, {length, y, -0.03f}, 0.014f, 8);
-}
 
 // A mast of four legs with crossed stays, its foot at the pen.
 void add_mast(MeshBuilder& iron, float height, float foot) {
@@ -110,7 +87,7 @@ Scene make_wires(std::uint64_t seed) {
   ground.patch({-120, -0.02f, 12}, {240, 0, 0}, {0, 0, -200});
   MeshBuilder& fence = assembly.still(galvanised);
   fence.pen.placement = moved_to({0.9f, 0, 0.4f}) * turned(0.35f, {0, 1, 0});
-  add_fence(fence, 4.8f, 1.7f);
+  add_wire_fence(fence, 4.8f, 1.7f);
   add_power_lines(assembly, iron, copper, porcelain);
   add_whips(assembly, iron, red);
 

@@ -51,6 +51,16 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
      "moving points of light, smaller than a pixel and hundreds of times brighter than white", make_sparkles},
     {"shadows", "Shadows of turning blades over a lettered wall; polished vases that turn",
      "light that moves otherwise than what it falls on: no velocity tells where it goes", make_shadows},
+    {"cables", "Cables, whips and stays before the sky; some sway",
+     "thin things before what is far: what one history layer breaks into dashes", make_cables},
+    {"spokes", "Three wheels of thin spokes turn before a wall that is full of words",
+     "thin things that turn: they must stay whole, and what stands behind them readable", make_spokes},
+    {"twigs", "Bare shrubs in two rows before posters on a brick wall",
+     "thin things in all directions and at many depths, under a camera that pans", make_twigs},
+    {"fence", "Railings and wire mesh close to a camera that walks past a lettered wall",
+     "a regular pattern that moves three times as fast as what is behind it", make_fence},
+    {"crossings", "Harps of cord that slide across each other, and turning needles",
+     "three surfaces within a few pixels, each with a motion of its own", make_crossings},
 });
 
 bool is_gltf_path(std::string_view name) {

@@ -207,19 +207,13 @@ struct ExpectedNeeds {
 };
 
 // What each scene's reason promises.
-constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>({{"courtyard", true, true, true},
-                                                                    {"chart", false, false, false},
-                                                                    {"pan", false, true, false},
-                                                                    {"wires", false, true, false},
-                                                                    {"wheel", true, false, false},
-                                                                    {"occluders", true, false, false},
-                                                                    {"particles", true, true, true},
-                                                                    {"flight", true, true, true},
-                                                                    {"still", false, false, true},
-                                                                    {"zoom", false, true, false},
-                                                                    {"cut", false, true, false},
-                                                                    {"sparkles", true, true, false},
-                                                                    {"shadows", true, false, false}});
+constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>(
+    {{"courtyard", true, true, true}, {"chart", false, false, false}, {"pan", false, true, false},
+     {"wires", false, true, false},   {"wheel", true, false, false},  {"occluders", true, false, false},
+     {"particles", true, true, true}, {"flight", true, true, true},   {"still", false, false, true},
+     {"zoom", false, true, false},    {"cut", false, true, false},    {"sparkles", true, true, false},
+     {"shadows", true, false, false}, {"cables", true, true, false},  {"spokes", true, false, false},
+     {"twigs", false, true, false},   {"fence", false, true, false},  {"crossings", true, false, false}});
 
 // What moves within a frame, by looking, must be what the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
