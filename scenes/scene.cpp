@@ -29,12 +29,17 @@ SceneNeeds needs_of(const Scene& scene) {
   };
   needs.transparents = static_cast<bool>(scene.particles) ||
                        std::any_of(scene.instances.begin(), scene.instances.end(), is_blended);
-  needs.background = true;  // the renderer fills what no surface covers, with a sky or a plain colour
+  needs.background = scene.sky.background != Background::kNone;
   return needs;
 }
 
 bool is_cut(const Scene& scene, double previous_seconds, double seconds) {
   return cuts_until(scene, previous_seconds) != cuts_until(scene, seconds);
+}
+
+bool shows(const Scene& scene, const Fault& fault, double previous_seconds, double seconds) {
+  const auto rounds = [&](double now) { return std::floor((now - fault.seconds) / scene.duration); };
+  return rounds(seconds) > rounds(previous_seconds);
 }
 
 std::optional<double> next_cut(const Scene& scene, double seconds) {

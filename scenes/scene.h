@@ -104,13 +104,30 @@ struct PointLight {
   float range = 10;        // metres: falls smoothly to zero
 };
 
+enum class Background : std::uint8_t {
+  kSky,
+  kPlain,  // `zenith` everywhere
+  kNone,   // colour and alpha 0: what no surface covers is transparent
+};
+
 struct Sky {
-  bool visible = true;  // else the background is `zenith`, a plain colour
+  Background background = Background::kSky;
+  // Whether its velocity is that of the camera's turning; else 0, as many renderers write it.
+  bool has_velocity = true;
   glm::vec3 zenith{0.2f, 0.4f, 0.8f};
   glm::vec3 horizon{0.6f, 0.7f, 0.8f};
   glm::vec3 ground{0.2f, 0.18f, 0.15f};
   glm::vec3 sun_radiance{0};  // of a disc along -sun.direction; 0: none
   float sun_radius = 0.02f;   // radians
+};
+
+// A square that a fault of the renderer leaves in the colour of one frame, the first at or after `seconds`. Truth,
+// which is drawn without a frame before it, has none.
+struct Fault {
+  double seconds = 0;  // in [0, Scene::duration)
+  glm::vec2 place{0};  // of its upper left corner, parts of the viewport's width and height, in [0, 1)
+  float side = 0;      // part of the viewport's height, in [0, 1)
+  float value = 0;     // of R, G and B; anything, infinity and NaN too
 };
 
 struct Bounds {
@@ -132,6 +149,7 @@ struct Scene {
   Sky sky;
   CameraPath camera;
   bool camera_moves = false;
+  std::vector<Fault> faults;
   std::vector<double> cuts;  // seconds in [0, duration), ascending: where another shot begins
   double duration = 4;       // seconds after which it is meant to repeat or end
   float exposure = 1;
@@ -145,6 +163,9 @@ SceneNeeds needs_of(const Scene& scene);
 // Whether the frame at `seconds` belongs to another shot than the one at `previous_seconds`: nothing of that
 // one may be used then.
 bool is_cut(const Scene& scene, double previous_seconds, double seconds);
+
+// Whether the frame at `seconds` that follows on one at `previous_seconds` shows a fault; a scene repeats.
+bool shows(const Scene& scene, const Fault& fault, double previous_seconds, double seconds);
 
 // The first cut at or after `seconds`; nothing where the scene has none.
 std::optional<double> next_cut(const Scene& scene, double seconds);

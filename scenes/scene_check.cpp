@@ -72,10 +72,26 @@ Status check_meshes(const Scene& scene) {
   return {};
 }
 
+Status check_faults(const Scene& scene) {
+  const auto is_part = [](float value) { return value >= 0 && value < 1; };
+  for (std::size_t f = 0; f < scene.faults.size(); ++f) {
+    const Fault& fault = scene.faults[f];
+    if (fault.seconds >= 0 && fault.seconds < scene.duration && is_part(fault.place.x) &&
+        is_part(fault.place.y) && is_part(fault.side)) {
+      continue;
+    }
+    return Status::invalid(fmt::format(
+        "fault {} lies at {} s, ({}, {}), with side {}; its time must lie within the scene's {} s, the "
+        "others in [0, 1)",
+        f, fault.seconds, fault.place.x, fault.place.y, fault.side, scene.duration));
+  }
+  return {};
+}
+
 }  // namespace
 
 Status check_scene(const Scene& scene) {
-  for (const auto& check : {check_textures, check_materials, check_meshes}) {
+  for (const auto& check : {check_textures, check_materials, check_meshes, check_faults}) {
     if (Status status = check(scene); !status.ok()) return status;
   }
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {

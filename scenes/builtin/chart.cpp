@@ -271,7 +271,7 @@ Scene make_chart(std::uint64_t) {
   pen.rectangle({995, 366}, {1195, 564}, kWhite);
 
   Scene& scene = assembly.scene;
-  scene.sky.visible = false;
+  scene.sky.background = Background::kPlain;
   scene.sky.zenith = kPaper;
   scene.sun.casts_shadows = false;
   Camera camera;

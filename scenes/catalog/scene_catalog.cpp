@@ -61,6 +61,12 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
      "a regular pattern that moves three times as fast as what is behind it", make_fence},
     {"crossings", "Harps of cord that slide across each other, and turning needles",
      "three surfaces within a few pixels, each with a motion of its own", make_crossings},
+    {"backdrop", "Columns, a mast and a wind wheel against the evening sun, under a camera that turns",
+     "a sky that moves and says that it does not: its velocity is 0", make_backdrop},
+    {"cutout", "A wheel, a swinging sign, cords and balls with nothing behind them",
+     "alpha: a transparent background, to be laid over something else", make_cutout},
+    {"faults", "Signs that swing before a wall; ten times a second a frame holds three wrong blocks",
+     "colours of 50, of -5 and infinite, for one frame each: none may be seen in the next", make_faults},
 });
 
 bool is_gltf_path(std::string_view name) {

@@ -55,6 +55,13 @@ void clear_for_frame(const gl::RenderTargets& targets, Extent render) {
   if (targets.reactive() != 0) glClearNamedFramebufferfv(targets.framebuffer(), GL_COLOR, kReactive, zero);
 }
 
+void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value) {
+  const float colour[] = {value, value, value, 1};
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(corner.x, corner.y, size.x, size.y);
+  glClearNamedFramebufferfv(targets.framebuffer(), GL_COLOR, kColour, colour);
+}
+
 void set_opaque_state() {
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_GREATER);

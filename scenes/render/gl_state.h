@@ -2,6 +2,8 @@
 // The fixed-function state of each part of a frame.
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include "quincunx/extent.h"
 #include "quincunx_gl/render_targets.h"
 
@@ -20,6 +22,9 @@ class DrawState {
 // Depth whole to infinity and the viewport's part of the reactive values to 0. Colour and velocity need no
 // clear: surfaces and sky cover every pixel. Leaves the scissor on the viewport.
 void clear_for_frame(const gl::RenderTargets& targets, Extent render);
+
+// Gives a block of the colour target, `corner` its upper left pixel, one value in R, G and B, and alpha 1.
+void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value);
 
 void set_opaque_state();   // writes colour, velocity, depth
 void set_sky_state();      // colour and velocity where nothing was drawn

@@ -77,6 +77,7 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
   impl_->draw_opaque(velocity);
   impl_->draw_sky(velocity);
   impl_->draw_blended();
+  impl_->draw_faults(targets, view);
   return {};
 }
 
@@ -133,6 +134,16 @@ void Renderer::Impl::draw_blended() {
     bound = {};
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count),
                                       batch.first);
+  }
+}
+
+void Renderer::Impl::draw_faults(const gl::RenderTargets& targets, const FrameView& view) const {
+  const glm::ivec2 viewport(view.render.width, view.render.height);
+  for (const Fault& fault : scene.faults) {
+    if (!shows(scene, fault, view.previous_seconds, view.seconds)) continue;
+    const glm::ivec2 corner(fault.place * glm::vec2(viewport));
+    const int side = std::max(1, static_cast<int>(std::lround(fault.side * static_cast<float>(viewport.y))));
+    fill_colour(targets, corner, glm::min(glm::ivec2(side), viewport - corner), fault.value);
   }
 }
 

@@ -2,8 +2,8 @@
 // Renderer: draws a Scene with OpenGL 4.5 into the viewport of render targets.
 //
 // One geometry pass writes colour, depth and velocity; then sky, then transparents (colour and reactive
-// only). Reversed infinite depth, rows top-down, jitter through the projection. Uses the current GL context;
-// one thread.
+// only), then the scene's faults (colour only). Reversed infinite depth, rows top-down, jitter through the
+// projection. Uses the current GL context; one thread.
 #pragma once
 
 #include <memory>

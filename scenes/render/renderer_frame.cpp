@@ -64,7 +64,9 @@ Status Renderer::Impl::create_programs() {
     if (!status.ok()) return status;
   }
   std::vector<std::string> sky_defines;
-  if (!scene.sky.visible) sky_defines.emplace_back("PLAIN");
+  if (scene.sky.background == Background::kPlain) sky_defines.emplace_back("PLAIN");
+  if (scene.sky.background == Background::kNone) sky_defines.emplace_back("TRANSPARENT");
+  if (!scene.sky.has_velocity) sky_defines.emplace_back("MOTIONLESS");
   if (Status status = link_both(sky_programs, "sky.vert.glsl", "sky.frag.glsl", sky_defines); !status.ok()) {
     return status;
   }

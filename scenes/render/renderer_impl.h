@@ -43,6 +43,7 @@ struct Renderer::Impl {
   void draw_opaque(bool velocity);
   void draw_sky(bool velocity) const;
   void draw_blended();
+  void draw_faults(const gl::RenderTargets& targets, const FrameView& view) const;
   void draw_batch(const Batch& batch, bool velocity);
 
   Scene scene;

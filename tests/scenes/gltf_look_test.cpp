@@ -190,7 +190,7 @@ TEST_F(GltfLook, WithoutLightsASunAndASky) {
   EXPECT_GT(scene.sun.irradiance.g, 1);
   EXPECT_LT(scene.sun.direction.y, 0);
   EXPECT_NEAR(glm::length(scene.sun.direction), 1, kRounding);
-  EXPECT_TRUE(scene.sky.visible);
+  EXPECT_EQ(scene.sky.background, scenes::Background::kSky);
   EXPECT_EQ(scene.exposure, 1);
 }
 

@@ -192,7 +192,7 @@ TEST_F(LightingTest, CutOutsKeepTheirCoverageWithDistance) {
       glm::mat3(glm::vec3(4, 0, 0), glm::vec3(0, 4, 0), glm::vec3(0, 0, 1));
   scene.meshes = {plate({3, 3}, 0)};
   scene.instances.push_back({0, at(0, 0, -3), {}});
-  scene.sky.visible = false;
+  scene.sky.background = Background::kPlain;
   scene.sky.zenith = glm::vec3(0);
   scene.camera = fixed_camera({0, 0, 0}, {0, 0, -1});
   Renderer renderer = renderer_of(scene);

@@ -213,7 +213,8 @@ constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>(
      {"particles", true, true, true}, {"flight", true, true, true},   {"still", false, false, true},
      {"zoom", false, true, false},    {"cut", false, true, false},    {"sparkles", true, true, false},
      {"shadows", true, false, false}, {"cables", true, true, false},  {"spokes", true, false, false},
-     {"twigs", false, true, false},   {"fence", false, true, false},  {"crossings", true, false, false}});
+     {"twigs", false, true, false},   {"fence", false, true, false},  {"crossings", true, false, false},
+     {"backdrop", true, true, false}, {"cutout", true, true, false},  {"faults", true, false, false}});
 
 // What moves within a frame, by looking, must be what the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {

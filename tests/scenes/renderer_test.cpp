@@ -92,7 +92,7 @@ TEST_F(RenderTest, SmallSurfacesAreLeftOutWhereAskedFor) {
   scene.meshes = {plate({0.5f, 0.5f}, 0)};
   scene.instances.push_back({0, at(-1, 0, 0), {}});
   scene.instances.push_back({0, at(4, 0, -12), {}});  // four times as far
-  scene.sky.visible = false;
+  scene.sky.background = Background::kPlain;
   scene.sky.zenith = glm::vec3(0);
   scene.camera = fixed_camera({0, 0, 4}, {0, 0, 0});
   Renderer renderer = renderer_of(scene);
@@ -149,7 +149,7 @@ Scene marker_scene() {
   scene.materials = {unlit({1, 0, 0, 1})};
   scene.meshes = {plate({0.5f, 0.5f}, 0)};
   scene.instances.push_back({0, at(-1.5f, 0.8f, -3), {}});
-  scene.sky.visible = false;
+  scene.sky.background = Background::kPlain;
   scene.sky.zenith = {0, 0, 0.25f};
   scene.camera = fixed_camera({0, 0, 0}, {0, 0, -1});
   return scene;

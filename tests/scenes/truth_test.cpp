@@ -20,7 +20,7 @@ Scene bar_scene(Motion motion) {
   scene.instances.push_back(
       {0, glm::rotate(glm::translate(glm::mat4(1), glm::vec3(0, 0, -3)), 0.3f, glm::vec3(0, 0, 1)),
        std::move(motion)});
-  scene.sky.visible = false;
+  scene.sky.background = Background::kPlain;
   scene.sky.zenith = glm::vec3(0);
   scene.camera = fixed_camera({0, 0, 0}, {0, 0, -1});
   return scene;
