@@ -3,7 +3,7 @@
 # Measures docs/report anew: bench.json, a line for each case, and bench.svg, which the README shows. The page with
 # all plots and pictures lies in build/report and is not kept.
 #
-#   scripts/report.sh              about eight minutes; on a machine that has nothing else to do
+#   scripts/report.sh              about a quarter of an hour; on a machine that has nothing else to do
 #   scripts/report.sh --quick      anything else is handed to quincunx-bench
 set -euo pipefail
 cd "$(dirname "$0")/.."

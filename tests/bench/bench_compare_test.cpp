@@ -48,6 +48,18 @@ TEST(Compare, ErrorsCountFromTheirThreshold) {
   EXPECT_TRUE(compared(after).worse());
 }
 
+TEST(Compare, ARegionCountsThoughTheMeanDoesNotChange) {
+  BenchResult after = sample_result();
+  auto& thin = after.rows[0].quality.region_psnr[static_cast<std::size_t>(Region::kThin)];
+  thin = thin.value() - 0.2;
+  const Comparison worse = compared(after);
+  ASSERT_EQ(worse.changes.size(), 1u);
+  EXPECT_EQ(worse.changes[0].measure, "PSNR of thin things, dB");
+  EXPECT_TRUE(worse.worse());
+  thin.reset();  // of before there were regions
+  EXPECT_TRUE(compared(after).changes.empty());
+}
+
 TEST(Compare, ALongerHistoryIsAnotherMeasurement) {
   BenchResult other = sample_result();
   other.conditions.history_warm_up = 6;

@@ -134,7 +134,7 @@ Gallery sample_gallery() {
 BenchResult sample_of_two_scenes() {
   BenchResult result = testing::sample_result();
   const BenchResult one = result;
-  result.scenes.push_back({"wires", "wires", "thin lines", 0.02, 0.1});
+  result.scenes.push_back({"wires", "wires", "thin lines", 0.02, 0.1, {}});
   const auto repeat = [](auto& rows, const auto& from) {
     for (auto row : from) {
       row.scene = "wires";

@@ -98,6 +98,22 @@ TEST(Result, ReadsOneOfBeforeThereWasHistory) {
   EXPECT_FALSE(old->conditions.history_warm_up.has_value());
 }
 
+TEST(Result, ReadsOneOfBeforeThereWereRegions) {
+  nlohmann::json json = nlohmann::json::parse(to_json(sample_result()));
+  EXPECT_EQ(json["rows"][0]["quality"]["psnr_thin"], 20);
+  EXPECT_TRUE(json["rows"][0]["quality"]["psnr_edge"].is_null());
+  for (const char* region : {"thin", "behind_thin", "disoccluded", "edge", "rest"}) {
+    for (auto& row : json["rows"])
+      ASSERT_EQ(row["quality"].erase(std::string("psnr_") + region), 1u);
+    for (auto& scene : json["scenes"])
+      ASSERT_EQ(scene.erase(std::string("part_") + region), 1u);
+  }
+  const auto old = from_json(json.dump(), "old.json");
+  ASSERT_TRUE(old.ok()) << old.status().message();
+  EXPECT_EQ(old->rows[0].quality.region_psnr, RegionFigures());
+  EXPECT_EQ(old->scenes[0].region_part, RegionFigures());
+}
+
 TEST(Result, CsvHasALineARowAndQuotesItsText) {
   BenchResult result = sample_result();
   result.rows[0].scene = "a \"b\", c";
@@ -107,6 +123,7 @@ TEST(Result, CsvHasALineARowAndQuotesItsText) {
   EXPECT_EQ(names.rfind("scene,scale,method,render_width,", 0), 0u) << names;
   EXPECT_NE(names.find(",quality_flip,"), std::string::npos);
   EXPECT_NE(names.find(",speed_ms_median,"), std::string::npos);
+  EXPECT_NE(names.find(",quality_psnr_behind_thin,"), std::string::npos);
   EXPECT_NE(csv.find("\n\"a \"\"b\"\", c\",0.5,bilinear,32,18,"), std::string::npos) << csv;
   const std::string last = csv.substr(csv.rfind('\n', csv.size() - 2) + 1);
   EXPECT_EQ(std::count(last.begin(), last.end(), ','), std::count(names.begin(), names.end(), ','));

@@ -13,7 +13,8 @@ inline bench::Spread spread(double median, double half_width) {
           .high = median + half_width};
 }
 
-// Two methods' rows at four scales; the second one's PSNR is infinite, the first one's flicker absent.
+// Two methods' rows at four scales; the second one's PSNR is infinite, the first one's flicker absent. No pixel is
+// disoccluded or at an edge of motion.
 inline bench::BenchResult sample_result() {
   bench::BenchResult result;
   result.version = "1.2.3";
@@ -27,7 +28,8 @@ inline bench::BenchResult sample_result() {
                        .rounds = 3,
                        .truth_samples = 4,
                        .fps = 60};
-  result.scenes.push_back({"pan", "a \"pan\"", "tests </script> <!-- names", 0.01, 0.5});
+  result.scenes.push_back(
+      {"pan", "a \"pan\"", "tests </script> <!-- names", 0.01, 0.5, {0.25, 0.25, {}, {}, 0.5}});
   result.methods = {{"bilinear", "four samples", "none", 0}, {"quincunx:mean", "a, b", "quincunx", -0.5}};
   for (const double scale : {0.5, 0.7, 0.85, 1.0}) {
     for (const bench::MethodRow& method : result.methods) {
@@ -42,6 +44,7 @@ inline bench::BenchResult sample_result() {
       row.quality.psnr_linear = 28;
       row.quality.flip = plain ? 0.1 : 0.08;
       if (!plain) row.quality.flicker = 0.25;
+      row.quality.region_psnr = {plain ? 20 : 25, plain ? 28 : 27, {}, {}, bench::kHighestRegionPsnr};
       row.speed.ms = spread(plain ? 1 : 2, 0.01);
       row.speed.processor_ms = spread(plain ? 2 : 4, 0.01);
       row.speed.ratio = row.speed.processor_ratio = spread(plain ? 1 : 2, 0.005);

@@ -17,10 +17,11 @@ const plusMinus = (spread) => {
 
 const measureNamed = (name) => page.measures.find((measure) => measure.name === name);
 const isDecibels = (name) => name.startsWith("psnr");
-// Of a row's quality; null only where there is none, an infinite ratio is Infinity.
+const ofWholePicture = (name) => name === "psnr" || name === "psnr_linear";
+// Of a row's quality; null only where there is none, an infinite ratio of the whole picture is Infinity.
 function errorOf(row, name) {
   const value = row.quality[name];
-  return value === null && isDecibels(name) ? Infinity : value;
+  return value === null && ofWholePicture(name) ? Infinity : value;
 }
 
 // Ratios of power are averaged as errors, not as decibels.

@@ -105,6 +105,7 @@ function showFacts() {
     ["worst 16×16 window", "largest root mean square error of any 16×16 pixels in any frame, tone mapped"],
     ["flicker", "mean change of luma from frame to frame that the truth does not have; the truth's own change stands in the table of scenes"],
     ["ghosting", "root mean square error of the pixels that were hidden behind something nearer within the last two frames, by the true depth and velocity"],
+    ["regions", "each pixel is in one: thin things (less than four pixels across), else within four pixels behind one, else disoccluded, else within two pixels of where two motions meet, else the rest; by the true depth and velocity"],
     ["×", "the plain copy's time in the same round; its bandwidth stands in its own table"],
   ];
   byId("words").append(...words.flatMap(([term, text]) => [el("dt", {}, term), el("dd", {}, text)]));

@@ -103,7 +103,7 @@ function drawPlot(host, scene, scale, name) {
   const area = { left: 58, right: width - 12, top: 40, bottom: height - 48 };
   host.replaceChildren();
   if (points.length === 0) {
-    host.append(el("p", { class: "quiet" }, `There is no ${measure.label} here: nothing is disoccluded, or only one frame was measured.`));
+    host.append(el("p", { class: "quiet" }, `There is no ${measure.label} here: no pixel counts for it, or only one frame was measured.`));
     return;
   }
   const ranges = rangesOf(points);

@@ -50,11 +50,16 @@ function makeCopiesTable() {
 }
 
 function makeScenesTable() {
+  const part = (title, field) => numberColumn(
+    title, (row) => row[field], (row) => (row[field] === null ? "" : `${number(100 * row[field])} %`));
   return makeTable([
     textColumn("scene", (row) => row.name), textColumn("what is seen", (row) => row.summary, true),
     textColumn("what it tests", (row) => row.reason, true),
     numberColumn("flicker of truth", (row) => row.truth_flicker),
-    numberColumn("disoccluded", (row) => row.disoccluded, (row) => `${number(100 * row.disoccluded)} %`),
+    part("disoccluded", "disoccluded"),
+    part("region: thin things", "part_thin"), part("behind thin things", "part_behind_thin"),
+    part("disoccluded, no thin thing near", "part_disoccluded"), part("edges of motion", "part_edge"),
+    part("rest", "part_rest"),
   ], result.scenes);
 }
 

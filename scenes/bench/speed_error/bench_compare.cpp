@@ -38,6 +38,11 @@ constexpr std::array kThresholds = {
     Threshold{"worst_window", 0.002, 0.01},
     Threshold{"flicker", 1e-5, 0.01},
     Threshold{"ghosting", 0.0005, 0.01},
+    Threshold{"psnr_thin", 0.1, 0},
+    Threshold{"psnr_behind_thin", 0.1, 0},
+    Threshold{"psnr_disoccluded", 0.1, 0},
+    Threshold{"psnr_edge", 0.1, 0},
+    Threshold{"psnr_rest", 0.1, 0},
 };
 
 double threshold_of(std::string_view measure, double before) {

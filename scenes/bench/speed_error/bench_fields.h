@@ -21,6 +21,14 @@ void fields(Archive& io, Spread& value) {
   io("high", value.high);
 }
 
+// Named for what they are of, with the region behind it: "psnr_thin".
+template <typename Archive>
+void region_fields(Archive& io, const std::string& prefix, RegionFigures& value) {
+  constexpr std::array<const char*, kRegions> kNames = {"thin", "behind_thin", "disoccluded", "edge", "rest"};
+  for (std::size_t i = 0; i < kRegions; ++i)
+    io((prefix + kNames[i]).c_str(), value[i]);
+}
+
 template <typename Archive>
 void fields(Archive& io, Quality& value) {
   io("psnr", value.psnr);
@@ -35,6 +43,7 @@ void fields(Archive& io, Quality& value) {
   io("worst_y", value.worst_y);
   io("flicker", value.flicker);
   io("ghosting", value.ghosting);
+  region_fields(io, "psnr_", value.region_psnr);
   io("non_finite", value.non_finite);
 }
 
@@ -93,6 +102,7 @@ void fields(Archive& io, SceneRow& value) {
   io("reason", value.reason);
   io("truth_flicker", value.truth_flicker);
   io("disoccluded", value.disoccluded);
+  region_fields(io, "part_", value.region_part);
 }
 
 template <typename Archive>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "bench/speed_error/bench_quality.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace quincunx::bench {
@@ -23,8 +24,7 @@ double pixel_error(const tools::MeasuredPicture& picture, const tools::MeasuredP
 }  // namespace
 
 void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPicture& truth,
-                       const tools::MeasuredPicture* previous_truth,
-                       std::span<const std::uint8_t> disoccluded) {
+                       const tools::MeasuredPicture* previous_truth, const FrameMasks& masks) {
   const tools::PictureScores scores = tools::measure(picture, truth);
   error_ += squared_error_of(scores.psnr_tone_mapped);
   error_linear_ += squared_error_of(scores.psnr_linear);
@@ -42,13 +42,18 @@ void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPict
   if (latest_ && previous_truth != nullptr) {
     flicker_ += tools::flicker(picture, *latest_, truth, *previous_truth);
   }
-  for (std::size_t i = 0; i < disoccluded.size(); ++i) {
-    if (disoccluded[i] == 0) continue;
-    disoccluded_error_ += pixel_error(picture, truth, i);
-    ++disoccluded_count_;
+  for (std::size_t i = 0; i < masks.regions.size(); ++i) {
+    const double error = pixel_error(picture, truth, i);
+    regions_[static_cast<std::size_t>(masks.regions[i])].add(error);
+    if (masks.disoccluded[i] != 0) disoccluded_.add(error);
   }
   latest_ = std::move(picture);
   ++frames_;
+}
+
+void QualityTally::PartError::add(double squared_error) {
+  squares += squared_error;
+  ++count;
 }
 
 Quality QualityTally::quality() const {
@@ -61,8 +66,10 @@ Quality QualityTally::quality() const {
   quality.error_p99 = p99_ / count;
   quality.relative_error = relative_ / count;
   if (frames_ > 1) quality.flicker = flicker_ / (count - 1);
-  if (disoccluded_count_ > 0) {
-    quality.ghosting = std::sqrt(disoccluded_error_ / static_cast<double>(disoccluded_count_));
+  if (disoccluded_.count > 0) quality.ghosting = std::sqrt(disoccluded_.mean_square());
+  for (std::size_t i = 0; i < kRegions; ++i) {
+    if (regions_[i].count == 0) continue;
+    quality.region_psnr[i] = std::min(-10 * std::log10(regions_[i].mean_square()), kHighestRegionPsnr);
   }
   quality.non_finite = non_finite_;
   return quality;

@@ -2,6 +2,7 @@
 // BenchResult: everything that one run of quincunx-bench found out, as plain data, JSON and CSV.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -27,6 +28,20 @@ struct Spread {
   friend bool operator==(const Spread&, const Spread&) = default;
 };
 
+// What a pixel shows, where methods fail apart; each pixel is in one, the first that holds. docs/bench.md defines each.
+enum class Region : std::uint8_t {
+  kThin,         // something thinner than four pixels
+  kBehindThin,   // what is within four pixels of something thin that stands before it
+  kDisoccluded,  // what was hidden within the last two frames
+  kEdge,         // within two pixels of where two motions meet
+  kRest,
+};
+inline constexpr std::size_t kRegions = 5;
+inline constexpr double kHighestRegionPsnr = 100;  // dB: stands for no error at all
+
+// Of each region; nothing where it has no pixel, and in results of before there were regions.
+using RegionFigures = std::array<std::optional<double>, kRegions>;
+
 // Errors against supersampled truth over the measured frames. Colours are exposed as the scene asks; "tone
 // mapped" is max(c, 0) / (1 + c), sRGB encoded. docs/bench.md defines each.
 struct Quality {
@@ -42,6 +57,7 @@ struct Quality {
   int worst_y = 0;
   std::optional<double> flicker;   // absent where one frame was measured
   std::optional<double> ghosting;  // RMS error of what was disoccluded; absent where nothing was
+  RegionFigures region_psnr;       // dB, as psnr
   std::int64_t non_finite = 0;     // pixels, all frames
 
   friend bool operator==(const Quality&, const Quality&) = default;
@@ -108,6 +124,7 @@ struct SceneRow {
   std::string reason;
   std::optional<double> truth_flicker;  // mean change of the truth's own luma from frame to frame
   double disoccluded = 0;               // part of the pixels that was disoccluded in the last two frames
+  RegionFigures region_part;            // of the pixels
 
   friend bool operator==(const SceneRow&, const SceneRow&) = default;
 };

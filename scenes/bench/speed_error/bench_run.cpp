@@ -57,7 +57,8 @@ class Runner {
     auto truth = make_truth(stage.value()->renderer(), scene, result_.machine.gl_version, plan.conditions);
     if (!truth.ok()) return truth.status();
     step(name + ": truth");
-    result_.scenes.push_back({name, scene.summary, scene.reason, truth->flicker, truth->disoccluded_part});
+    result_.scenes.push_back(
+        {name, scene.summary, scene.reason, truth->flicker, truth->disoccluded_part, truth->region_part});
     gallery_.begin_scene(name, truth->pictures.back());
     for (const double scale : plan_.scales) {
       if (Status status = run_case(*stage.value(), plan, truth.value(), name, scale); !status.ok())

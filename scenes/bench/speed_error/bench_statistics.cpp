@@ -15,6 +15,11 @@ constexpr double kConfidence = 0.95;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+template <Region kRegion>
+double region_psnr(const Quality& quality) {
+  return quality.region_psnr[static_cast<std::size_t>(kRegion)].value_or(kNone);
+}
+
 constexpr std::array kMeasures = {
     ErrorMeasure{"flip", "FLIP", false, [](const Quality& q) { return q.flip; }},
     ErrorMeasure{"psnr", "PSNR, dB", true, [](const Quality& q) { return q.psnr; }},
@@ -29,6 +34,12 @@ constexpr std::array kMeasures = {
                  [](const Quality& q) { return q.worst_window; }},
     ErrorMeasure{"flicker", "flicker", false, [](const Quality& q) { return q.flicker.value_or(kNone); }},
     ErrorMeasure{"ghosting", "ghosting", false, [](const Quality& q) { return q.ghosting.value_or(kNone); }},
+    ErrorMeasure{"psnr_thin", "PSNR of thin things, dB", true, region_psnr<Region::kThin>},
+    ErrorMeasure{"psnr_behind_thin", "PSNR behind thin things, dB", true, region_psnr<Region::kBehindThin>},
+    ErrorMeasure{"psnr_disoccluded", "PSNR of what is disoccluded, dB", true,
+                 region_psnr<Region::kDisoccluded>},
+    ErrorMeasure{"psnr_edge", "PSNR of edges of motion, dB", true, region_psnr<Region::kEdge>},
+    ErrorMeasure{"psnr_rest", "PSNR of the rest, dB", true, region_psnr<Region::kRest>},
 };
 
 Samples joined(const Rounds& rounds, std::span<const std::size_t> chosen) {

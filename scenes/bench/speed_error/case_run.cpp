@@ -127,7 +127,7 @@ Status CaseRun::measure_frame(int frame) {
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
     entries_[i]->tally.add(
         measured(plan_.conditions.output, std::move(pictures[i]), inputs_[entries_[i]->feed].exposure),
-        truth_.pictures[at], previous, truth_.disoccluded[at]);
+        truth_.pictures[at], previous, truth_.masks[at]);
   });
   return {};
 }

@@ -10,7 +10,6 @@
 #include <filesystem>
 
 #include "bench/speed_error/bench_plan.h"
-#include "bench/speed_error/disocclusion.h"
 #include "programs/target_file.h"
 #include "quincunx/cache_folder.h"
 #include "render/embedded_shaders.h"
@@ -85,11 +84,30 @@ double mean_change(const tools::MeasuredPicture& picture, const tools::MeasuredP
   return sum / static_cast<double>(picture.luma().size());
 }
 
+// How much of all measured pixels each mask covers.
+void add_parts(SceneTruth& truth) {
+  double pixels = 0;
+  double disoccluded = 0;
+  std::array<double, kRegions> regions{};
+  for (const FrameMasks& masks : truth.masks) {
+    pixels += static_cast<double>(masks.regions.size());
+    disoccluded += static_cast<double>(std::count(masks.disoccluded.begin(), masks.disoccluded.end(), 1));
+    for (const Region region : masks.regions)
+      regions[static_cast<std::size_t>(region)] += 1;
+  }
+  truth.disoccluded_part = disoccluded / pixels;
+  for (std::size_t i = 0; i < kRegions; ++i)
+    truth.region_part[i] = regions[i] / pixels;
+}
+
 }  // namespace
 
 tools::MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure) {
-  for (float& value : rgba)
-    value *= exposure;
+  constexpr float kGrey = 0.18f;
+  for (std::size_t i = 0; i < rgba.size(); i += 4) {
+    for (std::size_t c = i; c < i + 3; ++c)
+      rgba[c] = rgba[c] * exposure + kGrey * (1 - rgba[i + 3]);
+  }
   return {extent, rgba};
 }
 
@@ -106,14 +124,10 @@ Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& s
     spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
   }
   if (conditions.frames > 1) truth.flicker = change / (conditions.frames - 1);
-  auto disoccluded = disoccluded_pixels(renderer, scene, conditions);
-  if (!disoccluded.ok()) return disoccluded.status();
-  truth.disoccluded = std::move(disoccluded).value();
-  std::int64_t count = 0;
-  for (const auto& mask : truth.disoccluded)
-    count += std::count(mask.begin(), mask.end(), 1);
-  truth.disoccluded_part =
-      static_cast<double>(count) / static_cast<double>(conditions.output.area() * conditions.frames);
+  auto masks = masks_of_frames(renderer, scene, conditions);
+  if (!masks.ok()) return masks.status();
+  truth.masks = std::move(masks).value();
+  add_parts(truth);
   return truth;
 }
 

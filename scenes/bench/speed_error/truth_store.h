@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// SceneTruth: what the measured frames of a scene truly look like, and which of their pixels are disoccluded.
+// SceneTruth: what the measured frames of a scene truly look like, and what their pixels show.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/speed_error/bench_result.h"
+#include "bench/speed_error/regions.h"
 #include "render/renderer.h"
 #include "tools/image/image_metrics.h"
 
@@ -16,10 +16,10 @@ namespace quincunx::bench {
 // One truth for all scales and methods: made once, before anything is timed.
 struct SceneTruth {
   std::vector<tools::MeasuredPicture> pictures;  // of each measured frame, exposed
-  // Of each measured frame: 1 where a pixel was hidden within the last two frames.
-  std::vector<std::vector<std::uint8_t>> disoccluded;
-  std::optional<double> flicker;  // mean change of luma from frame to frame
-  double disoccluded_part = 0;    // of all pixels
+  std::vector<FrameMasks> masks;                 // of each measured frame
+  std::optional<double> flicker;                 // mean change of luma from frame to frame
+  double disoccluded_part = 0;                   // of all pixels
+  RegionFigures region_part;                     // of all pixels
 };
 
 // Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
@@ -28,7 +28,7 @@ struct SceneTruth {
 Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions);
 
-// Linear RGBA, made ready to compare.
+// Linear RGBA, exposed, made ready to compare. What is transparent is laid over grey, so that alpha counts.
 tools::MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure);
 
 }  // namespace quincunx::bench

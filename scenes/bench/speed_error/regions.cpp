@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "bench/speed_error/regions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bench/speed_error/bench_plan.h"
+
+namespace quincunx::bench {
+namespace {
+
+constexpr int kThinBlock = 4;         // pixels: two samples each way at half scale
+constexpr int kBehindReach = 4;       // pixels
+constexpr int kEdgeReach = 2;         // pixels
+constexpr float kOtherMotion = 0.5f;  // pixels a frame
+
+using Values = std::vector<float>;
+
+struct Window {
+  int back;
+  int ahead;
+};
+
+float least(float a, float b) {
+  return std::min(a, b);
+}
+float greatest(float a, float b) {
+  return std::max(a, b);
+}
+
+// Of each pixel the best value in the square window from `back` pixels before it to `ahead` after it, each way, as far
+// as the picture goes.
+template <typename Best>
+Values best_in(Extent extent, const Values& values, Window window, const Best& best) {
+  const auto pass = [&](const Values& from, std::ptrdiff_t step, const auto& place, int length) {
+    Values to = from;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      const int at = place(static_cast<int>(i));
+      for (int k = -std::min(window.back, at); k <= std::min(window.ahead, length - 1 - at); ++k)
+        to[i] = best(to[i], from[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + k * step)]);
+    }
+    return to;
+  };
+  const Values rows = pass(
+      values, 1, [&](int i) { return i % extent.width; }, extent.width);
+  return pass(
+      rows, extent.width, [&](int i) { return i / extent.width; }, extent.height);
+}
+
+// Of each pixel how near its surface may be to fill a block: the best of all blocks that hold it, the worst of each.
+Values opened(Extent extent, std::span<const float> nearest) {
+  constexpr int kMargin = kThinBlock - 1;
+  const Extent padded{extent.width + 2 * kMargin, extent.height + 2 * kMargin};
+  const auto padded_index = [&](int x, int y) {
+    return static_cast<std::size_t>(y + kMargin) * padded.width + static_cast<std::size_t>(x + kMargin);
+  };
+  Values values(static_cast<std::size_t>(padded.area()), std::numeric_limits<float>::infinity());
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x)
+      values[padded_index(x, y)] = nearest[static_cast<std::size_t>(y) * extent.width + x];
+  }
+  values = best_in(padded, values, {0, kMargin}, least);
+  values = best_in(padded, values, {kMargin, 0}, greatest);
+  Values inside(nearest.size());
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x)
+      inside[static_cast<std::size_t>(y) * extent.width + x] = values[padded_index(x, y)];
+  }
+  return inside;
+}
+
+std::vector<std::uint8_t> above_zero(const Values& values) {
+  std::vector<std::uint8_t> mask(values.size());
+  std::transform(values.begin(), values.end(), mask.begin(), [](float value) { return value > 0 ? 1 : 0; });
+  return mask;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> thin_pixels(Extent extent, std::span<const float> nearest) {
+  const Values blocks = opened(extent, nearest);
+  std::vector<std::uint8_t> thin(nearest.size());
+  for (std::size_t i = 0; i < thin.size(); ++i)
+    thin[i] = is_nearer(nearest[i], blocks[i]) ? 1 : 0;
+  return thin;
+}
+
+std::vector<std::uint8_t> behind_thin_pixels(Extent extent, std::span<const float> nearest,
+                                             std::span<const std::uint8_t> thin) {
+  Values thin_depth(nearest.size());
+  for (std::size_t i = 0; i < thin_depth.size(); ++i)
+    thin_depth[i] = thin[i] != 0 ? nearest[i] : 0;
+  thin_depth = best_in(extent, thin_depth, {kBehindReach, kBehindReach}, greatest);
+  std::vector<std::uint8_t> behind(nearest.size());
+  for (std::size_t i = 0; i < behind.size(); ++i)
+    behind[i] = thin[i] == 0 && is_nearer(thin_depth[i], nearest[i]) ? 1 : 0;
+  return behind;
+}
+
+std::vector<std::uint8_t> edges_of_motion(const Geometry& geometry) {
+  const auto width = static_cast<std::size_t>(geometry.extent.width);
+  Values meets(geometry.velocity.size(), 0);
+  const auto compare = [&](std::size_t i, std::size_t other) {
+    const Vec2 a = geometry.velocity[i];
+    const Vec2 b = geometry.velocity[other];
+    const float apart = std::hypot((a.x - b.x) * static_cast<float>(geometry.extent.width),
+                                   (a.y - b.y) * static_cast<float>(geometry.extent.height));
+    if (apart > kOtherMotion) meets[i] = meets[other] = 1;
+  };
+  for (std::size_t i = 0; i < meets.size(); ++i) {
+    if ((i + 1) % width != 0) compare(i, i + 1);
+    if (i + width < meets.size()) compare(i, i + width);
+  }
+  return above_zero(best_in(geometry.extent, meets, {kEdgeReach, kEdgeReach}, greatest));
+}
+
+std::vector<Region> regions_of(const Geometry& geometry, std::span<const float> nearest,
+                               std::span<const std::uint8_t> disoccluded) {
+  const auto thin = thin_pixels(geometry.extent, nearest);
+  const auto behind = behind_thin_pixels(geometry.extent, nearest, thin);
+  const auto edge = edges_of_motion(geometry);
+  std::vector<Region> regions(nearest.size(), Region::kRest);
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (thin[i] != 0) {
+      regions[i] = Region::kThin;
+    } else if (behind[i] != 0) {
+      regions[i] = Region::kBehindThin;
+    } else if (disoccluded[i] != 0) {
+      regions[i] = Region::kDisoccluded;
+    } else if (edge[i] != 0) {
+      regions[i] = Region::kEdge;
+    }
+  }
+  return regions;
+}
+
+Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, const scenes::Scene& scene,
+                                                const Conditions& conditions) {
+  constexpr int kBack = 2;
+  const gl::RenderTargets targets({.target = conditions.output, .velocity = true, .reactive = false});
+  std::vector<FrameMasks> masks;
+  Geometry before;
+  std::vector<std::uint8_t> older;
+  for (int frame = -kBack; frame < conditions.frames; ++frame) {
+    const int index = conditions.warm_up + frame;
+    const double seconds = seconds_of(conditions, index);
+    const double previous = seconds_of(conditions, index - 1);
+    const bool cut = scenes::is_cut(scene, previous, seconds);
+    auto now = geometry_at(renderer, targets, seconds, cut ? seconds : previous);
+    if (!now.ok()) return now.status();
+    if (frame > -kBack) {
+      const std::vector<std::uint8_t> none(now->depth.size(), 0);
+      if (cut) older = none;
+      std::vector<std::uint8_t> newer = cut ? none : disoccluded_since(now.value(), before);
+      if (frame >= 0) {
+        const auto nearest = nearest_depth_at(renderer, targets, seconds);
+        if (!nearest.ok()) return nearest.status();
+        FrameMasks& kept = masks.emplace_back();
+        kept.disoccluded = disoccluded_within_two(now.value(), newer, older);
+        kept.regions = regions_of(now.value(), nearest.value(), kept.disoccluded);
+      }
+      older = std::move(newer);
+    }
+    before = std::move(now).value();
+  }
+  return masks;
+}
+
+}  // namespace quincunx::bench
