@@ -65,6 +65,20 @@ TEST(Statistics, FrontsAreThoseOfTheirSceneScaleAndMeasure) {
   EXPECT_TRUE(has(result.rows[1], "flicker"));
 }
 
+TEST(Findings, MeansOfRegionsAreThoseOfTheScenesThatHaveThem) {
+  BenchResult result = testing::sample_result();
+  result.scenes.push_back({"other", "", "", 0, 0, {}});
+  Row other = result.rows[0];
+  other.scene = "other";
+  other.quality.region_psnr = {10, {}, 15, {}, {}};
+  result.rows.push_back(other);
+  const MethodMean mean = method_means(result).front();
+  EXPECT_NEAR(mean.region_psnr[0].value(), -10 * std::log10((0.1 + 0.01) / 2), 1e-9);  // 10 and 20 dB
+  EXPECT_NEAR(mean.region_psnr[1].value(), 28, 1e-9);
+  EXPECT_NEAR(mean.region_psnr[2].value(), 15, 1e-9);
+  EXPECT_FALSE(mean.region_psnr[3].has_value());
+}
+
 TEST(Findings, SpeakOfTheSample) {
   const BenchResult result = testing::sample_result();
   const auto seventy = seventy_percent(result);

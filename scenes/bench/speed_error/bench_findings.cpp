@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -22,21 +23,38 @@ std::vector<double> scales_of(const BenchResult& result) {
   return {scales.begin(), scales.end()};
 }
 
+double squared_error_of(double decibels) {
+  return std::pow(10, -decibels / 10);
+}
+
+double decibels_of(const Samples& squared_errors) {
+  return -10 * std::log10(mean_of(squared_errors));
+}
+
 MethodMean mean_over_scenes(const BenchResult& result, double scale, const std::string& method) {
   Samples flip, squared_error, ms, cost;
+  std::array<Samples, kRegions> regions;
   for (const Row& row : result.rows) {
     if (row.scale != scale || row.method != method) continue;
     flip.push_back(row.quality.flip);
-    squared_error.push_back(std::pow(10, -row.quality.psnr / 10));
+    squared_error.push_back(squared_error_of(row.quality.psnr));
+    for (std::size_t i = 0; i < kRegions; ++i) {
+      if (row.quality.region_psnr[i]) regions[i].push_back(squared_error_of(*row.quality.region_psnr[i]));
+    }
     ms.push_back(row.speed.ms.median);
     cost.push_back(cost_of(result.machine, row).median);
   }
-  return {.scale = scale,
-          .method = method,
-          .flip = mean_of(flip),
-          .psnr = -10 * std::log10(mean_of(squared_error)),
-          .ms = mean_of(ms),
-          .cost = mean_of(cost)};
+  MethodMean mean{.scale = scale,
+                  .method = method,
+                  .flip = mean_of(flip),
+                  .psnr = decibels_of(squared_error),
+                  .region_psnr = {},
+                  .ms = mean_of(ms),
+                  .cost = mean_of(cost)};
+  for (std::size_t i = 0; i < kRegions; ++i) {
+    if (!regions[i].empty()) mean.region_psnr[i] = decibels_of(regions[i]);
+  }
+  return mean;
 }
 
 const FrameRow* frame_at(const BenchResult& result, const std::string& scene, double scale) {
@@ -174,14 +192,19 @@ std::string text_of(const BenchResult& result) {
       fmt::format("{}, {}x{}, {} measured frames in each of {} rounds\n{} | {}\n", scenes_text(result),
                   result.conditions.output.width, result.conditions.output.height, result.conditions.frames,
                   result.conditions.rounds, result.machine.cl_device, result.machine.gl_renderer);
-  text += fmt::format("\n{:<6} {:<24} {:>8} {:>8} {:>9} {:>8}\n", "scale", "method", "FLIP", "PSNR dB", "ms",
-                      "copies");
-  for (const MethodMean& mean : method_means(result)) {
-    text += fmt::format("{:<6} {:<24} {:>8.4f} {:>8.2f} {:>9.3f} {:>8.2f}{}\n", mean.scale, mean.method,
-                        mean.flip, mean.psnr, mean.ms, mean.cost, mean.on_front ? "  *" : "");
-  }
   text +=
-      fmt::format("* no other method is cheaper and better; copies by {}\n\n", cost_clock(result.machine));
+      fmt::format("\n{:<6} {:<24} {:>8} {:>8} {:>9} {:>8}  {:>8} {:>8} {:>8} {:>8} {:>8}\n", "scale",
+                  "method", "FLIP", "PSNR dB", "ms", "copies", "thin", "behind", "disoccl", "edge", "rest");
+  for (const MethodMean& mean : method_means(result)) {
+    text += fmt::format("{:<6} {:<24} {:>8.4f} {:>8.2f} {:>9.3f} {:>8.2f}{}", mean.scale, mean.method,
+                        mean.flip, mean.psnr, mean.ms, mean.cost, mean.on_front ? " *" : "  ");
+    for (const auto& psnr : mean.region_psnr)
+      text += psnr ? fmt::format("{:>8.2f} ", *psnr) : fmt::format("{:>8} ", "-");
+    text.back() = '\n';
+  }
+  text += fmt::format(
+      "* no other method is cheaper and better; copies by {}; the last five are PSNR, dB, of regions\n\n",
+      cost_clock(result.machine));
   for (const Finding& finding : findings_of(result))
     text += fmt::format("{:>9}  {}. {}\n", finding.figure, finding.heading, finding.sentence);
   return text;

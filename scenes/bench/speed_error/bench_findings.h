@@ -25,7 +25,8 @@ struct MethodMean {
   double scale = 1;
   std::string method;
   double flip = 0;
-  double psnr = 0;  // of the mean squared error
+  double psnr = 0;            // of the mean squared error
+  RegionFigures region_psnr;  // the same, over the scenes that have the region
   double ms = 0;
   double cost = 0;        // copies, by the clock that holds
   bool on_front = false;  // of FLIP over cost
