@@ -11,9 +11,12 @@
 //     by cut     over the whole picture history foretells no better than the neighbours: it is another picture
 //     by change  the tile's own samples agree that it is brighter or darker now, by more than its aliasing has shown in
 //                flicker and in the neighbours' error, as in the first frames of a moving highlight
+//   calm       a tile that stands still, around which no suspicion was confirmed lately: there rejection by error and
+//              by change wait for a second frame, because in a still picture each place of the jitter can look like a
+//              change of its own
 //
 //   tiles_x, tiles_y  in   how many tiles there are
-//   tiles             in   TileReprojection of each tile: motion edges
+//   tiles             in   TileReprojection of each tile: motion edges, and whether it stands still
 //   evidence          in   TileEvidence of each tile
 //   total             in   TotalLight: of all tiles
 //   previous          in   TileLight of each tile, of the previous frame
@@ -38,7 +41,7 @@
 #define DIFFERING_COHERENT 0.5f   // least coherence of such a tile
 // Rejection by error.
 #define ERROR_RATIO 1.6f          // of history's error to the neighbours', from which on it rejects
-#define ERROR_FLOOR 0.02f         // luma, summed over 3x3 tiles: less is no error
+#define ERROR_FLOOR 0.002f        // luma, of each sample: less is no error
 #define INCOHERENT 0.5f           // of the error: a larger part that is brightening may be a change of light
 // Rejection by cut. Without one the ratio is .6 to .9.
 #define CUT_RATIO 0.95f           // of history's error to the neighbours', from which on it rejects
@@ -53,18 +56,25 @@
 #define CHANGE_RANGE 0.5f         // by how much more of what is usual it rejects wholly
 #define FLICKER_MEMORY 0.9f       // of flicker, from one frame to the next. Without flicker -.08 dB, still -.8
 
+// Calm tiles. Without them about twenty tiles of a still picture are rejected in each frame.
+#define CONFIRMING_COST 0.3f      // of a suspicion that two frames share
+#define SURE_ALONE 4.0f           // from which on a suspicion of one frame rejects
+#define UNREST_MEMORY 0.97f       // from one frame to the next
+#define CALM 0.3f                 // most unrest: 40 frames after the last confirmed suspicion
+
 #define SMALLEST_SUM 1e-6f  // keeps 0 / 0 from becoming NaN
 
 // The evidence of 3x3 tiles.
 typedef struct EvidenceAround {
   TileEvidence sum;
   float change;  // of the magnitudes of the brightenings
+  float unrest;  // the most, in the previous frame
   bool has_motion_edge;
 } EvidenceAround;
 
 static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
-                                          int tiles_x, int tiles_y, int x, int y) {
-  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, false};
+                                          __global const TileLight* previous, int tiles_x, int tiles_y, int x, int y) {
+  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, false};
   for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
     for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
       const int i = row * tiles_x + column;
@@ -76,6 +86,7 @@ static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles
       around.sum.count += tile.count;
       around.sum.brighter += tile.brighter;
       around.change += fabs(tile.brightening);
+      around.unrest = max(around.unrest, previous[i].unrest);
       around.has_motion_edge = around.has_motion_edge || tiles[i].has_motion_edge;
     }
   }
@@ -126,10 +137,10 @@ static inline float alternation(float now, float before) {
   return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
-static inline float rejection_by_error(const TileEvidence* sum) {
-  const float allowed = ERROR_RATIO * sum->neighbour_error + ERROR_FLOOR;
+static inline float suspicion_by_error(const TileEvidence* sum) {
+  const float allowed = ERROR_RATIO * sum->neighbour_error + ERROR_FLOOR * max(sum->count, 1.0f);
   const bool incoherent = fabs(sum->brightening) < INCOHERENT * sum->history_error;
-  return incoherent ? (sum->history_error - allowed) / allowed : 0.0f;
+  return incoherent ? max((sum->history_error - allowed) / allowed, 0.0f) : 0.0f;
 }
 
 static inline float rejection_by_cut(const TotalLight* total) {
@@ -138,14 +149,19 @@ static inline float rejection_by_cut(const TotalLight* total) {
   return (error - CUT_RATIO * usual) / (CUT_RANGE * usual + 1.0f);
 }
 
-static inline float rejection_by_change(const TileEvidence* tile, float mean_brightening, float flicker,
+static inline float suspicion_by_change(const TileEvidence* tile, float mean_brightening, float flicker,
                                         float neighbour_error) {
   // A test of signs, corrected as for few samples: three must all agree.
   const float majority = fabs(tile->brighter) - 1.0f;
   const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST * tile->count;
   if (!is_agreed || fabs(tile->brightening) <= LEAST_CHANGE * tile->light) return 0.0f;
   const float usual = NEIGHBOUR_SHARE * neighbour_error + FLICKER_SHARE * flicker + CHANGE_FLOOR;
-  return (fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual);
+  return max((fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual), 0.0f);
+}
+
+// What is left of a suspicion in a calm tile. Positive if confirmed.
+static inline float confirm(float suspected, float before) {
+  return max(min(suspected, before) - CONFIRMING_COST, suspected - SURE_ALONE);
 }
 
 __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
@@ -158,7 +174,7 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
   const TileEvidence own = evidence[i];
   const TileLight before = previous[i];
   const TotalLight whole = *total;
-  const EvidenceAround around = sum_evidence(tiles, evidence, tiles_x, tiles_y, x, y);
+  const EvidenceAround around = sum_evidence(tiles, evidence, previous, tiles_x, tiles_y, x, y);
   const LightChange change = change_of(&around);
   TileLight tile;
 
@@ -177,12 +193,24 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
   tile.flicker = FLICKER_MEMORY * before.flicker +
                  (1.0f - FLICKER_MEMORY) * alternation(tile.mean_brightening, before.mean_brightening);
 
-  // Rejection.
-  const float by_error = rejection_by_error(&around.sum);
-  const float by_cut = relit ? 0.0f : rejection_by_cut(&whole);
+  // Suspicions.
   const float mean_error = around.sum.neighbour_error / max(around.sum.count, 1.0f);
-  const float by_change =
-      tile.gain == 1.0f ? rejection_by_change(&own, tile.mean_brightening, tile.flicker, mean_error) : 0.0f;
+  const float error = suspicion_by_error(&around.sum);
+  const float changed =
+      tile.gain == 1.0f ? suspicion_by_change(&own, tile.mean_brightening, tile.flicker, mean_error) : 0.0f;
+  tile.suspected_error = error;
+  tile.suspected_change = copysign(changed, tile.mean_brightening);
+  const float changed_before =
+      before.suspected_change * tile.mean_brightening > 0.0f ? fabs(before.suspected_change) : 0.0f;
+  const float sure_error = confirm(error, before.suspected_error);
+  const float sure_change = confirm(changed, changed_before);
+  tile.unrest = max(sure_error, sure_change) > 0.0f ? 1.0f : UNREST_MEMORY * before.unrest;
+
+  // Rejection.
+  const bool calm = stands_still(tiles[i]) && around.unrest < CALM;
+  const float by_error = calm ? sure_error : error;
+  const float by_change = calm ? sure_change : changed;
+  const float by_cut = relit ? 0.0f : rejection_by_cut(&whole);
   tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
   light[i] = tile;
 }

@@ -41,7 +41,10 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .rejection = number(light.rejection),
                                    .persistence = number(light.persistence),
                                    .flicker = number(light.flicker),
-                                   .mean_brightening = number(light.mean_brightening)};
+                                   .mean_brightening = number(light.mean_brightening),
+                                   .suspected_error = number(light.suspected_error),
+                                   .suspected_change = number(light.suspected_change),
+                                   .unrest = number(light.unrest)};
   return made;
 }
 
@@ -63,7 +66,10 @@ reference::Tile to_reference(const KernelTile& tile) {
                     .rejection = number(tile.rejection),
                     .persistence = number(tile.persistence),
                     .flicker = number(tile.flicker),
-                    .mean_brightening = number(tile.mean_brightening)}};
+                    .mean_brightening = number(tile.mean_brightening),
+                    .suspected_error = number(tile.suspected_error),
+                    .suspected_change = number(tile.suspected_change),
+                    .unrest = number(tile.unrest)}};
 }
 
 PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {

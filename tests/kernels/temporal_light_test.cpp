@@ -50,12 +50,16 @@ class Finder {
       tile.brightening = std::copysign(tile.history_error, tile.brighter);
     }
     tile.has_motion_edge = round % 7 < 3 && uniform() < .06 ? 1 : 0;
+    tile.is_rigid = found.tiles.size() % 5 == 0 ? 0 : 1;
     add_to_total(found.total, tile, round);
     found.tiles.push_back(testing::to_reference(tile));
     tile.persistence = static_cast<float>(2 * uniform() - 1);
     tile.flicker = uniform() < .5 ? below(.01) : below(.2);
     if (uniform() < .5) tile.brightening *= static_cast<float>(-2 * uniform());
     tile.mean_brightening = tile.brightening / std::max(tile.count, 1.f);
+    if (round % 2 == 0) tile.suspected_error = std::abs(tile.brightening);
+    if (round % 4 < 2) tile.suspected_change = std::copysign(tile.neighbour_error, tile.brightening);
+    if (found.tiles.size() % 11 == 0) tile.unrest = std::abs(tile.persistence);
     found.before.push_back(testing::to_reference(tile));
   }
 
@@ -106,16 +110,23 @@ std::vector<reference::TileLight> without_edges(Findings found) {
   return lights_of(found);
 }
 
+std::vector<reference::TileLight> with_unrest(Findings found, double unrest) {
+  for (Tile& tile : found.before)
+    tile.light.unrest = unrest;
+  return lights_of(found);
+}
+
 // How many tiles meet what: each finding is taken away to see what it changes.
 struct Met {
   int tiles = 0, decided = 0, relit = 0, rejected = 0;
   int gain_held_back = 0, gain_of_the_whole = 0;  // by a motion edge
   int alternating = 0, changed = 0, hidden_by_flicker = 0;
+  int confirmed = 0, hidden_by_calm = 0;
 
   template <typename Expected>
   void add(const Findings& found, const std::vector<Expected>& expected) {
     const std::vector<reference::TileLight> joined = without_edges(found), calm = with_flicker(found, 0),
-                                            wild = with_flicker(found, 1e6);
+                                            wild = with_flicker(found, 1e6), restless = with_unrest(found, 1);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const double gain = expected[i].value.gain, rejection = expected[i].value.rejection;
       ++tiles;
@@ -128,6 +139,8 @@ struct Met {
       alternating += calm[i].flicker > 0 ? 1 : 0;
       changed += rejection > wild[i].rejection ? 1 : 0;
       hidden_by_flicker += rejection < calm[i].rejection ? 1 : 0;
+      confirmed += expected[i].value.unrest == 1 ? 1 : 0;
+      hidden_by_calm += rejection < restless[i].rejection ? 1 : 0;
     }
   }
 };
@@ -156,6 +169,10 @@ TEST(TemporalLight, MatchesTheReference) {
       expect_near(value.gain, bound.gain, actual[i].gain, what + "gain");
       expect_near(value.rejection, bound.rejection, actual[i].rejection, what + "rejection");
       expect_near(value.persistence, bound.persistence, actual[i].persistence, what + "persistence");
+      expect_near(value.suspected_error, bound.suspected_error, actual[i].suspected_error, what + "error");
+      expect_near(value.suspected_change, bound.suspected_change, actual[i].suspected_change,
+                  what + "change");
+      expect_near(value.unrest, bound.unrest, actual[i].unrest, what + "unrest");
       if (HasFatalFailure()) return;
     }
     met.add(found, expected);
@@ -168,6 +185,8 @@ TEST(TemporalLight, MatchesTheReference) {
   EXPECT_GT(met.alternating, met.tiles / 20);
   EXPECT_GT(met.changed, met.tiles / 100);
   EXPECT_GT(met.hidden_by_flicker, met.tiles / 100);
+  EXPECT_GT(met.confirmed, met.tiles / 100);
+  EXPECT_GT(met.hidden_by_calm, met.tiles / 100);
 }
 
 }  // namespace

@@ -370,10 +370,6 @@ PixelOf<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Re
   return texel;
 }
 
-bool is_still(const TileReprojection& tile) {
-  return tile.is_rigid && tile.phase[0] == 0 && tile.phase[1] == 0 && tile.step[0] == 0 && tile.step[1] == 0;
-}
-
 }  // namespace
 
 template <typename Real>
@@ -401,7 +397,7 @@ PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>
   Real weight = 0;
   if (is_valid(sample)) {
     weight = sample_weight<Real>(sample, near.x.past * in.spacing(0), near.y.past * in.spacing(1),
-                                 is_still(tile), known.confidence);
+                                 stands_still(tile), known.confidence);
   }
   return accumulate(known, sample, weight);
 }

@@ -29,6 +29,10 @@ struct TileReprojectionOf {
 };
 using TileReprojection = TileReprojectionOf<double>;
 
+inline bool stands_still(const TileReprojection& tile) {
+  return tile.is_rigid && tile.phase[0] == 0 && tile.phase[1] == 0 && tile.step[0] == 0 && tile.step[1] == 0;
+}
+
 // What a tile's samples s say of the history h at their place, n being the mean of their four neighbours:
 // sums over the samples that judge, of luma, each divided by 1 + s + h.
 template <typename Real>
@@ -50,6 +54,10 @@ struct TileLightOf {
   Real persistence = 0;       // in [-1, 1]: of a coherent change of light, over frames
   Real flicker = 0;           // how far a sample's luma goes to and fro from frame to frame: aliasing
   Real mean_brightening = 0;  // of a sample
+  // What rejection by error and by change would be by this frame alone, from 0 on; that by change with the
+  // sign of the change.
+  Real suspected_error = 0, suspected_change = 0;
+  Real unrest = 0;  // 1 where a suspicion is confirmed; it fades
 };
 using TileLight = TileLightOf<double>;
 
@@ -111,7 +119,14 @@ TileEvidenceOf<Real> as(const TileEvidence& e) {
 }
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
-  return {l.gain, l.rejection, l.persistence, l.flicker, l.mean_brightening};
+  return {l.gain,
+          l.rejection,
+          l.persistence,
+          l.flicker,
+          l.mean_brightening,
+          l.suspected_error,
+          l.suspected_change,
+          l.unrest};
 }
 template <typename Real>
 TotalLightOf<Real> as(const TotalLight& t) {

@@ -13,11 +13,14 @@
 //                own
 //   flicker      f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where their signs
 //                differ, else 0
-//   rejection    the largest of three, each within [0, 1]:
-//     by error   (E - e) / e, e = 1.6 N + .02, where |B| < .5 E
+//   rejection    the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed part is
+//                max(min(s, s') - .3, s - 4), s' that of the previous frame, 0 if of the other sign of mean
+//     by error   (E - e) / e, e = 1.6 N + .002 n, where |B| < .5 E; in a calm tile its confirmed part
 //     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
-//                |brightening| > .15 light
+//                |brightening| > .15 light; in a calm tile its confirmed part
 //     by cut     (E' - .95 N') / (.25 N' + 1) of the whole picture's sums, where E' > .03 L' and it is not relit
+//   unrest       1 where the confirmed part of either suspicion is above 0, else u <- .97 u
+//   calm         the tile stands still, and in the nine tiles the previous frame's unrest is below .3
 // Source: found by measuring (docs/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
 // of the whole picture.
 #include <algorithm>
@@ -44,7 +47,7 @@ constexpr double kOwnDifference = .3;  // ... by a gain that differs by this par
 
 // Rejection.
 constexpr double kWorse = 1.6;          // times N: history foretells worse than the neighbours do
-constexpr double kErrorFloor = .02;     // of the nine tiles' sums
+constexpr double kErrorFloor = .002;    // of each sample
 constexpr double kIncoherent = .5;      // |B| / E below which the error is no change of light
 constexpr double kMajority = 1.1;       // (|b| - 1)^2 / samples: a test of signs
 constexpr double kOwnChange = .15;      // of the tile's own light
@@ -53,6 +56,10 @@ constexpr double kFlickerShare = 12;    // times flicker; without flicker -.08 d
 constexpr double kUsualFloor = .01;     // mean change of luma of a sample
 constexpr double kChangeRange = .5;     // times what is usual, over which rejection grows to 1
 constexpr double kFlickerMemory = .9;   // each frame: about ten
+constexpr double kConfirmingCost = .3;  // of what two frames share of a suspicion
+constexpr double kSureAlone = 4;        // suspicion of one frame that needs no other
+constexpr double kUnrestMemory = .97;   // each frame
+constexpr double kCalm = .3;            // unrest below which a tile that stands still is calm
 constexpr double kCut = .95;            // E / N of the whole picture after a cut; usual are .6 to .9
 constexpr double kCutRange = .25;       // of N, over which rejection grows to 1
 constexpr double kCutFloor = .03;       // of the whole picture's light
@@ -62,6 +69,7 @@ struct Sums {
   Real brightening = 0, change = 0, light = 0, history_error = 0, neighbour_error = 0;
   int count = 0;
   int brighter = 0;
+  double unrest = 0;  // the most
   bool has_motion_edge = false;
 };
 
@@ -78,6 +86,7 @@ Sums<Real> sums_around(const LightInputs& in, int x, int y) {
       sums.neighbour_error += tile.evidence.neighbour_error;
       sums.count += tile.evidence.count;
       sums.brighter += tile.evidence.brighter;
+      sums.unrest = std::max(sums.unrest, in.before[index_of(in.tiles_x, column, row)].light.unrest);
       sums.has_motion_edge = sums.has_motion_edge || tile.reprojection.has_motion_edge;
     }
   }
@@ -133,15 +142,15 @@ Real update_flicker(const Real& mean_brightening, const TileLightOf<Real>& befor
 
 // History foretells the samples worse than their neighbours do, and not by a change of light.
 template <typename Real>
-Real rejection_by_error(const Sums<Real>& sums) {
+Real suspicion_by_error(const Sums<Real>& sums) {
   if (abs(sums.brightening) >= kIncoherent * sums.history_error) return 0;
-  const Real allowed = kWorse * sums.neighbour_error + kErrorFloor;
-  return clamp((sums.history_error - allowed) / allowed, 0, 1);
+  const Real allowed = kWorse * sums.neighbour_error + Real(kErrorFloor) * std::max(sums.count, 1);
+  return max((sums.history_error - allowed) / allowed, 0);
 }
 
 // The tile's own samples agree that it is brighter or darker now, by more than aliasing has shown so far.
 template <typename Real>
-Real rejection_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& light,
+Real suspicion_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& light,
                          const Sums<Real>& sums) {
   if (light.gain != 1) return 0;
   const int majority = std::abs(evidence.brighter) - 1;
@@ -149,7 +158,30 @@ Real rejection_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf
   if (abs(evidence.brightening) <= kOwnChange * evidence.light) return 0;
   const Real neighbours = sums.neighbour_error / std::max(sums.count, 1);
   const Real usual = kNeighbourShare * neighbours + kFlickerShare * light.flicker + kUsualFloor;
-  return clamp((abs(light.mean_brightening) - usual) / (kChangeRange * usual), 0, 1);
+  return max((abs(light.mean_brightening) - usual) / (kChangeRange * usual), 0);
+}
+
+// What is left of a suspicion where a second frame must confirm it.
+template <typename Real>
+Real confirm(const Real& suspected, const Real& before) {
+  return max(min(suspected, before) - kConfirmingCost, suspected - kSureAlone);
+}
+
+// Suspicions, unrest, and rejection but for a cut.
+template <typename Real>
+void suspect(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& before, const Sums<Real>& sums,
+             bool is_still, TileLightOf<Real>& light) {
+  const Real error = suspicion_by_error(sums);
+  const Real change = suspicion_by_change(evidence, light, sums);
+  const int sign = light.mean_brightening < 0 ? -1 : 1;
+  const bool is_same_way = before.suspected_change * sign > 0;
+  const Real sure_error = confirm(error, before.suspected_error);
+  const Real sure_change = confirm(change, is_same_way ? abs(before.suspected_change) : Real(0));
+  light.suspected_error = error;
+  light.suspected_change = change * sign;
+  light.unrest = max(sure_error, sure_change) > 0 ? Real(1) : kUnrestMemory * before.unrest;
+  const bool is_calm = is_still && sums.unrest < kCalm;
+  light.rejection = clamp(is_calm ? max(sure_error, sure_change) : max(error, change), 0, 1);
 }
 
 // Over the whole picture history foretells no better than the neighbours: it shows another picture.
@@ -173,8 +205,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   relight(sums, total, before, light);
   light.mean_brightening = mean_brightening(evidence);
   light.flicker = update_flicker(light.mean_brightening, before);
-  light.rejection =
-      max(max(rejection_by_error(sums), rejection_by_change(evidence, light, sums)), rejection_by_cut(total));
+  suspect(evidence, before, sums, stands_still(in.tiles[i].reprojection), light);
+  light.rejection = max(light.rejection, rejection_by_cut(total));
   return light;
 }
 

@@ -12,10 +12,6 @@
 
 #define LEAST_WEIGHT 1e-30f  // of all samples: keeps 0 / 0 from becoming NaN
 
-static inline bool stands_still(TileReprojection tile) {
-  return tile.is_rigid && tile.phase_x == 0.0f && tile.phase_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
-}
-
 // (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.
 static inline float8 distance_weights(const TemporalParams* params, TileReprojection tile,
                                       const NearestSamples* nearest, float8 confidence) {

@@ -38,6 +38,11 @@ typedef struct TileReprojection {
 } TileReprojection;
 QUINCUNX_CHECK_SIZE(TileReprojection, 36);
 
+// Whether its history is taken from where it is, with no phase.
+static inline bool stands_still(TileReprojection tile) {
+  return tile.is_rigid && tile.phase_x == 0.0f && tile.phase_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
+}
+
 // What a tile's samples say of the history at their places. Sums over its judged samples; s and h are the lumas of
 // sample and history, and each difference is divided by 1 + s + h: brightness as the eye has it, not light.
 typedef struct TileEvidence {
@@ -57,8 +62,12 @@ typedef struct TileLight {
   float persistence;  // of a change of light over frames, in [-1, 1]: positive where it brightens
   float flicker;      // how far the mean brightening alternates from frame to frame, averaged over frames: aliasing
   float mean_brightening;  // TileEvidence's brightening / count, for the next frame
+  // What rejection by error and by change would be by this frame alone, from 0 up and not clamped, for the next frame
+  // to confirm. That by change has the sign of the change: positive where the tile brightens.
+  float suspected_error, suspected_change;
+  float unrest;  // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 20);
+QUINCUNX_CHECK_SIZE(TileLight, 32);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 //                                       many
