@@ -300,22 +300,39 @@ struct Seed {
   bool is_known = false;  // a valid sample is near enough
 };
 
-// The Gaussian of those of the 3 x 3 samples that move alike. Without any valid one, the mean of what stands
-// in for them.
+// Where no near sample is valid: the mean of those in eight directions, weighted by luma and 1 / distance.
+template <typename Real>
+PixelOf<Real> seed_from_afar(const Frame& frame, int x, int y) {
+  PixelOf<Real> sum = {};
+  Real weights = 0;
+  for (const int distance : {2, 4, 8, 16}) {
+    for (int dy = -distance; dy <= distance; dy += distance) {
+      for (int dx = -distance; dx <= distance; dx += distance) {
+        const Pixel& sample = texel_clamped(frame, x + dx, y + dy);
+        if (!is_valid(sample)) continue;
+        const Real weight = luma_weighted<Real>(Real(1) / distance, sample);
+        weights += weight;
+        for (std::size_t c = 0; c < 3; ++c)
+          sum[c] += sample[c] * weight;
+      }
+    }
+  }
+  for (std::size_t c = 0; c < 3 && weights > 0; ++c)
+    sum[c] = sum[c] / weights;
+  return sum;
+}
+
+// The Gaussian of those of the 3 x 3 samples that move alike.
 template <typename Real>
 Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
-  PixelOf<Real> sum = {}, stand_in = {};
+  PixelOf<Real> sum = {};
   Real weights = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
       const int x = near.x.sample + dx;
       const int y = near.y.sample + dy;
       const Pixel& sample = texel_clamped(in.frame, x, y);
-      if (!is_valid(sample)) {
-        for (std::size_t c = 0; c < 3; ++c)
-          stand_in[c] += Real(sanitised(sample[c])) * (1. / 9);
-        continue;
-      }
+      if (!is_valid(sample)) continue;
       const Real across = dx - near.x.past;
       const Real down = dy - near.y.past;
       const Real gaussian = bell((across * across + down * down) * kSeedFalloff);
@@ -328,8 +345,12 @@ Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
   }
   Seed<Real> seed;
   seed.is_known = weights > 0;
+  if (!seed.is_known) {
+    seed.colour = seed_from_afar<Real>(in.frame, near.x.sample, near.y.sample);
+    return seed;
+  }
   for (std::size_t c = 0; c < 3; ++c)
-    seed.colour[c] = seed.is_known ? sum[c] / weights : stand_in[c];
+    seed.colour[c] = sum[c] / weights;
   return seed;
 }
 

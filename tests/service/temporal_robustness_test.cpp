@@ -107,6 +107,23 @@ TEST(TemporalRobustness, BadSamplesLeaveWithinOneFrame) {
   }
 }
 
+// Nothing is left of samples that overflowed in the very first frame, whether history is copied or resampled.
+TEST(TemporalRobustness, InvalidSamplesWithoutHistoryLeaveAtOnce) {
+  for (const Place turn : {Place(1), std::polar(1., .01)}) {
+    for (const float value : {kInf, -kInf, 65504.f, kNan}) {
+      TemporalScene scene = moving_scene({.4, .1});
+      scene.surfaces[0].turn = turn;
+      scene.surfaces[0].texture = testing::plain_texture(.7f, .2f, .1f);
+      TemporalRun run(scene);
+      HostFrame bad = scene.render(0, kHalf, testing::halton_jitter(0, 32));
+      spoil(bad.colour, Pixel{value, value, value, 1});
+      run.rig().resolve(bad), run.skip();
+      EXPECT_LE(testing::largest_difference(run.next(), run.truth(), kOutput), 1. / 255)
+          << value << ", " << turn;
+    }
+  }
+}
+
 void set_velocity(HostFrame& frame, float value) {
   frame.velocity = [value](int, int) { return Vec2{value, value}; };
 }

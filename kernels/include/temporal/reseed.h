@@ -10,6 +10,7 @@
 #define SEED_FALLOFF 2.5f    // 1 / (2 sigma^2), sigma .45 samples, as in the laboratory of docs/temporal.md
 #define SAME_MOTION 0.15f    // output pixels a frame: surfaces whose motion differs by more are not the same. Ghosts
                              // fell from .17 to .06 at most, for -.01 dB (docs/temporal.md)
+#define FARTHEST_SEED 16     // samples: a larger hole without any valid sample is black
 #define LEAST_SIMILARITY 0x1p-10f  // not 0: the only valid sample counts whatever it shows
 
 // Where the samples' motion is read, and its scale to output pixels.
@@ -33,12 +34,31 @@ static inline float similarity(const SampleMotion* motion, const SourceFrame* fr
 #endif
 }
 
+// What stands in for a seed where none of the 3x3 samples is valid: the mean of the valid ones in eight directions, 2,
+// 4, 8 and 16 samples away, weighted by 1 / distance. Not what stands in for infinity: where history is resampled it
+// would stay for several frames in the pixels around.
+static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
+  float4 sum = (float4)(0.0f);
+  float weights = 0.0f;
+  for (int distance = 2; distance <= FARTHEST_SEED; distance *= 2) {
+    for (int i = 0; i < 9; ++i) {
+      const int column = x + (i % 3 - 1) * distance, row = y + (i / 3 - 1) * distance;
+      const float4 sample = sample_at(texels, frame, column, row);
+      if (!is_valid(sample)) continue;
+      const float weight = luma_weight(sample) / (float)distance;
+      sum += sample * weight;
+      weights += weight;
+    }
+  }
+  return weights > 0.0f ? sum / weights : sum;
+}
+
 // The seed of a pixel: the mean of the 3x3 samples around (x, y), the nearest one, each weighted by a Gaussian of its
 // distance, its luma weight and its similarity to the nearest. The pixel's picture lies (from_x, from_y) samples from
-// (x, y). In w whether any sample is valid; where none is, the mean of what stands in for them.
+// (x, y). In w whether any sample is valid; where none is, what stands in for the seed.
 static inline float4 seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion, int x, int y,
                              float from_x, float from_y) {
-  float4 sum = (float4)(0.0f), stand_in = (float4)(0.0f);
+  float4 sum = (float4)(0.0f);
   float weights = 0.0f;
   for (int row = -1; row <= 1; ++row) {
     const float away_y = (float)row - from_y;
@@ -46,16 +66,12 @@ static inline float4 seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, con
       const float away_x = (float)column - from_x;
       const float4 sample = sample_at(texels, frame, x + column, y + row);
       const float near = bell((float8)((away_x * away_x + away_y * away_y) * SEED_FALLOFF)).s0;
-      if (is_valid(sample)) {
-        const float weight = near * luma_weight(sample) * similarity(motion, frame, x, y, x + column, y + row);
-        sum += sample * weight;
-        weights += weight;
-      } else {
-        stand_in += sanitise4(sample) * (1.0f / 9.0f);
-      }
+      if (!is_valid(sample)) continue;
+      const float weight = near * luma_weight(sample) * similarity(motion, frame, x, y, x + column, y + row);
+      sum += sample * weight;
+      weights += weight;
     }
   }
-  const bool any = weights > 0.0f;
-  const float4 mean = any ? sum / weights : stand_in;
-  return (float4)(mean.xyz, any ? 1.0f : 0.0f);
+  if (weights > 0.0f) return (float4)((sum / weights).xyz, 1.0f);
+  return (float4)(seed_from_afar(texels, frame, x, y).xyz, 0.0f);
 }
