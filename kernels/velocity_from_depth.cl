@@ -7,26 +7,9 @@
 // the passes that read it count it and trust no history there.
 // Options: SOURCE_STORAGE (of both), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/velocity_from_depth.cpp
+#include "motion/camera_velocity.h"
 #include "sanitise.h"
 #include "texel.h"
-
-#define LARGEST_VELOCITY 65504.0f  // the largest half
-
-// Velocity of four pixels of one row.
-static inline float8 velocity_of(float4 column, float ndc_y, float4 depth, const CameraVelocity* camera) {
-  __private const float* m = camera->to_previous;
-  const float4 ndc_x = column * camera->step_x + camera->start_x;
-  const float4 x = m[0] * ndc_x + m[8] * depth + (m[4] * ndc_y + m[12]);
-  const float4 y = m[1] * ndc_x + m[9] * depth + (m[5] * ndc_y + m[13]);
-  const float4 w = m[3] * ndc_x + m[11] * depth + (m[7] * ndc_y + m[15]);
-  const int4 before_camera = w > 0.0f;
-  const float4 safe_w = select((float4)(1.0f), w, before_camera);
-  const float4 velocity_x = clamp((ndc_x - x / safe_w) * 0.5f, -LARGEST_VELOCITY, LARGEST_VELOCITY);
-  const float4 velocity_y = clamp((y / safe_w - ndc_y) * 0.5f, -LARGEST_VELOCITY, LARGEST_VELOCITY);
-  const float4 seen_x = select((float4)(LARGEST_VELOCITY), velocity_x, before_camera);
-  const float4 seen_y = select((float4)(LARGEST_VELOCITY), velocity_y, before_camera);
-  return (float8)(seen_x.s0, seen_y.s0, seen_x.s1, seen_y.s1, seen_x.s2, seen_y.s2, seen_x.s3, seen_y.s3);
-}
 
 __kernel void velocity_from_depth(const VelocityParams params, DEPTH_TEXELS depth, STORED_VELOCITY velocity) {
   const int y = get_global_id(1);

@@ -130,6 +130,16 @@ const char* name_of(TemporalView view) {
   return "unknown";
 }
 
+const char* name_of(FarMotion motion) {
+  switch (motion) {
+    case FarMotion::kAsDrawn:
+      return "drawn";
+    case FarMotion::kCamera:
+      return "camera";
+  }
+  return "unknown";
+}
+
 const char* name_of(ToneMap tone_map) {
   switch (tone_map) {
     case ToneMap::kClamp:

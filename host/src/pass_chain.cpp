@@ -109,6 +109,7 @@ void bind_inputs(PassFrame& frame) {
   frame[Resource::kVelocity] = frame.current.velocity;
   frame[Resource::kDepth] = frame.current.depth;
   frame[Resource::kReactive] = frame.current.reactive;
+  frame[Resource::kDrawnVelocity] = frame.current.velocity;
   frame[Resource::kPreviousColour] = frame.previous.colour;
   frame[Resource::kPreviousVelocity] = frame.previous.velocity;
   frame[Resource::kPreviousDepth] = frame.previous.depth;

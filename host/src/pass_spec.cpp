@@ -44,6 +44,8 @@ const char* name_of(Resource resource) {
       return "depth";
     case Resource::kReactive:
       return "reactive";
+    case Resource::kDrawnVelocity:
+      return "drawn velocity";
     case Resource::kPreviousColour:
       return "colour of the previous frame";
     case Resource::kPreviousVelocity:

@@ -29,6 +29,7 @@ enum class Resource : std::uint8_t {
   kVelocity,
   kDepth,
   kReactive,
+  kDrawnVelocity,  // the caller's, where kVelocity is what the service makes of it
   kPreviousColour,
   kPreviousVelocity,
   kPreviousDepth,

@@ -1,26 +1,12 @@
 // SPDX-License-Identifier: MIT
 // velocity_from_depth: the velocity target of a frame in which only the camera moves.
-#include <algorithm>
-
+#include "camera_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
 
 namespace quincunx {
 namespace {
-
-CameraVelocity camera_of(const FrameInputs& frame) {
-  const double width = frame.render.width;
-  const double height = frame.render.height;
-  CameraVelocity camera{};
-  camera.step_x = static_cast<float>(2 / width);
-  camera.step_y = static_cast<float>(-2 / height);
-  camera.start_x = static_cast<float>((1 + 2.0 * frame.jitter.x) / width - 1);
-  camera.start_y = static_cast<float>(1 - (1 + 2.0 * frame.jitter.y) / height);
-  std::copy(frame.camera.clip_to_previous_clip.begin(), frame.camera.clip_to_previous_clip.end(),
-            camera.to_previous);
-  return camera;
-}
 
 class VelocityFromDepthPass : public Pass {
  public:
@@ -35,7 +21,7 @@ class VelocityFromDepthPass : public Pass {
                                 .depth = layout_of(depth),
                                 .velocity = layout_of(velocity),
                                 .columns_per_item = columns_per_item(device(), render.width),
-                                .camera = camera_of(frame.current)};
+                                .camera = camera_params(frame.current)};
     bind(params, depth, velocity);
     launch(frame, render, params.columns_per_item, event);
   }

@@ -26,6 +26,9 @@ struct PlanFacts {
   bool weighs_residual() const {
     return reprojects() && !accumulates() && settings.quincunx.residual_weight > 0;
   }
+  bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
+    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && needs.camera_motion;
+  }
   bool reads_reactive() const { return keeps_previous_frame() && needs.transparents; }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;

@@ -122,6 +122,14 @@ bool ResolvePlan::reads_history(Extent render) const {
   return keeps_previous_frame() && !(accumulates() && is_dense(render, settings.output));
 }
 
+bool ResolvePlan::moves_far() const {
+  return PlanFacts(needs, settings).moves_far();
+}
+
+bool ResolvePlan::reads_camera() const {
+  return velocity == VelocitySource::kCamera || (moves_far() && settings.far == FarMotion::kCamera);
+}
+
 bool ResolvePlan::blurs() const {
   return PlanFacts(needs, settings).blurs();
 }

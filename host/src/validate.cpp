@@ -89,11 +89,13 @@ void check_camera(FrameCheck& check, const CameraMotion& camera) {
 // The caller's images: the plan's buffers of this name, and the fields that hold them.
 constexpr struct {
   const char* name;
+  const char* field;
   ImageView FrameInputs::*image;
-} kInputs[] = {{"colour", &FrameInputs::colour},
-               {"velocity", &FrameInputs::velocity},
-               {"depth", &FrameInputs::depth},
-               {"reactive", &FrameInputs::reactive}};
+} kInputs[] = {{"colour", "colour", &FrameInputs::colour},
+               {"velocity", "velocity", &FrameInputs::velocity},
+               {"drawn velocity", "velocity", &FrameInputs::velocity},
+               {"depth", "depth", &FrameInputs::depth},
+               {"reactive", "reactive", &FrameInputs::reactive}};
 
 constexpr struct {
   const char* name;
@@ -120,13 +122,13 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   for (const auto& input : kInputs) {
     const PlannedBuffer* buffer = find(plan, input.name);
     if (buffer == nullptr || buffer->owned) continue;
-    check.input(input.name, inputs.*input.image, buffer->format, inputs.render);
+    check.input(input.field, inputs.*input.image, buffer->format, inputs.render);
   }
   if (plan.velocity == VelocitySource::kTarget) {
     check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);
     check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
   }
-  if (plan.reads_depth) check_camera(check, inputs.camera);
+  if (plan.reads_camera()) check_camera(check, inputs.camera);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);

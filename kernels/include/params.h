@@ -113,6 +113,13 @@ typedef struct VelocityParams {
 } VelocityParams;
 QUINCUNX_CHECK_SIZE(VelocityParams, 28 + 80);
 
+typedef struct FarVelocityParams {
+  VelocityParams frame;
+  TexelLayout drawn;
+  float to_drawn_x, to_drawn_y;  // from uv to the units of the drawn velocity
+} FarVelocityParams;
+QUINCUNX_CHECK_SIZE(FarVelocityParams, 108 + 8 + 8);
+
 typedef struct ResolveParams {
   int output_width;
   int output_height;

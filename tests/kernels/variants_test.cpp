@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                                            "reproject", "resolve_reprojected", "temporal_tiles",
                                            "temporal_light", "resolve_temporal", "temporal_display",
                                            "motion_tiles", "motion_neighbours", "motion_blur", "sharpen",
-                                           "present", "velocity_from_depth"),
+                                           "present", "velocity_from_depth", "far_velocity"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// velocity_from_depth, resolve_quincunx, sharpen and present: the specification, in double precision.
+// velocity_from_depth, far_velocity, resolve_quincunx, sharpen and present: the specification, in double precision.
 #pragma once
 
 #include <array>
@@ -18,6 +18,13 @@ struct CameraVelocity {
 // velocity_from_depth: at each texel of the viewport. A surface that was not in front of the previous camera
 // (w <= 0) has a velocity of 65504 on both axes.
 std::vector<CameraVelocity> velocity_from_depth(const Frame& frame);
+
+struct FarVelocity : CameraVelocity {  // in the units of the drawn one; `condition` is in uv
+  bool is_from_camera;
+};
+
+// far_velocity: the drawn velocity, and the camera's where a sample is infinitely far away and has none.
+std::vector<FarVelocity> far_velocity(const Frame& frame);
 
 enum class Weight { kMean, kVelocity };
 

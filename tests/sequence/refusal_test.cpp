@@ -132,6 +132,18 @@ TEST_F(Refusal, BlurNeedsDepth) {
   expect_refused(kRun + "--blur 0.5 --method bilinear", 1, "motion blur reads depth here");
 }
 
+TEST_F(Refusal, FarMotionNeedsMatricesAndDepth) {
+  testing::FrameFile file = frame(1);
+  file.depth = true;
+  write_frame(input(1), file);
+  expect_refused(kRun + "--far camera", 1, "has no attribute 'worldToNDC', which --far camera needs");
+  resolve_to("u", "--far camera --method bilinear");
+  file.attributes.push_back({"worldToNDC", tools::Matrix{}});
+  file.depth = false;
+  write_frame(input(1), file);
+  expect_refused(kRun + "--far camera", 1, "--far camera reads depth here");
+}
+
 TEST_F(Refusal, CameraMotionNeedsItsMatrices) {
   testing::FrameFile file = frame(1);
   file.depth = true;

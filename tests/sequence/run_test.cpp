@@ -225,6 +225,26 @@ TEST_F(Run, JitterOfAFileIsThatOfAttributes) {
   }
 }
 
+// Of a sky alone, all motion is that which the camera gives what is infinitely far away.
+TEST_F(Run, FarMotionFromTheCameraMovesASky) {
+  for (int number = 1; number <= 3; ++number) {
+    testing::FrameFile file = frame_of_camera(number, 0);
+    std::get<tools::Matrix>(file.attributes.back().value)[8] =
+        static_cast<float>(number * number) * .01f;  // a pan
+    file.velocity = file.sky = true;
+    write_frame(input(number), file);
+  }
+  for (const char* method : {"quincunx", "quincunx:reprojected", "temporal"}) {
+    resolve_to("camera", fmt::format("--method {} --velocity camera", method));
+    resolve_to("far", fmt::format("--method {} --far camera", method));
+    resolve_to("drawn", fmt::format("--method {}", method));
+    for (int number = 1; number <= 3; ++number)
+      EXPECT_EQ(channel(output(number, "camera"), "R"), channel(output(number, "far"), "R"))
+          << method << number;
+    EXPECT_NE(channel(output(3, "far"), "R"), channel(output(3, "drawn"), "R")) << method;
+  }
+}
+
 // What still cameras say is the same as what no motion says; a moving one takes the other frame away.
 TEST_F(Run, CameraMotionComesFromDepthAndMatrices) {
   for (const auto& [number, place] : {std::pair{1, 0.0f}, {2, 0.0f}, {3, 2.0f}})

@@ -24,6 +24,7 @@ struct FrameFile {
   bool velocity = true;
   std::vector<std::string> velocity_names = {"backward.u", "backward.v"};
   bool depth = false;
+  bool sky = false;  // everywhere: infinitely far away, and drawn without motion
   bool reactive = false;
   tools::ChannelType colour = tools::ChannelType::kHalf;  // in the file
   std::vector<tools::Attribute> attributes;
@@ -57,9 +58,9 @@ inline void write_frame(const std::string& path, const FrameFile& frame) {
   if (frame.alpha) add("A", 1, 0, frame.colour);
   if (frame.velocity) {
     for (const std::string& name : frame.velocity_names)
-      add(name, 2, -1, tools::ChannelType::kFloat);
+      add(name, frame.sky ? 0 : 2, frame.sky ? 0 : -1, tools::ChannelType::kFloat);
   }
-  if (frame.depth) add("Z", 8, 1, tools::ChannelType::kFloat);
+  if (frame.depth) add("Z", frame.sky ? 0 : 8, frame.sky ? 1e10f : 1, tools::ChannelType::kFloat);
   if (frame.reactive) add("reactive.mask", 1, 0, tools::ChannelType::kHalf);
   for (std::size_t i = 0; i < channels.size(); ++i)
     channels[i].data = planes[i].data();

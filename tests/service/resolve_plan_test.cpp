@@ -63,6 +63,31 @@ TEST(ResolvePlan, OnlyACameraMeansDepthInsteadOfAVelocityTarget) {
   EXPECT_TRUE(leaves_out(p, "velocity target"));
 }
 
+TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
+  ResolveSettings wanted = settings(Method::kQuincunx);
+  wanted.far = FarMotion::kCamera;
+  const ResolvePlan p = plan({}, wanted);
+  EXPECT_EQ(p.passes.front().kernel, "far_velocity");
+  EXPECT_TRUE(p.reads_depth);
+  EXPECT_TRUE(p.reads_camera());
+  for (const PlannedBuffer& buffer : p.buffers)
+    EXPECT_EQ(buffer.owned, buffer.name.starts_with("velocity") || buffer.name == "resolved") << buffer.name;
+  EXPECT_TRUE(has_buffer(p, "drawn velocity"));
+  const Status missing = validate(p, {.render = {640, 360}}, {});
+  EXPECT_NE(missing.message().find("velocity is missing"), std::string::npos) << missing.message();
+  EXPECT_EQ(missing.message().find("drawn velocity"), std::string::npos) << missing.message();
+}
+
+TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
+  ResolveSettings wanted = settings(Method::kQuincunx);
+  wanted.far = FarMotion::kCamera;
+  EXPECT_TRUE(leaves_out(plan({.camera_motion = false}, wanted), "far_velocity"));
+  EXPECT_TRUE(leaves_out(plan({.moving_objects = false}, wanted), "far_velocity"));
+  wanted.method = Method::kBilinear;
+  EXPECT_TRUE(leaves_out(plan({}, wanted), "far_velocity"));
+  EXPECT_FALSE(leaves_out(plan({}, settings(Method::kQuincunx)), "far_velocity")) << "nobody asked for it";
+}
+
 TEST(ResolvePlan, NothingMovingReadsNeitherVelocityNorDepth) {
   const ResolvePlan p = plan({.moving_objects = false, .camera_motion = false, .transparents = false},
                              settings(Method::kQuincunx));

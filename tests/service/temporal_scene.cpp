@@ -40,6 +40,12 @@ Place local_place(const Surface& surface, Place place, int frame) {
   return surface.turn == Place(1) ? place - centre : (place - centre) / std::pow(surface.turn, frame);
 }
 
+// What of a surface is at `place` in a frame was there in the frame before.
+Place previous_place(const Surface& surface, Place place, int frame) {
+  const Place moved = place - surface.centre - surface.velocity * static_cast<double>(frame);
+  return place - (surface.velocity + moved - moved / surface.turn);
+}
+
 bool holds(const Surface& surface, Place local) {
   switch (surface.shape) {
     case Surface::Shape::kPlane:
@@ -60,6 +66,27 @@ const Surface& surface_at(const TemporalScene& scene, Place place, int frame, bo
       return surface;
   }
   return scene.surfaces.back();
+}
+
+// A camera under which what is infinitely far away moves like a surface, which is affine.
+CameraMotion camera_of(const Surface& sky, Extent output, int frame) {
+  const auto to_ndc = [=](Place place) {
+    return Place(2 * place.real() / output.width - 1, 1 - 2 * place.imag() / output.height);
+  };
+  const auto before = [&](double x, double y) {  // of a place in normalised device coordinates
+    const Place place((x + 1) / 2 * output.width, (1 - y) / 2 * output.height);
+    return to_ndc(previous_place(sky, place, frame));
+  };
+  const Place centre = before(0, 0), right = before(1, 0) - centre, up = before(0, 1) - centre;
+  CameraMotion motion;
+  const auto set = [&motion](std::size_t column, Place value) {
+    motion.clip_to_previous_clip[4 * column] = static_cast<float>(value.real());
+    motion.clip_to_previous_clip[4 * column + 1] = static_cast<float>(value.imag());
+  };
+  set(0, right);
+  set(1, up);
+  set(3, centre);
+  return motion;
 }
 
 template <typename Function>
@@ -109,17 +136,20 @@ HostFrame TemporalScene::render(int frame, Extent render, Vec2 jitter) const {
   host.velocity = [=, this](int x, int y) {
     const Place place = place_of(x, y);
     const Surface& surface = surface_at(*this, place, frame, false);
-    const Place moved = place - surface.centre - surface.velocity * static_cast<double>(frame);
-    const Place step = surface.velocity + moved - moved / surface.turn;
+    if (surface.is_sky) return Vec2{};
+    const Place step = place - previous_place(surface, place, frame);
     return Vec2{static_cast<float>(step.real() / output.width),
                 static_cast<float>(step.imag() / output.height)};
   };
   host.depth = [=, this](int x, int y) {
-    return static_cast<float>(1 / surface_at(*this, place_of(x, y), frame, false).distance);
+    const Surface& surface = surface_at(*this, place_of(x, y), frame, false);
+    return surface.is_sky ? 0 : static_cast<float>(1 / surface.distance);
   };
   host.reactive = [=, this](int x, int y) {
     return static_cast<std::uint8_t>(surface_at(*this, place_of(x, y), frame, true).reactive ? 255 : 0);
   };
+  const auto sky = std::find_if(surfaces.begin(), surfaces.end(), [](const Surface& s) { return s.is_sky; });
+  if (sky != surfaces.end()) host.camera = camera_of(*sky, output, frame);
   return host;
 }
 

@@ -26,6 +26,8 @@ struct Surface {
   Place turn = {1, 0};    // a frame: rotation and growth about the centre
   double distance = 10;   // in near planes
   bool reactive = false;  // drawn without velocity: that of what lies behind it, with reactive values
+  // Drawn as many renderers draw a sky: infinitely far and with a velocity of 0, though it moves with the camera.
+  bool is_sky = false;
   Texture texture = [](Place) { return Pixel{.5f, .5f, .5f, 1}; };
 };
 
@@ -37,6 +39,7 @@ struct TemporalScene {
   Pixel colour_at(Place place, int frame) const;
   // The mean of 4x4 places in each output pixel.
   std::vector<Pixel> truth(int frame) const;
+  // The camera's motion is that of the sky, if there is one.
   HostFrame render(int frame, Extent render, Vec2 jitter) const;
 };
 

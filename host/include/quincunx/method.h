@@ -74,6 +74,13 @@ enum class TemporalView : std::uint8_t {
   kPhase,       // where between texels history was read: red x, green y; blue: how far it moved
 };
 
+// What moves samples that are infinitely far away and have a velocity of exactly 0, as many renderers write it for the
+// sky whatever the camera does.
+enum class FarMotion : std::uint8_t {
+  kAsDrawn,  // nothing: they stand still in the picture
+  kCamera,   // the camera's rotation, from FrameInputs::camera
+};
+
 enum class ToneMap { kClamp, kReinhard, kAces };
 
 const char* name_of(Method method);          // "quincunx"
@@ -81,6 +88,7 @@ const char* name_of(TwoFrameForm form);      // "velocity"
 const char* name_of(Sampling sampling);      // "point"
 const char* name_of(TemporalPreset preset);  // "balanced"
 const char* name_of(TemporalView view);      // "confidence"
+const char* name_of(FarMotion motion);       // "camera"
 const char* name_of(ToneMap tone_map);       // "aces"
 
 }  // namespace quincunx

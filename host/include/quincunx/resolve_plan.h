@@ -69,6 +69,7 @@ struct ResolveSettings {
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
+  FarMotion far = FarMotion::kAsDrawn;  // where velocity is drawn
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
@@ -137,6 +138,8 @@ struct ResolvePlan {
   bool keeps_previous_frame() const;  // some images of a frame are read by the next dispatch, too
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
+  bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
+  bool reads_camera() const;          // FrameInputs::camera is needed
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.
   bool reads_history(Extent render) const;

@@ -43,6 +43,11 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       .non_negative()
       .show_default()
       .type_name("K");
+  static const std::map<std::string, FarMotion> kFarMotions = {{"drawn", FarMotion::kAsDrawn},
+                                                               {"camera", FarMotion::kCamera}};
+  add_choice(
+      app, "--far", settings.far, kFarMotions,
+      "What moves an infinitely far sample whose velocity is 0: drawn (nothing) or camera (default: drawn)");
   add_choice(app, "--view", settings.temporal.view, kViews,
              "What temporal shows: picture, confidence, rejection or phase (default: picture)");
   app.add_option("--blur", settings.blur.shutter,
@@ -70,10 +75,12 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
   return fmt::format(
-      "{}, view {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness {}, blur {} of {} samples",
-      method_name(settings), name_of(settings.temporal.view), settings.quincunx.velocity_weight,
-      settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
-      settings.sharpness, settings.blur.shutter, settings.blur.samples);
+      "{}, view {}, far {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness {}, blur {} of {} "
+      "samples",
+      method_name(settings), name_of(settings.temporal.view), name_of(settings.far),
+      settings.quincunx.velocity_weight, settings.clamp_ringing ? "clamped" : "free", settings.grain,
+      settings.noise_moves ? "moves" : "still", settings.sharpness, settings.blur.shutter,
+      settings.blur.samples);
 }
 
 }  // namespace quincunx::tools

@@ -18,7 +18,7 @@ constexpr int kChunkHistoryFrames = 48;
 // Frames before one that its pixels depend on: the camera's motion is that since the previous frame, too.
 int history_of(const ResolvePlan& plan) {
   if (plan.accumulates()) return kChunkHistoryFrames;
-  return plan.keeps_previous_frame() || plan.velocity == VelocitySource::kCamera ? 1 : 0;
+  return plan.keeps_previous_frame() || plan.reads_camera() ? 1 : 0;
 }
 
 Result<FramePattern> parse_input(const std::string& text, const std::string& what) {

@@ -62,7 +62,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
 SceneNeeds needs_of(const SequenceFormat& format) {
   SceneNeeds needs;
   needs.moving_objects = format.motion == MotionSource::kChannels;
-  needs.camera_motion = format.motion == MotionSource::kCamera;
+  needs.camera_motion = format.motion != MotionSource::kNone;
   needs.transparents = format.channels.has_reactive();
   needs.background = true;
   return needs;
@@ -71,14 +71,16 @@ SceneNeeds needs_of(const SequenceFormat& format) {
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   ChannelNames& channels = format.channels;
   if (plan.reads_depth && !channels.has_depth()) {
-    const std::string reader =
-        plan.blurs() ? "motion blur" : fmt::format("method {}", name_of(plan.settings.method));
+    const std::string reader = plan.blurs()       ? "motion blur"
+                               : plan.moves_far() ? fmt::format("--far {}", name_of(plan.settings.far))
+                                                  : fmt::format("method {}", name_of(plan.settings.method));
     return Status::io(fmt::format("{} reads depth here, but the frames have no channel '{}'; say --depth",
                                   reader, kDepthChannel));
   }
   if (plan.velocity != VelocitySource::kTarget) channels.velocity = {};
   if (!plan.reads_depth) channels.depth.clear();
   if (!plan.reads_reactive) channels.reactive.clear();
+  format.needs_camera = plan.reads_camera();
   return {};
 }
 

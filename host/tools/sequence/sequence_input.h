@@ -46,6 +46,7 @@ struct SequenceInput {
 struct SequenceFormat {
   ChannelNames channels;
   MotionSource motion = MotionSource::kNone;  // never kAutomatic
+  bool needs_camera = false;                  // the attribute worldToNDC of each frame is read
   VelocityUnits units;
   DepthKind depth_kind = DepthKind::kLinear;
   float near_plane = kUnknownNear;

@@ -75,7 +75,7 @@ Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& t
 }
 
 Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inputs) const {
-  const bool moves = service_.plan().velocity == VelocitySource::kCamera && !inputs.reset;
+  const bool moves = service_.plan().reads_camera() && !inputs.reset;
   if (!moves || !frame.world_to_ndc || !last_world_to_ndc_) return {};
   const auto motion = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, job_.format.near_plane);
   if (!motion) {

@@ -51,8 +51,11 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.half_colour = places->half_colour;
   frame.reset = attributes->reset;
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
-  if (format.motion == MotionSource::kCamera && format.channels.has_depth() && !attributes->world_to_ndc)
-    return Status::io(fmt::format("'{}' has no attribute 'worldToNDC'", path));
+  if (format.needs_camera && !attributes->world_to_ndc) {
+    return Status::io(
+        fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,
+                    format.motion == MotionSource::kCamera ? "--velocity camera" : "--far camera"));
+  }
   const Vec2 ratio = {static_cast<float>(frame.render.width) / static_cast<float>(format.output.width),
                       static_cast<float>(frame.render.height) / static_cast<float>(format.output.height)};
   const auto jitter = format.jitter.at(path, frame.number, attributes.value(), ratio);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// far_velocity: the drawn velocity, completed where the sky has none.
+#include "camera_params.h"
+#include "pass.h"
+#include "pass_list.h"
+#include "pass_options.h"
+
+namespace quincunx {
+namespace {
+
+// A scale of 0 takes all motion away, whatever stands in the target.
+float inverse(double scale) {
+  return scale != 0 ? static_cast<float>(1 / scale) : 0.0f;
+}
+
+class FarVelocityPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.current.render;
+    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const FarVelocityParams params{.frame = {.width = render.width,
+                                             .height = render.height,
+                                             .depth = layout_of(frame[Resource::kDepth]),
+                                             .velocity = layout_of(frame[Resource::kVelocity]),
+                                             .columns_per_item = columns_per_item(device(), render.width),
+                                             .camera = camera_params(frame.current)},
+                                   .drawn = layout_of(frame[Resource::kDrawnVelocity]),
+                                   .to_drawn_x = inverse(to_uv.x),
+                                   .to_drawn_y = inverse(to_uv.y)};
+    bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity], frame[Resource::kVelocity]);
+    launch(frame, render, params.frame.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_far_velocity(const PlanFacts& facts, PassList& list) {
+  if (facts.settings.far == FarMotion::kAsDrawn) return;
+  if (!facts.moves_far()) {
+    const char* reason = !facts.has_velocity() ? "no pass reads velocity"
+                         : !facts.needs.camera_motion
+                             ? "the camera stands still, and so does what is far away"
+                             : "velocity comes from depth and the camera everywhere";
+    list.left_out.push_back({"far_velocity", reason});
+    return;
+  }
+  const PixelFormat velocity = facts.settings.velocity;
+  list.passes.push_back({.kernel = "far_velocity",
+                         .options = velocity_options(facts.settings),
+                         .reason = "what is infinitely far away moves with the camera",
+                         .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                                  {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, velocity},
+                                  {Resource::kVelocity, Access::kWrite, Area::kViewport, velocity}},
+                         .make = make_pass<FarVelocityPass>});
+}
+
+}  // namespace quincunx
