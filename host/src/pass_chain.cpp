@@ -11,7 +11,11 @@ constexpr std::size_t index_of(Resource resource) {
 }
 
 void fill_zero(const cl::CommandQueue& queue, cl_mem memory, std::size_t bytes) {
-  queue.enqueueFillBuffer(borrow<cl::Buffer>(memory), cl_uint{0}, 0, bytes);
+  const auto buffer = borrow<cl::Buffer>(memory);
+  if (bytes % sizeof(cl_uint) == 0)
+    queue.enqueueFillBuffer(buffer, cl_uint{0}, 0, bytes);
+  else
+    queue.enqueueFillBuffer(buffer, cl_uchar{0}, 0, bytes);
 }
 
 // What the pass adds to begins at zero.

@@ -9,6 +9,10 @@ const char* precision_of(PixelFormat format) {
   return format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F ? "HALF" : "FLOAT";
 }
 
+std::size_t alpha_bytes(const ResolveSettings& settings) {
+  return bytes_per_pixel(settings.temporal.history) / 4;
+}
+
 const char* storage_option(Storage storage) {
   return storage == Storage::kImage ? "IMAGE" : "BUFFER";
 }

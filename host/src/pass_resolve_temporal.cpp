@@ -64,8 +64,10 @@ class ResolveTemporalPass : public Pass {
          view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          view_or(frame, Resource::kReactive, Resource::kColour),
          view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
+         view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
          frame[Resource::kPreviousTileReprojection], frame[Resource::kTileReprojection],
-         frame[Resource::kTileLight], frame[Resource::kHistory], frame[shown], frame.counter);
+         frame[Resource::kTileLight], frame[Resource::kHistory],
+         view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown], frame.counter);
     launch(frame, output, params.columns_per_item, event);
   }
 };
@@ -77,8 +79,9 @@ std::string options_of(const PlanFacts& facts, bool reactive) {
   std::string format;
   if (!facts.shows_picture()) format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
   return fmt::format(
-      "-D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
-      moves ? 1 : 0, reactive ? 1 : 0, moves && preset == TemporalPreset::kFast ? 4 : 16,
+      "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D TRUST={} -D VIEW={} {} -D HISTORY_FORMAT={}{}",
+      facts.accumulates_alpha() ? 1 : 0, moves ? 1 : 0, reactive ? 1 : 0,
+      moves && preset == TemporalPreset::kFast ? 4 : 16,
       moves && preset == TemporalPreset::kQuality ? "BILINEAR" : "NEAREST",
       view_option(settings.temporal.view), colour_options(settings), precision_of(settings.temporal.history),
       format);
@@ -106,6 +109,11 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
       .frames = Frames::kSparse};
   if (facts.reprojects())
     spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  if (facts.accumulates_alpha()) {
+    const std::size_t bytes = alpha_bytes(settings);
+    spec.uses.push_back({Resource::kPreviousHistoryAlpha, Access::kRead, Area::kOutput, {}, bytes});
+    spec.uses.push_back({Resource::kHistoryAlpha, Access::kWrite, Area::kOutput, {}, bytes});
+  }
   if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   if (!facts.shows_picture())
     spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved});

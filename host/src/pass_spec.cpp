@@ -25,6 +25,7 @@ constexpr struct {
     {Resource::kTileReprojection, Resource::kPreviousTileReprojection},
     {Resource::kTileLight, Resource::kPreviousTileLight},
     {Resource::kHistory, Resource::kPreviousHistory},
+    {Resource::kHistoryAlpha, Resource::kPreviousHistoryAlpha},
 };
 
 std::int64_t rank(Area area) {
@@ -74,6 +75,10 @@ const char* name_of(Resource resource) {
       return "history";
     case Resource::kPreviousHistory:
       return "history of the previous frame";
+    case Resource::kHistoryAlpha:
+      return "history alpha";
+    case Resource::kPreviousHistoryAlpha:
+      return "history alpha of the previous frame";
     case Resource::kUnsharpened:
       return "unsharpened";
     case Resource::kResolved:

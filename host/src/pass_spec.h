@@ -44,6 +44,8 @@ enum class Resource : std::uint8_t {
   kTotalLight,
   kHistory,
   kPreviousHistory,
+  kHistoryAlpha,
+  kPreviousHistoryAlpha,
   kUnsharpened,
   kResolved,
   kStreaks,

@@ -33,6 +33,7 @@ struct PlanFacts {
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;
   }
+  bool accumulates_alpha() const { return accumulates() && shows_picture() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
 };

@@ -17,13 +17,16 @@
 //   reprojection    in   MOTION 1: Reprojection of each sample, from reproject with MOTION_EDGE 1
 //   reactive0, 1    in   REACTIVE 1: R8 of both frames, viewports
 //   history         in   the layer of the previous frame; all zero where there is none
+//   alpha           in   ALPHA 1: its alpha, a plane of its own; all zero where there is none
 //   previous_tiles  in   TileReprojection of each tile, of the previous frame
 //   tiles           in   the same of this frame
 //   light           in   TileLight of each tile, of this frame
 //   updated         out  the layer of this frame
+//   updated_alpha   out  ALPHA 1: its alpha
 //   view            out  VIEW other than PICTURE: RGBA32F or RGBA16F, output extent
 //   non_finite      out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
-// Options: MOTION    1 (default) | 0: nothing moves
+// Options: ALPHA     0 (default) | 1: alpha is accumulated as colour is, with the same weights
+//          MOTION    1 (default) | 0: nothing moves
 //          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
 //          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs
 //          TRUST     NEAREST (default) | BILINEAR: between samples
@@ -32,7 +35,15 @@
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT (of a view) as in texel.h
 //          HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/resolve_temporal.cpp
+#ifndef ALPHA
+#define ALPHA 0
+#endif
+#if ALPHA < 0 || ALPHA > 1
+#error "ALPHA must be 0 or 1"
+#endif
+
 #include "temporal/accumulate.h"
+#include "temporal/alpha.h"
 #include "temporal/correct_history.h"
 #include "temporal/debug_view.h"
 #include "temporal/fetch_history.h"
@@ -44,9 +55,10 @@
 
 __kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const float* reprojection, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                               HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
-                               __global const TileReprojection* tiles, __global const TileLight* light,
-                               STORED_HISTORY updated, OUTPUT_TEXELS view, __global uint* non_finite) {
+                               HISTORY_TEXELS history, HISTORY_TEXELS alpha,
+                               __global const TileReprojection* previous_tiles, __global const TileReprojection* tiles,
+                               __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
+                               OUTPUT_TEXELS view, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -72,6 +84,11 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, copied, &motion, x, y);
     Evidence evidence = full_evidence(&fetched);
     if (!whole) evidence = limit_confidence(&fetched, &motion);
+    float8 known_alpha = (float8)(1.0f);
+#if ALPHA
+    const AlphaPlane plane = {alpha, params.output_width, params.output_height};
+    known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, copied, &motion, x, y);
+#endif
 
     // Relight.
     const EdgeLight left = right;
@@ -82,7 +99,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     // Rectify and reseed.
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
-      inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &evidence);
+      inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &known_alpha, &evidence);
 
     // Accumulate.
     EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
@@ -92,6 +109,10 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 
     // Store.
     store_history8(updated, y * params.output_width + x, end - x, sum);
+#if ALPHA
+    store_alpha8(updated_alpha, y * params.output_width + x, end - x,
+                 accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
+#endif
 #if VIEW == CONFIDENCE
     store_view(view, params.output, x, y, end, view_confidence(sum));
 #elif VIEW == REJECTION

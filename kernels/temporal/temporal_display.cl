@@ -5,16 +5,15 @@
 //   each. The picture of a first frame is not smoothed: it would lose what it has of fine texture.
 //
 //   params     in   extents, layouts
-//   positions  in   ALPHA 1: of each output column, then row, in the viewport, as in resolve_reprojected
-//   colour     in   ALPHA 1: RGBA16F or RGBA32F, viewport: alpha is bilinear's of this frame
 //   tiles      in   TileReprojection of each tile, of this frame
 //   history    in   the layer of this frame
+//   alpha      in   ALPHA 1: its alpha, resampled and smoothed as colour is
 //   output     out  RGBA32F or RGBA16F, output extent
 // Options: ALPHA   1 (default) | 0: the picture is opaque
 //          SMOOTH  1 (default) | 0
-//          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
+//          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
-#include "positions.h"
+#include "temporal/history_alpha.h"
 #include "temporal/history_sampling.h"
 #include "temporal/smooth.h"
 #include "temporal/temporal_params.h"
@@ -94,22 +93,39 @@ static inline bool lies_inside(HistoryLayer layer, const Display* display, int x
   return x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
 }
 
-#if ALPHA
-static inline Positions position_at(__global const int* positions, int texel, int fraction, int last) {
-  const Positions at = {(int8)(positions[texel]), (float8)(as_float(positions[fraction]))};
-  return moved_positions(at, (float8)(0.0f), last);
+// Whether any of eight pixels is.
+static inline bool is_smoothed(const TemporalDisplayParams* params, float8 confidence) {
+#if SMOOTH
+  return !params->first && any_lane(confidence < LITTLE_CONFIDENCE);
+#else
+  return false;
+#endif
 }
 
-static inline float alpha_at(const TemporalDisplayParams* params, COLOUR_TEXELS colour, Positions row,
-                             Positions column) {
-  const SourceFrame frame = params->frame0;
-  const int x = column.texel.s0, y = row.texel.s0;
-  const int right = min(x + 1, frame.width - 1), below = min(y + 1, frame.height - 1);
-  const float4 alphas = sanitise4((float4)(
-      load_colour(colour, frame.colour, x, y).w, load_colour(colour, frame.colour, right, y).w,
-      load_colour(colour, frame.colour, x, below).w, load_colour(colour, frame.colour, right, below).w));
-  const float2 between = alphas.xz + (alphas.yw - alphas.xz) * column.fraction.s0;
-  return between.x + (between.y - between.x) * row.fraction.s0;
+#if ALPHA
+// The sum of alpha of a pixel's eight neighbours.
+static inline float alpha_around(AlphaPlane plane, int x, int y) {
+  float sum = 0.0f;
+  for (int j = 0; j < 9; ++j) {
+    const int column = clamp(x + j % 3 - 1, 0, plane.width - 1), row = clamp(y + j / 3 - 1, 0, plane.height - 1);
+    if (j != 4) sum += load_alpha(plane, row * plane.width + column);
+  }
+  return sum;
+}
+
+// What is shown of the alpha of the first `count` pixels from (x, y) on.
+static inline void show_alpha(AlphaPlane plane, const Display* display, int x, int y, int count, bool smooth,
+                              float8 confidence, float* shown) {
+  const SmoothParts parts = smooth_parts(confidence);
+  float own[8], other[8];
+  vstore8(parts.own, 0, own);
+  vstore8(parts.other, 0, other);
+  for (int i = 0; i < count; ++i) {
+    shown[i] = load_alpha(plane, y * plane.width + x + i);
+    if (display->has_phase)
+      shown[i] = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
+    if (smooth) shown[i] = shown[i] * own[i] + alpha_around(plane, x + i, y) * other[i];
+  }
 }
 #endif
 
@@ -131,18 +147,14 @@ static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x,
   store_pixel(output, layout, x + 7, y, end, texels.right.scdef, alphas[7]);
 }
 
-__kernel void temporal_display(const TemporalDisplayParams params, __global const int* positions, COLOUR_TEXELS colour,
-                               __global const TileReprojection* tiles, HISTORY_TEXELS history, OUTPUT_TEXELS output) {
+__kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
+                               HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const int end = min(first + params.columns_per_item, params.output_width);
-#if ALPHA
-  const int rows = 2 * params.columns;
-  const Positions row = position_at(positions, rows + y, rows + params.output_height + y, params.frame0.height - 1);
-#endif
   for (int x = first; x < end; x += kTemporalTile) {
     // Resample.
     const Display display = display_of(tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile]);
@@ -150,21 +162,18 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
     Pixels pixels = inside ? load_pixels(layer, &display, x, y) : gather_pixels(layer, &display, x, y);
 
     // Smooth.
-#if SMOOTH
     const float8 confidence = confidences(pixels.own);
-    if (!params.first && any_lane(confidence < LITTLE_CONFIDENCE)) {
+    const bool smooth = is_smoothed(&params, confidence);
+    if (smooth) {
       const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
-      pixels.shown = smooth_little_known(pixels.shown, around, confidence);
+      pixels.shown = smooth_little_known(pixels.shown, around, smooth_parts(confidence));
     }
-#endif
 
-    // Store, with this frame's alpha.
+    // Store.
     float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
 #if ALPHA
-    for (int i = 0; i < min(end - x, 8); ++i) {
-      const Positions column = position_at(positions, x + i, params.columns + x + i, params.frame0.width - 1);
-      alphas[i] = alpha_at(&params, colour, row, column);
-    }
+    const AlphaPlane plane = {alpha, params.output_width, params.output_height};
+    show_alpha(plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
 #endif
     store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
   }

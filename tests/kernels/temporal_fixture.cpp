@@ -12,10 +12,10 @@
 namespace quincunx::testing {
 
 std::string name_of(const StageVariant& v) {
-  return fmt::format("{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
-                     v.reactive ? "_reactive" : "", v.storage == Storage::kImage ? "image" : "buffer",
-                     quincunx::name_of(v.colour), quincunx::name_of(v.history),
-                     quincunx::name_of(v.resolved));
+  return fmt::format("{}{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
+                     v.reactive ? "_reactive" : "", v.alpha ? "_alpha" : "",
+                     v.storage == Storage::kImage ? "image" : "buffer", quincunx::name_of(v.colour),
+                     quincunx::name_of(v.history), quincunx::name_of(v.resolved));
 }
 
 KernelTile to_kernel(const reference::Tile& tile) {
@@ -72,7 +72,28 @@ reference::Tile to_reference(const KernelTile& tile) {
                     .unrest = number(tile.unrest)}};
 }
 
-PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {
+namespace {
+
+// A plane of single values, in fours as if they were texels; the last four may be padded.
+std::vector<unsigned char> encode_plane(PixelFormat texels, const std::vector<double>& values) {
+  std::vector<Pixel> fours((values.size() + 3) / 4);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    fours[i / 4][i % 4] = values[i];
+  return encode(texels, fours);
+}
+
+std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned char>& bytes,
+                                 std::size_t count) {
+  std::vector<double> values;
+  for (const Pixel& four : decode(texels, bytes))
+    values.insert(values.end(), four.begin(), four.end());
+  values.resize(count);
+  return values;
+}
+
+}  // namespace
+
+PlanFacts TemporalStages::facts(TemporalPreset preset) const {
   ResolveSettings settings{.method = Method::kTemporal,
                            .colour = variant_.colour,
                            .resolved = variant_.resolved,
@@ -81,12 +102,17 @@ PlanFacts TemporalStages::facts(TemporalPreset preset, bool background) const {
   return {{.moving_objects = variant_.moves,
            .camera_motion = variant_.moves,
            .transparents = variant_.reactive,
-           .background = background},
+           .background = !variant_.alpha},
           settings};
 }
 
 cl::Buffer TemporalStages::history(const StageInputs& in) const {
   return to_device(encode(variant_.history, in.reference.history));
+}
+
+// Any memory where the kernels read none.
+cl::Buffer TemporalStages::history_alpha(const StageInputs& in) const {
+  return variant_.alpha ? to_device(encode_plane(variant_.history, in.reference.history_alpha)) : history(in);
 }
 
 namespace {
@@ -219,6 +245,8 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.tiles_y = r.tiles_y();
   const std::size_t bytes = r.history.size() * bytes_per_pixel(variant_.history);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
+  const std::size_t alpha_bytes = (r.history.size() + 3) / 4 * bytes_per_pixel(variant_.history);
+  const cl::Buffer updated_alpha = to_device(std::vector<unsigned char>(alpha_bytes, 0x7f));
   const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
   cl::Kernel resolve = kernel("resolve_temporal", spec_of(facts(preset), "resolve_temporal").options);
   resolve.setArg(0, params);
@@ -230,16 +258,23 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const cl::Buffer known = history(in);
   const cl::Buffer now = to_device(parts_of<TileReprojection>(tiles));
   const cl::Buffer light = to_device(parts_of<TileLight>(tiles));
+  const cl::Buffer known_alpha = history_alpha(in);
   resolve.setArg(6, known);
-  resolve.setArg(7, before);
-  resolve.setArg(8, now);
-  resolve.setArg(9, light);
-  resolve.setArg(10, updated);
-  set_memory(resolve, 11, view.memory);
-  set_memory(resolve, 12, counter.memory);
+  resolve.setArg(7, known_alpha);
+  resolve.setArg(8, before);
+  resolve.setArg(9, now);
+  resolve.setArg(10, light);
+  resolve.setArg(11, updated);
+  resolve.setArg(12, updated_alpha);
+  set_memory(resolve, 13, view.memory);
+  set_memory(resolve, 14, counter.memory);
   enqueue_rows(impl(), impl().queue, resolve, output, params.columns_per_item, nullptr);
-  Result result{from_device<unsigned char>(updated, bytes), {}, rig.count(counter)};
+  Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);
+  if (!variant_.alpha) return result;
+  const auto made = from_device<unsigned char>(updated_alpha, alpha_bytes);
+  result.alpha = decode_plane(variant_.history, made, r.history.size());
+  result.bytes.insert(result.bytes.end(), made.begin(), made.end());
   return result;
 }
 
@@ -248,29 +283,25 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
                                                    const Shown& shown) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent output{r.output_width, r.output_height};
-  PositionTables tables(impl(), output);
   const ImageView view = rig.output(variant_.resolved, output);
   TemporalDisplayParams params{};
   params.output_width = output.width;
   params.output_height = output.height;
-  params.frame0 = source_of(in);
   params.output = layout_of(view);
   params.tiles_x = r.tiles_x();
-  params.columns = tables.columns();
   params.columns_per_item = columns_per_item(impl(), output.width, kTemporalTile);
   params.first = shown.first ? 1 : 0;
-  cl::Kernel display =
-      kernel("temporal_display", spec_of(facts(shown.preset, shown.background), "temporal_display").options);
+  cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);
   display.setArg(0, params);
-  display.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
-  set_memory(display, 2, in.frame.colour.memory);
   const cl::Buffer known = history(in);
   const cl::Buffer now = to_device(parts_of<TileReprojection>(tiles));
-  display.setArg(3, now);
-  display.setArg(4, known);
-  set_memory(display, 5, view.memory);
+  const cl::Buffer known_alpha = history_alpha(in);
+  display.setArg(1, now);
+  display.setArg(2, known);
+  display.setArg(3, known_alpha);
+  set_memory(display, 4, view.memory);
   enqueue_rows(impl(), impl().queue, display, output, params.columns_per_item, nullptr);
-  Result result{rig.bytes(view, output), {}, 0};
+  Result result{rig.bytes(view, output), {}, {}, 0};
   result.pixels = decode(variant_.resolved, result.bytes);
   return result;
 }

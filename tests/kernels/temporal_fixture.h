@@ -21,6 +21,7 @@ struct StageVariant {
   PixelFormat resolved = PixelFormat::kRGBA32F;
   bool moves = true;
   bool reactive = false;  // only where nothing moves
+  bool alpha = false;     // no background covers every pixel
 };
 std::string name_of(const StageVariant& variant);
 
@@ -90,23 +91,24 @@ class TemporalStages {
                                    const TotalLight& total, const std::vector<reference::Tile>& now) const;
 
   struct Result {
-    std::vector<unsigned char> bytes;
+    std::vector<unsigned char> bytes;  // of resolve_temporal also those of alpha
     std::vector<Pixel> pixels;
+    std::vector<double> alpha;  // of resolve_temporal, where there is one
     std::int64_t non_finite = 0;
   };
   Result run_resolve(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      TemporalPreset preset = TemporalPreset::kBalanced) const;
   struct Shown {
     TemporalPreset preset = TemporalPreset::kBalanced;
-    bool background = false;  // alpha is 1
-    bool first = false;       // of all frames
+    bool first = false;  // of all frames
   };
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      const Shown& shown) const;
 
  private:
-  PlanFacts facts(TemporalPreset preset, bool background = true) const;
+  PlanFacts facts(TemporalPreset preset) const;
   cl::Buffer history(const StageInputs& in) const;
+  cl::Buffer history_alpha(const StageInputs& in) const;
 
   StageVariant variant_;
 };

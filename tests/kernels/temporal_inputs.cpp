@@ -99,6 +99,18 @@ std::vector<Pixel> make_history(const reference::TemporalInputs& in, PixelFormat
   return history;
 }
 
+// Whole and empty in most places, as a matte is.
+std::vector<double> make_alpha(std::size_t count, PixelFormat format, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<double> alpha;
+  while (alpha.size() < count) {
+    const auto kind = random() % 4;
+    alpha.push_back(stored_value(format, kind == 0 ? 0 : kind == 1 ? 1 : uniform(random)));
+  }
+  return alpha;
+}
+
 }  // namespace
 
 StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
@@ -125,6 +137,7 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   out.output_width = spec.output.width;
   out.output_height = spec.output.height;
   out.history = make_history(out, variant_.history, spec.seed + 1000);
+  if (variant_.alpha) out.history_alpha = make_alpha(out.history.size(), variant_.history, spec.seed + 1500);
   out.before = make_tiles_before(out, variant_.moves, spec.seed + 2000);
   if (variant_.reactive) {
     const TestFrame previous = make_frame(

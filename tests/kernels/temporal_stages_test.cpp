@@ -95,12 +95,21 @@ class Temporal : public ::testing::TestWithParam<StageVariant> {
   }
 
   void compare_resolve(const StageInputs& in, const std::vector<reference::Tile>& tiles,
-                       const reference::TemporalOptions& options, const std::vector<Pixel>& actual,
+                       const reference::TemporalOptions& options, const TemporalStages::Result& actual,
                        const StageSpec& spec) {
     const auto reference = [&]<typename Real>(Real, int x, int y) {
-      return reference::resolve_temporal<Real>(in.reference, tiles, options, x, y);
+      return reference::resolve_temporal<Real>(in.reference, tiles, options, x, y).texel;
     };
-    compare(reference, actual, spec.output, GetParam().history, what_of(spec));
+    compare(reference, actual.pixels, spec.output, GetParam().history, what_of(spec));
+    if (HasFatalFailure() || !GetParam().alpha) return;
+    const auto alpha = [&]<typename Real>(Real, int x, int y) {
+      const Real value = reference::resolve_temporal<Real>(in.reference, tiles, options, x, y).alpha;
+      return reference::PixelOf<Real>{value, value, value, value};
+    };
+    std::vector<Pixel> alphas;
+    for (const double value : actual.alpha)
+      alphas.push_back({value, value, value, value});
+    compare(alpha, alphas, spec.output, GetParam().history, what_of(spec) + ", alpha");
   }
 
   static ExpectedTile expected_tile(const reference::TemporalInputs& in, int x, int y) {
@@ -215,7 +224,7 @@ TEST_P(Temporal, ResolveMatchesTheReferenceAtEverySizeScaleAndInput) {
     const StageInputs in = stages.inputs(rig, spec);
     const auto tiles = stages.tiles(in, spec.seed);
     const auto actual = stages.run_resolve(rig, in, tiles);
-    compare_resolve(in, tiles, {}, actual.pixels, spec);
+    compare_resolve(in, tiles, {}, actual, spec);
     if (HasFatalFailure()) return;
   }
   // Where a motion is whole pixels a rounding decides between which texels history is read.
@@ -249,7 +258,7 @@ TEST_P(Temporal, BilinearHistoryAndTrustMatchToo) {
       const StageInputs in = stages.inputs(rig, spec);
       const auto tiles = stages.tiles(in, spec.seed);
       const auto actual = stages.run_resolve(rig, in, tiles, preset);
-      compare_resolve(in, tiles, options, actual.pixels, spec);
+      compare_resolve(in, tiles, options, actual, spec);
       if (HasFatalFailure()) return;
     }
   }
@@ -315,9 +324,8 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
     using Shown = TemporalStages::Shown;
-    for (const Shown& shown : {Shown{}, {TemporalPreset::kFast, true}, {.first = true}}) {
-      const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first,
-                                              !shown.background};
+    for (const Shown& shown : {Shown{}, {TemporalPreset::kFast}, {.first = true}}) {
+      const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first};
       const auto actual = stages.run_display(rig, in, in.reference.before, shown);
       const auto reference = [&]<typename Real>(Real, int x, int y) {
         return reference::temporal_display<Real>(in.reference, in.reference.before, options, x, y);
@@ -335,6 +343,8 @@ std::vector<StageVariant> variants() {
           {.colour = kRGBA32F},
           {.history = kRGBA16F, .resolved = kRGBA16F},
           {.storage = Storage::kImage},
+          {.alpha = true},
+          {.history = kRGBA16F, .moves = false, .reactive = true, .alpha = true},
           {.moves = false},
           {.moves = false, .reactive = true},
           {.storage = Storage::kImage, .moves = false, .reactive = true}};

@@ -98,6 +98,9 @@ std::vector<PlanFacts> all_facts() {
       add_needs(settings);
     }
     settings.method = Method::kQuincunx;
+    settings.far = FarMotion::kCamera;
+    add_needs(settings);
+    settings.far = FarMotion::kAsDrawn;
     for (const TwoFrameForm form :
          {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected}) {
       for (const Sampling sampling : {Sampling::kPoint, Sampling::kBilinear}) {

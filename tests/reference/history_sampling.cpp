@@ -37,19 +37,16 @@ bool can_copy(const TemporalInputs& in, const TileReprojection& tile, int x, int
   return true;
 }
 
-template <typename Real>
-PixelOf<Real> sample_linear(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction) {
-  PixelOf<Real> result = {};
-  for (std::size_t c = 0; c < 4; ++c) {
-    const auto on_row = [&](int row) {
-      const Real left = in.history_clamped(x, row)[c];
-      const Real right = in.history_clamped(x + 1, row)[c];
-      return left + (right - left) * fraction[0];
-    };
-    const Real upper = on_row(y);
-    result[c] = upper + (on_row(y + 1) - upper) * fraction[1];
-  }
-  return result;
+// `at(x, y)`: what is sampled, of a texel.
+template <typename Real, typename At>
+Real linear_of(const At& at, int x, int y, const std::array<Real, 2>& fraction) {
+  const auto on_row = [&](int row) {
+    const Real left = at(x, row);
+    const Real right = at(x + 1, row);
+    return left + (right - left) * fraction[0];
+  };
+  const Real upper = on_row(y);
+  return upper + (on_row(y + 1) - upper) * fraction[1];
 }
 
 // Of the four texels around a place, `f` past the second.
@@ -62,11 +59,54 @@ std::array<Real, 4> cubic_weights(const Real& f, double a) {
   return {w0, w1, 1 - w0 - w1 - w3, w3};
 }
 
+template <typename Real, typename At>
+Real cubic_of(const At& at, int x, int y, const std::array<Real, 2>& fraction, double a) {
+  const std::array<Real, 4> wx = cubic_weights(fraction[0], a);
+  const std::array<Real, 4> wy = cubic_weights(fraction[1], a);
+  Real result = 0;
+  double low = at(x, y);
+  double high = low;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const double texel = at(x + column - 1, y + row - 1);
+      result += texel * wx[static_cast<std::size_t>(column)] * wy[static_cast<std::size_t>(row)];
+      const bool is_inner = row % 3 != 0 && column % 3 != 0;
+      if (is_inner) low = std::min(low, texel);
+      if (is_inner) high = std::max(high, texel);
+    }
+  }
+  return clamp(result, low, high);
+}
+
+// Between the four texels from (x, y) on, or the sixteen around them.
+template <typename Real>
+HistoryTexel<Real> sample_history(const TemporalInputs& in, int taps, int x, int y,
+                                  const std::array<Real, 2>& fraction) {
+  const bool has_alpha = !in.history_alpha.empty();
+  HistoryTexel<Real> known;
+  if (taps == 4) {
+    for (std::size_t c = 0; c < 4; ++c)
+      known.texel[c] = linear_of([&](int i, int j) { return in.history_clamped(i, j)[c]; }, x, y, fraction);
+    if (has_alpha)
+      known.alpha = linear_of([&](int i, int j) { return in.alpha_clamped(i, j); }, x, y, fraction);
+    return known;
+  }
+  known.texel = sample_cubic(in, x, y, fraction, kHistorySharpness);
+  if (has_alpha) known.alpha = sample_alpha_cubic(in, x, y, fraction, kHistorySharpness);
+  return known;
+}
+
 }  // namespace
 
 const Pixel& TemporalInputs::history_clamped(int x, int y) const {
   return history[index_of(output_width, std::clamp(x, 0, output_width - 1),
                           std::clamp(y, 0, output_height - 1))];
+}
+
+double TemporalInputs::alpha_clamped(int x, int y) const {
+  if (history_alpha.empty()) return 1;
+  return history_alpha[index_of(output_width, std::clamp(x, 0, output_width - 1),
+                                std::clamp(y, 0, output_height - 1))];
 }
 
 template <typename Real>
@@ -75,7 +115,10 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
                                    int y) {
   FetchedHistory<Real> fetched;
   if (can_copy(in, tile, x, y)) {
-    fetched.texel = as<Real>(in.history_clamped(x - tile.step[0], y - tile.step[1]));
+    const int from_x = x - tile.step[0];
+    const int from_y = y - tile.step[1];
+    fetched.known.texel = as<Real>(in.history_clamped(from_x, from_y));
+    fetched.known.alpha = in.alpha_clamped(from_x, from_y);
     return fetched;
   }
   const std::array<int, 2> pixel = {x, y};
@@ -103,9 +146,8 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
     is_outside = is_outside || place < -.5 || place > size[axis] - .5;
     between += fraction[axis] * (1 - fraction[axis]);
   }
-  fetched.texel = options.taps == 4 ? sample_linear(in, texel[0], texel[1], fraction)
-                                    : sample_cubic(in, texel[0], texel[1], fraction, kHistorySharpness);
-  if (is_outside) fetched.texel[3] = 0;
+  fetched.known = sample_history(in, options.taps, texel[0], texel[1], fraction);
+  if (is_outside) fetched.known.texel[3] = 0;
   fetched.between = min(4 * between, 1);
   return fetched;
 }
@@ -113,24 +155,16 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
 template <typename Real>
 PixelOf<Real> sample_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
                            double a) {
-  const std::array<Real, 4> wx = cubic_weights(fraction[0], a);
-  const std::array<Real, 4> wy = cubic_weights(fraction[1], a);
   PixelOf<Real> result = {};
-  for (std::size_t c = 0; c < 4; ++c) {
-    double low = in.history_clamped(x, y)[c];
-    double high = low;
-    for (int row = 0; row < 4; ++row) {
-      for (int column = 0; column < 4; ++column) {
-        const double texel = in.history_clamped(x + column - 1, y + row - 1)[c];
-        result[c] += texel * wx[static_cast<std::size_t>(column)] * wy[static_cast<std::size_t>(row)];
-        const bool is_inner = row % 3 != 0 && column % 3 != 0;
-        if (is_inner) low = std::min(low, texel);
-        if (is_inner) high = std::max(high, texel);
-      }
-    }
-    result[c] = clamp(result[c], low, high);
-  }
+  for (std::size_t c = 0; c < 4; ++c)
+    result[c] = cubic_of([&](int i, int j) { return in.history_clamped(i, j)[c]; }, x, y, fraction, a);
   return result;
+}
+
+template <typename Real>
+Real sample_alpha_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
+                        double a) {
+  return cubic_of([&](int i, int j) { return in.alpha_clamped(i, j); }, x, y, fraction, a);
 }
 
 template FetchedHistory<double> fetch_history(const TemporalInputs&, const TileReprojection&,
@@ -140,5 +174,7 @@ template FetchedHistory<Bounded> fetch_history(const TemporalInputs&, const Tile
 template PixelOf<double> sample_cubic(const TemporalInputs&, int, int, const std::array<double, 2>&, double);
 template PixelOf<Bounded> sample_cubic(const TemporalInputs&, int, int, const std::array<Bounded, 2>&,
                                        double);
+template double sample_alpha_cubic(const TemporalInputs&, int, int, const std::array<double, 2>&, double);
+template Bounded sample_alpha_cubic(const TemporalInputs&, int, int, const std::array<Bounded, 2>&, double);
 
 }  // namespace quincunx::reference

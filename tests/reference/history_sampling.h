@@ -9,8 +9,8 @@ namespace quincunx::reference {
 // History where a pixel's picture was in the previous frame.
 template <typename Real>
 struct FetchedHistory {
-  PixelOf<Real> texel = {};  // colour, and in the fourth channel confidence
-  Real between = 0;          // how far between texels it was read: 0 at a texel's centre, 1 midway
+  HistoryTexel<Real> known = {};
+  Real between = 0;  // how far between texels it was read: 0 at a texel's centre, 1 midway
 };
 
 // History of output pixel (x, y), whose tile is `tile` and whose nearest sample has `reprojection`.
@@ -25,5 +25,10 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
 template <typename Real>
 PixelOf<Real> sample_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
                            double a);
+
+// The same of its alpha.
+template <typename Real>
+Real sample_alpha_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
+                        double a);
 
 }  // namespace quincunx::reference

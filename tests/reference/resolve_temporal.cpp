@@ -10,6 +10,7 @@
 //   rectify           where d > 0: m moves by d of the way into mean +- .75 standard deviations of a cross of
 //                     five samples, as c / (1 + max c); W <- W (1 - d min(1, distance / (deviation + .02)))
 //   reseed            where W < .15: f = 1 - W / .15; m <- m + f (Gaussian of 3 x 3 samples - m); W <- .15
+//   (alpha takes the same steps with the same weights, but is not relit, and rectified as it is)
 //   accumulate        m <- m + (s - m) w / (W + w + .85 f); W <- min(W + w, 32);
 //                     w = (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2), d the distance of s
 // Source: accumulation and rectification after Karis, "High-Quality Temporal Supersampling", 2014, and AMD
@@ -133,6 +134,7 @@ Real trust_at(const TemporalInputs& in, const TemporalOptions& options, const Ne
 template <typename Real>
 struct Known {
   PixelOf<Real> colour;  // of history; the fourth channel is not used
+  Real alpha;
   Real confidence;
   Real rejection;    // in [0, 1]
   Real inertia = 0;  // of a seed, against this frame's sample
@@ -146,7 +148,7 @@ Real most_confidence(const Real& trust) {
 
 template <typename Real>
 Real limit_confidence(const FetchedHistory<Real>& history, const Real& trust, double motion_edge) {
-  Real w = clamp(history.texel[3], 0, kMostConfidence);
+  Real w = clamp(history.known.texel[3], 0, kMostConfidence);
   w = w / (1 + kResamplingCost * history.between * w);
   if (history.between > kResampledFrom) w = min(w, kMostResampled);
   w = min(w, most_confidence(trust));
@@ -273,6 +275,28 @@ void rectify(const Box<Real>& box, Known<Real>& known) {
   if (is_outside) known.colour = from_tone(tone);
 }
 
+// Alpha, towards that of the valid ones of the same samples. It is no light: no tone curve.
+template <typename Real>
+void rectify_alpha(const Frame& frame, int x, int y, Known<Real>& known) {
+  const int cross[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+  Real first = 0, sum = 0, squares = 0;
+  int count = 0;
+  for (const auto& step : cross) {
+    const Pixel& sample = texel_clamped(frame, x + step[0], y + step[1]);
+    if (!is_valid(sample)) continue;
+    if (count == 0) first = sample[3];
+    const Real difference = sample[3] - first;
+    sum += difference;
+    squares += difference * difference;
+    ++count;
+  }
+  if (count == 0) return;
+  const Real mean = sum / count;
+  const Real deviation = kBoxSize * sqrt(max(squares / count - mean * mean, 0));
+  const Real middle = first + mean;
+  known.alpha += (clamp(known.alpha, middle - deviation, middle + deviation) - known.alpha) * known.rejection;
+}
+
 // ---- Reseed.
 
 // In (0, 1]: how far another sample may show the surface of `own`, by its motion. Those of another surface
@@ -312,12 +336,12 @@ PixelOf<Real> seed_from_afar(const Frame& frame, int x, int y) {
         if (!is_valid(sample)) continue;
         const Real weight = luma_weighted<Real>(Real(1) / distance, sample);
         weights += weight;
-        for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t c = 0; c < 4; ++c)
           sum[c] += sample[c] * weight;
       }
     }
   }
-  for (std::size_t c = 0; c < 3 && weights > 0; ++c)
+  for (std::size_t c = 0; c < 4 && weights > 0; ++c)
     sum[c] = sum[c] / weights;
   return sum;
 }
@@ -339,7 +363,7 @@ Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
       const Real weight =
           luma_weighted(gaussian, sample) * similarity<Real>(in, near.x.sample, near.y.sample, x, y);
       weights += weight;
-      for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t c = 0; c < 4; ++c)
         sum[c] += sample[c] * weight;
     }
   }
@@ -349,7 +373,7 @@ Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
     seed.colour = seed_from_afar<Real>(in.frame, near.x.sample, near.y.sample);
     return seed;
   }
-  for (std::size_t c = 0; c < 3; ++c)
+  for (std::size_t c = 0; c < 4; ++c)
     seed.colour[c] = sum[c] / weights;
   return seed;
 }
@@ -362,6 +386,7 @@ void reseed(const TemporalInputs& in, const Neighbourhood<Real>& near, Known<Rea
   const Real share = max(1 - known.confidence / kReseedBelow, 0);
   for (std::size_t c = 0; c < 3; ++c)
     known.colour[c] += (seed.colour[c] - known.colour[c]) * share;
+  known.alpha += (seed.colour[3] - known.alpha) * share;
   known.inertia = kSeedInertia * share;
   if (seed.is_known)
     known.confidence = max(known.confidence, kReseedBelow);
@@ -381,21 +406,22 @@ Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, bool is_
 }
 
 template <typename Real>
-PixelOf<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Real& weight) {
-  PixelOf<Real> texel = known.colour;
+HistoryTexel<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Real& weight) {
+  HistoryTexel<Real> updated = {known.colour, known.alpha};
   const Real total = known.confidence + weight;
   const Real share = weight / max(total + known.inertia, kLeastWeight);
   for (std::size_t c = 0; c < 3 && is_valid(sample); ++c)
-    texel[c] += (sample[c] - texel[c]) * share;
-  texel[3] = min(total, kMostConfidence);
-  return texel;
+    updated.texel[c] += (sample[c] - updated.texel[c]) * share;
+  if (is_valid(sample)) updated.alpha += (sample[3] - updated.alpha) * share;
+  updated.texel[3] = min(total, kMostConfidence);
+  return updated;
 }
 
 }  // namespace
 
 template <typename Real>
-PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                               const TemporalOptions& options, int x, int y) {
+HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                                    const TemporalOptions& options, int x, int y) {
   const Frame& frame = in.frame;
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
   const Neighbourhood<Real> near = {
@@ -408,11 +434,14 @@ PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>
   const double motion_edge = std::abs(reprojection.motion_edge);
 
   const auto history = fetch_history<Real>(in, tile, reprojection, options, x, y);
-  Known<Real> known{history.texel, limit_confidence(history, trust, motion_edge),
+  Known<Real> known{history.known.texel, history.known.alpha, limit_confidence(history, trust, motion_edge),
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(in, tiles, x, y, known);
   relight(in, tiles, x, y, known);
-  if (seamless(known.rejection > 0)) rectify(box_around<Real>(frame, near.x.sample, near.y.sample), known);
+  if (seamless(known.rejection > 0)) {
+    rectify_alpha(frame, near.x.sample, near.y.sample, known);
+    rectify(box_around<Real>(frame, near.x.sample, near.y.sample), known);
+  }
   reseed(in, near, known);
 
   Real weight = 0;
@@ -423,9 +452,9 @@ PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>
   return accumulate(known, sample, weight);
 }
 
-template PixelOf<double> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
-                                          const TemporalOptions&, int, int);
-template PixelOf<Bounded> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
-                                           const TemporalOptions&, int, int);
+template HistoryTexel<double> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
+                                               const TemporalOptions&, int, int);
+template HistoryTexel<Bounded> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,
+                                                const TemporalOptions&, int, int);
 
 }  // namespace quincunx::reference

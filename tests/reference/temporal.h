@@ -85,9 +85,10 @@ struct TemporalInputs {
   std::vector<double> reactive_before;      // of the previous viewport, where frame.reactive counts
   int output_width = 0;
   int output_height = 0;
-  std::vector<Pixel> history;  // of each output pixel: red, green, blue and confidence
-  std::vector<Tile> before;    // of the previous frame
-  int judged_apart = 2;        // one of this many samples judges history: 2 or 4
+  std::vector<Pixel> history;         // of each output pixel: red, green, blue and confidence
+  std::vector<double> history_alpha;  // of each output pixel; empty: the picture is opaque
+  std::vector<Tile> before;           // of the previous frame
+  int judged_apart = 2;               // one of this many samples judges history: 2 or 4
 
   int tiles_x() const { return (output_width + kTile - 1) / kTile; }
   int tiles_y() const { return (output_height + kTile - 1) / kTile; }
@@ -106,6 +107,7 @@ struct TemporalInputs {
   }
   // Clamped to the edge.
   const Pixel& history_clamped(int x, int y) const;
+  double alpha_clamped(int x, int y) const;
 };
 
 // Inputs in the number type that a stage computes with.
@@ -168,14 +170,19 @@ struct TemporalOptions {
   bool bilinear_trust = false;  // trust between samples; else the nearest sample's
 };
 
-// resolve_temporal: the history texel of output pixel (x, y) after this frame.
 template <typename Real>
-PixelOf<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
-                               const TemporalOptions& options, int x, int y);
+struct HistoryTexel {
+  PixelOf<Real> texel = {};  // colour and, in the fourth channel, confidence
+  Real alpha = 1;
+};
+
+// resolve_temporal: the history of output pixel (x, y) after this frame.
+template <typename Real>
+HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<Tile>& tiles,
+                                    const TemporalOptions& options, int x, int y);
 
 struct DisplayOptions {
   bool smooth = true;
-  bool alpha = true;  // this frame's, bilinear; else 1
 };
 
 // temporal_display: output pixel (x, y) of the picture that in.history holds.

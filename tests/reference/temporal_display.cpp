@@ -2,7 +2,7 @@
 // temporal_display: one output pixel of the picture that a history holds.
 //   m      history at p - R: the cubic of Keys, a = -.75, p being the pixel's centre and R its tile's phase
 //   where W < 1.5: (m (W + .02) + sum n e) / (W + .02 + 8 e) with the eight neighbours n, e = .3 exp(-2 W)
-//   alpha  this frame's, bilinear, or 1
+//   alpha  that of history in the same way, or 1
 // Source: found by measuring (docs/temporal.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
 #include <cstddef>
@@ -20,8 +20,9 @@ constexpr double kFalloff = 2;              // of the neighbours' weight, for ea
 
 // History at the pixel's centre.
 template <typename Real>
-PixelOf<Real> picture_at(const TemporalInputs& in, const TileReprojection& tile, int x, int y) {
-  if (tile.phase[0] == 0 && tile.phase[1] == 0) return as<Real>(in.history_clamped(x, y));
+HistoryTexel<Real> picture_at(const TemporalInputs& in, const TileReprojection& tile, int x, int y) {
+  if (tile.phase[0] == 0 && tile.phase[1] == 0)
+    return {as<Real>(in.history_clamped(x, y)), in.alpha_clamped(x, y)};
   std::array<int, 2> texel = {x, y};
   std::array<Real, 2> fraction;
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -29,41 +30,36 @@ PixelOf<Real> picture_at(const TemporalInputs& in, const TileReprojection& tile,
     texel[axis] -= back;
     fraction[axis] = back - Real(tile.phase[axis]);
   }
-  return sample_cubic(in, texel[0], texel[1], fraction, kDisplaySharpness);
+  HistoryTexel<Real> shown;
+  shown.texel = sample_cubic(in, texel[0], texel[1], fraction, kDisplaySharpness);
+  if (!in.history_alpha.empty())
+    shown.alpha = sample_alpha_cubic(in, texel[0], texel[1], fraction, kDisplaySharpness);
+  return shown;
 }
 
-template <typename Real>
-PixelOf<Real> smooth(const TemporalInputs& in, int x, int y, const PixelOf<Real>& centre) {
-  const Real confidence = in.history_clamped(x, y)[3];
+// `at(x, y)`: what is smoothed, of a texel.
+template <typename Real, typename At>
+Real smoothed(const At& at, int x, int y, const Real& centre, const Real& confidence) {
   const Real neighbour = kNeighbourWeight * bell(kFalloff * confidence);
   const Real own = confidence + kCentreWeight;
-  PixelOf<Real> smoothed = {};
-  for (std::size_t c = 0; c < 3; ++c) {
-    Real sum = centre[c] * own;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (dx != 0 || dy != 0) sum += neighbour * in.history_clamped(x + dx, y + dy)[c];
-      }
+  Real sum = centre * own;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (dx != 0 || dy != 0) sum += neighbour * at(x + dx, y + dy);
     }
-    smoothed[c] = sum / (own + 8 * neighbour);
   }
-  return smoothed;
+  return sum / (own + 8 * neighbour);
 }
 
 template <typename Real>
-Real alpha_at(const TemporalInputs& in, int x, int y) {
-  const Frame& frame = in.frame;
-  const Between column =
-      between_samples(texel_coordinate(x, in.output_width, frame.width, frame.jitter_x), frame.width);
-  const Between row =
-      between_samples(texel_coordinate(y, in.output_height, frame.height, frame.jitter_y), frame.height);
-  const auto on_row = [&](int i) {
-    const Real left = sanitised(texel_at(frame, column.left, i)[3]);
-    const Real right = sanitised(texel_at(frame, column.right, i)[3]);
-    return left + (right - left) * column.fraction;
-  };
-  const Real upper = on_row(row.left);
-  return upper + (on_row(row.right) - upper) * row.fraction;
+void smooth(const TemporalInputs& in, int x, int y, HistoryTexel<Real>& shown) {
+  const Real confidence = in.history_clamped(x, y)[3];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto channel = [&](int i, int j) { return in.history_clamped(i, j)[c]; };
+    shown.texel[c] = smoothed(channel, x, y, shown.texel[c], confidence);
+  }
+  if (in.history_alpha.empty()) return;
+  shown.alpha = smoothed([&](int i, int j) { return in.alpha_clamped(i, j); }, x, y, shown.alpha, confidence);
 }
 
 }  // namespace
@@ -72,10 +68,9 @@ template <typename Real>
 PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
                                const DisplayOptions& options, int x, int y) {
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
-  PixelOf<Real> shown = picture_at<Real>(in, tile, x, y);
-  if (options.smooth && in.history_clamped(x, y)[3] < kSmoothedBelow) shown = smooth(in, x, y, shown);
-  shown[3] = options.alpha ? alpha_at<Real>(in, x, y) : Real(1);
-  return shown;
+  HistoryTexel<Real> shown = picture_at<Real>(in, tile, x, y);
+  if (options.smooth && in.history_clamped(x, y)[3] < kSmoothedBelow) smooth(in, x, y, shown);
+  return {shown.texel[0], shown.texel[1], shown.texel[2], shown.alpha};
 }
 
 template PixelOf<double> temporal_display(const TemporalInputs&, const std::vector<Tile>&,

@@ -177,6 +177,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   const std::vector<std::int64_t> left = left_to_do(options, task);
   const std::vector<std::int64_t> read = to_read(options, task, left, history);
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
+  task.format.background = task.scan.background();
   if (const Extent target = task.scan.target(); target != Extent{}) {
     if (Status status = settle_plan(options, task, target, task.scan.half_colour()); !status.ok())
       return status;

@@ -56,6 +56,14 @@ std::array<std::string, 4> colour_channels_of(const std::string& layer) {
   return {prefix + "R", prefix + "G", prefix + "B", prefix + "A"};
 }
 
+bool leaves_pixels_open(const ImagePart& part) {
+  const ImageWindow& data = part.data;
+  const ImageWindow& display = part.display;
+  return data.x > display.x || data.y > display.y ||
+         data.x + data.extent.width < display.x + display.extent.width ||
+         data.y + data.extent.height < display.y + display.extent.height;
+}
+
 Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
                                     const ChannelNames& names) {
   Search search(path, header);
@@ -71,6 +79,9 @@ Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& 
   if (names.has_reactive()) places.reactive = search.find(names.reactive);
   if (!search.status().ok()) return search.status();
   places.display = *search.display();
+  places.background = !places.colour[3];
+  for (const auto& place : places.colour)
+    places.background &= !place || !leaves_pixels_open(header.parts[place->part]);
   for (const auto& place : places.colour)
     places.half_colour &= !place || header.at(*place).stored == ChannelType::kHalf;
   return places;

@@ -38,7 +38,11 @@ struct ChannelPlaces {
   std::optional<ChannelPlace> reactive;
   ImageWindow display;  // of the parts in use
   bool half_colour = true;
+  bool background = true;  // colour covers the display window, and there is no alpha
 };
+
+// Whether pixels of the display window lie outside the data window.
+bool leaves_pixels_open(const ImagePart& part);
 
 // Errors: kIoFailure, one sentence with `path` and the channel: one that is missing, deep, of integers, or
 // in a part of another size.

@@ -64,7 +64,7 @@ SceneNeeds needs_of(const SequenceFormat& format) {
   needs.moving_objects = format.motion == MotionSource::kChannels;
   needs.camera_motion = format.motion != MotionSource::kNone;
   needs.transparents = format.channels.has_reactive();
-  needs.background = true;
+  needs.background = format.background;
   return needs;
 }
 

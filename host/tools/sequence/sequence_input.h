@@ -48,6 +48,7 @@ struct SequenceFormat {
   MotionSource motion = MotionSource::kNone;  // never kAutomatic
   bool needs_camera = false;                  // the attribute worldToNDC of each frame is read
   VelocityUnits units;
+  bool background = true;  // each frame's colour covers it, without alpha: known when all headers were read
   DepthKind depth_kind = DepthKind::kLinear;
   float near_plane = kUnknownNear;
   JitterSource jitter;

@@ -13,12 +13,20 @@ constexpr std::uint16_t kHalfOne = 0x3c00;
 constexpr const char* kKeptAttributes[] = {"worldToCamera", "worldToNDC", "FramesPerSecond", "chromaticities",
                                            "PixelAspectRatio"};
 
-// Sets channel `index` of four of every pixel.
+// Sets the alpha of every pixel that the file has.
 template <typename Texel>
-void fill_channel(std::vector<std::byte>& colour, std::size_t index, Texel value) {
+void fill_alpha(std::vector<std::byte>& colour, const ImagePart& part, Texel value) {
   auto* texels = reinterpret_cast<Texel*>(colour.data());
-  for (std::size_t i = index; i < colour.size() / sizeof(Texel); i += 4)
-    texels[i] = value;
+  const int left = part.data.x - part.display.x;
+  const int top = part.data.y - part.display.y;
+  const Extent extent = part.display.extent;
+  for (int y = std::max(top, 0); y < std::min(top + part.data.extent.height, extent.height); ++y) {
+    for (int x = std::max(left, 0); x < std::min(left + part.data.extent.width, extent.width); ++x)
+      texels[(static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) +
+              static_cast<std::size_t>(x)) *
+                 4 +
+             3] = value;
+  }
 }
 
 // The targets of one file's channels in the frame's memory.
@@ -38,13 +46,9 @@ class Targets {
 };
 
 // Whether pixels of the display window lie outside some channel's data window.
-bool leaves_pixels_open(const ImageHeader& header, const std::vector<ChannelTarget>& targets) {
+bool leave_pixels_open(const ImageHeader& header, const std::vector<ChannelTarget>& targets) {
   return std::any_of(targets.begin(), targets.end(), [&](const ChannelTarget& target) {
-    const ImageWindow& data = header.parts[target.from.part].data;
-    const ImageWindow& display = header.parts[target.from.part].display;
-    return data.x > display.x || data.y > display.y ||
-           data.x + data.extent.width < display.x + display.extent.width ||
-           data.y + data.extent.height < display.y + display.extent.height;
+    return leaves_pixels_open(header.parts[target.from.part]);
   });
 }
 
@@ -79,7 +83,7 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
     targets.add(places.velocity[i], ChannelType::kFloat, &frame.velocity.data()->x + i, sizeof(Vec2));
   targets.add(places.depth, ChannelType::kFloat, frame.depth.data(), sizeof(float));
   targets.add(places.reactive, ChannelType::kFloat, mask.data(), sizeof(float));
-  if (leaves_pixels_open(reader.header(), targets.all())) clear(frame, format.depth_kind, mask);
+  if (leave_pixels_open(reader.header(), targets.all())) clear(frame, format.depth_kind, mask);
   if (Status status = reader.read(targets.all()); !status.ok()) return status;
   std::transform(mask.begin(), mask.end(), frame.reactive.begin(), reactive_value);
   return {};
@@ -108,10 +112,11 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   if (Status status = read_pixels(reader.value(), places.value(), format, type, frame); !status.ok())
     return status;
   if (!places->colour[3]) {
+    const ImagePart& part = reader->header().parts[places->colour[0]->part];
     if (type == ChannelType::kHalf) {
-      fill_channel(frame.colour, 3, kHalfOne);
+      fill_alpha(frame.colour, part, kHalfOne);
     } else {
-      fill_channel(frame.colour, 3, 1.0f);
+      fill_alpha(frame.colour, part, 1.0f);
     }
   }
   to_velocity(format.units, frame.render, frame.velocity);

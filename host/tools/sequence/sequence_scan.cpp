@@ -49,6 +49,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   if (!attributes.ok()) return attributes.status();
   frame.render = places->display.extent;
   frame.half_colour = places->half_colour;
+  frame.background = places->background;
   frame.reset = attributes->reset;
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
   if (format.needs_camera && !attributes->world_to_ndc) {
@@ -100,6 +101,11 @@ Extent SequenceScan::target() const {
 bool SequenceScan::half_colour() const {
   return std::all_of(frames.begin(), frames.end(),
                      [](const ScannedFrame& frame) { return frame.half_colour || !frame.problem.empty(); });
+}
+
+bool SequenceScan::background() const {
+  return std::all_of(frames.begin(), frames.end(),
+                     [](const ScannedFrame& frame) { return frame.background || !frame.problem.empty(); });
 }
 
 Status SequenceScan::problem() const {

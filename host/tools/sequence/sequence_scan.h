@@ -18,6 +18,7 @@ struct ScannedFrame {
   bool wanted = false;  // else read as history only
   Extent render = {};
   bool half_colour = true;
+  bool background = true;  // as ChannelPlaces has it
   Vec2 jitter = {};
   bool reset = false;        // nothing of the frame before may be used: a cut, or it is not there
   std::string problem = {};  // empty: none; else one sentence that names the file
@@ -31,6 +32,7 @@ struct SequenceScan {
   std::vector<std::int64_t> bad() const;
   Extent target() const;     // holds the largest good frame; empty: there is none
   bool half_colour() const;  // of all good frames
+  bool background() const;   // of all good frames
   Status problem() const;    // kIoFailure: the first one and how many more; ok: none
 };
 

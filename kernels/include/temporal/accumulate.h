@@ -61,13 +61,17 @@ static inline float16 add_samples(float16 m, float16 s, float4 part, float4 conf
   return select(sum, to_four_texels(confidence), last);
 }
 
-// The updated history: each sample moves it by weight / (confidence + weight), less by the inertia of what was
+// How far each sample moves its pixel's history: weight / (confidence + weight), less by the inertia of what was
 // reseeded.
+static inline float8 sample_parts(float8 known, float8 inertia, float8 weight) {
+  return weight / max(known + weight + inertia, LEAST_WEIGHT);
+}
+
+// The updated history.
 static inline EightTexels accumulate(EightTexels history, float8 known, float8 inertia, EightTexels samples,
                                      float8 weight) {
-  const float8 total = known + weight;
-  const float8 part = weight / max(total + inertia, LEAST_WEIGHT);
-  const float8 confidence = min(total, MOST_CONFIDENCE);
+  const float8 part = sample_parts(known, inertia, weight);
+  const float8 confidence = min(known + weight, MOST_CONFIDENCE);
   const EightTexels sum = {add_samples(history.left, samples.left, part.lo, confidence.lo),
                            add_samples(history.right, samples.right, part.hi, confidence.hi)};
   return sum;

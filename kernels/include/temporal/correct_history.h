@@ -2,6 +2,7 @@
 // Rectification and reseeding of eight output pixels, one by one: slow, and seldom needed.
 #pragma once
 
+#include "temporal/alpha.h"
 #include "temporal/limit_confidence.h"
 #include "temporal/rectify.h"
 #include "temporal/reseed.h"
@@ -15,6 +16,7 @@ typedef struct EightPixels {
   float4 history[8];
   float confidence[8], rejection[8], from_x[8];
   float inertia[8];
+  float alpha[8];
   int x[8];
 } EightPixels;
 
@@ -27,12 +29,19 @@ static inline void correct_pixel(COLOUR_TEXELS colour, const SourceFrame* frame,
     const ToneBox box = tone_box(colour, frame, pixels->x[i], y);
     m = rectify(m, w, pixels->rejection[i], &box);
     w = m.w;
+#if ALPHA
+    pixels->alpha[i] = rectify_alpha(colour, frame, pixels->x[i], y, pixels->alpha[i], pixels->rejection[i]);
+#endif
   }
   if (w < LEAST_CONFIDENCE) {
-    const float4 seed = seed_of(colour, frame, motion, pixels->x[i], y, pixels->from_x[i], from_y);
-    m += (seed - m) * (1.0f - w / LEAST_CONFIDENCE);
-    pixels->inertia[i] = INERTIA * (1.0f - w / LEAST_CONFIDENCE);
-    w = seed.w > 0.0f ? LEAST_CONFIDENCE : 0.0f;
+    const Seed seed = seed_of(colour, frame, motion, pixels->x[i], y, pixels->from_x[i], from_y);
+    const float share = 1.0f - w / LEAST_CONFIDENCE;
+    m += (seed.mean - m) * share;
+#if ALPHA
+    pixels->alpha[i] += (seed.mean.w - pixels->alpha[i]) * share;
+#endif
+    pixels->inertia[i] = INERTIA * share;
+    w = seed.any ? LEAST_CONFIDENCE : 0.0f;
   }
   pixels->history[i] = m;
   pixels->confidence[i] = w;
@@ -42,10 +51,11 @@ static inline bool needs_correction(const Evidence* evidence) {
   return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < LEAST_CONFIDENCE));
 }
 
-// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least. Returns its
-// inertia: how much it resists this frame's sample, as a weight.
+// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least; with ALPHA its
+// alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
 static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                     const NearestSamples* nearest, EightTexels* history, Evidence* evidence) {
+                                     const NearestSamples* nearest, EightTexels* history, float8* alpha,
+                                     Evidence* evidence) {
   EightPixels pixels;
   vstore16(history->left, 0, (float*)pixels.history);
   vstore16(history->right, 1, (float*)pixels.history);
@@ -53,10 +63,16 @@ static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* fr
   vstore8(evidence->rejection, 0, pixels.rejection);
   vstore8(nearest->from_x, 0, pixels.from_x);
   vstore8(nearest->x, 0, pixels.x);
+#if ALPHA
+  vstore8(*alpha, 0, pixels.alpha);
+#endif
   for (int i = 0; i < 8; ++i)
     correct_pixel(colour, frame, motion, &pixels, i, nearest->y, nearest->from_y);
   history->left = vload16(0, (const float*)pixels.history);
   history->right = vload16(1, (const float*)pixels.history);
   evidence->confidence = vload8(0, pixels.confidence);
+#if ALPHA
+  *alpha = vload8(0, pixels.alpha);
+#endif
   return vload8(0, pixels.inertia);
 }

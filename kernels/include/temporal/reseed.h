@@ -53,11 +53,16 @@ static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* fra
   return weights > 0.0f ? sum / weights : sum;
 }
 
+typedef struct Seed {
+  float4 mean;  // alpha in w
+  bool any;     // whether any sample is valid; where none is, the mean is what stands in for the seed
+} Seed;
+
 // The seed of a pixel: the mean of the 3x3 samples around (x, y), the nearest one, each weighted by a Gaussian of its
 // distance, its luma weight and its similarity to the nearest. The pixel's picture lies (from_x, from_y) samples from
-// (x, y). In w whether any sample is valid; where none is, what stands in for the seed.
-static inline float4 seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion, int x, int y,
-                             float from_x, float from_y) {
+// (x, y).
+static inline Seed seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion, int x, int y,
+                           float from_x, float from_y) {
   float4 sum = (float4)(0.0f);
   float weights = 0.0f;
   for (int row = -1; row <= 1; ++row) {
@@ -72,6 +77,7 @@ static inline float4 seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, con
       weights += weight;
     }
   }
-  if (weights > 0.0f) return (float4)((sum / weights).xyz, 1.0f);
-  return (float4)(seed_from_afar(texels, frame, x, y).xyz, 0.0f);
+  const bool any = weights > 0.0f;
+  const Seed seed = {any ? sum / weights : seed_from_afar(texels, frame, x, y), any};
+  return seed;
 }

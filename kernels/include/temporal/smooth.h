@@ -37,15 +37,24 @@ static inline EightTexels load_around(HistoryLayer layer, int x, int y) {
   return around;
 }
 
-// Pixels of little confidence mixed with their neighbours, whose sums are `around`.
-static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, float8 confidence) {
+// The parts of each pixel itself and of each of its neighbours in what is shown.
+typedef struct SmoothParts {
+  float8 own, other;
+} SmoothParts;
+
+static inline SmoothParts smooth_parts(float8 confidence) {
   const float8 little = select((float8)(0.0f), (float8)(NEIGHBOUR_WEIGHT), confidence < LITTLE_CONFIDENCE);
   const float8 other = little * bell(2.0f * confidence);
   const float8 own = confidence + CENTRE_WEIGHT;
   const float8 scale = 1.0f / (own + 8.0f * other);
-  const float8 own_part = select((float8)(1.0f), own * scale, other > 0.0f), other_part = other * scale;
+  const SmoothParts parts = {select((float8)(1.0f), own * scale, other > 0.0f), other * scale};
+  return parts;
+}
+
+// Pixels mixed with their neighbours, whose sums are `around`.
+static inline EightTexels smooth_little_known(EightTexels pixels, EightTexels around, SmoothParts parts) {
   const EightTexels smooth = {
-      pixels.left * to_four_texels(own_part.lo) + around.left * to_four_texels(other_part.lo),
-      pixels.right * to_four_texels(own_part.hi) + around.right * to_four_texels(other_part.hi)};
+      pixels.left * to_four_texels(parts.own.lo) + around.left * to_four_texels(parts.other.lo),
+      pixels.right * to_four_texels(parts.own.hi) + around.right * to_four_texels(parts.other.hi)};
   return smooth;
 }

@@ -44,14 +44,12 @@ QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 8);
 typedef struct TemporalDisplayParams {
   int output_width;
   int output_height;
-  SourceFrame frame0;
   TexelLayout output;
   int tiles_x;
-  int columns;           // of the position table
   int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
   int first;             // 1: no frame came before
 } TemporalDisplayParams;
-QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 32 + 8 + 16);
+QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 8 + 12);
 
 #ifdef __cplusplus
 }  // namespace quincunx
