@@ -5,6 +5,16 @@
 
 namespace quincunx {
 
+FarPlaces far_places(const FrameInputs& frame, Extent output) {
+  const double aspect = static_cast<double>(output.width) / output.height;
+  const double width = frame.render.width;
+  const double height = frame.render.height;
+  return {.step_x = static_cast<float>(aspect / width),
+          .step_y = static_cast<float>(1 / height),
+          .start_x = static_cast<float>(((.5 + frame.jitter.x) / width - .5) * aspect),
+          .start_y = static_cast<float>((.5 + frame.jitter.y) / height - .5)};
+}
+
 CameraVelocity camera_params(const FrameInputs& frame) {
   const double width = frame.render.width;
   const double height = frame.render.height;

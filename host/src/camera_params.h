@@ -7,6 +7,9 @@
 
 namespace quincunx {
 
+// Where samples lie in the picture whose output has this extent.
+FarPlaces far_places(const FrameInputs& frame, Extent output);
+
 CameraVelocity camera_params(const FrameInputs& frame);
 
 }  // namespace quincunx

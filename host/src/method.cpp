@@ -136,6 +136,8 @@ const char* name_of(FarMotion motion) {
       return "drawn";
     case FarMotion::kCamera:
       return "camera";
+    case FarMotion::kEvidence:
+      return "evidence";
   }
   return "unknown";
 }

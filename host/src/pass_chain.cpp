@@ -88,8 +88,9 @@ void PassChain::allocate(const ResourceUse& use) {
           allocate_image(device_, extent, use.largest.format, storage_of(use.resource, settings));
       continue;
     }
-    const cl::Buffer records(device_.impl()->context, CL_MEM_READ_WRITE,
-                             static_cast<std::size_t>(extent.area()) * use.largest.record_bytes);
+    const std::size_t bytes = static_cast<std::size_t>(extent.area()) * use.largest.record_bytes;
+    const cl::Buffer records(device_.impl()->context, CL_MEM_READ_WRITE, bytes);
+    fill_zero(device_.impl()->queue, records(), bytes);
     owned.images[i] = Image::borrow({.memory = records(), .extent = extent});
   }
 }

@@ -7,6 +7,7 @@ namespace {
 // In the order in which they run.
 constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_velocity_from_depth,
+    plan_far_motion,
     plan_far_velocity,
     plan_reproject,
     // The picture: from many frames, from two, or from one.

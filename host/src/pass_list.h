@@ -7,6 +7,7 @@
 namespace quincunx {
 
 void plan_velocity_from_depth(const PlanFacts& facts, PassList& list);
+void plan_far_motion(const PlanFacts& facts, PassList& list);
 void plan_far_velocity(const PlanFacts& facts, PassList& list);
 void plan_reproject(const PlanFacts& facts, PassList& list);
 void plan_temporal_tiles(const PlanFacts& facts, PassList& list);

@@ -21,6 +21,7 @@ constexpr struct {
     {Resource::kVelocity, Resource::kPreviousVelocity},
     {Resource::kDepth, Resource::kPreviousDepth},
     {Resource::kReactive, Resource::kPreviousReactive},
+    {Resource::kFarMotion, Resource::kPreviousFarMotion},
     {Resource::kReprojection, Resource::kPreviousReprojection},
     {Resource::kTileReprojection, Resource::kPreviousTileReprojection},
     {Resource::kTileLight, Resource::kPreviousTileLight},
@@ -55,6 +56,14 @@ const char* name_of(Resource resource) {
       return "depth of the previous frame";
     case Resource::kPreviousReactive:
       return "reactive of the previous frame";
+    case Resource::kFarSums:
+      return "far sums";
+    case Resource::kFarMotion:
+      return "far motion";
+    case Resource::kPreviousFarMotion:
+      return "far motion of the previous frame";
+    case Resource::kFarMatch:
+      return "far match";
     case Resource::kReprojection:
       return "reprojection";
     case Resource::kPreviousReprojection:
@@ -122,6 +131,8 @@ Extent extent_of(Area area, const FrameExtents& extents) {
       return extents.previous_render;
     case Area::kOutput:
       return extents.output;
+    case Area::kFarCells:
+      return tiles_of(extents.render, kFarCell);
     case Area::kTiles:
       return tiles_of(extents.output, kTemporalTile);
     case Area::kBlurTiles:

@@ -34,6 +34,10 @@ enum class Resource : std::uint8_t {
   kPreviousVelocity,
   kPreviousDepth,
   kPreviousReactive,
+  kFarSums,
+  kFarMotion,
+  kPreviousFarMotion,
+  kFarMatch,
   kReprojection,
   kPreviousReprojection,
   kTileReprojection,
@@ -77,6 +81,7 @@ enum class Area : std::uint8_t {
   kViewport,          // of this frame, within the target
   kPreviousViewport,  // of the previous frame, within the target
   kOutput,
+  kFarCells,   // one element for each cell of kFarCell^2 samples of the viewport
   kTiles,      // one element for each tile of kTemporalTile^2 output pixels
   kBlurTiles,  // one element for each tile of kTileSide^2 output pixels
   kWhole,      // one element

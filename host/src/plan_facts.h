@@ -27,8 +27,11 @@ struct PlanFacts {
     return reprojects() && !accumulates() && settings.quincunx.residual_weight > 0;
   }
   bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
-    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && needs.camera_motion;
+    const bool possible = settings.far != FarMotion::kEvidence || keeps_previous_frame();
+    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && needs.camera_motion &&
+           possible;
   }
+  bool fits_far() const { return moves_far() && settings.far == FarMotion::kEvidence; }
   bool reads_reactive() const { return keeps_previous_frame() && needs.transparents; }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;

@@ -57,7 +57,8 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                                            "reproject", "resolve_reprojected", "temporal_tiles",
                                            "temporal_light", "resolve_temporal", "temporal_display",
                                            "motion_tiles", "motion_neighbours", "motion_blur", "sharpen",
-                                           "present", "velocity_from_depth", "far_velocity"),
+                                           "present", "velocity_from_depth", "far_velocity",
+                                           "far_surroundings", "far_fit", "far_match"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -98,8 +99,10 @@ std::vector<PlanFacts> all_facts() {
       add_needs(settings);
     }
     settings.method = Method::kQuincunx;
-    settings.far = FarMotion::kCamera;
-    add_needs(settings);
+    for (const FarMotion far : {FarMotion::kCamera, FarMotion::kEvidence}) {
+      settings.far = far;
+      add_needs(settings);
+    }
     settings.far = FarMotion::kAsDrawn;
     for (const TwoFrameForm form :
          {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected}) {

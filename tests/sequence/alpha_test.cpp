@@ -132,8 +132,8 @@ TEST_F(Alpha, OfManyFramesItConvergesToTruth) {
   }
 }
 
-// Each channel is its part of the same alpha, as all were mixed with the same weights. Only where history is rectified, at
-// the edges of what moves alone, they differ: colour by its tone, alpha as it is.
+// Each channel is its part of the same alpha, as all were mixed with the same weights. Only where history is rectified,
+// at the edges of what moves alone, they differ: colour by its tone, alpha as it is.
 TEST_F(Alpha, ColourStaysPremultiplied) {
   for (const Matte& matte : {Matte{}, Matte{{.7, -.3}}, Matte{{.7, -.3}, true}}) {
     write_sequence(matte, kWhole);

@@ -78,6 +78,21 @@ TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
   EXPECT_EQ(missing.message().find("drawn velocity"), std::string::npos) << missing.message();
 }
 
+TEST(ResolvePlan, FarMotionFromEvidenceNeedsNoCameraButTwoFrames) {
+  ResolveSettings wanted = settings(Method::kTemporal);
+  wanted.far = FarMotion::kEvidence;
+  const ResolvePlan p = plan({}, wanted);
+  for (const char* kernel : {"far_surroundings", "far_fit", "far_match", "far_velocity"})
+    EXPECT_TRUE(has_pass(p, kernel)) << kernel;
+  EXPECT_FALSE(p.reads_camera());
+  EXPECT_TRUE(has_buffer(p, "colour of the previous frame"));
+  wanted.method = Method::kBilinear;
+  wanted.blur.shutter = .5;
+  const ResolvePlan single = plan({}, wanted);
+  EXPECT_TRUE(leaves_out(single, "far_velocity"));
+  EXPECT_FALSE(has_pass(single, "far_fit"));
+}
+
 TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
   ResolveSettings wanted = settings(Method::kQuincunx);
   wanted.far = FarMotion::kCamera;

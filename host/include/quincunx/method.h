@@ -79,6 +79,7 @@ enum class TemporalView : std::uint8_t {
 enum class FarMotion : std::uint8_t {
   kAsDrawn,  // nothing: they stand still in the picture
   kCamera,   // the camera's rotation, from FrameInputs::camera
+  kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
 };
 
 enum class ToneMap { kClamp, kReinhard, kAces };

@@ -44,10 +44,10 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       .show_default()
       .type_name("K");
   static const std::map<std::string, FarMotion> kFarMotions = {{"drawn", FarMotion::kAsDrawn},
-                                                               {"camera", FarMotion::kCamera}};
+                                                               {"camera", FarMotion::kCamera}, {"evidence", FarMotion::kEvidence}};
   add_choice(
       app, "--far", settings.far, kFarMotions,
-      "What moves an infinitely far sample whose velocity is 0: drawn (nothing) or camera (default: drawn)");
+      "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence (default: drawn)");
   add_choice(app, "--view", settings.temporal.view, kViews,
              "What temporal shows: picture, confidence, rejection or phase (default: picture)");
   app.add_option("--blur", settings.blur.shutter,

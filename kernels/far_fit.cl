@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// far_fit: the camera's motion that fits the surroundings best, by least squares over all cells. Each parameter is held
+// back a little, so that one of which the surroundings tell nothing is 0.
+//   cells     in   how many
+//   sums      in   FarSums of each cell, from far_surroundings
+//   previous  in   FarModel of the frame before; all zero where there is none
+//   match     in   FarMatch of the frame before
+//   motion    out  FarModel
+// One work-item, so that the order of additions never changes.
+// Reference: tests/reference/far_motion.cpp
+#include "params.h"
+
+#define LEAST_PIVOT 1e-7f  // of 1: against the rounding of what nothing is left of
+
+#define KEPT_MATCH 0.9f    // of what the frames before said
+
+// Of the sum of a parameter's squared terms, what is added to it. That of a term of higher order tells the least.
+__constant const float kHold[kFarTerms] = {1e-6f, 1e-3f, 1e-6f, 1e-3f, 1e-4f, 1e-4f, 1e-4f, 1e-4f, 1e-4f};
+
+// Of the lower triangle, column <= row.
+static inline int product_index(int row, int column) {
+  return row * (row + 1) / 2 + column;
+}
+
+static inline FarSums total_of(__global const FarSums* sums, int cells) {
+  FarSums total = sums[0];
+  for (int cell = 1; cell < cells; ++cell) {
+    for (int i = 0; i < kFarProducts; ++i) total.products[i] += sums[cell].products[i];
+    for (int i = 0; i < kFarTerms; ++i) total.velocities[i] += sums[cell].velocities[i];
+  }
+  return total;
+}
+
+// Cholesky's lower triangle, in place.
+static inline void decompose(float* m) {
+  for (int i = 0; i < kFarTerms; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      float rest = m[product_index(i, j)];
+      for (int k = 0; k < j; ++k) rest -= m[product_index(i, k)] * m[product_index(j, k)];
+      m[product_index(i, j)] = i == j ? sqrt(max(rest, LEAST_PIVOT)) : rest / m[product_index(j, j)];
+    }
+  }
+}
+
+// In place, from the right side of the equations to the solution.
+static inline void substitute(const float* lower, float* v) {
+  for (int i = 0; i < kFarTerms; ++i) {
+    for (int k = 0; k < i; ++k) v[i] -= lower[product_index(i, k)] * v[k];
+    v[i] /= lower[product_index(i, i)];
+  }
+  for (int i = kFarTerms - 1; i >= 0; --i) {
+    for (int k = i + 1; k < kFarTerms; ++k) v[i] -= lower[product_index(k, i)] * v[k];
+    v[i] /= lower[product_index(i, i)];
+  }
+}
+
+__kernel void far_fit(const int cells, __global const FarSums* sums, __global const FarModel* previous,
+                      __global const FarMatch* match, __global FarModel* motion) {
+  if (get_global_id(0) != 0 || get_global_id(1) != 0) return;
+
+  FarSums total = total_of(sums, cells);
+  float scale[kFarTerms];
+  for (int i = 0; i < kFarTerms; ++i) {
+    const float square = total.products[product_index(i, i)];
+    scale[i] = square > 0.0f ? 1.0f / sqrt(square) : 0.0f;
+    total.velocities[i] *= scale[i];
+  }
+  for (int i = 0; i < kFarTerms; ++i) {
+    for (int j = 0; j < i; ++j) total.products[product_index(i, j)] *= scale[i] * scale[j];
+    total.products[product_index(i, i)] = 1.0f + kHold[i];
+  }
+  decompose(total.products);
+  substitute(total.products, total.velocities);
+  FarModel found;
+  for (int i = 0; i < kFarTerms; ++i) found.p[i] = total.velocities[i] * scale[i];
+  found.is_known = scale[0] > 0.0f;
+  found.still = KEPT_MATCH * previous->still + (float)match->still;
+  found.moved = KEPT_MATCH * previous->moved + (float)match->moved;
+  *motion = found;
+}
