@@ -16,11 +16,13 @@
 //   reactive0, 1           in   REACTIVE 1: R8, the same viewports; 0: the frames may be mixed, 1: they may not
 //   previous_reprojection  in   MOTION_EDGE 1: what this kernel wrote for frame n-1; all zero where there is none
 //   reprojection           out  Reprojection of each sample of frame n
+//   open_trust             out  OPEN_TRUST 1: of each sample, row by row, trust without visible and motion edges
 // Options: REACTIVE     0 (default) | 1
 //          RESIDUAL     0 (default) | 1: K is not 0
 //          MOTION_EDGE  0 (default) | 1: the motion edge at each sample is found as well. Where one of the 2x2 previous
 //                       depths lies in front of the sample's surface and there was a motion edge, the sample counts as
 //                       disoccluded: what accumulated there is the nearer surface's, too
+//          OPEN_TRUST   0 (default) | 1: with MOTION_EDGE 1
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // A sample whose velocity or depth is not finite stands still, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
@@ -35,6 +37,9 @@
 #ifndef MOTION_EDGE
 #define MOTION_EDGE 0
 #endif
+#ifndef OPEN_TRUST
+#define OPEN_TRUST 0
+#endif
 #if REACTIVE < 0 || REACTIVE > 1
 #error "REACTIVE must be 0 or 1"
 #endif
@@ -43,6 +48,9 @@
 #endif
 #if MOTION_EDGE < 0 || MOTION_EDGE > 1
 #error "MOTION_EDGE must be 0 or 1"
+#endif
+#if OPEN_TRUST < 0 || OPEN_TRUST > MOTION_EDGE
+#error "OPEN_TRUST must be 0 or, with MOTION_EDGE 1, 1"
 #endif
 
 #include "motion/find_motion_edges.h"
@@ -119,9 +127,20 @@ static inline void store_reprojections(__global float* reprojection, int index, 
   if (count > 3) vstore4((float4)(r.x.s3, r.y.s3, r.trust.s3, r.motion_edge.s3), 3, first);
 }
 
+#if OPEN_TRUST
+// The first `count` of four.
+static inline void store_floats(__global float* floats, int count, float4 value) {
+  floats[0] = value.s0;
+  if (count > 1) floats[1] = value.s1;
+  if (count > 2) floats[2] = value.s2;
+  if (count > 3) floats[3] = value.s3;
+}
+#endif
+
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
                         DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                        __global const float* previous_reprojection, __global float* reprojection) {
+                        __global const float* previous_reprojection, __global float* reprojection,
+                        __global float* open_trust) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
@@ -165,6 +184,9 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 residual_x = velocity.even * params.speed0_x - velocity_before.even * params.speed1_x;
     const float4 residual_y = velocity.odd * params.speed0_y - velocity_before.odd * params.speed1_y;
     trust /= 1.0f + residual_x * residual_x + residual_y * residual_y;
+#endif
+#if OPEN_TRUST
+    store_floats(open_trust + y * params.width + x, end - x, trust);
 #endif
     trust = select((float4)(0.0f), trust, before.least <= limit);  // visible
     found.trust = as_float4(select(as_int4(trust), (int4)(NAN_BITS), lost));

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Draws docs/images/temporal_*.png anew: what each stage of the temporal upscaler sees, for docs/temporal.md.
+# Draws docs/images/temporal_*.png and layers_*.png anew: what each stage of the temporal upscaler sees, for
+# docs/temporal.md, and its two layers, for docs/layers.md.
 #
 #   scripts/temporal_pictures.sh     about two minutes
 set -euo pipefail
@@ -50,3 +51,21 @@ draw() {
 draw pan 192x120+0+130
 draw occluders 192x120+160+200
 draw shadows 192x120+20+150
+
+# draw_layers SCENE GEOMETRY: one layer, two and truth; what layers there are.
+draw_layers() {
+  local scene=$1 geometry=$2 view tiles=()
+  dump "$scene" fast presented --method temporal:fast
+  crop "$scene" fast presented "$geometry" "one layer (fast)"
+  dump "$scene" picture presented,truth --method temporal --truth 8
+  crop "$scene" picture presented "$geometry" "two layers (balanced)"
+  crop "$scene" picture truth "$geometry" "truth, 64 samples"
+  for view in layers near far; do
+    dump "$scene" "$view" resolved --method temporal --view "$view" --tone-map clamp --exposure 1
+    crop "$scene" "$view" resolved "$geometry" "--view $view"
+  done
+  montage "${tiles[@]}" -tile 3x -geometry +4+4 -font DejaVu-Sans -pointsize 16 -depth 8 "docs/images/layers_$scene.png"
+  say "docs/images/layers_$scene.png"
+}
+
+draw_layers wheel 192x120+220+110

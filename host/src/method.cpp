@@ -126,6 +126,14 @@ const char* name_of(TemporalView view) {
       return "rejection";
     case TemporalView::kPhase:
       return "phase";
+    case TemporalView::kLayers:
+      return "layers";
+    case TemporalView::kCoverage:
+      return "coverage";
+    case TemporalView::kNear:
+      return "near";
+    case TemporalView::kFar:
+      return "far";
   }
   return "unknown";
 }

@@ -83,7 +83,7 @@ class ReprojectPass : public Pass {
          view_or(frame, Resource::kReactive, Resource::kDepth),
          view_or(frame, Resource::kPreviousReactive, Resource::kPreviousDepth),
          view_or(frame, Resource::kPreviousReprojection, Resource::kReprojection),
-         frame[Resource::kReprojection]);
+         frame[Resource::kReprojection], view_or(frame, Resource::kOpenTrust, Resource::kReprojection));
     launch(frame, current.render, params.columns_per_item, event);
   }
 };
@@ -95,9 +95,10 @@ void plan_reproject(const PlanFacts& facts, PassList& list) {
   const PixelFormat velocity = facts.settings.velocity;
   PassSpec spec{
       .kernel = "reproject",
-      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D MOTION_EDGE={} {}",
+      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D MOTION_EDGE={} -D OPEN_TRUST={} {}",
                              facts.reads_reactive() ? 1 : 0, facts.weighs_residual() ? 1 : 0,
-                             facts.accumulates() ? 1 : 0, velocity_options(facts.settings)),
+                             facts.accumulates() ? 1 : 0, facts.has_layers() ? 1 : 0,
+                             velocity_options(facts.settings)),
       .reason = "the method: where each sample was, and whether it could be seen",
       .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, velocity},
                {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
@@ -109,6 +110,8 @@ void plan_reproject(const PlanFacts& facts, PassList& list) {
     spec.uses.push_back(
         {Resource::kPreviousReprojection, Access::kRead, Area::kPreviousViewport, PixelFormat::kRGBA32F});
   }
+  if (facts.has_layers())
+    spec.uses.push_back({Resource::kOpenTrust, Access::kWrite, Area::kViewport, {}, sizeof(float)});
   if (facts.weighs_residual())
     spec.uses.push_back({Resource::kPreviousVelocity, Access::kRead, Area::kPreviousViewport, velocity});
   if (facts.reads_reactive()) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);

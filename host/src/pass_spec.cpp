@@ -26,6 +26,11 @@ constexpr struct {
     {Resource::kTileReprojection, Resource::kPreviousTileReprojection},
     {Resource::kTileLight, Resource::kPreviousTileLight},
     {Resource::kHistory, Resource::kPreviousHistory},
+    {Resource::kRecordKeys, Resource::kPreviousRecordKeys},
+    {Resource::kRecords, Resource::kPreviousRecords},
+    {Resource::kLayerTiles, Resource::kPreviousLayerTiles},
+    {Resource::kNearHistory, Resource::kPreviousNearHistory},
+    {Resource::kLayerStates, Resource::kPreviousLayerStates},
     {Resource::kHistoryAlpha, Resource::kPreviousHistoryAlpha},
 };
 
@@ -84,6 +89,32 @@ const char* name_of(Resource resource) {
       return "history";
     case Resource::kPreviousHistory:
       return "history of the previous frame";
+    case Resource::kOpenTrust:
+      return "open trust";
+    case Resource::kRecordKeys:
+      return "record keys";
+    case Resource::kPreviousRecordKeys:
+      return "record keys of the previous frame";
+    case Resource::kRecords:
+      return "records";
+    case Resource::kPreviousRecords:
+      return "records of the previous frame";
+    case Resource::kSplits:
+      return "splits";
+    case Resource::kSplitMarks:
+      return "split marks";
+    case Resource::kLayerTiles:
+      return "layer tiles";
+    case Resource::kPreviousLayerTiles:
+      return "layer tiles of the previous frame";
+    case Resource::kNearHistory:
+      return "near history";
+    case Resource::kPreviousNearHistory:
+      return "near history of the previous frame";
+    case Resource::kLayerStates:
+      return "layer states";
+    case Resource::kPreviousLayerStates:
+      return "layer states of the previous frame";
     case Resource::kHistoryAlpha:
       return "history alpha";
     case Resource::kPreviousHistoryAlpha:

@@ -5,7 +5,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
-#include "temporal/temporal_params.h"
+#include "temporal_pass_params.h"
 
 namespace quincunx {
 namespace {
@@ -15,24 +15,17 @@ class TemporalDisplayPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent output = frame.output;
-    const TemporalDisplayParams params{
-        .output_width = output.width,
-        .output_height = output.height,
-        .output = layout_of(frame[picture()]),
-        .tiles_x = extent_of(Area::kTiles, frame.extents()).width,
-        .columns_per_item = columns_per_item(device(), output.width, kTemporalTile),
-        .first = frame.has_history ? 0 : 1};
+    const TemporalDisplayParams params = temporal_display_params(frame, device(), picture());
     bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
          view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[picture()]);
-    launch(frame, output, params.columns_per_item, event);
+    launch(frame, frame.output, params.columns_per_item, event);
   }
 };
 
 }  // namespace
 
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
-  if (!facts.accumulates() || !facts.shows_picture()) return;
+  if (!facts.displays_history()) return;
   const ResolveSettings& settings = facts.settings;
   const bool alpha = facts.accumulates_alpha();
   PassSpec spec{

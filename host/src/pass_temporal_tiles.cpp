@@ -2,6 +2,7 @@
 // temporal_tiles: which tiles move as a whole, and what their samples say of the history.
 #include <fmt/format.h>
 
+#include "layers/layer.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
@@ -38,6 +39,11 @@ class TemporalTilesPass : public Pass {
     bind(params, frame[Resource::kColour],
          view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],
+         view_or(frame, Resource::kDepth, Resource::kColour), layout_if_used(frame, Resource::kDepth),
+         view_or(frame, Resource::kSplits, Resource::kTileReprojection),
+         view_or(frame, Resource::kSplitMarks, Resource::kTileReprojection),
+         view_or(frame, Resource::kPreviousLayerTiles, Resource::kTileReprojection),
+         view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
          frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
     launch(frame, tiles, 1, event);
   }
@@ -50,8 +56,9 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
   const ResolveSettings& settings = facts.settings;
   PassSpec spec{
       .kernel = "temporal_tiles",
-      .options = fmt::format("-D MOTION={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
-                             colour_options(settings), precision_of(settings.temporal.history)),
+      .options = fmt::format("-D MOTION={} -D LAYERS={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
+                             facts.has_layers() ? 1 : 0, colour_options(settings),
+                             precision_of(settings.temporal.history)),
       .reason = "the method: which tiles move as a whole",
       .uses =
           {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
@@ -64,6 +71,14 @@ void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
       .frames = Frames::kSparse};
   if (facts.reprojects())
     spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  if (facts.has_layers()) {
+    spec.uses.insert(spec.uses.end(),
+                     {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                      {Resource::kSplits, Access::kRead, Area::kViewport, {}, sizeof(LayerSplit)},
+                      {Resource::kSplitMarks, Access::kRead, Area::kTiles, {}, sizeof(int)},
+                      {Resource::kPreviousLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
+                      {Resource::kLayerTiles, Access::kWrite, Area::kTiles, {}, sizeof(LayerTile)}});
+  }
   list.passes.push_back(std::move(spec));
 }
 

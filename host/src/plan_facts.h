@@ -28,15 +28,24 @@ struct PlanFacts {
   }
   bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
     const bool possible = settings.far != FarMotion::kEvidence || keeps_previous_frame();
-    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && needs.camera_motion &&
-           possible;
+    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget &&
+           needs.camera_motion && possible;
   }
   bool fits_far() const { return moves_far() && settings.far == FarMotion::kEvidence; }
   bool reads_reactive() const { return keeps_previous_frame() && needs.transparents; }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;
   }
-  bool accumulates_alpha() const { return accumulates() && shows_picture() && !needs.background; }
+  bool views_layers() const {
+    const TemporalView view = settings.temporal.view;
+    return accumulates() && (view == TemporalView::kLayers || view == TemporalView::kCoverage ||
+                             view == TemporalView::kNear || view == TemporalView::kFar);
+  }
+  bool displays_history() const { return accumulates() && (shows_picture() || views_layers()); }
+  bool has_layers() const {  // a second layer of history where surfaces move apart
+    return displays_history() && reprojects() && settings.temporal.preset != TemporalPreset::kFast;
+  }
+  bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
 };

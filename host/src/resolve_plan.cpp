@@ -93,6 +93,12 @@ PlannedBuffer planned(const ResourceUse& use, const FrameExtents& largest) {
 Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings) {
   if (Status status = check(settings); !status.ok()) return status;
   const PlanFacts facts(needs, settings);
+  if (facts.views_layers() && !facts.has_layers()) {
+    return Status::invalid(fmt::format(
+        "settings.temporal.view is {}, but there is one layer of history only; two have balanced and "
+        "quality where something moves and nothing is transparent",
+        name_of(settings.temporal.view)));
+  }
   PassList list = list_passes(facts);
   const FrameExtents largest = {settings.target, settings.target, settings.output};
   ResolvePlan plan;

@@ -166,6 +166,17 @@ static inline float8 load_velocity4(VELOCITY_TEXELS texels, TexelLayout layout, 
 #endif
 }
 
+// The velocity of one texel.
+static inline float2 load_velocity(VELOCITY_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_STORAGE == IMAGE
+  return read_imagef(texels, (int2)(x, y)).xy;
+#elif VELOCITY_FORMAT == HALF
+  return vload_half2(texel_index(layout, x, y), texels);
+#else
+  return vload2(texel_index(layout, x, y), texels);
+#endif
+}
+
 // The velocities of those of four texels, from x on, that lie before `end`; x and y in turn.
 static inline void store_velocity4(STORED_VELOCITY texels, TexelLayout layout, int x, int y, int end, float8 velocity) {
 #if SOURCE_STORAGE == IMAGE
@@ -189,6 +200,14 @@ static inline void store_velocity4(STORED_VELOCITY texels, TexelLayout layout, i
   pairs[0] = bits.s0;
   if (x + 1 < end) pairs[1] = bits.s1;
   if (x + 2 < end) pairs[2] = bits.s2;
+#endif
+}
+
+static inline float load_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_STORAGE == IMAGE
+  return read_imagef(texels, (int2)(x, y)).x;
+#else
+  return texels[texel_index(layout, x, y)];
 #endif
 }
 

@@ -21,6 +21,7 @@
 //   previous_tiles  in   TileReprojection of each tile, of the previous frame
 //   tiles           in   the same of this frame
 //   light           in   TileLight of each tile, of this frame
+//   layers          in   LAYERS 1: LayerTile of each tile, of this frame
 //   updated         out  the layer of this frame
 //   updated_alpha   out  ALPHA 1: its alpha
 //   view            out  VIEW other than PICTURE: RGBA32F or RGBA16F, output extent
@@ -29,6 +30,7 @@
 //          MOTION    1 (default) | 0: nothing moves
 //          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
 //          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs
+//          LAYERS    0 (default) | 1: leaves layered tiles to resolve_layers
 //          TRUST     NEAREST (default) | BILINEAR: between samples
 //          VIEW      PICTURE (default): temporal_display makes the picture | CONFIDENCE | REJECTION | PHASE, as in
 //                    temporal/debug_view.h
@@ -42,6 +44,7 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
+#include "layers/layer.h"
 #include "temporal/accumulate.h"
 #include "temporal/alpha.h"
 #include "temporal/correct_history.h"
@@ -53,12 +56,20 @@
 #include "temporal/reprojection.h"
 #include "texel.h"
 
+#ifndef LAYERS
+#define LAYERS 0
+#endif
+#if LAYERS < 0 || LAYERS > 1
+#error "LAYERS must be 0 or 1"
+#endif
+
 __kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const float* reprojection, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha,
                                __global const TileReprojection* previous_tiles, __global const TileReprojection* tiles,
-                               __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
-                               OUTPUT_TEXELS view, __global uint* non_finite) {
+                               __global const TileLight* light, __global const LayerTile* layers,
+                               STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
+                               __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
@@ -71,7 +82,14 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
   EdgeLight right = light_at_edge(light, &params, first, y);
   uint met_count = 0;
   for (int x = first; x < end; x += kTemporalTile) {
-    const TileReprojection tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
+    const int tile_index = y / kTemporalTile * params.tiles_x + x / kTemporalTile;
+    const TileReprojection tile = tiles[tile_index];
+#if LAYERS
+    if (layers[tile_index].is_layered) {
+      right = light_at_edge(light, &params, x + kTemporalTile, y);
+      continue;
+    }
+#endif
 
     // Reproject.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);

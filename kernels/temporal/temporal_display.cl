@@ -6,13 +6,14 @@
 //
 //   params     in   extents, layouts
 //   tiles      in   TileReprojection of each tile, of this frame
-//   history    in   the layer of this frame
+//   history    in   the layer of this frame; of pixels of two layers the far one
 //   alpha      in   ALPHA 1: its alpha, resampled and smoothed as colour is
 //   output     out  RGBA32F or RGBA16F, output extent
 // Options: ALPHA   1 (default) | 0: the picture is opaque
 //          SMOOTH  1 (default) | 0
 //          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
+#include "temporal/display_place.h"
 #include "temporal/history_alpha.h"
 #include "temporal/history_sampling.h"
 #include "temporal/smooth.h"
@@ -31,28 +32,6 @@
 #if SMOOTH < 0 || SMOOTH > 1
 #error "SMOOTH must be 0 or 1"
 #endif
-
-#define DISPLAY_SHARPNESS -0.75f  // the cubic's a: found by search on the development scenes
-
-// How the pixels of a tile are resampled: which texel is the first of the four around the centre of each, and their
-// weights on each axis.
-typedef struct Display {
-  int step_x, step_y;  // the first of the four lies so many texels before the pixel's own
-  float4 wx, wy;
-  bool has_phase;  // false: nothing needs to be resampled
-} Display;
-
-static inline Display display_of(TileReprojection tile) {
-  Display display;
-  display.has_phase = tile.phase_x != 0.0f || tile.phase_y != 0.0f;
-  display.step_x = 1 + (tile.phase_x > 0.0f);
-  display.step_y = 1 + (tile.phase_y > 0.0f);
-  const Cubic x = cubic_weights((float8)((float)(display.step_x - 1) - tile.phase_x), DISPLAY_SHARPNESS);
-  const Cubic y = cubic_weights((float8)((float)(display.step_y - 1) - tile.phase_y), DISPLAY_SHARPNESS);
-  display.wx = (float4)(x.w0.s0, x.w1.s0, x.w2.s0, x.w3.s0);
-  display.wy = (float4)(y.w0.s0, y.w1.s0, y.w2.s0, y.w3.s0);
-  return display;
-}
 
 // What history holds of eight pixels, and what is shown of it.
 typedef struct Pixels {
@@ -157,12 +136,13 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
   const int end = min(first + params.columns_per_item, params.output_width);
   for (int x = first; x < end; x += kTemporalTile) {
     // Resample.
-    const Display display = display_of(tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile]);
+    const TileReprojection tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
+    const Display display = display_of(tile.phase_x, tile.phase_y);
     const bool inside = lies_inside(layer, &display, x, y);
     Pixels pixels = inside ? load_pixels(layer, &display, x, y) : gather_pixels(layer, &display, x, y);
 
     // Smooth.
-    const float8 confidence = confidences(pixels.own);
+    const float8 confidence = fabs(confidences(pixels.own));  // negative of two layers
     const bool smooth = is_smoothed(&params, confidence);
     if (smooth) {
       const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);

@@ -12,17 +12,35 @@
 //   reprojection    in   MOTION 1: Reprojection of each sample, from reproject with MOTION_EDGE 1
 //   history         in   the layer of the previous frame
 //   previous_tiles  in   TileReprojection of each tile, of the previous frame
-//   tiles           out  the same of this frame
+//   depth           in   LAYERS 1: R32F, viewport
+//   splits          in   LAYERS 1: LayerSplit of each sample
+//   marks           in   LAYERS 1: of each tile, not 0 if a sample in it is split
+//   previous_layers in   LAYERS 1: LayerTile of each tile, of the previous frame
+//   layers          out  LAYERS 1: the same of this frame
+//   tiles           out  TileReprojection of each tile
 //   evidence        out  TileEvidence of each tile
 //   total           out  TotalLight: grows by each tile's part
 // Options: MOTION  1 (default) | 0: nothing moves, and all tiles are rigid
+//          LAYERS  0 (default) | 1: with MOTION 1; where samples are split, a tile has a near layer, too, with a motion
+//                  of its own (layers/layer_tile.h). Samples of a near layer say nothing of history
 //          SOURCE_STORAGE, SOURCE_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
-// Reference: tests/reference/temporal_tiles.cpp
+// Reference: tests/reference/temporal_tiles.cpp; of layers tests/reference/layer_tile.cpp
+#include "layers/layer.h"
 #include "temporal/frame_samples.h"
 #include "temporal/history.h"
 #include "temporal/reproject_tile.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
+
+#ifndef LAYERS
+#define LAYERS 0
+#endif
+#if LAYERS < 0 || LAYERS > MOTION
+#error "LAYERS must be 0 or, with MOTION 1, 1"
+#endif
+#if LAYERS
+#include "layers/layer_tile.h"
+#endif
 
 // Found by search on the development scenes.
 #define KNOWN_CONFIDENCE 0.1f  // from which a texel of history is asked: less than one reseeded in the last frame has
@@ -36,6 +54,7 @@ typedef struct Past {
   __global const float* reprojection;
   HistoryLayer history;
   __global const TileReprojection* previous_tiles;
+  __global const LayerSplit* splits;  // of the samples of a split tile, else null
 } Past;
 
 static inline float luma(float4 colour) {
@@ -66,10 +85,25 @@ static inline bool find_in_history(const Past* past, const TemporalTileParams* p
   return true;
 }
 
+// Whether sample (x, y) shows a near layer, of which the layer of history that is judged knows nothing.
+static inline bool is_of_near_layer(const Past* past, const TemporalTileParams* params, DEPTH_TEXELS depth,
+                                    TexelLayout layout, int x, int y) {
+#if LAYERS
+  if (past->splits == 0) return false;
+  const LayerSplit split = past->splits[y * params->frame.width + x];
+  return split.near_depth > 0.0f &&
+         !(load_depth(depth, layout, x, y) < 0.5f * (split.near_depth + split.far_depth));
+#else
+  return false;
+#endif
+}
+
 // Adds what sample (x, y) says of history.
-static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, const Past* past,
-                                const TemporalTileParams* params, TileReprojection tile, int x, int y) {
+static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
+                                TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                                TileReprojection tile, int x, int y) {
   float2 at;
+  if (is_of_near_layer(past, params, depth, depth_layout, x, y)) return;
   if (!find_in_history(past, params, tile, x, y, &at)) return;
   const int width = params->output_width, height = params->output_height;
   if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < (float)width && at.y < (float)height)) return;
@@ -77,7 +111,7 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, co
   will_read_history(past->history, index + kJudgedAhead);
   const float4 before = load_history(past->history, index);
   const float4 sample = sample_at(colour, &params->frame, x, y);
-  if (before.w < KNOWN_CONFIDENCE || !is_valid(sample)) return;
+  if (fabs(before.w) < KNOWN_CONFIDENCE || !is_valid(sample)) return;
 
   const float4 left = sample_at(colour, &params->frame, x - 1, y);
   const float4 right = sample_at(colour, &params->frame, x + 1, y);
@@ -102,8 +136,9 @@ static inline int first_judged(int first, int y, int apart) {
   return first + (-shifted & (apart - 1));
 }
 
-static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, const Past* past, const TemporalTileParams* params,
-                                           TileReprojection tile, SampleRange samples) {
+static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                                           const Past* past, const TemporalTileParams* params, TileReprojection tile,
+                                           SampleRange samples) {
   const int2 first = samples.first, last = samples.last;
   const int apart = params->judged_apart;
   TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
@@ -111,7 +146,7 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, const Past* pas
     will_read_colour(colour, params->frame.colour, last.x + kColourAhead, y);
   for (int y = first.y; y <= last.y; ++y) {
     for (int x = first_judged(first.x, y, apart); x <= last.x; x += apart)
-      judge_sample(&evidence, colour, past, params, tile, x, y);
+      judge_sample(&evidence, colour, depth, depth_layout, past, params, tile, x, y);
   }
   return evidence;
 }
@@ -129,8 +164,10 @@ static inline void add_to_total(__global TotalLight* total, const TemporalTilePa
 
 __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colour, __global const float* reprojection,
                              HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
-                             __global TileReprojection* tiles, __global TileEvidence* evidence,
-                             __global TotalLight* total) {
+                             DEPTH_TEXELS depth, TexelLayout depth_layout, __global const LayerSplit* splits,
+                             __global const int* marks, __global const LayerTile* previous_layers,
+                             __global LayerTile* layers, __global TileReprojection* tiles,
+                             __global TileEvidence* evidence, __global TotalLight* total) {
   const int tile_x = get_global_id(0), tile_y = get_global_id(1);
   if (tile_x >= params.tiles_x || tile_y >= params.tiles_y) return;
 
@@ -138,14 +175,25 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
   const SampleRange samples = samples_in_tile(&params, corner);
 #if MOTION
   const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
-  const TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
+  TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
 #else
   const TileReprojection tile = {.is_rigid = 1, .is_copyable = 1};
 #endif
-  const Past past = {reprojection, {history, params.output_width, params.output_height}, previous_tiles};
-  const TileEvidence found_evidence = gather_evidence(colour, &past, &params, tile, samples);
-  add_to_total(total, &params, found_evidence);
   const int i = tile_y * params.tiles_x + tile_x;
+  bool hidden = false;
+  bool is_split = false;
+#if LAYERS
+  const LayerInputs in = {depth_layout, splits, marks, previous_layers};
+  const LayerTile own = layer_tile(&params, depth, &in, samples, found, (int2)(tile_x, tile_y), corner, previous_tiles,
+                                   &tile, &hidden);
+  layers[i] = own;
+  is_split = own.is_split;
+#endif
+  const HistoryLayer known = {history, params.output_width, params.output_height};
+  const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
+  TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  if (!hidden) found_evidence = gather_evidence(colour, depth, depth_layout, &past, &params, tile, samples);
+  add_to_total(total, &params, found_evidence);
   tiles[i] = tile;
   evidence[i] = found_evidence;
 }

@@ -133,7 +133,8 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
   FarModel run_fit(const FarSums& total) {
     const cl::Buffer sums = upload(std::vector{total});
     const cl::Buffer motion = upload(std::vector<FarModel>(1));
-    const cl::Buffer before = upload(std::vector{FarModel{.p = {}, .is_known = 0, .still = 100, .moved = 50}});
+    const cl::Buffer before =
+        upload(std::vector{FarModel{.p = {}, .is_known = 0, .still = 100, .moved = 50}});
     const cl::Buffer match = upload(std::vector{FarMatch{7, 11}});
     PassRig pass(SceneNeeds{}, settings_, "far_fit");
     FrameInputs frame;

@@ -29,6 +29,12 @@ std::size_t channel_count(PixelFormat format);
 std::vector<unsigned char> encode(PixelFormat format, const std::vector<Pixel>& pixels);
 std::vector<Pixel> decode(PixelFormat format, const std::vector<unsigned char>& bytes);
 
+template <typename Element>
+std::vector<unsigned char> bytes_of(const std::vector<Element>& elements) {
+  const auto* first = reinterpret_cast<const unsigned char*>(elements.data());
+  return {first, first + elements.size() * sizeof(Element)};
+}
+
 // Owns the images of a test. Buffers have an offset, a pitch and rows beyond what is used; `outside` fills
 // what lies around the rectangle. A tight image ends with its rectangle, so that a memory checker sees a read
 // beyond it.

@@ -17,8 +17,11 @@ using testing::Pixel;
 using testing::Rig;
 using testing::TestFrame;
 
+// With one layer: where there are two, layer_split goes on with what reproject wrote.
 ResolveSettings settings_for(Extent output) {
-  return {.method = Method::kTemporal, .output = output, .target = output, .present = false};
+  ResolveSettings settings{.method = Method::kTemporal, .output = output, .target = output, .present = false};
+  settings.temporal.preset = TemporalPreset::kFast;
+  return settings;
 }
 
 // Runs the upscaler on a frame and gives what reproject found; null: there is no previous frame.
@@ -120,7 +123,7 @@ TEST(TemporalReproject, AnEarlierMotionEdgeAndReactiveValuesAroundTakeTrust) {
         frame->inputs.velocity_scale = {.05f, .05f};
         frame->reference.velocity_scale = {.05f, .05f};
       }
-      PassChain chain(testing::device(), PlanFacts({}, settings));
+      PassChain chain(testing::device(), PlanFacts({.transparents = true}, settings));
       reference::ReprojectOptions options{.reactive = true, .output_width = 129, .output_height = 65};
       for (const Pixel& pixel : reproject(rig, chain, before.inputs, nullptr))
         options.motion_edges_before.push_back(pixel[3]);
@@ -145,6 +148,74 @@ TEST(TemporalReproject, AnEarlierMotionEdgeAndReactiveValuesAroundTakeTrust) {
   EXPECT_GT(decided, compared * 3 / 4);
   EXPECT_GT(gone, 0);
   EXPECT_GT(earlier, 0);
+  EXPECT_GT(dimmed, compared / 8);
+}
+
+// The open trust of the newest frame, where the plan has layers.
+std::vector<float> open_trust(const PassChain& chain, Extent render) {
+  std::vector<float> trust(static_cast<std::size_t>(render.area()));
+  const ImageView view = chain.newest(Resource::kOpenTrust);
+  clEnqueueReadBuffer(testing::impl().queue(), view.memory, CL_TRUE, view.offset,
+                      trust.size() * sizeof(float), trust.data(), 0, nullptr, nullptr);
+  return trust;
+}
+
+// It is trust without a look at depths and motion edges, and a number where nothing is known of the sample.
+TEST(TemporalReproject, OpenTrustMatchesTheReference) {
+  std::int64_t decided = 0, compared = 0, unknown = 0, hidden = 0, dimmed = 0;
+  unsigned seed = 60;
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    for (const PixelFormat velocity : {PixelFormat::kRG16F, PixelFormat::kRG32F}) {
+      for (const bool transparents : {false, true}) {
+        for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{9, 1}, Extent{5, 7}, Extent{90, 33}}) {
+          ResolveSettings settings = settings_for({129, 65});
+          settings.temporal.preset = TemporalPreset::kBalanced;
+          settings.storage = storage;
+          settings.velocity = velocity;
+          Rig rig;
+          const FrameFormats formats{.storage = storage,
+                                     .velocity = velocity,
+                                     .with_velocity = true,
+                                     .with_depth = true,
+                                     .with_reactive = transparents};
+          FrameSpec spec{.render = {render.width + 2, std::max(render.height - 1, 1)},
+                         .jitter = {-.15f, .35f},
+                         .seed = ++seed,
+                         .outside = std::nan("")};
+          TestFrame before = make_frame(rig, formats, spec);
+          if (transparents) scatter_reactive(rig, before, storage, spec);
+          spec.render = render;
+          spec.jitter = {.21f, -.17f};
+          spec.velocity = Pattern::kNonFinite;
+          spec.seed = ++seed;
+          TestFrame now = make_frame(rig, formats, spec);
+          if (transparents) scatter_reactive(rig, now, storage, spec);
+          PassChain chain(testing::device(), PlanFacts({.transparents = transparents}, settings));
+          reproject(rig, chain, before.inputs, nullptr);
+          reproject(rig, chain, now.inputs, &before.inputs);
+          const std::vector<float> actual = open_trust(chain, render);
+          const auto expected = testing::expected_reprojections(
+              now.reference, before.reference,
+              {.reactive = transparents, .output_width = 129, .output_height = 65});
+          for (std::size_t i = 0; i < actual.size(); ++i) {
+            const auto& [value, bound, undecided] = expected[i];
+            ++compared;
+            if (undecided) continue;
+            ++decided;
+            testing::expect_near(value.open_trust, bound.open_trust, static_cast<double>(actual[i]),
+                                 std::to_string(render.width) + " " + std::to_string(i));
+            if (HasFatalFailure()) return;
+            unknown += std::isnan(value.trust) ? 1 : 0;
+            hidden += value.trust == 0 && value.open_trust > 0 ? 1 : 0;
+            dimmed += value.open_trust > 0 && value.open_trust < 1 ? 1 : 0;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(decided, compared * 3 / 4);
+  EXPECT_GT(unknown, compared / 64);
+  EXPECT_GT(hidden, compared / 128);
   EXPECT_GT(dimmed, compared / 8);
 }
 

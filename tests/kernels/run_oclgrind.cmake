@@ -40,4 +40,6 @@ check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*" "*Sharpen.ATight*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"
   "*Temporal.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F"
-  "*Temporal.ATight*/still_reactive_buffer_*" "TemporalLight*")
+  "*Temporal.ATight*/still_reactive_buffer_*" "TemporalLight*"
+  "*TemporalTiles.ATight*/moving_layered_buffer_RGBA16F_history_RGBA16F_*" "*LayerSplits.ATight*"
+  "*Layers.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F")

@@ -13,7 +13,10 @@ namespace quincunx::testing {
 
 std::string name_of(const StageVariant& v) {
   return fmt::format("{}{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
-                     v.reactive ? "_reactive" : "", v.alpha ? "_alpha" : "",
+                     v.reactive ? "_reactive" : "",
+                     v.alpha    ? "_alpha"
+                     : v.layers ? "_layered"
+                                : "",
                      v.storage == Storage::kImage ? "image" : "buffer", quincunx::name_of(v.colour),
                      quincunx::name_of(v.history), quincunx::name_of(v.resolved));
 }
@@ -46,6 +49,22 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .suspected_change = number(light.suspected_change),
                                    .unrest = number(light.unrest)};
   return made;
+}
+
+LayerSplit to_kernel(const reference::LayerSplit& split) {
+  return {.near_depth = static_cast<float>(split.near_depth),
+          .far_depth = static_cast<float>(split.far_depth),
+          .motion_x = static_cast<float>(split.motion[0]),
+          .motion_y = static_cast<float>(split.motion[1])};
+}
+
+LayerTile to_kernel(const reference::LayerTile& tile) {
+  return {.phase_x = static_cast<float>(tile.phase[0]),
+          .phase_y = static_cast<float>(tile.phase[1]),
+          .between = static_cast<float>(tile.between),
+          .is_rigid = tile.is_rigid ? 1 : 0,
+          .is_split = tile.is_split ? 1 : 0,
+          .is_layered = tile.is_layered ? 1 : 0};
 }
 
 reference::Tile to_reference(const KernelTile& tile) {
@@ -130,6 +149,14 @@ cl::Kernel kernel(const std::string& name, const std::string& options) {
   return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
 }
 
+// Of a variant with one layer only.
+std::string without_layers(std::string options) {
+  const std::string layers = "LAYERS=1";
+  const std::size_t found = options.find(layers);
+  if (found != std::string::npos) options.replace(found, layers.size(), "LAYERS=0");
+  return options;
+}
+
 // One of the structs that make a KernelTile, of each tile.
 template <typename Part>
 std::vector<Part> parts_of(const std::vector<reference::Tile>& tiles) {
@@ -137,6 +164,15 @@ std::vector<Part> parts_of(const std::vector<reference::Tile>& tiles) {
   for (const reference::Tile& tile : tiles)
     parts.push_back(to_kernel(tile));
   return parts;
+}
+
+// Each element as the kernels hold it.
+template <typename Element>
+auto all_to_kernel(const std::vector<Element>& elements) {
+  std::vector<decltype(to_kernel(elements.front()))> made;
+  for (const Element& element : elements)
+    made.push_back(to_kernel(element));
+  return made;
 }
 
 SourceFrame source_of(const StageInputs& in) {
@@ -174,21 +210,31 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   const cl::Buffer now = to_device(std::vector<TileReprojection>(r.before.size()));
   const cl::Buffer evidence = to_device(std::vector<TileEvidence>(r.before.size()));
   const cl::Buffer total = to_device(std::vector<TotalLight>(1));
-  cl::Kernel tiles =
-      kernel("temporal_tiles", spec_of(facts(TemporalPreset::kBalanced), "temporal_tiles").options);
+  const std::string options = spec_of(facts(TemporalPreset::kBalanced), "temporal_tiles").options;
+  cl::Kernel tiles = kernel("temporal_tiles", variant_.layers ? options : without_layers(options));
   tiles.setArg(0, params);
   set_memory(tiles, 1, in.frame.colour.memory);
   set_memory(tiles, 2, variant_.moves ? in.reprojection.memory : before());
   const cl::Buffer known = history(in);
   tiles.setArg(3, known);
   tiles.setArg(4, before);
-  tiles.setArg(5, now);
-  tiles.setArg(6, evidence);
-  tiles.setArg(7, total);
+  set_memory(tiles, 5, (variant_.layers ? in.frame.depth : in.frame.colour).memory);
+  tiles.setArg(6, variant_.layers ? layout_of(in.frame.depth) : TexelLayout{});
+  const cl::Buffer splits = variant_.layers ? to_device(all_to_kernel(r.splits)) : before;
+  const cl::Buffer marks = variant_.layers ? to_device(r.split_marks) : before;
+  const cl::Buffer layers_before = variant_.layers ? to_device(all_to_kernel(r.layers_before)) : before;
+  const cl::Buffer layers = to_device(std::vector<LayerTile>(r.before.size()));
+  tiles.setArg(7, splits);
+  tiles.setArg(8, marks);
+  tiles.setArg(9, layers_before);
+  tiles.setArg(10, layers);
+  tiles.setArg(11, now);
+  tiles.setArg(12, evidence);
+  tiles.setArg(13, total);
   enqueue_rows(impl(), impl().queue, tiles, count, 1, nullptr);
   const auto reprojections = from_device<TileReprojection>(now, r.before.size());
   const auto found = from_device<TileEvidence>(evidence, r.before.size());
-  Tiles made{{}, from_device<TotalLight>(total, 1).front()};
+  Tiles made{{}, from_device<LayerTile>(layers, r.before.size()), from_device<TotalLight>(total, 1).front()};
   for (std::size_t i = 0; i < found.size(); ++i)
     made.tiles.push_back({reprojections[i], found[i], {}});
   return made;
@@ -216,7 +262,7 @@ std::vector<TileLight> TemporalStages::run_light(Extent tiles, const std::vector
 
 TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& in,
                                                    const std::vector<reference::Tile>& tiles,
-                                                   TemporalPreset preset) const {
+                                                   const ResolveVariant& how) const {
   const reference::TemporalInputs& r = in.reference;
   const Extent output{r.output_width, r.output_height};
   PositionTables tables(impl(), output);
@@ -248,7 +294,8 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const std::size_t alpha_bytes = (r.history.size() + 3) / 4 * bytes_per_pixel(variant_.history);
   const cl::Buffer updated_alpha = to_device(std::vector<unsigned char>(alpha_bytes, 0x7f));
   const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
-  cl::Kernel resolve = kernel("resolve_temporal", spec_of(facts(preset), "resolve_temporal").options);
+  const std::string options = spec_of(facts(how.preset), "resolve_temporal").options;
+  cl::Kernel resolve = kernel("resolve_temporal", how.layers.empty() ? without_layers(options) : options);
   resolve.setArg(0, params);
   resolve.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
   set_memory(resolve, 2, in.frame.colour.memory);
@@ -264,10 +311,12 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   resolve.setArg(8, before);
   resolve.setArg(9, now);
   resolve.setArg(10, light);
-  resolve.setArg(11, updated);
-  resolve.setArg(12, updated_alpha);
-  set_memory(resolve, 13, view.memory);
-  set_memory(resolve, 14, counter.memory);
+  const cl::Buffer layers = how.layers.empty() ? before : to_device(how.layers);
+  resolve.setArg(11, layers);
+  resolve.setArg(12, updated);
+  resolve.setArg(13, updated_alpha);
+  set_memory(resolve, 14, view.memory);
+  set_memory(resolve, 15, counter.memory);
   enqueue_rows(impl(), impl().queue, resolve, output, params.columns_per_item, nullptr);
   Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);

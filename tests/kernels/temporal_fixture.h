@@ -8,6 +8,7 @@
 
 #include "../reference/temporal.h"
 #include "kernel_fixture.h"
+#include "layers/layer.h"
 #include "params.h"
 #include "position_table.h"
 #include "temporal/temporal_params.h"
@@ -21,6 +22,7 @@ struct StageVariant {
   PixelFormat resolved = PixelFormat::kRGBA32F;
   bool moves = true;
   bool reactive = false;  // only where nothing moves
+  bool layers = false;    // only where something moves
   bool alpha = false;     // no background covers every pixel
 };
 std::string name_of(const StageVariant& variant);
@@ -36,6 +38,10 @@ struct StageSpec {
   double outside = 0;
   bool tight = false;
 };
+
+std::string name_of(const StageSpec& spec);
+// Of all patterns in many sizes and scales; the largest are few, as references are slow.
+std::vector<StageSpec> all_stage_specs(const std::vector<Pattern>& patterns);
 
 // What a stage reads. Zones of the picture move as one or each sample on its own; the history's confidences
 // range from 0 to 32, its tiles' phases change from zone to zone.
@@ -60,17 +66,19 @@ std::vector<Element> from_device(const cl::Buffer& buffer, std::size_t count) {
   return elements;
 }
 
-template <typename Element>
-std::vector<unsigned char> bytes_of(const std::vector<Element>& elements) {
-  const auto* first = reinterpret_cast<const unsigned char*>(elements.data());
-  return {first, first + elements.size() * sizeof(Element)};
-}
-
 // All that the kernels keep of a tile.
 struct KernelTile : TileReprojection, TileEvidence, TileLight {};
 
 KernelTile to_kernel(const reference::Tile& tile);
+LayerSplit to_kernel(const reference::LayerSplit& split);
+LayerTile to_kernel(const reference::LayerTile& tile);
 reference::Tile to_reference(const KernelTile& tile);
+
+// Of resolve_temporal.
+struct ResolveVariant {
+  TemporalPreset preset = TemporalPreset::kBalanced;
+  std::vector<LayerTile> layers = {};  // none: LAYERS=0
+};
 
 class TemporalStages {
  public:
@@ -84,6 +92,7 @@ class TemporalStages {
 
   struct Tiles {
     std::vector<KernelTile> tiles;  // but for TileLight
+    std::vector<LayerTile> layers;
     TotalLight total;
   };
   Tiles run_tiles(const StageInputs& in) const;
@@ -96,8 +105,9 @@ class TemporalStages {
     std::vector<double> alpha;  // of resolve_temporal, where there is one
     std::int64_t non_finite = 0;
   };
+  // History holds bytes of 0x7f before, the picture -7.
   Result run_resolve(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
-                     TemporalPreset preset = TemporalPreset::kBalanced) const;
+                     const ResolveVariant& how = {}) const;
   struct Shown {
     TemporalPreset preset = TemporalPreset::kBalanced;
     bool first = false;  // of all frames
@@ -105,8 +115,9 @@ class TemporalStages {
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      const Shown& shown) const;
 
- private:
   PlanFacts facts(TemporalPreset preset) const;
+
+ private:
   cl::Buffer history(const StageInputs& in) const;
   cl::Buffer history_alpha(const StageInputs& in) const;
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What the stages of the temporal upscaler read: zones that move, history, and tiles.
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -14,6 +17,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 double as_float(double value) {
   return static_cast<double>(static_cast<float>(value));
 }
+
+constexpr double kStageScales[][2] = {{.33, .4}, {.5, .71}, {.71, .5}, {1, 1}, {1.37, .83}, {2, 1.9}};
 
 // A random number of each zone of the picture, and of each sample in it.
 class Zones {
@@ -99,6 +104,76 @@ std::vector<Pixel> make_history(const reference::TemporalInputs& in, PixelFormat
   return history;
 }
 
+// Of each sample: whether it has a near layer, in zones of which some move as one.
+std::vector<reference::LayerSplit> make_splits(const reference::TemporalInputs& in, unsigned seed) {
+  const Zones zones(seed);
+  std::mt19937 random(seed + 1);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<reference::LayerSplit> splits;
+  for (int y = 0; y < in.frame.height; ++y) {
+    for (int x = 0; x < in.frame.width; ++x) {
+      std::mt19937 zone =
+          zones.of(static_cast<int>(x * in.spacing(0) / 40), static_cast<int>(y * in.spacing(1) / 24));
+      const double spread = std::array{0., 0., .04, 1.}[zone() % 4];
+      const auto& motion = kZoneMoves[zone() % std::size(kZoneMoves)];
+      reference::LayerSplit split;
+      if (zone() % 5 < 2 && random() % 3 == 0) {
+        const double near_depth = .15 + .3 * uniform(random);
+        split = {.near_depth = as_float(near_depth),
+                 .far_depth = as_float(near_depth * (.2 + .7 * uniform(random))),
+                 .motion = {as_float(motion[0] + spread * uniform(random)),
+                            as_float(motion[1] - spread * uniform(random))}};
+      }
+      splits.push_back(split);
+    }
+  }
+  return splits;
+}
+
+std::vector<int> make_marks(const reference::TemporalInputs& in) {
+  std::vector<int> marks(in.before.size());
+  for (int y = 0; y < in.frame.height; ++y) {
+    for (int x = 0; x < in.frame.width; ++x) {
+      if (!in.splits[reference::index_of(in.frame.width, x, y)].is_split()) continue;
+      const int tile_x = static_cast<int>((x + .5 + in.frame.jitter_x) * in.spacing(0)) / kTemporalTile;
+      const int tile_y = static_cast<int>((y + .5 + in.frame.jitter_y) * in.spacing(1)) / kTemporalTile;
+      marks[reference::index_of(in.tiles_x(), std::min(tile_x, in.tiles_x() - 1),
+                                std::min(tile_y, in.tiles_y() - 1))] = 1;
+    }
+  }
+  return marks;
+}
+
+std::vector<reference::LayerTile> make_layers_before(const reference::TemporalInputs& in, unsigned seed) {
+  const Zones zones(seed);
+  std::uniform_real_distribution<double> phase(-.5, .5), depth(.2, .5);
+  std::vector<reference::LayerTile> layers;
+  for (int y = 0; y < in.tiles_y(); ++y) {
+    for (int x = 0; x < in.tiles_x(); ++x) {
+      std::mt19937 zone = zones.of(x / 3, y / 4);
+      reference::LayerTile tile;
+      tile.is_split = zone() % 5 == 0;
+      tile.is_layered = tile.is_split || zone() % 3 == 0;
+      if (tile.is_split) tile.between = as_float(depth(zone));
+      tile.is_rigid = tile.is_split && zone() % 4 != 0;
+      if (tile.is_rigid) tile.phase = {as_float(phase(zone)), as_float(phase(zone))};
+      layers.push_back(tile);
+    }
+  }
+  return layers;
+}
+
+void add_layers(reference::TemporalInputs& in, unsigned seed) {
+  in.splits = make_splits(in, seed);
+  in.split_marks = make_marks(in);
+  in.layers_before = make_layers_before(in, seed + 1);
+  // A negative confidence tells a texel of two layers.
+  std::mt19937 random(seed + 2);
+  for (Pixel& texel : in.history) {
+    if (random() % 4 == 0) texel[3] = -texel[3];
+  }
+}
+
 // Whole and empty in most places, as a matte is.
 std::vector<double> make_alpha(std::size_t count, PixelFormat format, unsigned seed) {
   std::mt19937 random(seed);
@@ -113,20 +188,50 @@ std::vector<double> make_alpha(std::size_t count, PixelFormat format, unsigned s
 
 }  // namespace
 
+std::string name_of(const StageSpec& spec) {
+  return fmt::format("{}x{} -> {}x{}, {}, seed {}", spec.render.width, spec.render.height, spec.output.width,
+                     spec.output.height, name_of(spec.colour), spec.seed);
+}
+
+std::vector<StageSpec> all_stage_specs(const std::vector<Pattern>& patterns) {
+  std::vector<StageSpec> specs;
+  unsigned seed = 0;
+  for (const Extent output : {Extent{1, 1}, Extent{4, 4}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
+    for (const auto& scale : kStageScales) {
+      for (const Pattern pattern : patterns) {
+        ++seed;
+        if (output.width == 257 && seed % 17 != 0) continue;
+        const Extent render = scaled(output, scale[0], scale[1]);
+        specs.push_back({.output = output,
+                         .render = render,
+                         .previous = {render.width + 2, std::max(render.height - 1, 1)},
+                         .colour = pattern,
+                         .seed = seed});
+      }
+    }
+  }
+  return specs;
+}
+
 StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   std::vector<Pixel> colour = pattern_pixels(spec.colour, spec.render, spec.seed);
   for (Pixel& pixel : colour) {
     for (double& value : pixel)
       value = std::abs(value);  // light
   }
-  const TestFrame made = make_frame(
-      rig, {.storage = variant_.storage, .colour = variant_.colour, .with_reactive = variant_.reactive},
-      {.render = spec.render,
-       .jitter = spec.jitter,
-       .seed = spec.seed,
-       .outside = spec.outside,
-       .tight = spec.tight},
-      colour);
+  const TestFrame made =
+      make_frame(rig,
+                 {.storage = variant_.storage,
+                  .colour = variant_.colour,
+                  .with_depth = variant_.layers,
+                  .with_reactive = variant_.reactive},
+                 {.render = spec.render,
+                  .jitter = spec.jitter,
+                  .velocity = spec.colour == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise,
+                  .seed = spec.seed,
+                  .outside = spec.outside,
+                  .tight = spec.tight},
+                 colour);
   StageInputs in;
   in.frame = made.inputs;
   reference::TemporalInputs& out = in.reference;
@@ -148,6 +253,7 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   }
   if (!variant_.moves) return in;
   out.reprojections = make_moves(out, spec.seed + 3000);
+  if (variant_.layers) add_layers(out, spec.seed + 4000);
   std::vector<Pixel> moves;
   for (const reference::Reprojection& move : out.reprojections)
     moves.push_back({move.x, move.y, move.trust, move.motion_edge});

@@ -51,15 +51,15 @@ TEST_P(KernelVariants, EveryRowBuilds) {
   EXPECT_GT(built, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
-                         ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter",
-                                           "scale_noise", "scale_noise_offset", "resolve_quincunx",
-                                           "reproject", "resolve_reprojected", "temporal_tiles",
-                                           "temporal_light", "resolve_temporal", "temporal_display",
-                                           "motion_tiles", "motion_neighbours", "motion_blur", "sharpen",
-                                           "present", "velocity_from_depth", "far_velocity",
-                                           "far_surroundings", "far_fit", "far_match"),
-                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(
+    Kernels, KernelVariants,
+    ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter", "scale_noise",
+                      "scale_noise_offset", "resolve_quincunx", "reproject", "resolve_reprojected",
+                      "layer_records", "advect_records", "layer_split", "temporal_tiles", "temporal_light",
+                      "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
+                      "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "present",
+                      "velocity_from_depth", "far_velocity", "far_surroundings", "far_fit", "far_match"),
+    [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
   const std::vector<Row> all = rows();
@@ -125,7 +125,8 @@ std::vector<PlanFacts> all_facts() {
           continue;
         }
         for (const TemporalView view :
-             {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase}) {
+             {TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase,
+              TemporalView::kLayers, TemporalView::kCoverage, TemporalView::kNear, TemporalView::kFar}) {
           settings.temporal.view = view;
           add_needs(settings);
         }

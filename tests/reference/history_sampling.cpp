@@ -8,8 +8,6 @@
 namespace quincunx::reference {
 namespace {
 
-// Keys' a of the history: -1 scores .04 dB above -.75 (docs/temporal.md).
-constexpr double kHistorySharpness = -1;
 // Output pixels by which the phases of copied texels may differ from the phase that their tile assumes.
 constexpr double kSamePhase = .02;
 // Output pixels: beyond any viewport, and small enough for an int.
@@ -47,16 +45,6 @@ Real linear_of(const At& at, int x, int y, const std::array<Real, 2>& fraction) 
   };
   const Real upper = on_row(y);
   return upper + (on_row(y + 1) - upper) * fraction[1];
-}
-
-// Of the four texels around a place, `f` past the second.
-template <typename Real>
-std::array<Real, 4> cubic_weights(const Real& f, double a) {
-  const Real rest = 1 - f;
-  const Real w0 = a * f * rest * rest;
-  const Real w1 = ((a + 2) * f - (a + 3)) * f * f + 1;
-  const Real w3 = a * rest * f * f;
-  return {w0, w1, 1 - w0 - w1 - w3, w3};
 }
 
 template <typename Real, typename At>
@@ -136,7 +124,6 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
   const TileReprojection& source = reprojection_before(in, near[0], near[1]);
   std::array<int, 2> texel;
   std::array<Real, 2> fraction;
-  Real between = 0;
   bool is_outside = false;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Split<Real> at = split(way[axis] - source.phase[axis]);
@@ -144,11 +131,10 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
     fraction[axis] = at.fraction;
     const Real place = texel[axis] + fraction[axis];
     is_outside = is_outside || place < -.5 || place > size[axis] - .5;
-    between += fraction[axis] * (1 - fraction[axis]);
   }
   fetched.known = sample_history(in, options.taps, texel[0], texel[1], fraction);
   if (is_outside) fetched.known.texel[3] = 0;
-  fetched.between = min(4 * between, 1);
+  fetched.between = between_texels(fraction);
   return fetched;
 }
 

@@ -6,6 +6,25 @@
 
 namespace quincunx::reference {
 
+// Keys' a of the history: -1 scores .04 dB above -.75 (docs/temporal.md).
+constexpr double kHistorySharpness = -1;
+
+// Of the four texels around a place, `f` past the second.
+template <typename Real>
+std::array<Real, 4> cubic_weights(const Real& f, double a) {
+  const Real rest = 1 - f;
+  const Real w0 = a * f * rest * rest;
+  const Real w1 = ((a + 2) * f - (a + 3)) * f * f + 1;
+  const Real w3 = a * rest * f * f;
+  return {w0, w1, 1 - w0 - w1 - w3, w3};
+}
+
+// 0 on a texel, 1 midway.
+template <typename Real>
+Real between_texels(const std::array<Real, 2>& fraction) {
+  return min(4 * (fraction[0] * (1 - fraction[0]) + fraction[1] * (1 - fraction[1])), 1);
+}
+
 // History where a pixel's picture was in the previous frame.
 template <typename Real>
 struct FetchedHistory {

@@ -7,6 +7,7 @@
 //                ... / (1 + K |v - v'|^2), v' the velocity of the previous frame there, both in render pixels
 //                ... 0 if all 2 x 2 previous depths are nearer than the sample: > 1.02 z + 2 |dz|
 //                ... times 1 - strength of the previous frame's motion edge there, if one of them is
+//   open trust   trust before depths and the previous motion edge take from it
 //   motion edge  the largest |v - v_neighbour| in 3 x 3, or the previous frame's there if that is larger
 // A depth is 1 / distance: the larger the nearer. |dz| takes on each axis the gentler side, so that thin
 // features hide nothing.
@@ -192,6 +193,8 @@ ReprojectionOf<Real> reproject(const Frame& current, const Frame& previous, cons
       result.trust /=
           1 + squared_residual<Real>(current, velocity, previous, before, options.residual_weight);
   }
+
+  result.open_trust = result.trust;
 
   // Depths that are larger are nearer than the sample.
   const Real limit = kDepthTolerance * Real(depth) + kSlopeTolerance * depth_slope<Real>(current, x, y);

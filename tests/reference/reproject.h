@@ -19,6 +19,8 @@ struct ReprojectionOf {
   // The largest difference of velocity to the eight neighbours, output pixels; negative: that of the previous
   // frame there, which is larger. 0 where not asked for.
   Real motion_edge = 0;
+  // Trust without a look at depths and motion edges; a number where trust is NaN.
+  Real open_trust = 0;
 };
 using Reprojection = ReprojectionOf<double>;
 

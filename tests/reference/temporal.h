@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "error_bound.h"
+#include "layers.h"
 #include "reproject.h"
 
 namespace quincunx::reference {
@@ -85,11 +86,17 @@ struct TemporalInputs {
   std::vector<double> reactive_before;      // of the previous viewport, where frame.reactive counts
   int output_width = 0;
   int output_height = 0;
-  std::vector<Pixel> history;         // of each output pixel: red, green, blue and confidence
+  // Of each output pixel: red, green, blue and confidence, which is negative where there are two layers.
+  std::vector<Pixel> history;
   std::vector<double> history_alpha;  // of each output pixel; empty: the picture is opaque
   std::vector<Tile> before;           // of the previous frame
   int judged_apart = 2;               // one of this many samples judges history: 2 or 4
+  // What temporal_tiles reads of the second layer; empty: there is none.
+  std::vector<LayerSplit> splits;        // of each sample
+  std::vector<int> split_marks;          // of each tile: not 0 if a sample in it is split
+  std::vector<LayerTile> layers_before;  // of each tile, of the previous frame
 
+  bool has_layers() const { return !splits.empty(); }
   int tiles_x() const { return (output_width + kTile - 1) / kTile; }
   int tiles_y() const { return (output_height + kTile - 1) / kTile; }
   // Output pixels between neighbouring samples.
@@ -150,6 +157,17 @@ TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, in
 template <typename Real>
 TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
                                    int tile_x, int tile_y);
+// What a tile has of two layers, and how its far layer is reprojected then: `reprojection`, or with the phase of
+// the near layer that it was.
+template <typename Real>
+struct LayeredTileOf {
+  LayerTileOf<Real> layers = {};
+  TileReprojectionOf<Real> reprojection = {};
+  bool is_hidden = false;  // no sample of it judges history
+};
+template <typename Real>
+LayeredTileOf<Real> layer_tile(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
+                               int tile_x, int tile_y);
 // Of every tile, row by row.
 std::vector<Tile> temporal_tiles(const TemporalInputs& in);
 

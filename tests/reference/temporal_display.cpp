@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // temporal_display: one output pixel of the picture that a history holds.
 //   m      history at p - R: the cubic of Keys, a = -.75, p being the pixel's centre and R its tile's phase
-//   where W < 1.5: (m (W + .02) + sum n e) / (W + .02 + 8 e) with the eight neighbours n, e = .3 exp(-2 W)
+//   where W < 1.5, W without its sign, which tells of a second layer: (m (W + .02) + sum n e) / (W + .02 + 8 e) with
+//          the eight neighbours n, e = .3 exp(-2 W)
 //   alpha  that of history in the same way, or 1
 // Source: found by measuring (docs/temporal.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "history_sampling.h"
@@ -53,7 +55,7 @@ Real smoothed(const At& at, int x, int y, const Real& centre, const Real& confid
 
 template <typename Real>
 void smooth(const TemporalInputs& in, int x, int y, HistoryTexel<Real>& shown) {
-  const Real confidence = in.history_clamped(x, y)[3];
+  const Real confidence = std::abs(in.history_clamped(x, y)[3]);
   for (std::size_t c = 0; c < 3; ++c) {
     const auto channel = [&](int i, int j) { return in.history_clamped(i, j)[c]; };
     shown.texel[c] = smoothed(channel, x, y, shown.texel[c], confidence);
@@ -69,7 +71,7 @@ PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>
                                const DisplayOptions& options, int x, int y) {
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
   HistoryTexel<Real> shown = picture_at<Real>(in, tile, x, y);
-  if (options.smooth && in.history_clamped(x, y)[3] < kSmoothedBelow) smooth(in, x, y, shown);
+  if (options.smooth && std::abs(in.history_clamped(x, y)[3]) < kSmoothedBelow) smooth(in, x, y, shown);
   return {shown.texel[0], shown.texel[1], shown.texel[2], shown.alpha};
 }
 

@@ -81,7 +81,7 @@ TEST(ServiceSharpen, ItRunsAfterTheResolveAndBeforeTheBlur) {
   const FrameReport report = rig.dispatch(rig.upload(frame_of(0)));
   ASSERT_TRUE(report.ok()) << report.status.message();
   const std::vector<std::string> kernels = kernels_of(report);
-  const std::vector<std::string> last = {"temporal_display",  "sharpen",     "motion_tiles",
+  const std::vector<std::string> last = {"display_layers",    "sharpen",     "motion_tiles",
                                          "motion_neighbours", "motion_blur", "present"};
   ASSERT_GE(kernels.size(), last.size());
   EXPECT_TRUE(std::equal(last.rbegin(), last.rend(), kernels.rbegin())) << ::testing::PrintToString(kernels);

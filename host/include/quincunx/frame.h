@@ -61,7 +61,7 @@ struct PassReport {
 };
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 16;
+  static constexpr int kMaxPasses = 20;
 
   Status status;  // not ok: nothing was enqueued and no output was touched
   std::uint64_t frame_index = 0;

@@ -72,6 +72,11 @@ enum class TemporalView : std::uint8_t {
   kRejection,   // why history is doubted: red hidden, off screen or reactive; green a motion edge; blue a
                 // change
   kPhase,       // where between texels history was read: red x, green y; blue: how far it moved
+  // Of the two layers of history that pixels have where surfaces move apart; without them no plan is made.
+  kLayers,    // red where there are two, green the near one's coverage, blue the far one's confidence
+  kCoverage,  // the near layer's
+  kNear,      // the near layer alone, premultiplied
+  kFar,       // the picture without it
 };
 
 // What moves samples that are infinitely far away and have a velocity of exactly 0, as many renderers write it for the

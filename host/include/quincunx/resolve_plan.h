@@ -68,7 +68,7 @@ struct ResolveSettings {
   // Of filters that ring (SeparableFilter::rings): stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
-  bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
+  bool noise_moves = true;              // kNoise, kNoiseOffset: another pattern every frame
   FarMotion far = FarMotion::kAsDrawn;  // where velocity is drawn
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};

@@ -26,10 +26,11 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
   static const std::map<std::string, ToneMap> kToneMaps = {
       {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
-  static const std::map<std::string, TemporalView> kViews = {{"picture", TemporalView::kPicture},
-                                                             {"confidence", TemporalView::kConfidence},
-                                                             {"rejection", TemporalView::kRejection},
-                                                             {"phase", TemporalView::kPhase}};
+  static const std::map<std::string, TemporalView> kViews = {
+      {"picture", TemporalView::kPicture},     {"confidence", TemporalView::kConfidence},
+      {"rejection", TemporalView::kRejection}, {"phase", TemporalView::kPhase},
+      {"layers", TemporalView::kLayers},       {"coverage", TemporalView::kCoverage},
+      {"near", TemporalView::kNear},           {"far", TemporalView::kFar}};
 
   add_choice(app, "--method", method_choices(), method_list() + " (default: quincunx)",
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
@@ -43,13 +44,14 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       .non_negative()
       .show_default()
       .type_name("K");
-  static const std::map<std::string, FarMotion> kFarMotions = {{"drawn", FarMotion::kAsDrawn},
-                                                               {"camera", FarMotion::kCamera}, {"evidence", FarMotion::kEvidence}};
-  add_choice(
-      app, "--far", settings.far, kFarMotions,
-      "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence (default: drawn)");
+  static const std::map<std::string, FarMotion> kFarMotions = {
+      {"drawn", FarMotion::kAsDrawn}, {"camera", FarMotion::kCamera}, {"evidence", FarMotion::kEvidence}};
+  add_choice(app, "--far", settings.far, kFarMotions,
+             "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence "
+             "(default: drawn)");
   add_choice(app, "--view", settings.temporal.view, kViews,
-             "What temporal shows: picture, confidence, rejection or phase (default: picture)");
+             "What temporal shows: picture, confidence, rejection, phase, layers, coverage, near or far "
+             "(default: picture)");
   app.add_option("--blur", settings.blur.shutter,
                  "Motion blur: part of a frame's time that the shutter is open, to 2")
       .in_range(0.0, 2.0)

@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Smoothing of what is shown of little confidence: eight output pixels of a row at a time. +.1 dB (docs/temporal.md).
+//
+// Option: SMOOTH  1 (default) | 0
 #pragma once
 
 #include "temporal/bell.h"
 #include "temporal/history_sampling.h"
+
+#ifndef SMOOTH
+#define SMOOTH 1
+#endif
+#if SMOOTH < 0 || SMOOTH > 1
+#error "SMOOTH must be 0 or 1"
+#endif
 
 // Found by search on the development scenes.
 #define LITTLE_CONFIDENCE 1.5f  // less is smoothed; from here on it would not be seen

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#include "temporal_pass_params.h"
+
+namespace quincunx {
+
+TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables) {
+  const Extent output = frame.output;
+  const Extent now = frame.current.render;
+  const Extent before = frame.previous.render;
+  const Extent tiles = extent_of(Area::kTiles, frame.extents());
+  const Ratio spacing = ratio_of(output, now);
+  const Ratio motion = ratio_of(output, before);
+  return {.output_width = output.width,
+          .output_height = output.height,
+          .frame0 = {now.width, now.height, layout_of(frame[Resource::kColour]), {}, {}},
+          .frame1 = {before.width, before.height, {}, {}, {}},
+          .reprojection = layout_of(frame[Resource::kReprojection]),
+          .output = {},
+          .columns = tables.columns(),
+          .counter = frame.counter.index,
+          .columns_per_item = columns_per_item(device, output.width, kTemporalTile),
+          .motion_x = motion.x,
+          .motion_y = motion.y,
+          .spacing_x = spacing.x,
+          .spacing_y = spacing.y,
+          .tiles_x = tiles.width,
+          .tiles_y = tiles.height};
+}
+
+TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,
+                                              Resource picture) {
+  return {.output_width = frame.output.width,
+          .output_height = frame.output.height,
+          .output = layout_of(frame[picture]),
+          .tiles_x = extent_of(Area::kTiles, frame.extents()).width,
+          .columns_per_item = columns_per_item(device, frame.output.width, kTemporalTile),
+          .first = frame.has_history ? 0 : 1};
+}
+
+const char* trust_option(const PlanFacts& facts) {
+  return facts.reprojects() && facts.settings.temporal.preset == TemporalPreset::kQuality ? "BILINEAR"
+                                                                                          : "NEAREST";
+}
+
+}  // namespace quincunx

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// What several kernels of the temporal upscaler share.
+#pragma once
+
+#include "pass.h"
+#include "temporal/temporal_params.h"
+
+namespace quincunx {
+
+// Without reactive values and a view.
+TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables);
+
+// `picture`: where it goes.
+TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,
+                                              Resource picture);
+
+// The -D TRUST option.
+const char* trust_option(const PlanFacts& facts);
+
+}  // namespace quincunx

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The near layer of the texels around eight pixels of a row, as a picture that can be resampled.
+#pragma once
+
+#include "layers/fetch_layers.h"
+#include "temporal/display_place.h"
+
+// Premultiplied colours and coverages of a row of a window. What stands before `between` alone covers wholly, what is
+// behind it not at all.
+static inline float16 near_of_row(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
+                                  TapWindow window, int row) {
+  const float16 far = load_row(known->far, window, row);
+  const int4 two = as_int4(far.s37bf) < 0;
+  float16 near = (float16)(0.0f);
+  if (!all(two)) {
+    const LayerStates states = states_of_row(known, depth, layout, window, row);
+    near = select(near, with_coverage(far, 1.0f), to_four_masks(states.far_depth > between));
+  }
+  if (any(two)) near = select(near, load_row(known->near, window, row), to_four_masks(two));
+  return near;
+}
+
+// Twelve texels from (x, y) on, clamped to the edge.
+static inline TwelveTexels near_row_at(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
+                                       int x, int y) {
+  const TwelveTexels row = {near_of_row(known, depth, layout, between, window_at(known, x, y, 1), 0),
+                            near_of_row(known, depth, layout, between, window_at(known, x + 4, y, 1), 0),
+                            near_of_row(known, depth, layout, between, window_at(known, x + 8, y, 1), 0)};
+  return row;
+}
+
+// The near layer's picture at the pixels from (x, y) on.
+static inline EightTexels show_near(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
+                                    Display display, int x, int y) {
+  const int left = x - display.step_x, top = y - display.step_y;
+  const TwelveTexels row1 = near_row_at(known, depth, layout, between, left, top + 1);
+  if (!display.has_phase) return next_texels(row1);
+  const TwelveTexels row0 = near_row_at(known, depth, layout, between, left, top);
+  const TwelveTexels row2 = near_row_at(known, depth, layout, between, left, top + 2);
+  const TwelveTexels row3 = near_row_at(known, depth, layout, between, left, top + 3);
+  return blend_rows(row0, row1, row2, row3, display.wx, display.wy);
+}

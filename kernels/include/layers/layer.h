@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// What the second layer of history keeps. Host and kernels share these structs.
+//
+// Where two surfaces at different depths that move differently meet, a texel has two histories: of the *far* layer,
+// whose place is that of the one history elsewhere, and of the *near* layer, premultiplied and with a coverage, which
+// follows the near surface's motion. The picture is near + (1 - coverage) far. (docs/layers.md)
+#pragma once
+
+#include "temporal/tile.h"
+
+#ifdef __cplusplus
+namespace quincunx {
+#endif
+
+// A sample of a near surface next to a farther one that moves differently. It lives on for some frames if what it
+// shows is thin: a wire keeps its motion in a frame whose samples all missed it. Lengths are output pixels.
+typedef struct LayerRecord {
+  float x, y;                // its place
+  float depth;               // reversed
+  float motion_x, motion_y;  // added to its place they give its place in the previous frame
+  float drift_x, drift_y;    // what motion grows by from frame to frame
+  int is_thin;               // 0 or 1
+} LayerRecord;
+QUINCUNX_CHECK_SIZE(LayerRecord, 32);
+
+// The two layers at a sample.
+typedef struct LayerSplit {
+  float near_depth, far_depth;  // reversed; near_depth 0: there is one layer
+  float motion_x, motion_y;     // of the near layer, output pixels, as of a record
+} LayerSplit;
+QUINCUNX_CHECK_SIZE(LayerSplit, 16);
+
+// What a tile has besides its TileReprojection, which is the far layer's.
+typedef struct LayerTile {
+  float phase_x, phase_y;  // of the near layer's texels; 0 if it is not rigid
+  float between;           // mean of the depths half-way between the layers of its samples
+  int is_rigid;            // 0 or 1: the near layer
+  int is_split;            // 0 or 1: a sample in it or next to it has two layers
+  int is_layered;          // 0 or 1: split, or texels of two layers may be where it was
+} LayerTile;
+QUINCUNX_CHECK_SIZE(LayerTile, 24);
+
+typedef struct LayerParams {
+  int width, height;                    // of this frame's viewport, in samples
+  int previous_width, previous_height;  // of the previous one
+  TexelLayout velocity;
+  TexelLayout depth;
+  TexelLayout reprojection;
+  // The centre of sample (i, j) in output pixels: (i * spacing_x + start_x, j * spacing_y + start_y).
+  float spacing_x, spacing_y, start_x, start_y;
+  float previous_spacing_x, previous_spacing_y, previous_start_x, previous_start_y;
+  float motion_x, motion_y;            // from velocity to motion in output pixels
+  float to_previous_x, to_previous_y;  // from output pixels to pixels of the previous viewport
+  int tiles_x, tiles_y;
+  int columns_per_item;
+} LayerParams;
+QUINCUNX_CHECK_SIZE(LayerParams, 16 + 24 + 48 + 12);
+
+// The previous frame, and depth of both, for resolve_layers.
+typedef struct LayerPastParams {
+  TexelLayout depth0, depth1;
+  int width, height;  // of the previous viewport
+  float spacing_x, spacing_y, start_x, start_y;  // of its samples
+} LayerPastParams;
+QUINCUNX_CHECK_SIZE(LayerPastParams, 16 + 8 + 16);
+
+#ifdef __cplusplus
+}  // namespace quincunx
+#endif

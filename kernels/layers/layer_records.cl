@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// layer_records: finds the samples of near surfaces next to farther ones that move differently.
+//   A sample is near if one of its eight neighbours is farther by 3 % of its depth, moves differently by more than
+//   .05 output pixels, and the depths are no plane seen at a slant: on the other side of the sample depth rises by no
+//   more than half as much.
+//   It is thin if no 2x2 block of samples that contains it is near throughout.
+//   Its drift is .7 of the change of its motion since the previous frame; 0 where that is more than a quarter of it.
+//
+//   params            in   viewports, layouts, scales
+//   velocity          in   RG16F or RG32F, viewport
+//   depth             in   R32F, viewport, reversed
+//   reprojection      in   Reprojection of each sample: only motion edges
+//   previous_keys     in   of the previous frame's grid of records; all zero where there is none
+//   previous_records  in   LayerRecord of each of its cells that has one
+//   keys              out  of this frame's grid
+//   records           out  LayerRecord of each near sample
+// Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
+// Reference: tests/reference/layer_records.cpp
+#include "layers/records.h"
+
+#define SLANT 0.5f           // of the step of depth to a neighbour: a larger one on the other side is a slanted plane
+#define SAME_RECORD 2.25f    // samples, squared: how near a record of the previous frame must be to be the same thing's
+#define DRIFT_KEPT 0.7f      // of the change of motion: the part that goes on
+#define MOST_DRIFT 0.0625f   // of the motion, squared: more is no steady change
+
+enum { kTogether = 8 };  // samples that are looked at together
+
+// Whether a sample from (x, y) on may be near: its depth is less than a neighbour's by the gap between layers.
+static inline bool may_be_near(const LayerParams* params, DEPTH_TEXELS depth, int x, int y) {
+#if SOURCE_STORAGE == BUFFER
+  if (x < 1 || x + kTogether + 1 > params->width) return true;
+  float8 least = (float8)(FLT_MAX), own = least;
+  for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
+    __global const float* line = depth + texel_index(params->depth, x, row);
+    const float8 middle = vload8(0, line);
+    least = min(min(least, middle), min(vload8(0, line - 1), vload8(0, line + 1)));
+    if (row == y) own = middle;
+  }
+  return any(!(own - least <= LAYER_GAP * own));
+#else
+  return true;
+#endif
+}
+
+static inline bool is_near(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth, Surface own, int x,
+                           int y) {
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      const float step = own.depth - depth_at(params, depth, x + column, y + row);
+      if (!(step > LAYER_GAP * own.depth)) continue;
+      if (depth_at(params, depth, x - column, y - row) - own.depth > SLANT * step) continue;
+      const Surface other = surface_at(params, velocity, depth, x + column, y + row);
+      if (other.is_known && move_apart(own.motion, other.motion)) return true;
+    }
+  }
+  return false;
+}
+
+static inline bool is_thin(const LayerParams* params, DEPTH_TEXELS depth, float own, int x, int y) {
+  const float least = own * (1.0f - LAYER_GAP);
+  for (int row = -1; row <= 1; row += 2) {
+    for (int column = -1; column <= 1; column += 2) {
+      if (depth_at(params, depth, x + column, y) > least && depth_at(params, depth, x, y + row) > least &&
+          depth_at(params, depth, x + column, y + row) > least)
+        return false;
+    }
+  }
+  return true;
+}
+
+// What the motion of the same thing was in the previous frame; `otherwise` where it has left no record.
+static inline float2 motion_before(const LayerParams* params, __global const uint* keys,
+                                   __global const LayerRecord* records, float2 place, float depth, float2 otherwise) {
+  const float2 spacing = (float2)(params->previous_spacing_x, params->previous_spacing_y);
+  const float2 start = (float2)(params->previous_start_x, params->previous_start_y);
+  const float2 at = clamp(floor((place - start) / spacing + 0.5f), -4.0f, 65536.0f);
+  float best = SAME_RECORD;
+  float2 motion = otherwise;
+  for (int row = (int)at.y - 1; row <= (int)at.y + 1; ++row) {
+    for (int column = (int)at.x - 1; column <= (int)at.x + 1; ++column) {
+      if (column < 0 || row < 0 || column >= params->previous_width || row >= params->previous_height) continue;
+      const int i = row * params->previous_width + column;
+      if (keys[i] == 0 || record_age(keys[i]) != 0) continue;
+      const LayerRecord record = records[i];
+      const float2 apart = ((float2)(record.x, record.y) - place) / spacing;
+      const float distance = dot(apart, apart);
+      if (fabs(record.depth - depth) > LAYER_GAP * depth || !(distance < best)) continue;
+      best = distance;
+      motion = (float2)(record.motion_x, record.motion_y);
+    }
+  }
+  return motion;
+}
+
+__kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
+                            __global const float* reprojection, __global const uint* previous_keys,
+                            __global const LayerRecord* previous_records, __global uint* keys,
+                            __global LayerRecord* records) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  for (int start = first; start < end; start += kTogether) {
+    const int stop = min(start + kTogether, end);
+    for (int x = start; x < stop; ++x) keys[y * params.width + x] = 0;
+    if (!may_be_near(&params, depth, start, y)) continue;
+    for (int x = start; x < stop; ++x) {
+      const float edge = reprojection[4 * texel_index(params.reprojection, x, y) + 3];
+      if (!(fabs(edge) > LAYER_MOTION)) continue;  // a motion edge of this frame is no larger
+      const Surface own = surface_at(&params, velocity, depth, x, y);
+      if (!own.is_known || !(own.depth > 0.0f) || !is_near(&params, velocity, depth, own, x, y)) continue;
+
+      const int i = y * params.width + x;
+      const float2 place = place_of(&params, x, y);
+      const float2 before =
+          motion_before(&params, previous_keys, previous_records, place + own.motion, own.depth, own.motion);
+      float2 drift = DRIFT_KEPT * (own.motion - before);
+      if (dot(drift, drift) > MOST_DRIFT * dot(own.motion, own.motion)) drift = (float2)(0.0f);
+      const LayerRecord record = {place.x, place.y, own.depth, own.motion.x, own.motion.y, drift.x, drift.y,
+                                  is_thin(&params, depth, own.depth, x, y) ? 1 : 0};
+      keys[i] = record_key(0, i);
+      records[i] = record;
+    }
+  }
+}

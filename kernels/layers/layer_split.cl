@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// layer_split: which samples have two layers, and which. With r the record within 1.7 samples of a sample whose squared
+// distance + .4 of its age is least, and b the closest of its 3x3 samples that lies behind r by 3 % of depth, the
+// sample is split if the two move apart. Its reprojection becomes that of the far layer: a near sample takes b's.
+//
+//   params            in      viewports, layouts, scales
+//   velocity          in      RG16F or RG32F, viewport
+//   depth             in      R32F, viewport
+//   open_trust        in      of each sample: trust without a comparison of depths, from reproject
+//   keys              in      of this frame's grid of records
+//   previous_records  in      LayerRecord of each cell of the previous grid that has one
+//   records           in/out  LayerRecord of each near sample; grows by those that came from the previous frame
+//   reprojection      in/out  Reprojection of each sample: of split ones the far layer's
+//   splits            out     LayerSplit of each sample
+//   marks             out     of each tile: not 0 if a sample in it is split. All zero before
+// Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
+// Reference: tests/reference/layer_split.cpp
+#include "layers/records.h"
+
+#define RECORD_REACH 1.7f  // samples
+#define AGE_COST 0.4f      // samples, squared, for each frame of a record's age
+
+enum { kReach = 2, kWindow = 8 };  // cells around a sample; samples that are looked at together
+
+static inline LayerRecord record_of(uint key, int cell, __global const LayerRecord* previous_records,
+                                    __global const LayerRecord* records) {
+  return record_age(key) == 0 ? records[cell] : advanced(previous_records[record_index(key)]);
+}
+
+// Whether a cell within reach of the samples from (x, y) on has a record.
+static inline bool has_record_near(const LayerParams* params, __global const uint* keys, int x, int y) {
+  const int left = max(x - kReach, 0), right = min(x + kWindow + kReach, params->width);
+  uint any = 0;
+  for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
+    __global const uint* line = keys + row * params->width;
+    if (right - left == kWindow + 2 * kReach) {
+      const uint8 start = vload8(0, line + left);
+      const uint4 rest = vload4(0, line + left + 8);
+      const uint4 both = start.lo | start.hi | rest;
+      any |= both.x | both.y | both.z | both.w;
+    } else {
+      for (int column = left; column < right; ++column) any |= line[column];
+    }
+  }
+  return any != 0;
+}
+
+// Of each of kWindow samples of a row the cell of its record; -1 if none is within reach.
+typedef struct NearestRecords {
+  int cell[kWindow];
+} NearestRecords;
+
+// Where a cell's record lies, in samples: 0 at the first, 1 at the next. A new one is exactly at its cell's sample.
+static inline float2 record_position(const LayerParams* params, uint key, int column, int row,
+                                     __global const LayerRecord* previous_records) {
+  if (record_age(key) == 0) return (float2)((float)column, (float)row);
+  const LayerRecord record = advanced(previous_records[record_index(key)]);
+  return (float2)((record.x - params->start_x) / params->spacing_x, (record.y - params->start_y) / params->spacing_y);
+}
+
+// The records nearest to the samples from (x, y) on, old ones as if they were farther; of two alike the first.
+static inline NearestRecords find_records(const LayerParams* params, __global const uint* keys,
+                                          __global const LayerRecord* previous_records, int x, int y) {
+  const float8 sample_x = convert_float8((int8)(x) + (int8)(0, 1, 2, 3, 4, 5, 6, 7));
+  const float sample_y = (float)y;
+  float8 best = (float8)(FLT_MAX);
+  int8 cells = (int8)(-1);
+  for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
+    for (int column = max(x - kReach, 0); column < min(x + kWindow + kReach, params->width); ++column) {
+      const int cell = row * params->width + column;
+      const uint key = keys[cell];
+      if (key == 0) continue;
+      const float2 position = record_position(params, key, column, row, previous_records);
+      const float8 apart_x = position.x - sample_x;
+      const float apart_y = position.y - sample_y;
+      const float8 distance = apart_x * apart_x + apart_y * apart_y;
+      const float8 cost = distance + AGE_COST * (float)record_age(key);
+      const int8 better = (distance <= RECORD_REACH * RECORD_REACH) & (cost < best);
+      best = select(best, cost, better);
+      cells = select(cells, (int8)(cell), better);
+    }
+  }
+  NearestRecords nearest;
+  vstore8(cells, 0, nearest.cell);
+  return nearest;
+}
+
+// The closest of the 3x3 samples around (x, y) that lies behind `near_depth`, the first of two alike; false if there is
+// none.
+static inline bool find_behind(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
+                               float near_depth, int x, int y, Surface* found) {
+  const float most = near_depth * (1.0f - LAYER_GAP);
+  int best = 3;
+  for (int row = -1; row <= 1; ++row) {
+    for (int column = -1; column <= 1; ++column) {
+      const int distance = row * row + column * column;
+      if (distance >= best || !(depth_at(params, depth, x + column, y + row) < most)) continue;
+      const Surface other = surface_at(params, velocity, depth, x + column, y + row);
+      if (!other.is_known) continue;
+      best = distance;
+      *found = other;
+    }
+  }
+  return best < 3;
+}
+
+// The motion of the far layer at a sample, as Reprojection has it: its own, or that of what is behind it.
+static inline float2 far_motion_at(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
+                                   LayerSplit split, Surface behind, int x, int y) {
+  const Surface own = surface_at(params, velocity, depth, x, y);
+  const bool is_far = own.is_known && own.depth < 0.5f * (split.near_depth + split.far_depth);
+  const float2 motion = (is_far ? own.motion : behind.motion) * (float2)(params->to_previous_x, params->to_previous_y);
+  return clamp(motion, -FARTHEST_MOTION, FARTHEST_MOTION);
+}
+
+static inline void mark_tile(const LayerParams* params, __global int* marks, int x, int y) {
+  const float2 place = place_of(params, x, y);
+  const int tile_x = clamp((int)place.x / kTemporalTile, 0, params->tiles_x - 1);
+  const int tile_y = clamp((int)place.y / kTemporalTile, 0, params->tiles_y - 1);
+  atomic_or(marks + tile_y * params->tiles_x + tile_x, 1);
+}
+
+__kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
+                          __global const float* open_trust, __global const uint* keys,
+                          __global const LayerRecord* previous_records, __global LayerRecord* records,
+                          __global float* reprojection, __global LayerSplit* splits, __global int* marks) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  for (int start = first; start < end; start += kWindow) {
+    const int stop = min(start + kWindow, end);
+    NearestRecords nearest;
+    const bool any = has_record_near(&params, keys, start, y);
+    if (any) nearest = find_records(&params, keys, previous_records, start, y);
+    for (int x = start; x < stop; ++x) {
+      const int i = y * params.width + x;
+      const int cell = any ? nearest.cell[x - start] : -1;
+      LayerSplit split = {0.0f, 0.0f, 0.0f, 0.0f};
+      if (cell >= 0) {
+        const LayerRecord record = record_of(keys[cell], cell, previous_records, records);
+        const float2 motion = (float2)(record.motion_x, record.motion_y);
+        Surface behind;
+        if (find_behind(&params, velocity, depth, record.depth, x, y, &behind) && move_apart(motion, behind.motion)) {
+          split.near_depth = record.depth;
+          split.far_depth = behind.depth;
+          split.motion_x = motion.x;
+          split.motion_y = motion.y;
+          const float2 far_motion = far_motion_at(&params, velocity, depth, split, behind, x, y);
+          vstore4((float4)(far_motion, open_trust[i], 0.0f), texel_index(params.reprojection, x, y), reprojection);
+          mark_tile(&params, marks, x, y);
+        }
+      }
+      splits[i] = split;
+      if (keys[i] != 0 && record_age(keys[i]) != 0) records[i] = record_of(keys[i], i, previous_records, records);
+    }
+  }
+}

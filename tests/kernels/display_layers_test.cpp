@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// display_layers against its reference, and temporal_display, over whose picture it lays the near layer.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "expected.h"
+#include "layer_fixture.h"
+
+namespace quincunx {
+namespace {
+
+using testing::expect_near;
+using testing::LayerStageInputs;
+using testing::LayerStages;
+using testing::Pattern;
+using testing::Pixel;
+using testing::Rig;
+using testing::StageSpec;
+using testing::StageVariant;
+using testing::TemporalStages;
+
+class DisplayLayers : public ::testing::TestWithParam<StageVariant> {
+ protected:
+  void compare_display(const LayerStageInputs& in, const std::vector<Pixel>& actual, const StageSpec& spec) {
+    const reference::LayerHistory& history = in.reference.past;
+    for (int y = 0; y < history.height; ++y) {
+      for (int x = 0; x < history.width; ++x) {
+        const std::size_t i = history.texel(x, y);
+        const std::string what = fmt::format("{}: pixel ({}, {})", testing::name_of(spec), x, y);
+        if (!history.has_two(x, y)) {
+          ASSERT_EQ(in.picture[i], actual[i]) << what;
+          continue;
+        }
+        ++compared_;
+        const auto [value, bound, undecided] = reference::expected_of([&]<typename Real>(Real) {
+          return reference::display_layers<Real>(history, in.picture[i], x, y);
+        });
+        if (undecided) continue;
+        ++decided_;
+        for (std::size_t c = 0; c < 4; ++c) {
+          expect_near(value[c], bound[c], actual[i][c], fmt::format("{} channel {}", what, c),
+                      GetParam().resolved);
+          if (HasFatalFailure()) return;
+        }
+      }
+    }
+  }
+
+  std::int64_t compared_ = 0;
+  std::int64_t decided_ = 0;
+};
+
+TEST_P(DisplayLayers, MatchesTheReferenceAndLeavesOtherPixelsAlone) {
+  LayerStages stages(GetParam());
+  for (const StageSpec& spec :
+       testing::all_stage_specs({Pattern::kNoise, Pattern::kConstant, Pattern::kRamp})) {
+    Rig rig;
+    const LayerStageInputs in = stages.inputs(rig, spec);
+    compare_display(in, stages.run_display(rig, in), spec);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GE(decided_, compared_ * 9 / 10);
+  EXPECT_GE(decided_, 20'000);
+}
+
+TEST_P(DisplayLayers, PoisonOutsideTheViewportChangesNoBit) {
+  LayerStages stages(GetParam());
+  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
+    StageSpec spec{
+        .output = {64, 33}, .render = render, .previous = {render.height, render.width}, .seed = 5};
+    Rig rig;
+    const auto pixels = [&] { return stages.run_display(rig, stages.inputs(rig, spec)); };
+    const auto clean = pixels();
+    EXPECT_EQ(clean, pixels()) << "twice";
+    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+      spec.outside = poison;
+      EXPECT_EQ(clean, pixels()) << render.width << "x" << render.height << ", poison " << poison;
+    }
+    spec.outside = 0;
+    spec.tight = true;
+    EXPECT_EQ(clean, pixels()) << render.width << "x" << render.height << ", tight";
+  }
+}
+
+// Small, for a memory checker.
+TEST_P(DisplayLayers, ATightFrameIsReadWithinItsEdges) {
+  LayerStages stages(GetParam());
+  for (const Extent render : {Extent{1, 1}, Extent{7, 3}}) {
+    const StageSpec spec{.output = {13, 9}, .render = render, .previous = render, .seed = 8, .tight = true};
+    Rig rig;
+    const LayerStageInputs in = stages.inputs(rig, spec);
+    compare_display(in, stages.run_display(rig, in), spec);
+  }
+  EXPECT_GT(decided_, 0);
+}
+
+// Over which the near layer is laid.
+TEST_P(DisplayLayers, TemporalDisplayShowsTheFarLayerAsIfItWereTheOnlyOne) {
+  const TemporalStages temporal(GetParam());
+  const LayerStages stages(GetParam());
+  std::int64_t split = 0;
+  for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
+    Rig rig;
+    LayerStageInputs in = stages.inputs(rig, spec);
+    const auto alone = temporal.run_display(rig, in.stage, in.reference.past.tiles, {});
+    in.stage.reference.history = in.reference.past.far;
+    const auto far = temporal.run_display(rig, in.stage, in.reference.past.tiles, {});
+    EXPECT_EQ(alone.bytes, far.bytes) << testing::name_of(spec);
+    for (const Pixel& texel : in.reference.past.far)
+      split += std::signbit(texel[3]) ? 1 : 0;
+  }
+  EXPECT_GE(split, 4000);
+}
+
+std::vector<StageVariant> variants() {
+  using enum PixelFormat;
+  return {{}, {.history = kRGBA16F, .resolved = kRGBA16F}, {.storage = Storage::kImage}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, DisplayLayers, ::testing::ValuesIn(variants()),
+                         [](const auto& instance) { return testing::name_of(instance.param); });
+
+}  // namespace
+}  // namespace quincunx

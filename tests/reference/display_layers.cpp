@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// display_layers: one output pixel after the near layer has been laid over the picture of the far one. p: the pixel's
+// centre, R: the phase of its tile's near layer, D: the mean depth between the layers of its tile, M: the picture, W:
+// the confidence of the far layer.
+//   F, A  the near layer, premultiplied, and its coverage at p - R: the cubic of Keys, a = -.75. A texel of one layer
+//         counts as its colour and 1 if it is nearer than D, else as 0
+//   where W < .15 and A > .02: M <- M + (F / A - M) (1 - W / .15)
+//   F + (1 - A) M, A in [0, 1]; pixels of one layer stay what they are
+// Source: found by measuring (docs/temporal.md).
+#include <cmath>
+#include <cstddef>
+
+#include "resolve_layers.h"
+
+namespace quincunx::reference {
+namespace {
+
+constexpr double kDisplaySharpness = -.75;  // Keys' a, as of temporal_display
+constexpr double kUnknownFar = .15;         // confidence of the far layer below which the near one stands in
+constexpr double kLeastCoverage = .02;      // from which the near layer has a colour
+
+// A texel as the near layer of a pixel has it.
+template <typename Real>
+PixelOf<Real> near_texel(const LayerHistory& history, double between, int x, int y) {
+  if (history.has_two(x, y)) return as<Real>(history.near[history.texel(x, y)]);
+  if (!(state_at<Real>(history, x, y).far_depth > between)) return {};
+  const Pixel& alone = history.far[history.texel(x, y)];
+  return {alone[0], alone[1], alone[2], 1};
+}
+
+template <typename Real>
+PixelOf<Real> near_at_centre(const LayerHistory& history, const LayerTile& tile, int x, int y) {
+  const auto near = [&](int i, int j) {
+    return LayerTap<Real>{near_texel<Real>(history, tile.between, i, j)};
+  };
+  if (tile.phase[0] == 0 && tile.phase[1] == 0) return near(x, y).value;
+  std::array<int, 2> texel = {x, y};
+  std::array<Real, 2> fraction;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const int back = tile.phase[axis] > 0 ? 1 : 0;
+    texel[axis] -= back;
+    fraction[axis] = back - Real(tile.phase[axis]);
+  }
+  return blend_taps(history, texel, fraction, kDisplaySharpness, near).value;
+}
+
+}  // namespace
+
+template <typename Real>
+PixelOf<Real> display_layers(const LayerHistory& history, const Pixel& picture, int x, int y) {
+  PixelOf<Real> far = as<Real>(picture);
+  const LayerTile& tile = history.layers[history.tile(x, y)];
+  if (!tile.is_split || !history.has_two(x, y)) return far;
+  const auto near = near_at_centre<Real>(history, tile, x, y);
+  const Real coverage = clamp(near[3], 0, 1);
+  const Real confidence = std::abs(history.far[history.texel(x, y)][3]);
+  const Real unknown = clamp(1 - confidence / kUnknownFar, 0, 1);
+  if (seamless(unknown > 0) && coverage > kLeastCoverage) {
+    for (std::size_t c = 0; c < 3; ++c)
+      far[c] += (near[c] / near[3] - far[c]) * unknown;
+    far[3] += (near[3] / near[3] - far[3]) * unknown;
+  }
+  PixelOf<Real> shown;
+  for (std::size_t c = 0; c < 3; ++c)
+    shown[c] = near[c] + (1 - coverage) * far[c];
+  shown[3] = coverage + (1 - coverage) * far[3];
+  return shown;
+}
+
+template PixelOf<double> display_layers(const LayerHistory&, const Pixel&, int, int);
+template PixelOf<Bounded> display_layers(const LayerHistory&, const Pixel&, int, int);
+
+}  // namespace quincunx::reference

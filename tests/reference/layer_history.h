@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A history whose texels may have two layers, and reading it: the specification of kernels/include/layers/layer.h and
+// fetch_layers.h. Depths are reversed: the nearer, the larger.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "history_sampling.h"
+#include "layers.h"
+
+namespace quincunx::reference {
+
+// What a texel of a layered tile is, besides its colours, as it is stored: depths as their fourth roots.
+struct StoredState {
+  double far_root = 0, near_root = 0, near_confidence = 0;
+};
+
+template <typename Real>
+struct LayerStateOf {
+  Real far_depth = 0;   // of what the far layer, or the only one, shows
+  Real near_depth = 0;  // 0: there is one layer
+  Real near_confidence = 0;
+
+  bool has_two() const { return near_depth > 0; }
+  Real between() const { return .5 * (far_depth + near_depth); }
+};
+
+// All that a frame leaves to the next, and its samples.
+struct LayerHistory {
+  int width = 0;  // of the output
+  int height = 0;
+  std::vector<Pixel> far;   // colour and confidence W of the far, or only, layer; -W where there are two
+  std::vector<Pixel> near;  // premultiplied colour and coverage, where there are two
+  std::vector<StoredState> states;  // in layered tiles
+  std::vector<Tile> tiles;
+  std::vector<LayerTile> layers;
+  Frame frame;  // its extent, jitter and depth
+
+  std::size_t texel(int x, int y) const { return index_of(width, x, y); }
+  std::size_t tile(int x, int y) const;  // of the texel
+  bool has_two(int x, int y) const;      // whether the texel has two layers
+  double spacing(int axis) const {       // output pixels between neighbouring samples
+    return axis == 0 ? static_cast<double>(width) / frame.width : static_cast<double>(height) / frame.height;
+  }
+};
+
+// Of a texel. Where none is stored it has one layer, which shows what the sample nearest to its picture does.
+template <typename Real>
+LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y);
+
+// Coverage from which a near layer may stand for a surface alone.
+constexpr double kSolid = .3;
+
+// What a layer has of a texel.
+template <typename Real>
+struct LayerTap {
+  PixelOf<Real> value = {};
+  Real confidence = 0;
+  bool is_valid = true;  // false: the texel shows another surface
+};
+
+template <typename Real>
+struct BlendedTaps {
+  PixelOf<Real> value = {};
+  Real confidence = 0;
+  bool is_known = false;
+};
+
+// Parts of 1: of all taps' weights, below which they are no cubic any more; of the middle four's, below which nothing
+// is known.
+constexpr double kLeastTaps = .5;
+constexpr double kNoTaps = 1e-3;
+
+// Keys' cubic at texel (x, y) + fraction, with his parameter `a`, over those of the 4 x 4 texels that are valid, in the
+// range of the middle four of those. Confidence is bilinear, 0 where a texel is not valid. `tap`: LayerTap of a texel.
+template <typename Real, typename Taps>
+BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 2>& texel,
+                             const std::array<Real, 2>& fraction, double a, Taps tap) {
+  const std::array<Real, 4> wx = cubic_weights(fraction[0], a);
+  const std::array<Real, 4> wy = cubic_weights(fraction[1], a);
+  PixelOf<Real> sum = {}, middle = {}, low = {}, high = {};
+  Real weights = 0, middle_weights = 0;
+  BlendedTaps<Real> blended;
+  bool is_first = true;
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) {
+      const LayerTap<Real> at = tap(std::clamp(texel[0] + column - 1, 0, history.width - 1),
+                                    std::clamp(texel[1] + row - 1, 0, history.height - 1));
+      if (!at.is_valid) continue;
+      const Real weight = wx[static_cast<std::size_t>(column)] * wy[static_cast<std::size_t>(row)];
+      weights += weight;
+      for (std::size_t c = 0; c < 4; ++c)
+        sum[c] += at.value[c] * weight;
+      if (row % 3 == 0 || column % 3 == 0) continue;
+      const Real share =
+          (column == 1 ? 1 - fraction[0] : fraction[0]) * (row == 1 ? 1 - fraction[1] : fraction[1]);
+      middle_weights += share;
+      blended.confidence += at.confidence * share;
+      for (std::size_t c = 0; c < 4; ++c) {
+        middle[c] += at.value[c] * share;
+        low[c] = is_first ? at.value[c] : min(low[c], at.value[c]);
+        high[c] = is_first ? at.value[c] : max(high[c], at.value[c]);
+      }
+      is_first = false;
+    }
+  }
+  if (is_first || middle_weights < kNoTaps) return {};
+  blended.is_known = true;
+  const bool is_cubic = weights >= kLeastTaps;
+  for (std::size_t c = 0; c < 4; ++c)
+    blended.value[c] = is_cubic ? clamp(sum[c] / weights, low[c], high[c]) : middle[c] / middle_weights;
+  return blended;
+}
+
+// What a pixel wants of history.
+enum class Layer {
+  kOnly,  // a surface of depth near_depth, alone
+  kFar,   // the one of depth far_depth behind another
+  kNear,  // the one of depth near_depth before another
+};
+struct LayerWish {
+  Layer layer = Layer::kOnly;
+  double near_depth = 0, far_depth = 0;
+  // Of kOnly: texels of one layer must not be nearer. Set by fetch_layer where the texel there has two, as then no
+  // trust tells.
+  bool tests_depth = false;
+};
+
+template <typename Real>
+struct FetchedLayer {
+  PixelOf<Real> value = {};  // premultiplied colour and coverage
+  Real confidence = 0;       // 0: nothing is known
+  Real between = 0;          // as of FetchedHistory
+  bool was_split = false;    // the texel at that place has two layers
+};
+
+// What history holds at `place`, output pixels of the previous frame; `is_rigid`: the layer that wishes.
+template <typename Real>
+FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, const std::array<Real, 2>& place,
+                               bool is_rigid);
+
+}  // namespace quincunx::reference

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// resolve_layers and display_layers, of pixels that may have two layers: the specification. error_bound.h tells what
+// `Real` may be.
+#pragma once
+
+#include <vector>
+
+#include "layer_history.h"
+
+namespace quincunx::reference {
+
+// What resolve_layers reads.
+struct ResolveInputs {
+  TemporalInputs now;  // its frame with depth; what it holds of history counts for nothing
+  std::vector<Tile> tiles;
+  std::vector<LayerTile> layers;
+  std::vector<double> open_trust;  // of each sample: trust without a comparison of depths
+  std::vector<LayerSplit> splits;  // of each sample
+  LayerHistory past;
+};
+
+// A texel of a layered tile.
+template <typename Real>
+struct LayeredTexelOf {
+  PixelOf<Real> far = {};  // colour and W of the far, or only, layer; -W where there are two
+  PixelOf<Real> near = {};
+  std::array<Real, 3> state = {};  // as StoredState
+  bool is_split = false;           // else there is no near layer
+};
+
+// resolve_layers: the texel of output pixel (x, y), of a layered tile, after this frame.
+template <typename Real>
+LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptions& options, int x, int y);
+
+// display_layers: output pixel (x, y) after the near layer of `history` has been laid over `picture`, what
+// temporal_display has made of the pixel.
+template <typename Real>
+PixelOf<Real> display_layers(const LayerHistory& history, const Pixel& picture, int x, int y);
+
+}  // namespace quincunx::reference

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Accumulation: history moved towards the nearest sample of this frame.
+#pragma once
+
+#include <cstddef>
+
+#include "frame_samples.h"
+#include "limit_confidence.h"
+
+namespace quincunx::reference {
+
+// Output pixels from which on a sample has no weight, and the same in still tiles as W grows: 1.2 dB on still
+// pictures.
+constexpr double kReach = 1.05;
+constexpr double kLeastReach = .85;
+constexpr double kNarrowing = .1;       // for each unit of confidence
+constexpr double kLeastWeight = 1e-30;  // against a division by 0
+
+// Of a sample `dx` and `dy` output pixels away.
+template <typename Real>
+Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, bool is_still,
+                   const Real& confidence) {
+  const Real reach = is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
+  const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
+  return luma_weighted<Real>(near * near, sample);
+}
+
+template <typename Real>
+HistoryTexel<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Real& weight) {
+  HistoryTexel<Real> updated = {known.colour, known.alpha};
+  const Real total = known.confidence + weight;
+  const Real share = weight / max(total + known.inertia, kLeastWeight);
+  for (std::size_t c = 0; c < 3 && is_valid(sample); ++c)
+    updated.texel[c] += (sample[c] - updated.texel[c]) * share;
+  if (is_valid(sample)) updated.alpha += (sample[3] - updated.alpha) * share;
+  updated.texel[3] = min(total, kMostConfidence);
+  return updated;
+}
+
+}  // namespace quincunx::reference

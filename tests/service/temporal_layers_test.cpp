@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// Two layers of history: thin things before something that moves differently.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "temporal_scene.h"
+
+namespace quincunx {
+namespace {
+
+using testing::Pixel;
+using testing::Place;
+using testing::TemporalRun;
+using testing::TemporalScene;
+
+using Pixels = std::vector<Pixel>;
+
+// Wires of less than two output pixels, which slide over a wall that drifts the other way.
+TemporalScene wires_before_a_wall() {
+  TemporalScene scene;
+  for (int i = 0; i < 6; ++i) {
+    scene.surfaces.push_back({.shape = testing::Surface::Shape::kRectangle,
+                              .half_size = {.5 + .1 * (i % 4), 200},
+                              .centre = {12. + 23.3 * i, 48},
+                              .velocity = {.83, 0},
+                              .distance = 4,
+                              .texture = testing::plain_texture(.02f, .02f, .03f)});
+  }
+  scene.surfaces.push_back({.velocity = {-.31, 0}, .texture = testing::noise_texture(12)});
+  return scene;
+}
+
+ResolveSettings preset(TemporalPreset preset, TemporalView view = TemporalView::kPicture) {
+  ResolveSettings settings{.method = Method::kTemporal};
+  settings.temporal.preset = preset;
+  settings.temporal.view = view;
+  return settings;
+}
+
+// The mean over frames 16 to 31.
+double error_of(const TemporalScene& scene, const ResolveSettings& settings) {
+  TemporalRun run(scene, settings);
+  run.until(16);
+  double sum = 0;
+  for (int i = 0; i < 16; ++i) {
+    const Pixels shown = run.next();
+    sum += testing::squared_error(shown, run.truth(), scene.output);
+  }
+  return sum / 16;
+}
+
+TEST(TemporalLayers, WiresAndWhatIsBehindThemGain) {
+  const TemporalScene scene = wires_before_a_wall();
+  const double one = error_of(scene, preset(TemporalPreset::kFast));
+  for (const TemporalPreset two : {TemporalPreset::kBalanced, TemporalPreset::kQuality})
+    EXPECT_LT(error_of(scene, preset(two)), .7 * one);
+}
+
+TEST(TemporalLayers, WhereNothingMovesApartThereIsOneLayer) {
+  TemporalScene scene = wires_before_a_wall();
+  for (testing::Surface& surface : scene.surfaces)
+    surface.velocity = {.4, 0};
+  TemporalRun run(scene, preset(TemporalPreset::kBalanced, TemporalView::kLayers));
+  for (const Pixel& pixel : run.until(12))
+    ASSERT_EQ(pixel[0], 0);
+}
+
+TEST(TemporalLayers, ViewsShowThem) {
+  const TemporalScene scene = wires_before_a_wall();
+  const auto show = [&scene](TemporalView view) {
+    return TemporalRun(scene, preset(TemporalPreset::kBalanced, view)).until(12);
+  };
+  const Pixels layers = show(TemporalView::kLayers), coverage = show(TemporalView::kCoverage);
+  const Pixels near = show(TemporalView::kNear), far = show(TemporalView::kFar);
+  const Pixels picture = show(TemporalView::kPicture);
+  int two = 0, solid = 0;
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    ASSERT_TRUE(layers[i][0] == 0 || layers[i][0] == 1) << i;
+    two += layers[i][0] == 1;
+    solid += coverage[i][0] > .5f;
+    EXPECT_EQ(layers[i][1], coverage[i][0]) << i;
+    if (layers[i][0] == 0) {
+      EXPECT_EQ(coverage[i][0], 0) << i;
+      EXPECT_EQ(picture[i], far[i]) << i;
+      continue;
+    }
+    if (layers[i][2] * 32 < .15f) continue;  // the near layer stands in for an unknown far one
+    const float open = 1 - std::clamp(coverage[i][0], 0.f, 1.f);
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(picture[i][c], near[i][c] + open * far[i][c], 1e-5) << i;
+  }
+  EXPECT_GT(two, 1000);
+  EXPECT_LT(two, 160 * 96 / 2);
+  EXPECT_GT(solid, 100);
+}
+
+TEST(TemporalLayers, AlphaOfOpaqueSamplesIsOneAndChangesNoColour) {
+  const TemporalScene scene = wires_before_a_wall();
+  TemporalRun opaque(scene, preset(TemporalPreset::kBalanced), {.background = true});
+  TemporalRun alpha(scene, preset(TemporalPreset::kBalanced), {.background = false});
+  for (int frame = 0; frame < 12; ++frame) {
+    const Pixels expected = opaque.next(), actual = alpha.next();
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      for (int c = 0; c < 3; ++c)
+        ASSERT_EQ(actual[i][c], expected[i][c]) << frame << ", " << i;
+      ASSERT_NEAR(actual[i][3], 1, 2e-3) << frame << ", " << i;  // a coverage may be off by halves
+    }
+  }
+}
+
+// A wire before nothing: its coverage is the picture's alpha.
+TEST(TemporalLayers, AlphaOfAWireBeforeNothingIsItsCoverage) {
+  TemporalScene scene = wires_before_a_wall();
+  scene.surfaces.back().texture = [](Place) { return Pixel{0, 0, 0, 0}; };
+  TemporalRun run(scene, preset(TemporalPreset::kBalanced), {.background = false});
+  const Pixels shown = run.until(24), truth = run.truth();
+  double error = 0, bilinear = 0;
+  ResolveSettings one_frame{.method = Method::kBilinear};
+  TemporalRun single(scene, one_frame, {.background = false});
+  const Pixels blurred = single.until(24);
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    error += (shown[i][3] - truth[i][3]) * (shown[i][3] - truth[i][3]);
+    bilinear += (blurred[i][3] - truth[i][3]) * (blurred[i][3] - truth[i][3]);
+  }
+  EXPECT_LT(error, .5 * bilinear);
+}
+
+TEST(TemporalLayers, AViewOfThemIsRefusedWhereThereIsOne) {
+  const auto refused = [](const SceneNeeds& needs, TemporalPreset one) {
+    ResolveSettings settings = preset(one, TemporalView::kCoverage);
+    settings.output = settings.target = {64, 64};
+    return plan_for(needs, settings).status().message();
+  };
+  EXPECT_NE(refused({}, TemporalPreset::kFast).find("settings.temporal.view is coverage"), std::string::npos);
+  EXPECT_NE(
+      refused({.moving_objects = false, .camera_motion = false}, TemporalPreset::kBalanced).find("one layer"),
+      std::string::npos);
+  EXPECT_EQ(refused({}, TemporalPreset::kBalanced), "");
+}
+
+TEST(TemporalLayers, ChangingSizesAndResetsAreSurvived) {
+  const TemporalScene scene = wires_before_a_wall();
+  TemporalRun run(scene, preset(TemporalPreset::kBalanced));
+  ResolveSettings one_frame{.method = Method::kBilinear};
+  TemporalRun single(scene, one_frame);
+  double error = 0, bilinear = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    const int grown = frame * 7 % 24;
+    const Extent render = {80 + 2 * grown, 48 + grown};
+    const Pixels shown = run.next(render), blurred = single.next(render);
+    for (const Pixel& pixel : shown)
+      ASSERT_TRUE(std::isfinite(pixel[0]) && std::isfinite(pixel[1]) && std::isfinite(pixel[2]));
+    if (frame < 16) continue;
+    error += testing::squared_error(shown, run.truth(), scene.output);
+    bilinear += testing::squared_error(blurred, run.truth(), scene.output);
+  }
+  EXPECT_LT(error, .7 * bilinear);
+}
+
+}  // namespace
+}  // namespace quincunx
