@@ -3,10 +3,20 @@
 
 namespace quincunx {
 
+namespace {
+
+// Where a frame's samples lie.
+struct SamplePlaces {
+  Ratio spacing;
+  Ratio start;
+};
+
 SamplePlaces places_of(const FrameInputs& frame, Extent output) {
   const Ratio spacing = ratio_of(output, frame.render);
   return {spacing, {(.5f + frame.jitter.x) * spacing.x, (.5f + frame.jitter.y) * spacing.y}};
 }
+
+}  // namespace
 
 LayerParams layer_params(const PassFrame& frame, const Device::Impl& device, Extent extent) {
   const FrameInputs& current = frame.current;
@@ -39,6 +49,19 @@ LayerParams layer_params(const PassFrame& frame, const Device::Impl& device, Ext
           .tiles_x = tiles.width,
           .tiles_y = tiles.height,
           .columns_per_item = columns_per_item(device, extent.width, kReprojectedBlock)};
+}
+
+LayerPastParams layer_past_params(const FrameInputs& frame, Extent output, TexelLayout depth0,
+                                  TexelLayout depth1) {
+  const SamplePlaces places = places_of(frame, output);
+  return {.depth0 = depth0,
+          .depth1 = depth1,
+          .width = frame.render.width,
+          .height = frame.render.height,
+          .spacing_x = places.spacing.x,
+          .spacing_y = places.spacing.y,
+          .start_x = places.start.x,
+          .start_y = places.start.y};
 }
 
 }  // namespace quincunx

@@ -29,15 +29,8 @@ class DisplayLayersPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const TemporalDisplayParams params = temporal_display_params(frame, device(), picture());
-    const SamplePlaces places = places_of(frame.current, frame.output);
-    const LayerPastParams now{.depth0 = layout_of(frame[Resource::kDepth]),
-                              .depth1 = {},
-                              .width = frame.current.render.width,
-                              .height = frame.current.render.height,
-                              .spacing_x = places.spacing.x,
-                              .spacing_y = places.spacing.y,
-                              .start_x = places.start.x,
-                              .start_y = places.start.y};
+    const LayerPastParams now =
+        layer_past_params(frame.current, frame.output, layout_of(frame[Resource::kDepth]), {});
     bind(params, now, frame[Resource::kDepth], frame[Resource::kTileReprojection],
          frame[Resource::kLayerTiles], frame[Resource::kHistory], frame[Resource::kNearHistory],
          frame[Resource::kLayerStates], frame[picture()]);

@@ -19,15 +19,9 @@ class ResolveLayersPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     PositionTables& tables = frame.tables.positions();
     const TemporalParams params = temporal_params(frame, device(), tables);
-    const SamplePlaces places = places_of(frame.previous, frame.output);
-    const LayerPastParams before{.depth0 = layout_of(frame[Resource::kDepth]),
-                                 .depth1 = layout_of(frame[Resource::kPreviousDepth]),
-                                 .width = frame.previous.render.width,
-                                 .height = frame.previous.render.height,
-                                 .spacing_x = places.spacing.x,
-                                 .spacing_y = places.spacing.y,
-                                 .start_x = places.start.x,
-                                 .start_y = places.start.y};
+    const LayerPastParams before =
+        layer_past_params(frame.previous, frame.output, layout_of(frame[Resource::kDepth]),
+                          layout_of(frame[Resource::kPreviousDepth]));
     bind(params, before, tables.get(frame.queue, frame.current.render, frame.current.jitter),
          frame[Resource::kColour], frame[Resource::kReprojection], frame[Resource::kDepth],
          frame[Resource::kPreviousDepth], frame[Resource::kOpenTrust], frame[Resource::kSplits],

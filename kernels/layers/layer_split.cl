@@ -16,6 +16,7 @@
 // Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/layer_split.cpp
 #include "layers/records.h"
+#include "layers/split.h"
 
 #define RECORD_REACH 1.7f  // samples
 #define AGE_COST 0.4f      // samples, squared, for each frame of a record's age
@@ -108,7 +109,7 @@ static inline bool find_behind(const LayerParams* params, VELOCITY_TEXELS veloci
 static inline float2 far_motion_at(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
                                    LayerSplit split, Surface behind, int x, int y) {
   const Surface own = surface_at(params, velocity, depth, x, y);
-  const bool is_far = own.is_known && own.depth < 0.5f * (split.near_depth + split.far_depth);
+  const bool is_far = own.is_known && own.depth < between_of(split);
   const float2 motion = (is_far ? own.motion : behind.motion) * (float2)(params->to_previous_x, params->to_previous_y);
   return clamp(motion, -FARTHEST_MOTION, FARTHEST_MOTION);
 }

@@ -25,7 +25,7 @@
 //                  of its own (layers/layer_tile.h). Samples of a near layer say nothing of history
 //          SOURCE_STORAGE, SOURCE_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_tiles.cpp; of layers tests/reference/layer_tile.cpp
-#include "layers/layer.h"
+#include "layers/split.h"
 #include "temporal/frame_samples.h"
 #include "temporal/history.h"
 #include "temporal/reproject_tile.h"
@@ -91,8 +91,7 @@ static inline bool is_of_near_layer(const Past* past, const TemporalTileParams* 
 #if LAYERS
   if (past->splits == 0) return false;
   const LayerSplit split = past->splits[y * params->frame.width + x];
-  return split.near_depth > 0.0f &&
-         !(load_depth(depth, layout, x, y) < 0.5f * (split.near_depth + split.far_depth));
+  return is_split(split) && !(load_depth(depth, layout, x, y) < between_of(split));
 #else
   return false;
 #endif

@@ -2,7 +2,7 @@
 // The near layer of a tile, and whether a tile has to do with two layers at all.
 #pragma once
 
-#include "layers/layer.h"
+#include "layers/split.h"
 #include "temporal/reproject_tile.h"
 
 enum {
@@ -49,7 +49,7 @@ static inline float mean_depth(const TemporalTileParams* params, DEPTH_TEXELS de
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
     for (int x = samples.first.x; x <= samples.last.x; ++x) {
       const LayerSplit split = in->splits[y * params->frame.width + x];
-      sum += split.near_depth > 0.0f ? split.far_depth : load_depth(depth, in->depth, x, y);
+      sum += is_split(split) ? split.far_depth : load_depth(depth, in->depth, x, y);
     }
   }
   const int2 count = samples.last - samples.first + 1;
@@ -104,11 +104,11 @@ static inline LayerTile near_layer_of(const TemporalTileParams* params, const La
   for (int y = around.first.y; y <= around.last.y; ++y) {
     for (int x = around.first.x; x <= around.last.x; ++x) {
       const LayerSplit split = in->splits[y * params->frame.width + x];
-      if (!(split.near_depth > 0.0f)) continue;
+      if (!is_split(split)) continue;
       const float2 motion = (float2)(split.motion_x, split.motion_y);
       least = min(least, motion);
       most = max(most, motion);
-      between += 0.5f * (split.near_depth + split.far_depth);
+      between += between_of(split);
       near_depth += split.near_depth;
       count += 1.0f;
     }
