@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every single-frame filter, in every variant: against its reference, and what holds for all of them.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
