@@ -60,3 +60,15 @@ static inline bool any_lane(int8 lanes) {
   const long2 pairs = longs.lo | longs.hi;
   return (pairs.x | pairs.y) != 0;
 }
+
+static inline int smallest_lane(int8 lanes) {
+  const int4 four = min(lanes.lo, lanes.hi);
+  const int2 two = min(four.lo, four.hi);
+  return min(two.x, two.y);
+}
+
+static inline int largest_lane(int8 lanes) {
+  const int4 four = max(lanes.lo, lanes.hi);
+  const int2 two = max(four.lo, four.hi);
+  return max(two.x, two.y);
+}

@@ -88,7 +88,7 @@ __kernel void display_layers(const TemporalDisplayParams params, const LayerPast
   for (int x = first; x < end; x += kTemporalTile) {
     const LayerTile layer = layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     if (VIEW == PICTURE && !layer.is_split) continue;
-    const TapWindow left = window_at(&known, x, y, 1), right = window_at(&known, x + 4, y, 1);
+    const TexelWindow left = window_at(&known, x, y, 1), right = window_at(&known, x + 4, y, 1);
     const EightTexels own = {load_row(known.far, left, 0), load_row(known.far, right, 0)};
     const float8 confidence = confidences(own);
     const bool any_split = layer.is_split && any_lane(as_int8(confidence) < 0);

@@ -37,7 +37,8 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
-#include "layers/layered_pixels.h"
+#include "layers/far_layer.h"
+#include "layers/near_layer.h"
 #include "temporal/alpha.h"
 #include "temporal/relight.h"
 #include "texel.h"
@@ -78,76 +79,52 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
     if (!layer.is_layered) continue;
     TileReprojection tile = tiles[tile_index];
 
-    // Find the layers, reproject, fetch.
+    // The far layers, or the only ones.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
+    const LayeredPixels pixels = find_layers(depth, before.depth0, &params, splits, open_trust, &nearest);
     EightReprojections motion = load_reprojections(&params, reprojection, &nearest);
-    LayeredPixels pixels;
-    find_layers(&pixels, depth, &before, &params, splits, open_trust, &nearest, &motion);
-    fetch_far(&pixels, &past, depth1, before.depth1, tile, x, y);
-    motion.trust = vload8(0, pixels.trust);
-
-    // The far layer, or the only one.
-    const FetchedHistory fetched = fetched_of(&pixels);
+    float8 known_alpha;
+    const FetchedHistory fetched =
+        fetch_far(&pixels, &past, depth1, before.depth1, tile, x, y, &motion, &known_alpha);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const EdgeLight left = light_at_edge(light, &params, x, y);
     const EdgeLight right = light_at_edge(light, &params, x + kTemporalTile, y);
     reject_by_light(&evidence, left, right);
-    const float8 whole = whole_pixels(&pixels);
-    evidence.rejection *= whole;
+    evidence.rejection = select(evidence.rejection, (float8)(0.0f), pixels.is_split);
     EightTexels known = relight(fetched.texels, left, right);
-    float8 known_alpha = vload8(0, pixels.alpha);
-    const float8 inertia = correct_layers(&pixels, colour, depth, before.depth0, &frame, &sample_motion, &nearest,
-                                          &known, &known_alpha, &evidence);
+    float8 inertia = (float8)(0.0f);
+    if (needs_correction(&evidence))
+      inertia = correct_layers(&pixels, colour, depth, before.depth0, &frame, &sample_motion, &nearest, &known,
+                               &known_alpha, &evidence);
     EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
     if (layer.is_split) tile.is_rigid = 0;  // it does not stand still as a whole
     float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence) * far_samples(&pixels);
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
     EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
-    mark_split(&sum, whole);
-    store_history8(updated, y * params.output_width + x, end - x, sum);
+    mark_split(&sum, pixels.is_split);
+    const int index = y * params.output_width + x;
+    store_history8(updated, index, end - x, sum);
 #if ALPHA
-    store_alpha8(updated_alpha, y * params.output_width + x, end - x,
+    store_alpha8(updated_alpha, index, end - x,
                  accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 
-    // The near layer.
+    // The near layers.
+    const float8 zero = (float8)(0.0f);
+    if (!any_lane(pixels.is_split)) {
+      store_states(updated_states, index, end - x, pixels.depth, zero, zero);
+      continue;
+    }
     TileReprojection near_tile = {.is_rigid = layer.is_rigid};
     near_tile.phase_x = layer.phase_x;
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
-    int near_x[8];
-    float near_from[8], gain[8], rejection[8];
-    vstore8(nearest_near.x, 0, near_x);
-    vstore8(nearest_near.from_x, 0, near_from);
-    vstore8(ramp(left.gain, right.gain), 0, gain);
-    vstore8(ramp(left.rejection, right.rejection), 0, rejection);
-    const int index = y * params.output_width + x;
-    float near_depth[8], near_confidence[8];
-    for (int i = 0; i < 8; ++i) {
-      const LayerSplit split = pixels.split[i];
-      near_depth[i] = split.near_depth;
-      near_confidence[i] = 0.0f;
-      if (is_split(split) && x + i < end) {
-        const float2 place = (float2)((float)(x + i) + 0.5f + layer.phase_x, (float)y + 0.5f + layer.phase_y) +
-                             (float2)(split.motion_x, split.motion_y);
-        const LayerWish wish = {kNearLayer, split.near_depth, split.far_depth, false};
-        const LayerTexel texel = fetch_layer(&past, depth1, before.depth1, wish, place, layer.is_rigid);
-        const float2 f = texel.fraction;
-        const float between = min(4.0f * (f.x * (1.0f - f.x) + f.y * (1.0f - f.y)), 1.0f);
-        const float most = most_confidence((float8)(min(pixels.open_trust[i], 1.0f - rejection[i]))).s0;
-        NearTexel near = {texel.value, texel.confidence / (1.0f + RESAMPLING_COST * between * texel.confidence)};
-        near.value.xyz *= gain[i];
-        near.confidence = min(near.confidence, min(most, MOST_NEAR_CONFIDENCE));
-        const LayerSamples layer_samples = {frame, before.depth0, between_of(split)};
-        const NearPlace at = {near_x[i], nearest_near.y, near_from[i], nearest_near.from_y};
-        near = update_near(&layer_samples, colour, depth, &params, at, near);
-        store_history(updated_near, index + i, near.value);
-        pixels.depth[i] = split.far_depth;
-        near_confidence[i] = near.confidence;
-      }
-    }
-    store_states(updated_states, index, end - x, vload8(0, pixels.depth), vload8(0, near_depth),
-                 vload8(0, near_confidence));
+    NearLayers near = fetch_near(&pixels, &past, depth1, before.depth1, layer, x, y, left, right);
+    near = update_near(near, &pixels, colour, depth, before.depth0, &params, &nearest_near);
+    const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
+    store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
+    store_states(updated_states, index, end - x, select(pixels.depth, pixels.far_depth, pixels.is_split),
+                 select(zero, pixels.near_depth, pixels.is_split), select(zero, near.confidence, pixels.is_split));
   }
   if (met_count > 0) atomic_add(non_finite + params.counter, met_count);
 }

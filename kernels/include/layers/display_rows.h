@@ -2,13 +2,17 @@
 // The near layer of the texels around eight pixels of a row, as a picture that can be resampled.
 #pragma once
 
-#include "layers/fetch_layers.h"
+#include "layers/layer_window.h"
 #include "temporal/display_place.h"
+
+static inline int16 to_four_masks(int4 lanes) {
+  return (int16)((int4)(lanes.x), (int4)(lanes.y), (int4)(lanes.z), (int4)(lanes.w));
+}
 
 // Premultiplied colours and coverages of a row of a window. What stands before `between` alone covers wholly, what is
 // behind it not at all.
 static inline float16 near_of_row(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
-                                  TapWindow window, int row) {
+                                  TexelWindow window, int row) {
   const float16 far = load_row(known->far, window, row);
   const int4 two = as_int4(far.s37bf) < 0;
   float16 near = (float16)(0.0f);

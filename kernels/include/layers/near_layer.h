@@ -1,95 +1,124 @@
 // SPDX-License-Identifier: MIT
-// The near layer of one pixel: history that follows the near surface, and this frame's sample added to it. A sample of
-// the far surface says that nothing of the near one is there.
+// The near layers of eight pixels of a row: history that follows the near surface, and this frame's samples added to
+// it. A sample of the far surface says that nothing of the near one is there.
 #pragma once
 
-#include "layers/fetch_layers.h"
+#include "layers/layer_seed.h"
+#include "layers/layered_pixels.h"
 #include "temporal/accumulate.h"
-#include "temporal/bell.h"
 #include "temporal/correct_history.h"
+#include "temporal/relight.h"
 
 #define MOST_NEAR_CONFIDENCE 8.0f  // it is resampled more often than not; 32 gives no more
 
-// A near layer and its confidence.
-typedef struct NearTexel {
-  float4 value;  // premultiplied colour and coverage
-  float confidence;
-} NearTexel;
+// Premultiplied colours and coverages, and their confidence.
+typedef struct NearLayers {
+  EightTexels texels;
+  float8 confidence;
+} NearLayers;
 
-// Of a pixel: its nearest sample (x, y), and where its picture lies from there, in samples.
-typedef struct NearPlace {
-  int x, y;
-  float from_x, from_y;
-} NearPlace;
-
-// This frame's samples, and which layer each is of.
-typedef struct LayerSamples {
-  SourceFrame frame;
-  TexelLayout depth;
-  float between;  // a depth between the layers
-} LayerSamples;
-
-// Of sample (x, y), clamped to the edge: 1 of the near layer, -1 of the far one, 0 of neither. It must be valid.
-static inline int layer_of(const LayerSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth, int x, int y,
-                           float4* sample) {
-  const int column = clamp(x, 0, in->frame.width - 1), row = clamp(y, 0, in->frame.height - 1);
-  *sample = load_colour(colour, in->frame.colour, column, row);
-  const float own = load_depth(depth, in->depth, column, row);
-  if (!is_valid(*sample)) return 0;
-  return (own > in->between) - (own < in->between);
+// What history has of them, in this frame's light and with confidence limited.
+static inline NearLayers fetch_near(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
+                                    TexelLayout layout, LayerTile tile, int x, int y, EdgeLight left,
+                                    EdgeLight right) {
+  const LayerWishes wishes = wishes_of(pixels, kNearLayer);
+  const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, pixels->motion_x, pixels->motion_y);
+  const LayerSources from = find_sources(past, depth1, layout, &wishes, place, tile.is_rigid);
+  const FetchedLayers fetched = fetch_layers(past, depth1, layout, &wishes, &from, pixels->is_split);
+  const float8 fx = from.fraction_x, fy = from.fraction_y;
+  const float8 between = min(4.0f * (fx * (1.0f - fx) + fy * (1.0f - fy)), 1.0f);
+  const float8 most = most_confidence(min(pixels->open_trust, 1.0f - ramp(left.rejection, right.rejection)));
+  const float8 known = fetched.confidence / (1.0f + RESAMPLING_COST * between * fetched.confidence);
+  const float8 coverage = confidences(fetched.texels);
+  NearLayers near = {relight(fetched.texels, left, right), min(known, min(most, MOST_NEAR_CONFIDENCE))};
+  near.texels.left.s37bf = coverage.lo;
+  near.texels.right.s37bf = coverage.hi;
+  return near;
 }
 
-// As the near layer has it: premultiplied colour and coverage.
-static inline float4 near_sample(float4 sample, int layer) {
+// Reseeds those of `lanes`. Returns how much each resists this frame's sample, as a weight.
+static inline float8 reseed_near(NearLayers* near, int8 lanes, const LayeredPixels* layered, COLOUR_TEXELS colour,
+                                 DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
+                                 const NearestSamples* nearest) {
+  float4 texel[8];
+  float confidence[8], inertia[8], between[8], from_x[8];
+  int is_reseeded[8], x[8];
+  vstore16(near->texels.left, 0, (float*)texel);
+  vstore16(near->texels.right, 1, (float*)texel);
+  vstore8(near->confidence, 0, confidence);
+  vstore8((float8)(0.0f), 0, inertia);
+  vstore8(layered->between, 0, between);
+  vstore8(nearest->from_x, 0, from_x);
+  vstore8(nearest->x, 0, x);
+  vstore8(lanes, 0, is_reseeded);
+  for (int i = 0; i < 8; ++i) {
+    if (is_reseeded[i] == 0) continue;
+    const LayerSamples samples = {*frame, layout, between[i]};
+    const NearestSample place = {x[i], nearest->y, from_x[i], nearest->from_y};
+    const Seed seed = seed_of_layer(&samples, colour, depth, kNearLayer, place);
+    const float share = 1.0f - confidence[i] / LEAST_CONFIDENCE;
+    texel[i] += (seed.mean - texel[i]) * share;
+    inertia[i] = INERTIA * share;
+    confidence[i] = seed.any ? LEAST_CONFIDENCE : 0.0f;
+  }
+  near->texels.left = vload16(0, (const float*)texel);
+  near->texels.right = vload16(1, (const float*)texel);
+  near->confidence = vload8(0, confidence);
+  return vload8(0, inertia);
+}
+
+// Turns samples into what the near layers have of them. Returns their weights: 0 of those that are invalid or of no
+// depth.
+static inline float8 near_samples(EightTexels* samples, float8 depth, float8 between) {
+  const int8 is_near = depth > between, is_far = depth < between;
+  const float8 none = (float8)(0.0f), one = (float8)(1.0f);
+  float8 weight = select(none, one, is_near | is_far);
+  if (may_be_bright(*samples)) weigh_by_luma(samples, &weight, 8);
+  const int8 counts = is_far & (weight > none);
+  weight = select(weight, one, counts);  // what is not there is not bright
 #if ALPHA
-  return layer > 0 ? sample : (float4)(0.0f);
+  const float8 coverage = select(none, confidences(*samples), is_near);
 #else
-  return layer > 0 ? (float4)(sample.xyz, 1.0f) : (float4)(0.0f);
+  const float8 coverage = select(none, one, is_near);
 #endif
+  const float8 taken = select(none, one, is_near);
+  samples->left *= to_four_texels(taken.lo);
+  samples->right *= to_four_texels(taken.hi);
+  samples->left.s37bf = coverage.lo;
+  samples->right.s37bf = coverage.hi;
+  return weight;
 }
 
-// The Gaussian of the 3x3 samples: of the far layer's, or of all as the near layer has them. In `confidence` what it is
-// worth; 0 if there is none.
-static inline NearTexel seed_layer(const LayerSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth, bool far,
-                                   NearPlace place) {
-  float4 sum = (float4)(0.0f);
-  float weights = 0.0f;
-  for (int row = -1; row <= 1; ++row) {
-    for (int column = -1; column <= 1; ++column) {
-      float4 sample;
-      const int layer = layer_of(in, colour, depth, place.x + column, place.y + row, &sample);
-      if (layer == 0 || (far && layer > 0)) continue;
-      const float4 value = far ? sample : near_sample(sample, layer);
-      const float away_x = (float)column - place.from_x, away_y = (float)row - place.from_y;
-      const float weight = bell((float8)((away_x * away_x + away_y * away_y) * SEED_FALLOFF)).s0 * luma_weight(value);
-      sum += value * weight;
-      weights += weight;
-    }
-  }
-  const NearTexel seed = {weights > 0.0f ? sum / weights : (float4)(0.0f), weights > 0.0f ? LEAST_CONFIDENCE : 0.0f};
-  return seed;
-}
+// The near layers of this frame. `nearest`: samples, of their pictures.
+static inline NearLayers update_near(NearLayers near, const LayeredPixels* pixels, COLOUR_TEXELS colour,
+                                     DEPTH_TEXELS depth, TexelLayout layout, const TemporalParams* params,
+                                     const NearestSamples* nearest) {
+  const SourceFrame frame = params->frame0;
+  float8 inertia = (float8)(0.0f);
+  const int8 unknown = pixels->is_split & (near.confidence < LEAST_CONFIDENCE);
+  if (any_lane(unknown)) inertia = reseed_near(&near, unknown, pixels, colour, depth, layout, &frame, nearest);
 
-// `known` of history: what was fetched, in this frame's light.
-static inline NearTexel update_near(const LayerSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
-                                    const TemporalParams* params, NearPlace place, NearTexel known) {
-  float4 m = known.value;
-  float w = known.confidence, inertia = 0.0f;
-  if (w < LEAST_CONFIDENCE) {
-    const NearTexel seed = seed_layer(in, colour, depth, false, place);
-    const float share = 1.0f - w / LEAST_CONFIDENCE;
-    m += (seed.value - m) * share;
-    inertia = INERTIA * share;
-    w = seed.confidence;
-  }
-  float4 sample;
-  const int layer = layer_of(in, colour, depth, place.x, place.y, &sample);
-  const float4 value = near_sample(sample, layer);
-  const float away_x = place.from_x * params->spacing_x, away_y = place.from_y * params->spacing_y;
-  const float close = max(1.0f - (away_x * away_x + away_y * away_y) / (REACH * REACH), 0.0f);
-  const float weight = layer != 0 ? close * close * luma_weight(value) : 0.0f;
-  const float total = w + weight;
-  m += (value - m) * (weight / max(total + inertia, LEAST_WEIGHT));
-  const NearTexel updated = {m, min(total, MOST_NEAR_CONFIDENCE)};
+  EightTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
+  const float8 own = (float8)(load_depth4(depth, layout, nearest->x.lo, nearest->y),
+                              load_depth4(depth, layout, nearest->x.hi, nearest->y));
+  TileReprojection moving = {.is_rigid = 0};
+  const float8 weight = near_samples(&samples, own, pixels->between) *
+                        distance_weights(params, moving, nearest, near.confidence);
+  const float8 part = sample_parts(near.confidence, inertia, weight);
+  const NearLayers updated = {{near.texels.left + (samples.left - near.texels.left) * to_four_texels(part.lo),
+                               near.texels.right + (samples.right - near.texels.right) * to_four_texels(part.hi)},
+                              min(near.confidence + weight, MOST_NEAR_CONFIDENCE)};
   return updated;
+}
+
+// Stores those of `lanes`.
+static inline void store_near(STORED_HISTORY updated, int index, EightTexels texels, int8 lanes) {
+  float4 texel[8];
+  int is_stored[8];
+  vstore16(texels.left, 0, (float*)texel);
+  vstore16(texels.right, 1, (float*)texel);
+  vstore8(lanes, 0, is_stored);
+  for (int i = 0; i < 8; ++i) {
+    if (is_stored[i] != 0) store_history(updated, index + i, texel[i]);
+  }
 }

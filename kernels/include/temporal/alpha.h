@@ -8,12 +8,8 @@
 #include "temporal/history_alpha.h"
 #include "temporal/rectify.h"
 
-// What fetch_history gives, of alpha.
-static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
-                                 const TemporalParams* params, TileReprojection tile, bool copied,
-                                 const EightReprojections* motion, int x, int y) {
-  if (copied) return load_alpha8(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
-  const SourcePlaces from = source_places(previous, params, tile, motion, x, y);
+// What resample_history gives, of alpha.
+static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
   const int8 i = from.x.texel, j = from.y.texel;
   const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
   const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
@@ -21,6 +17,14 @@ static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojecti
                   sample_alpha(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha(plane, i.s3, j.s3, wx.p3, wy.p3),
                   sample_alpha(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha(plane, i.s5, j.s5, wx.p5, wy.p5),
                   sample_alpha(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha(plane, i.s7, j.s7, wx.p7, wy.p7));
+}
+
+// What fetch_history gives, of alpha.
+static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
+                                 const TemporalParams* params, TileReprojection tile, bool copied,
+                                 const EightReprojections* motion, int x, int y) {
+  if (copied) return load_alpha8(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
+  return resample_alpha(plane, source_places(previous, params, tile, motion, x, y));
 }
 
 // Moves alpha by `rejection` of the way into the range of the valid ones of sample (x, y) and its four neighbours.

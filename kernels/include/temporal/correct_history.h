@@ -51,11 +51,8 @@ static inline bool needs_correction(const Evidence* evidence) {
   return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < LEAST_CONFIDENCE));
 }
 
-// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least; with ALPHA its
-// alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
-static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                     const NearestSamples* nearest, EightTexels* history, float8* alpha,
-                                     Evidence* evidence) {
+static inline EightPixels load_pixels(const NearestSamples* nearest, const EightTexels* history, float8 alpha,
+                                      const Evidence* evidence) {
   EightPixels pixels;
   vstore16(history->left, 0, (float*)pixels.history);
   vstore16(history->right, 1, (float*)pixels.history);
@@ -64,15 +61,29 @@ static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* fr
   vstore8(nearest->from_x, 0, pixels.from_x);
   vstore8(nearest->x, 0, pixels.x);
 #if ALPHA
-  vstore8(*alpha, 0, pixels.alpha);
+  vstore8(alpha, 0, pixels.alpha);
 #endif
+  return pixels;
+}
+
+// Returns their inertia.
+static inline float8 take_pixels(const EightPixels* pixels, EightTexels* history, float8* alpha, Evidence* evidence) {
+  history->left = vload16(0, (const float*)pixels->history);
+  history->right = vload16(1, (const float*)pixels->history);
+  evidence->confidence = vload8(0, pixels->confidence);
+#if ALPHA
+  *alpha = vload8(0, pixels->alpha);
+#endif
+  return vload8(0, pixels->inertia);
+}
+
+// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least; with ALPHA its
+// alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
+static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                     const NearestSamples* nearest, EightTexels* history, float8* alpha,
+                                     Evidence* evidence) {
+  EightPixels pixels = load_pixels(nearest, history, *alpha, evidence);
   for (int i = 0; i < 8; ++i)
     correct_pixel(colour, frame, motion, &pixels, i, nearest->y, nearest->from_y);
-  history->left = vload16(0, (const float*)pixels.history);
-  history->right = vload16(1, (const float*)pixels.history);
-  evidence->confidence = vload8(0, pixels.confidence);
-#if ALPHA
-  *alpha = vload8(0, pixels.alpha);
-#endif
-  return vload8(0, pixels.inertia);
+  return take_pixels(&pixels, history, alpha, evidence);
 }

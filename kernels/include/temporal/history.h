@@ -37,6 +37,14 @@ static inline float4 load_history(HistoryLayer layer, int index) {
 #endif
 }
 
+static inline float load_confidence(HistoryLayer layer, int index) {
+#if HISTORY_FORMAT == HALF
+  return vload_half(4 * index + 3, layer.texels);
+#else
+  return layer.texels[4 * index + 3];
+#endif
+}
+
 // Eight texels of a row, in fours. Not an array: PoCL keeps those in memory.
 typedef struct EightTexels {
   float16 left, right;
