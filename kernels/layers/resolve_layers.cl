@@ -92,13 +92,15 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
     reject_by_light(&evidence, left, right);
     evidence.rejection = select(evidence.rejection, (float8)(0.0f), pixels.is_split);
     EightTexels known = relight(fetched.texels, left, right);
+    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+    float8 taken = far_samples(&pixels);
+    if (light[tile_index].holds_back) taken *= hold_back(known, evidence.confidence, samples);
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
       inertia = correct_layers(&pixels, colour, depth, before.depth0, &frame, &sample_motion, &nearest, &known,
                                &known_alpha, &evidence);
-    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
     if (layer.is_split) tile.is_rigid = 0;  // it does not stand still as a whole
-    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence) * far_samples(&pixels);
+    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence) * taken;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
     EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
     mark_split(&sum, pixels.is_split);

@@ -114,14 +114,18 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     reject_by_light(&evidence, left, right);
     EightTexels known = relight(fetched.texels, left, right);
 
+    // Load the samples, and hold back startling ones.
+    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+    float8 held = (float8)(1.0f);
+    if (light[tile_index].holds_back) held = hold_back(known, evidence.confidence, samples);
+
     // Rectify and reseed.
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
       inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &known_alpha, &evidence);
 
     // Accumulate.
-    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
-    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence);
+    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence) * held;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
     const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 

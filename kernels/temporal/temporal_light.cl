@@ -35,7 +35,9 @@
 #define PERSISTENCE_MEMORY 0.6f   // of persistence, from one frame to the next
 #define PERSISTENT 0.62f          // least persistence: after two frames it is 1 - .6^2 = .64, after one .4
 #define MOST_GAIN 4.0f            // either way
-// A change of light of the whole picture.
+// A change of the whole picture.
+#define LEAST_SPREAD 0.2f         // of all tiles have changed: the rest may be black, or alike
+// Of its light.
 #define WHOLE_COHERENT 0.8f       // least coherence
 #define DIFFERENCE_FROM_WHOLE 0.3f  // of the whole picture's change: a tile whose change differs by more keeps its own
 #define DIFFERING_COHERENT 0.5f   // least coherence of such a tile
@@ -62,19 +64,23 @@
 #define UNREST_MEMORY 0.97f       // from one frame to the next
 #define CALM 0.3f                 // most unrest: 40 frames after the last confirmed suspicion
 
+// Startling samples (temporal/startling.h).
+#define STARTLED_MEMORY 0.9f      // from one frame to the next
+#define FORGOTTEN 0.15f           // most: 18 frames after the last ones
+
 #define SMALLEST_SUM 1e-6f  // keeps 0 / 0 from becoming NaN
 
 // The evidence of 3x3 tiles.
 typedef struct EvidenceAround {
   TileEvidence sum;
   float change;  // of the magnitudes of the brightenings
-  float unrest;  // the most, in the previous frame
+  float unrest, startled;  // the most, in the previous frame
   bool has_motion_edge;
 } EvidenceAround;
 
 static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
                                           __global const TileLight* previous, int tiles_x, int tiles_y, int x, int y) {
-  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, false};
+  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, false};
   for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
     for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
       const int i = row * tiles_x + column;
@@ -85,8 +91,10 @@ static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles
       around.sum.neighbour_error += tile.neighbour_error;
       around.sum.count += tile.count;
       around.sum.brighter += tile.brighter;
+      around.sum.startling += tile.startling;
       around.change += fabs(tile.brightening);
       around.unrest = max(around.unrest, previous[i].unrest);
+      around.startled = max(around.startled, previous[i].startled);
       around.has_motion_edge = around.has_motion_edge || tiles[i].has_motion_edge;
     }
   }
@@ -118,7 +126,7 @@ static inline bool is_change_of_light(const LightChange* change, const EvidenceA
          fabs(change->relative) > LEAST_RELIGHT && fabs(around->sum.brightening) > NOISE_MULTIPLE * chance;
 }
 
-static inline bool is_whole_picture_relit(const TotalLight* total) {
+static inline bool is_relit(const TotalLight* total) {
   const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
   return fabs(whole) > WHOLE_COHERENT * change && fabs(whole) > LEAST_RELIGHT * light;
 }
@@ -183,7 +191,8 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
   tile.persistence = PERSISTENCE_MEMORY * before.persistence +
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   float gain = changes && tile.persistence * change.direction > PERSISTENT ? 1.0f + change.relative : 1.0f;
-  const bool relit = is_whole_picture_relit(&whole);
+  const bool is_widespread = (float)whole.changed > LEAST_SPREAD * (float)(tiles_x * tiles_y);
+  const bool relit = is_widespread && is_relit(&whole);
   if (relit && change.is_agreed && change.relative * (float)whole.brightening > 0.0f)
     gain = gain_of_whole(&change, &around, &whole);
   tile.gain = clamp(gain, 1.0f / MOST_GAIN, MOST_GAIN);
@@ -210,7 +219,15 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
   const bool calm = stands_still(tiles[i]) && around.unrest < CALM;
   const float by_error = calm ? sure_error : error;
   const float by_change = calm ? sure_change : changed;
-  const float by_cut = relit ? 0.0f : rejection_by_cut(&whole);
+  const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
   tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
+
+  // Startling samples. Those of a picture that is another one, or in another light, are no faults.
+  tile.startled = around.sum.startling > 0.0f ? 1.0f : STARTLED_MEMORY * before.startled;
+  tile.holds_back = around.sum.startling > 0.0f && around.startled < FORGOTTEN && !relit && !(by_cut > 0.0f);
+  if (tile.holds_back) {
+    tile.rejection = 0.0f;
+    tile.gain = 1.0f;
+  }
   light[i] = tile;
 }

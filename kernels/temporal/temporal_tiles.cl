@@ -29,6 +29,7 @@
 #include "temporal/frame_samples.h"
 #include "temporal/history.h"
 #include "temporal/reproject_tile.h"
+#include "temporal/startling.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
 
@@ -45,6 +46,7 @@
 // Found by search on the development scenes.
 #define KNOWN_CONFIDENCE 0.1f  // from which a texel of history is asked: less than one reseeded in the last frame has
 #define SURE_TRUST 0.9f        // from which a sample is asked
+#define LEAST_CHANGED 0.03f    // of a tile's light: less error is no change of the picture
 #define LUMA_NOISE 0.01f       // relative change of luma that says nothing. +.03 dB, together with no gain at edges
 
 enum { kJudgedAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
@@ -123,9 +125,15 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   evidence->brightening += change;
   evidence->light += known * scale;
   evidence->history_error += fabs(change);
-  evidence->neighbour_error += is_valid(around) ? fabs(own - luma(around)) * scale : 0.0f;
+  const float beside = luma(around);
+  evidence->neighbour_error += is_valid(around) ? fabs(own - beside) / (1.0f + own + beside) : 0.0f;
   evidence->brighter += (change > LUMA_NOISE ? 1.0f : 0.0f) - (change < -LUMA_NOISE ? 1.0f : 0.0f);
   evidence->count += 1.0f;
+  const StartlingRange range = startling_range(before);
+  if (!is_startling(sample, range)) return;
+  const int startling = (is_valid(left) && is_startling(left, range)) + (is_valid(right) && is_startling(right, range)) +
+                     (is_valid(above) && is_startling(above, range)) + (is_valid(below) && is_startling(below, range));
+  evidence->startling += startling >= 2 ? 1.0f : 0.0f;
 }
 
 // The first column from `first` on that is judged in row y: those where column + y * apart / 2 is a multiple of
@@ -140,7 +148,7 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS de
                                            SampleRange samples) {
   const int2 first = samples.first, last = samples.last;
   const int apart = params->judged_apart;
-  TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   for (int y = first.y - 1; y <= last.y + 1; ++y)
     will_read_colour(colour, params->frame.colour, last.x + kColourAhead, y);
   for (int y = first.y; y <= last.y; ++y) {
@@ -159,6 +167,7 @@ static inline void add_to_total(__global TotalLight* total, const TemporalTilePa
   atomic_add(&total->light, convert_int(tile.light * units));
   atomic_add(&total->history_error, convert_int(tile.history_error * units));
   atomic_add(&total->neighbour_error, convert_int(tile.neighbour_error * units));
+  if (tile.history_error > LEAST_CHANGED * tile.light) atomic_inc(&total->changed);
 }
 
 __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colour, __global const float* reprojection,
@@ -190,7 +199,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 #endif
   const HistoryLayer known = {history, params.output_width, params.output_height};
   const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
-  TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
   if (!hidden) found_evidence = gather_evidence(colour, depth, depth_layout, &past, &params, tile, samples);
   add_to_total(total, &params, found_evidence);
   tiles[i] = tile;

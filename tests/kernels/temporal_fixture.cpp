@@ -39,7 +39,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                       .history_error = number(evidence.history_error),
                                       .neighbour_error = number(evidence.neighbour_error),
                                       .count = static_cast<float>(evidence.count),
-                                      .brighter = static_cast<float>(evidence.brighter)};
+                                      .brighter = static_cast<float>(evidence.brighter),
+                                      .startling = static_cast<float>(evidence.startling)};
   static_cast<TileLight&>(made) = {.gain = number(light.gain),
                                    .rejection = number(light.rejection),
                                    .persistence = number(light.persistence),
@@ -47,7 +48,9 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .mean_brightening = number(light.mean_brightening),
                                    .suspected_error = number(light.suspected_error),
                                    .suspected_change = number(light.suspected_change),
-                                   .unrest = number(light.unrest)};
+                                   .unrest = number(light.unrest),
+                                   .startled = number(light.startled),
+                                   .holds_back = light.holds_back ? 1 : 0};
   return made;
 }
 
@@ -80,7 +83,8 @@ reference::Tile to_reference(const KernelTile& tile) {
                        .history_error = number(tile.history_error),
                        .neighbour_error = number(tile.neighbour_error),
                        .count = static_cast<int>(tile.count),
-                       .brighter = static_cast<int>(tile.brighter)},
+                       .brighter = static_cast<int>(tile.brighter),
+                       .startling = static_cast<int>(tile.startling)},
           .light = {.gain = number(tile.gain),
                     .rejection = number(tile.rejection),
                     .persistence = number(tile.persistence),
@@ -88,7 +92,9 @@ reference::Tile to_reference(const KernelTile& tile) {
                     .mean_brightening = number(tile.mean_brightening),
                     .suspected_error = number(tile.suspected_error),
                     .suspected_change = number(tile.suspected_change),
-                    .unrest = number(tile.unrest)}};
+                    .unrest = number(tile.unrest),
+                    .startled = number(tile.startled),
+                    .holds_back = tile.holds_back != 0}};
 }
 
 namespace {

@@ -272,6 +272,7 @@ std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsign
     std::mt19937 zone = zones.of(i % in.reference.tiles_x() / 5, i / in.reference.tiles_x() / 4);
     if (zone() % 3 == 0) exact.light.rejection = as_float(uniform(zone));
     if (zone() % 3 == 0) exact.light.gain = as_float(.25 + 2 * uniform(zone));
+    exact.light.holds_back = zone() % 2 == 0;
     made.push_back(exact);
   }
   return made;

@@ -49,8 +49,9 @@ class Finder {
       tile.brighter = std::copysign(tile.count, tile.brighter);
       tile.brightening = std::copysign(tile.history_error, tile.brighter);
     }
-    tile.has_motion_edge = round % 7 < 3 && uniform() < .06 ? 1 : 0;
+    tile.has_motion_edge = round % 7 < 3 && uniform() < .1 ? 1 : 0;
     tile.is_rigid = found.tiles.size() % 5 == 0 ? 0 : 1;
+    if (uniform() < .008) tile.startling = static_cast<float>(1 + found.tiles.size() % 3);
     add_to_total(found.total, tile, round);
     found.tiles.push_back(testing::to_reference(tile));
     tile.persistence = static_cast<float>(2 * uniform() - 1);
@@ -60,6 +61,7 @@ class Finder {
     if (round % 2 == 0) tile.suspected_error = std::abs(tile.brightening);
     if (round % 4 < 2) tile.suspected_change = std::copysign(tile.neighbour_error, tile.brightening);
     if (found.tiles.size() % 11 == 0) tile.unrest = std::abs(tile.persistence);
+    if (uniform() < .03) tile.startled = std::abs(tile.persistence);
     found.before.push_back(testing::to_reference(tile));
   }
 
@@ -70,6 +72,7 @@ class Finder {
     // A cut would hide why single tiles are rejected.
     total.history_error += static_cast<int>(tile.history_error * (round % 4 == 1 ? 40 : 4));
     total.neighbour_error += static_cast<int>(tile.neighbour_error * 40);
+    if (round % 5 != 0 || total.changed == 0) ++total.changed;
   }
 
   std::mt19937 random_{11};
@@ -84,7 +87,7 @@ reference::LightInputs inputs_of(const Findings& found) {
           found.before,
           found.tiles,
           {number(total.brightening), number(total.change), number(total.light), number(total.history_error),
-           number(total.neighbour_error)}};
+           number(total.neighbour_error), total.changed}};
 }
 
 std::vector<reference::TileLight> lights_of(const Findings& found) {
@@ -116,17 +119,24 @@ std::vector<reference::TileLight> with_unrest(Findings found, double unrest) {
   return lights_of(found);
 }
 
+std::vector<reference::TileLight> with_spread(Findings found) {
+  found.total.changed = found.count.width * found.count.height;
+  return lights_of(found);
+}
+
 // How many tiles meet what: each finding is taken away to see what it changes.
 struct Met {
   int tiles = 0, decided = 0, relit = 0, rejected = 0;
   int gain_held_back = 0, gain_of_the_whole = 0;  // by a motion edge
   int alternating = 0, changed = 0, hidden_by_flicker = 0;
   int confirmed = 0, hidden_by_calm = 0;
+  int held_back = 0, startled_before = 0, not_widespread = 0;
 
   template <typename Expected>
   void add(const Findings& found, const std::vector<Expected>& expected) {
     const std::vector<reference::TileLight> joined = without_edges(found), calm = with_flicker(found, 0),
-                                            wild = with_flicker(found, 1e6), restless = with_unrest(found, 1);
+                                            wild = with_flicker(found, 1e6), restless = with_unrest(found, 1),
+                                            spread = with_spread(found);
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const double gain = expected[i].value.gain, rejection = expected[i].value.rejection;
       ++tiles;
@@ -141,6 +151,9 @@ struct Met {
       hidden_by_flicker += rejection < calm[i].rejection ? 1 : 0;
       confirmed += expected[i].value.unrest == 1 ? 1 : 0;
       hidden_by_calm += rejection < restless[i].rejection ? 1 : 0;
+      held_back += expected[i].value.holds_back ? 1 : 0;
+      startled_before += found.tiles[i].evidence.startling > 0 && !expected[i].value.holds_back ? 1 : 0;
+      not_widespread += rejection != spread[i].rejection || gain != spread[i].gain ? 1 : 0;
     }
   }
 };
@@ -173,6 +186,8 @@ TEST(TemporalLight, MatchesTheReference) {
       expect_near(value.suspected_change, bound.suspected_change, actual[i].suspected_change,
                   what + "change");
       expect_near(value.unrest, bound.unrest, actual[i].unrest, what + "unrest");
+      expect_near(value.startled, bound.startled, actual[i].startled, what + "startled");
+      EXPECT_EQ(value.holds_back, actual[i].holds_back != 0) << what << "holds back";
       if (HasFatalFailure()) return;
     }
     met.add(found, expected);
@@ -187,6 +202,9 @@ TEST(TemporalLight, MatchesTheReference) {
   EXPECT_GT(met.hidden_by_flicker, met.tiles / 100);
   EXPECT_GT(met.confirmed, met.tiles / 100);
   EXPECT_GT(met.hidden_by_calm, met.tiles / 100);
+  EXPECT_GT(met.held_back, met.tiles / 100);
+  EXPECT_GT(met.startled_before, met.tiles / 1000);
+  EXPECT_GT(met.not_widespread, met.tiles / 100);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 // depth b and a near one of depth a, D = (a + b) / 2 lying between them.
 //   one layer  as in resolve_temporal, steps fetch history to accumulate, but texels of two layers give the one of
 //              n's depth (fetch_layer), and where the texel that n moved from had two, trust is open trust
+//              (startling samples are held back as there)
 //   far layer  fetch history     the far surface, at the place that it moved from
 //              limit confidence, reject, relight     as in resolve_temporal, trust being open trust
 //              reseed            where W < .15: as in resolve_temporal, of the samples behind D alone; where there is
@@ -154,6 +155,9 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
   reject(now, in.tiles, pixel.x, pixel.y, known);
   relight(now, in.tiles, pixel.x, pixel.y, known);
 
+  const Pixel& sample = texel_clamped(now.frame, near.x.sample, near.y.sample);
+  const bool is_held_back = holds_back(pixel.tile->light, known, sample);
+
   // Rectify and reseed.
   if (is_split) {
     reseed_far(pixel, now.frame, near, known);
@@ -164,9 +168,8 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
   }
 
   // Accumulate. A split tile does not stand still as a whole.
-  const Pixel& sample = texel_clamped(now.frame, near.x.sample, near.y.sample);
   Real weight = 0;
-  if (is_valid(sample) && (!is_split || pixel.depth < pixel.between)) {
+  if (is_valid(sample) && !is_held_back && (!is_split || pixel.depth < pixel.between)) {
     weight = sample_weight<Real>(sample, near.x.past * now.spacing(0), near.y.past * now.spacing(1),
                                  stands_still(tile) && !pixel.layers->is_split, known.confidence);
   }

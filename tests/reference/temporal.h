@@ -35,7 +35,7 @@ inline bool stands_still(const TileReprojection& tile) {
 }
 
 // What a tile's samples s say of the history h at their place, n being the mean of their four neighbours:
-// sums over the samples that judge, of luma, each divided by 1 + s + h.
+// sums over the samples that judge, of luma, each divided by 1 + s + h, or 1 + s + n.
 template <typename Real>
 struct TileEvidenceOf {
   Real brightening = 0;      // s - h
@@ -43,7 +43,8 @@ struct TileEvidenceOf {
   Real history_error = 0;    // |s - h|: history's as a forecast of the sample
   Real neighbour_error = 0;  // |s - n|: the neighbours'
   int count = 0;             // samples
-  int brighter = 0;  // those that are brighter than history by more than noise, less those that are darker
+  int brighter = 0;   // those that are brighter than history by more than noise, less those that are darker
+  int startling = 0;  // those that are startling, with two of their neighbours
 };
 using TileEvidence = TileEvidenceOf<double>;
 
@@ -58,7 +59,9 @@ struct TileLightOf {
   // What rejection by error and by change would be by this frame alone, from 0 on; that by change with the
   // sign of the change.
   Real suspected_error = 0, suspected_change = 0;
-  Real unrest = 0;  // 1 where a suspicion is confirmed; it fades
+  Real unrest = 0;          // 1 where a suspicion is confirmed; it fades
+  Real startled = 0;        // 1 where samples are startling, or beside; it fades
+  bool holds_back = false;  // startling samples are held back: they are the first ones
 };
 using TileLight = TileLightOf<double>;
 
@@ -74,6 +77,7 @@ struct TotalLightOf {
   Real brightening = 0;
   Real change = 0;  // |brightening| of each tile
   Real light = 0, history_error = 0, neighbour_error = 0;
+  int changed = 0;  // tiles with a history_error above .03 of their light
 };
 using TotalLight = TotalLightOf<double>;
 
@@ -124,7 +128,7 @@ PixelOf<Real> as(const Pixel& pixel) {
 }
 template <typename Real>
 TileEvidenceOf<Real> as(const TileEvidence& e) {
-  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter};
+  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter, e.startling};
 }
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
@@ -135,11 +139,13 @@ TileLightOf<Real> as(const TileLight& l) {
           l.mean_brightening,
           l.suspected_error,
           l.suspected_change,
-          l.unrest};
+          l.unrest,
+          l.startled,
+          l.holds_back};
 }
 template <typename Real>
 TotalLightOf<Real> as(const TotalLight& t) {
-  return {t.brightening, t.change, t.light, t.history_error, t.neighbour_error};
+  return {t.brightening, t.change, t.light, t.history_error, t.neighbour_error, t.changed};
 }
 
 // Whether a sample takes part: finite, and below the largest half, which stands for overflow.

@@ -7,10 +7,11 @@
 //                tiles, and the samples agree: (sum of b) sign(relative) > .4 n, seven of ten
 //   persistence  p <- .6 p, + .4 sign(relative) if coherent
 //   gain         1 + relative if coherent and p sign(relative) > .62
-//   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light; then at once
-//                gain = 1 + that sum / light, where the samples agree on the same sign; a tile whose |B| > .5 sum
-//                |brightening| and whose relative differs by more than .3 of it, far from motion edges, keeps its
-//                own
+//   widespread   more than .2 of all tiles have changed
+//   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light,
+//                and widespread; then at once gain = 1 + that sum / light, where the samples agree on
+//                the same sign; a tile whose |B| > .5 sum |brightening| and whose relative differs by
+//                more than .3 of it, far from motion edges, keeps its own
 //   flicker      f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where their signs
 //                differ, else 0
 //   rejection    the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed part is
@@ -18,8 +19,12 @@
 //     by error   (E - e) / e, e = 1.6 N + .002 n, where |B| < .5 E; in a calm tile its confirmed part
 //     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
 //                |brightening| > .15 light; in a calm tile its confirmed part
-//     by cut     (E' - .95 N') / (.25 N' + 1) of the whole picture's sums, where E' > .03 L' and it is not relit
+//     by cut     (E' - .95 N') / (.25 N' + 1) of the whole picture's sums, where E' > .03 L', it is not
+//                relit, and the change is widespread
 //   unrest       1 where the confirmed part of either suspicion is above 0, else u <- .97 u
+//   startled     1 where one of the nine tiles has startling > 0, else a <- .9 a
+//   holds back   there, if none of the nine had a startled >= .15 in the previous frame,
+//                and the picture is neither relit nor cut; gain = 1 and rejection = 0 then
 //   calm         the tile stands still, and in the nine tiles the previous frame's unrest is below .3
 // Source: found by measuring (docs/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
 // of the whole picture.
@@ -63,13 +68,19 @@ constexpr double kCalm = .3;            // unrest below which a tile that stands
 constexpr double kCut = .95;            // E / N of the whole picture after a cut; usual are .6 to .9
 constexpr double kCutRange = .25;       // of N, over which rejection grows to 1
 constexpr double kCutFloor = .03;       // of the whole picture's light
+constexpr double kSpread = .2;          // of all tiles: fewer are not the whole picture
+
+// Startling samples.
+constexpr double kStartledMemory = .9;  // each frame
+constexpr double kForgotten = .15;      // after 18 frames
 
 template <typename Real>
 struct Sums {
   Real brightening = 0, change = 0, light = 0, history_error = 0, neighbour_error = 0;
   int count = 0;
   int brighter = 0;
-  double unrest = 0;  // the most
+  int startling = 0;
+  double unrest = 0, startled = 0;  // the most
   bool has_motion_edge = false;
 };
 
@@ -86,7 +97,10 @@ Sums<Real> sums_around(const LightInputs& in, int x, int y) {
       sums.neighbour_error += tile.evidence.neighbour_error;
       sums.count += tile.evidence.count;
       sums.brighter += tile.evidence.brighter;
-      sums.unrest = std::max(sums.unrest, in.before[index_of(in.tiles_x, column, row)].light.unrest);
+      sums.startling += tile.evidence.startling;
+      const TileLight& before = in.before[index_of(in.tiles_x, column, row)].light;
+      sums.unrest = std::max(sums.unrest, before.unrest);
+      sums.startled = std::max(sums.startled, before.startled);
       sums.has_motion_edge = sums.has_motion_edge || tile.reprojection.has_motion_edge;
     }
   }
@@ -95,15 +109,15 @@ Sums<Real> sums_around(const LightInputs& in, int x, int y) {
 
 // Whether the whole picture brightens or darkens as one.
 template <typename Real>
-bool is_relit(const TotalLightOf<Real>& total) {
+bool is_relit(const TotalLightOf<Real>& total, bool is_widespread) {
   const Real whole = abs(total.brightening);
-  return whole > kWholeCoherent * total.change && whole > kLeastChange * total.light;
+  return is_widespread && whole > kWholeCoherent * total.change && whole > kLeastChange * total.light;
 }
 
 // Persistence and gain.
 template <typename Real>
-void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, const TileLightOf<Real>& before,
-             TileLightOf<Real>& light) {
+void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_relit,
+             const TileLightOf<Real>& before, TileLightOf<Real>& light) {
   const Real relative = sums.brightening / max(sums.light, kLeastLight);
   const Real coherence = abs(sums.brightening) / max(sums.change, kLeastLight);
   const Real samples = sums.count;
@@ -117,7 +131,7 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, const Tile
   if (is_coherent) light.persistence += (1 - memory) * sign;
   light.gain = is_coherent && light.persistence * sign > kPersistent ? 1 + relative : Real(1);
 
-  if (is_relit(total) && agrees && relative * total.brightening > 0) {
+  if (is_relit && agrees && relative * total.brightening > 0) {
     const Real whole = total.brightening / total.light;
     const bool is_own = !sums.has_motion_edge && coherence > kOwnCoherent &&
                         abs(relative - whole) > kOwnDifference * abs(whole);
@@ -187,7 +201,7 @@ void suspect(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& befo
 // Over the whole picture history foretells no better than the neighbours: it shows another picture.
 template <typename Real>
 Real rejection_by_cut(const TotalLightOf<Real>& total) {
-  if (is_relit(total) || total.history_error <= kCutFloor * total.light) return 0;
+  if (total.history_error <= kCutFloor * total.light) return 0;
   return clamp((total.history_error - kCut * total.neighbour_error) / (kCutRange * total.neighbour_error + 1),
                0, 1);
 }
@@ -202,11 +216,20 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   const auto total = as<Real>(in.total);
   const auto sums = sums_around<Real>(in, x, y);
   TileLightOf<Real> light;
-  relight(sums, total, before, light);
+  const bool is_widespread = total.changed > kSpread * in.tiles_x * in.tiles_y;
+  const bool relit = is_relit(total, is_widespread);
+  relight(sums, total, relit, before, light);
   light.mean_brightening = mean_brightening(evidence);
   light.flicker = update_flicker(light.mean_brightening, before);
   suspect(evidence, before, sums, stands_still(in.tiles[i].reprojection), light);
-  light.rejection = max(light.rejection, rejection_by_cut(total));
+  const Real by_cut = is_widespread && !relit ? rejection_by_cut(total) : Real(0);
+  light.rejection = max(light.rejection, by_cut);
+  light.startled = sums.startling > 0 ? Real(1) : kStartledMemory * before.startled;
+  light.holds_back = sums.startling > 0 && Real(sums.startled) < kForgotten && !relit && !(by_cut > 0);
+  if (light.holds_back) {
+    light.gain = 1;
+    light.rejection = 0;
+  }
   return light;
 }
 

@@ -21,6 +21,7 @@ using testing::Place;
 using testing::ServiceRig;
 using testing::TemporalRun;
 using testing::TemporalScene;
+using testing::Texture;
 using Pixels = std::vector<Pixel>;
 
 constexpr Extent kOutput{160, 96};
@@ -121,6 +122,72 @@ TEST(TemporalRobustness, InvalidSamplesWithoutHistoryLeaveAtOnce) {
       EXPECT_LE(testing::largest_difference(run.next(), run.truth(), kOutput), 1. / 255)
           << value << ", " << turn;
     }
+  }
+}
+
+Texture smooth_texture() {
+  return [](Place place) {
+    const auto wave = static_cast<float>(.2 * std::sin(place.real() / 9) * std::cos(place.imag() / 7));
+    return Pixel{.4f + wave, .3f - wave, .25f, 1};
+  };
+}
+
+struct Fault {
+  TemporalPreset preset;
+  Place velocity, turn;  // of the surface
+};
+
+const Fault kFaults[] = {{TemporalPreset::kBalanced, {}, 1},
+                         {TemporalPreset::kBalanced, {1.3, .4}, 1},
+                         {TemporalPreset::kBalanced, {1.3, .4}, std::polar(1., .01)},
+                         {TemporalPreset::kFast, {1.3, .4}, std::polar(1., .01)},
+                         {TemporalPreset::kQuality, {}, std::polar(1., .01)}};
+
+TemporalScene scene_of(const Fault& fault) {
+  TemporalScene scene = moving_scene(fault.velocity);
+  scene.surfaces[0].texture = smooth_texture();
+  scene.surfaces[0].turn = fault.turn;
+  return scene;
+}
+
+HostFrame with_block(const TemporalScene& scene, int frame, float value) {
+  HostFrame bad = scene.render(frame, kHalf, testing::halton_jitter(frame, 32));
+  spoil(bad.colour, Pixel{value, value, value, 1});
+  return bad;
+}
+
+// A block of samples of one frame, far too bright or negative, is not seen in that frame, nor in the next.
+TEST(TemporalRobustness, AFaultyBlockLeavesNothing) {
+  for (const Fault& fault : kFaults) {
+    const ResolveSettings settings{.method = Method::kTemporal, .temporal = {.preset = fault.preset}};
+    for (const float value : {50.f, 5.f, -5.f}) {
+      const TemporalScene scene = scene_of(fault);
+      TemporalRun run(scene, settings), clean(scene, settings);
+      run.until(20), clean.until(20);
+      const Pixels bad = run.rig().resolve(with_block(scene, 20, value));
+      run.skip();
+      const std::string what = fmt::format("{} {} at {}, turning {}", name_of(fault.preset), value,
+                                           fault.velocity.real(), fault.turn.imag());
+      EXPECT_LE(testing::largest_difference(bad, clean.next(), kOutput), 1. / 255) << what;
+      EXPECT_LE(testing::largest_difference(run.next(), clean.next(), kOutput), 1. / 255) << what;
+    }
+  }
+}
+
+// What stays is there in its fourth frame, within a tenth of black to white.
+TEST(TemporalRobustness, ABrightBlockThatStaysIsSeen) {
+  const Mask within = [](int x, int y) { return x >= 64 && x < 72 && y >= 44 && y < 48; };
+  for (const Fault& fault : kFaults) {
+    const ResolveSettings settings{.method = Method::kTemporal, .temporal = {.preset = fault.preset}};
+    const TemporalScene scene = scene_of(fault);
+    TemporalRun run(scene, settings);
+    run.until(20);
+    Pixels pixels;
+    for (int frame = 20; frame < 24; ++frame)
+      pixels = run.rig().resolve(with_block(scene, frame, 50));
+    const Pixels lamp(pixels.size(), Pixel{50, 50, 50, 1});
+    EXPECT_LE(testing::largest_difference(pixels, lamp, kOutput, within), .1)
+        << name_of(fault.preset) << " at " << fault.velocity.real() << ", turning " << fault.turn.imag();
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "temporal/frame_samples.h"
 #include "temporal/limit_confidence.h"
+#include "temporal/startling.h"
 
 // In output pixels, found by search on the development scenes.
 #define REACH 1.05f        // where a sample's weight becomes 0
@@ -52,6 +53,18 @@ static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count
   samples->right = vload16(1, (const float*)sample);
   *weight *= vload8(0, luma);
   return met;
+}
+
+// 0 of startling samples of pixels whose history is known, else 1.
+static inline float8 hold_back(EightTexels history, float8 confidence, EightTexels samples) {
+  float4 known[8], sample[8];
+  float weight[8];
+  vstore16(history.left, 0, (float*)known);
+  vstore16(history.right, 1, (float*)known);
+  vstore16(samples.left, 0, (float*)sample);
+  vstore16(samples.right, 1, (float*)sample);
+  for (int i = 0; i < 8; ++i) weight[i] = is_startling(sample[i], startling_range(known[i])) ? 0.0f : 1.0f;
+  return select((float8)(1.0f), vload8(0, weight), confidence >= LEAST_CONFIDENCE);
 }
 
 // m + (s - m) part, and in w their confidence.

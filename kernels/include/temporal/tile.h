@@ -44,16 +44,18 @@ static inline bool stands_still(TileReprojection tile) {
 }
 
 // What a tile's samples say of the history at their places. Sums over its judged samples; s and h are the lumas of
-// sample and history, and each difference is divided by 1 + s + h: brightness as the eye has it, not light.
+// sample and history, n that of the mean of the four neighbours, and each difference is divided by 1 and both lumas:
+// brightness as the eye has it, not light.
 typedef struct TileEvidence {
   float brightening;      // s - h
   float light;            // h
   float history_error;    // |s - h|: history's error as a forecast of the sample
-  float neighbour_error;  // |s - n|, n the mean of the four neighbours: their error as a forecast of it
+  float neighbour_error;  // |s - n|: the neighbours' error as a forecast of it
   float count;            // of the judged samples
   float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
+  float startling;        // how many of them, with two of their neighbours, are startling (temporal/startling.h)
 } TileEvidence;
-QUINCUNX_CHECK_SIZE(TileEvidence, 24);
+QUINCUNX_CHECK_SIZE(TileEvidence, 28);
 
 // Whether the light of a tile has changed, and what is to be done about its history.
 typedef struct TileLight {
@@ -65,9 +67,12 @@ typedef struct TileLight {
   // What rejection by error and by change would be by this frame alone, from 0 up and not clamped, for the next frame
   // to confirm. That by change has the sign of the change: positive where the tile brightens.
   float suspected_error, suspected_change;
-  float unrest;  // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
+  float unrest;    // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
+  float startled;  // 1 in a frame with startling samples in it or beside it; it fades over frames
+  // 0 or 1: startling samples are held back, because no frame of late had any: they may be faults of one frame.
+  int holds_back;
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 32);
+QUINCUNX_CHECK_SIZE(TileLight, 40);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 //                                       many
@@ -77,8 +82,9 @@ typedef struct TotalLight {
   int change;       // of the magnitudes of those means
   int light;
   int history_error, neighbour_error;
+  int changed;  // how many tiles have a history_error of more than 3 % of their light
 } TotalLight;
-QUINCUNX_CHECK_SIZE(TotalLight, 20);
+QUINCUNX_CHECK_SIZE(TotalLight, 24);
 enum { kLightUnits = 2048 };
 
 #ifdef __cplusplus

@@ -6,6 +6,8 @@
 
 #include "frame_samples.h"
 #include "limit_confidence.h"
+#include "reseed.h"
+#include "startling.h"
 
 namespace quincunx::reference {
 
@@ -23,6 +25,13 @@ Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, bool is_
   const Real reach = is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
   const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
   return luma_weighted<Real>(near * near, sample);
+}
+
+// Whether a tile holds a sample back from history that is known.
+template <typename Real>
+bool holds_back(const TileLight& tile, const Known<Real>& known, const Pixel& sample) {
+  return tile.holds_back && is_valid(sample) && known.confidence >= kReseedBelow &&
+         is_startling(sample, known.colour);
 }
 
 template <typename Real>
