@@ -35,6 +35,14 @@ bool has_extension(const cl::Device& device, const std::string& extension) {
   return all.find(fmt::format(" {} ", extension)) != std::string::npos;
 }
 
+int image_pitch_texels(const cl::Device& device) {
+  cl_uint texels = 0;
+  const bool known = has_extension(device, "cl_khr_image2d_from_buffer") &&
+                     clGetDeviceInfo(device(), CL_DEVICE_IMAGE_PITCH_ALIGNMENT_KHR, sizeof(texels), &texels,
+                                     nullptr) == CL_SUCCESS;
+  return known ? static_cast<int>(texels) : 0;
+}
+
 DeviceInfo info_of(const cl::Device& device) {
   DeviceInfo info;
   info.kind = kind_of(device.getInfo<CL_DEVICE_TYPE>());
@@ -47,6 +55,7 @@ DeviceInfo info_of(const cl::Device& device) {
   info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
   info.images = device.getInfo<CL_DEVICE_IMAGE_SUPPORT>() != 0;
   info.host_unified_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != 0;
+  info.image_pitch_texels = info.images ? image_pitch_texels(device) : 0;
   info.gl_sharing = has_extension(device, "cl_khr_gl_sharing");
   return info;
 }

@@ -52,9 +52,16 @@ ImageView scratch_view(const Device::Impl& device, const Use& use, Storage stora
 }
 
 // Inputs and the presented picture have the plan's storage, all else is in buffers.
-Storage storage_of(Resource resource, const ResolveSettings& settings) {
-  const bool planned = resource <= Resource::kPreviousReactive || resource == Resource::kPresented;
-  return planned ? settings.storage : Storage::kBuffer;
+Storage storage_of(Resource resource, const PlanFacts& facts) {
+  if (resource == Resource::kPresented) return facts.presented_storage();
+  return resource <= Resource::kPreviousReactive ? facts.settings.storage : Storage::kBuffer;
+}
+
+// Where targets are placed, so are the service's own images of a viewport.
+void place(ImageView& view, Area area, Extent render) {
+  if (area != Area::kViewport || view.format == PixelFormat::kNone || view.storage == Storage::kImage) return;
+  view.extent = render;
+  view.pitch = 0;
 }
 
 }  // namespace
@@ -81,11 +88,10 @@ bool PassChain::has(Resource resource) const {
 void PassChain::allocate(const ResourceUse& use) {
   const ResolveSettings& settings = facts_.settings;
   const Extent extent = extent_of(use.largest.area, {settings.target, settings.target, settings.output});
-  Owned& owned = owned_.emplace_back(Owned{use.resource, {}});
+  Owned& owned = owned_.emplace_back(Owned{use.resource, use.largest.area, {}});
   for (std::size_t i = 0; i < (keeps(use.resource) ? 2 : 1); ++i) {
     if (use.largest.format != PixelFormat::kNone) {
-      owned.images[i] =
-          allocate_image(device_, extent, use.largest.format, storage_of(use.resource, settings));
+      owned.images[i] = allocate_image(device_, extent, use.largest.format, storage_of(use.resource, facts_));
       continue;
     }
     const std::size_t bytes = static_cast<std::size_t>(extent.area()) * use.largest.record_bytes;
@@ -139,6 +145,9 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
     const bool paired = static_cast<bool>(owned.images[1]);
     frame[owned.resource] = owned.images[paired ? next_ : 0].view();
     if (paired) frame[previous_of(owned.resource)] = owned.images[1 - next_].view();
+    if (!facts_.places_targets()) continue;
+    place(frame[owned.resource], owned.area, frame.current.render);
+    if (paired) place(frame[previous_of(owned.resource)], owned.area, frame.previous.render);
   }
   if (outputs.resolved) frame[Resource::kResolved] = outputs.resolved;
   if (outputs.blurred) frame[Resource::kBlurred] = outputs.blurred;
@@ -205,7 +214,7 @@ void PassChain::warm_up() {
   for (const auto& pass : passes_) {
     for (const Use& use : pass->spec().uses) {
       if (!frame[use.resource])
-        frame[use.resource] = scratch_view(device, use, storage_of(use.resource, facts_.settings), kept);
+        frame[use.resource] = scratch_view(device, use, storage_of(use.resource, facts_), kept);
     }
   }
   for (const auto& pass : passes_)

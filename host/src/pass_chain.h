@@ -65,6 +65,7 @@ class PassChain {
  private:
   struct Owned {
     Resource resource;
+    Area area;
     std::array<Image, 2> images;  // the second only where the previous frame's is read, too
   };
 

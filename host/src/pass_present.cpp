@@ -54,7 +54,7 @@ void plan_present(const PlanFacts& facts, PassList& list) {
       {.kernel = "present",
        .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
                               curve(settings.tone_map), settings.dither ? 1 : 0,
-                              precision_of(settings.resolved), storage_option(settings.storage)),
+                              precision_of(settings.resolved), storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
        .uses = {{facts.blurs() ? Resource::kBlurred : Resource::kResolved, Access::kRead, Area::kOutput,
                  settings.resolved},

@@ -136,6 +136,18 @@ bool ResolvePlan::reads_camera() const {
   return velocity == VelocitySource::kCamera || (moves_far() && settings.far == FarMotion::kCamera);
 }
 
+Storage ResolvePlan::presented_storage() const {
+  return PlanFacts(needs, settings).presented_storage();
+}
+
+std::uint64_t ResolvePlan::frame_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const PlannedBuffer& buffer : buffers) {
+    if (!buffer.owned && buffer.scaling == Scaling::kScales) bytes += buffer.bytes;
+  }
+  return bytes;
+}
+
 bool ResolvePlan::blurs() const {
   return PlanFacts(needs, settings).blurs();
 }

@@ -13,7 +13,29 @@ std::string size_text(std::uint64_t bytes) {
   return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
 }
 
+std::string targets_text(const ResolvePlan& plan) {
+  const Extent largest = plan.settings.target;
+  if (plan.settings.targets == Targets::kViewport) {
+    return fmt::format("viewport: each frame is the top left part of images of {}x{}; {} a frame",
+                       largest.width, largest.height, size_text(plan.frame_bytes()));
+  }
+  return fmt::format(
+      "placed: images have exactly the viewport's size, made again in unused memory where it changes; up to "
+      "{}x{}, {} a frame",
+      largest.width, largest.height, size_text(plan.frame_bytes()));
+}
+
 }  // namespace
+
+const char* name_of(Targets targets) {
+  switch (targets) {
+    case Targets::kViewport:
+      return "viewport";
+    case Targets::kPlaced:
+      return "placed";
+  }
+  return "unknown";
+}
 
 const char* name_of(VelocitySource source) {
   switch (source) {
@@ -55,6 +77,7 @@ std::string ResolvePlan::explain() const {
       name_of(settings.method), form, settings.output.width, settings.output.height, settings.target.width,
       settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
       name_of(settings.tone_map), yes(settings.dither));
+  fmt::format_to(out, "Targets        {}\n", targets_text(*this));
   fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
                  name_of(velocity));
   for (const PlannedPass& pass : passes) {

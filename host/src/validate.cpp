@@ -15,11 +15,14 @@ class FrameCheck {
  public:
   explicit FrameCheck(const ResolvePlan& plan) : plan_(plan) {}
 
-  void input(const char* field, const ImageView& image, PixelFormat format, Extent at_least) {
+  void input(const char* field, const ImageView& image, PixelFormat format, Extent viewport) {
     image_in(field, image, format, plan_.settings.storage);
-    if (image && (image.extent.width < at_least.width || image.extent.height < at_least.height)) {
+    if (image && plan_.settings.targets == Targets::kPlaced && image.extent != viewport) {
+      complain(fmt::format("{}.extent is {}x{}; placed targets have exactly the viewport's {}x{}", field,
+                           image.extent.width, image.extent.height, viewport.width, viewport.height));
+    } else if (image && (image.extent.width < viewport.width || image.extent.height < viewport.height)) {
       complain(fmt::format("{}.extent is {}x{}; it must hold the viewport of {}x{}", field,
-                           image.extent.width, image.extent.height, at_least.width, at_least.height));
+                           image.extent.width, image.extent.height, viewport.width, viewport.height));
     }
   }
 
@@ -147,7 +150,7 @@ void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutput
       continue;
     }
     check.output(output.name, image, buffer->format,
-                 buffer->owned ? Storage::kBuffer : plan.settings.storage);
+                 buffer->owned ? Storage::kBuffer : plan.presented_storage());
   }
   if (outputs.blurred && find(plan, "blurred") != nullptr &&
       outputs.blurred.memory == outputs.resolved.memory &&

@@ -219,6 +219,7 @@ typedef struct ReprojectParams {
   TexelLayout reactive0;
   TexelLayout reactive1;
   TexelLayout reprojection;
+  TexelLayout previous_reprojection;
   int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
   // The texel coordinate (0 at the first sample, 1 at the next) in the previous frame of sample (i, j), if it stands
   // still: (i * step_x + start_x, j * step_y + start_y).
@@ -230,7 +231,7 @@ typedef struct ReprojectParams {
   float speed1_x, speed1_y;
   float motion_edge_x, motion_edge_y;  // from velocity0 to output pixels
 } ReprojectParams;
-QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 56 + 4 + 56);
+QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 64 + 4 + 56);
 
 typedef struct ReprojectedParams {
   int output_width;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "random_frame.h"
 #include "service_fixture.h"
 
 namespace quincunx {
@@ -15,6 +16,7 @@ namespace {
 
 using testing::HostFrame;
 using testing::Pixel;
+using testing::random_frame;
 using testing::ServiceRig;
 
 struct LongRun {
@@ -27,31 +29,6 @@ class RandomResolution : public ::testing::TestWithParam<LongRun> {};
 
 constexpr Extent kOutput{48, 27};
 constexpr Extent kTarget{96, 54};
-
-// A frame of any size from 1x1 to twice the output, of noise with a bright spot, moving anywhere.
-HostFrame random_frame(std::mt19937& random) {
-  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
-  const auto unit = [&] { return static_cast<float>(random() % 4096) / 4096; };
-  const auto salt = static_cast<unsigned>(random());
-  const auto noise = [salt](int x, int y, int c) {
-    const unsigned mixed = (static_cast<unsigned>(x) * 73856093u) ^ (static_cast<unsigned>(y) * 19349663u) ^
-                           (static_cast<unsigned>(c) * 83492791u) ^ salt;
-    return static_cast<float>((mixed * 2654435761u) >> 16) / 65536;
-  };
-  HostFrame frame;
-  frame.render = {1 + below(kTarget.width), 1 + below(kTarget.height)};
-  frame.jitter = {unit() - .5f, unit() - .5f};
-  frame.colour = [=](int x, int y) {
-    const float bright = noise(x, y, 3) > .995f ? 65504.f : 1.f;
-    return Pixel{bright * noise(x, y, 0), noise(x, y, 1), -noise(x, y, 2), 1};
-  };
-  const float speed = std::ldexp(1.f, -below(20));
-  frame.velocity = [=](int x, int y) { return Vec2{speed * (noise(x, y, 4) - .5f), speed * noise(x, y, 5)}; };
-  frame.depth = [=](int x, int y) { return noise(x / 4, y / 4, 6); };
-  frame.reactive = [=](int x, int y) { return static_cast<std::uint8_t>(noise(x, y, 7) > .8f ? 200 : 0); };
-  frame.reset = below(50) == 0;
-  return frame;
-}
 
 HostFrame poison(float value) {
   HostFrame frame;
@@ -72,7 +49,7 @@ TEST_P(RandomResolution, PoisonOutsideNeverShows) {
   const float values[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity(), 1e30f};
   for (int i = 0; i < run.frames; ++i) {
-    const HostFrame frame = random_frame(random);
+    const HostFrame frame = random_frame(random, kTarget);
     poisoned.flood(poison(values[i % 4]));
     const std::vector<Pixel> expected = clean.resolve(frame);
     const std::vector<Pixel> actual = poisoned.resolve(frame);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A service over images of its own, fed from host memory: the common ground of the service tests.
+// A service over images of its own, fed from host memory: the common ground of the service tests. Where the settings
+// place targets, two halves of one allocation hold images of just each frame's size in turn.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "quincunx/resolve_service.h"
@@ -46,21 +48,33 @@ class ServiceRig {
     EXPECT_TRUE(service.ok()) << service.status().message();
     service_.emplace(std::move(service).value());
     for (Slot& slot : slots_) {
-      slot.colour = device_.allocate(target, settings.colour).value();
-      slot.velocity = device_.allocate(target, settings.velocity).value();
-      slot.depth = device_.allocate(target, PixelFormat::kR32F).value();
-      slot.reactive = device_.allocate(target, PixelFormat::kR8).value();
+      if (places()) break;
+      for (const auto& [image, format] : planes_of(slot))
+        *image = device_.allocate(target, format, settings.storage).value();
     }
+    if (places())
+      memory_ = device_.allocate({static_cast<int>(2 * half_bytes()), 1}, PixelFormat::kR8).value();
     resolved_ = device_.allocate(output, settings.resolved).value();
-    presented_ = device_.allocate(output, PixelFormat::kRGBA8).value();
+    presented_ = device_.allocate(output, PixelFormat::kRGBA8, plan_.presented_storage()).value();
   }
 
   // Puts a picture into the slot that the next upload() will use, and leaves that slot next.
   void flood(const HostFrame& frame) { fill_slot(slots_[count_ % slots_.size()], frame); }
 
+  // Placed targets: sets every byte of the half that the next upload() will use.
+  void flood_half(std::uint8_t byte) {
+    ImageView half = memory_.view();
+    half.extent.width = static_cast<int>(half_bytes());
+    half.offset = count_ % 2 * half_bytes();
+    const std::vector<std::uint8_t> bytes(half_bytes(), byte);
+    EXPECT_TRUE(device_.upload(half, half.extent, bytes.data()).ok());
+  }
+
   // Uploads a frame into the next slot; what lies outside the viewport keeps whatever was there.
   FrameInputs upload(const HostFrame& frame) {
-    Slot& slot = slots_[count_++ % slots_.size()];
+    Slot& slot = slots_[count_ % slots_.size()];
+    if (places()) place(slot, frame.render);
+    ++count_;
     fill_slot(slot, frame);
     FrameInputs inputs;
     inputs.colour = slot.colour.view();
@@ -109,6 +123,32 @@ class ServiceRig {
     Image colour, velocity, depth, reactive;
   };
 
+  bool places() const { return plan_.settings.targets == Targets::kPlaced; }
+
+  std::array<std::pair<Image*, PixelFormat>, 4> planes_of(Slot& slot) const {
+    return {{{&slot.colour, plan_.settings.colour},
+             {&slot.velocity, plan_.settings.velocity},
+             {&slot.depth, PixelFormat::kR32F},
+             {&slot.reactive, PixelFormat::kR8}}};
+  }
+
+  // Planes of the largest size, each from a multiple of 16.
+  std::size_t half_bytes() const { return static_cast<std::size_t>(plan_.settings.target.area()) * 29 + 64; }
+
+  void place(Slot& slot, Extent render) {
+    std::size_t offset = count_ % 2 * half_bytes();
+    for (const auto& [image, format] : planes_of(slot)) {
+      offset = (offset + 15) / 16 * 16;
+      if (plan_.settings.storage == Storage::kImage) {
+        *image = device_.allocate(render, format, Storage::kImage).value();
+      } else {
+        *image = Image::borrow(
+            {.memory = memory_.view().memory, .format = format, .extent = render, .offset = offset});
+      }
+      offset += static_cast<std::size_t>(plan_.settings.target.area()) * bytes_per_pixel(format);
+    }
+  }
+
   void fill_slot(Slot& slot, const HostFrame& frame) {
     fill<Pixel>(slot.colour, frame.render, frame.colour);
     fill<Vec2>(slot.velocity, frame.render, frame.velocity);
@@ -131,6 +171,7 @@ class ServiceRig {
   ResolvePlan plan_;
   std::optional<ResolveService> service_;
   std::array<Slot, 3> slots_;
+  Image memory_;  // of placed targets
   Image resolved_;
   Image presented_;
   std::uint64_t count_ = 0;

@@ -124,15 +124,25 @@ void reset_counts() {
   g_heap = g_create = g_compile = g_wait = g_enqueue = 0;
 }
 
+// The same memory, as placed images of another size.
+void place(FrameInputs& inputs, Extent render) {
+  for (ImageView* image : {&inputs.colour, &inputs.velocity, &inputs.depth, &inputs.reactive}) {
+    image->extent = render;
+    image->pitch = 0;
+  }
+}
+
 void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings) {
   constexpr int kFrames = 200;
   ServiceRig rig(needs, settings, {64, 48}, {96, 72});
-  // Two frames in each of three slots: every path (first frame, steady) has been taken once.
+  const bool placed = settings.targets == Targets::kPlaced;
+  const int slots = placed ? 2 : 3;
+  // Two frames and more in each slot: every path (first frame, steady) has been taken once.
   std::vector<FrameInputs> frames;
-  for (int i = 0; i < 3; ++i)
+  for (int i = 0; i < slots; ++i)
     frames.push_back(rig.upload({.render = {48, 36}}));
   for (int i = 0; i < 6; ++i)
-    ASSERT_TRUE(rig.dispatch(frames[i % 3]).ok());
+    ASSERT_TRUE(rig.dispatch(frames[i % slots]).ok());
   ASSERT_TRUE(rig.service().finish().ok());
   while (rig.service().next_completed()) {
   }
@@ -141,8 +151,9 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
   int taken = 0;
   g_counting = true;
   for (int i = 0; i < kFrames; ++i) {
-    FrameInputs inputs = frames[i % 3];
+    FrameInputs inputs = frames[i % slots];
     inputs.render = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
+    if (placed) place(inputs, inputs.render);
     inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
     inputs.reset = i % 50 == 49;
     refused += rig.dispatch(inputs).ok() ? 0 : 1;
@@ -193,6 +204,10 @@ TEST(SteadyFrame, TemporalWithVelocityTarget) {
 }
 TEST(SteadyFrame, TemporalOfAStillScene) {
   run_steady_frames({.moving_objects = false, .camera_motion = false}, {.method = Method::kTemporal});
+}
+TEST(SteadyFrame, PlacedTargetsOfAnotherSizeEveryFrame) {
+  run_steady_frames({}, {.method = Method::kTemporal, .targets = Targets::kPlaced});
+  run_steady_frames({.moving_objects = false}, {.method = Method::kQuincunx, .targets = Targets::kPlaced});
 }
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});

@@ -31,7 +31,10 @@ struct DeviceInfo {
   bool images = false;               // image2d_t at all
   bool two_channel_images = false;   // RG half images, readable and writable
   bool host_unified_memory = false;  // buffers over host memory cost no copy
-  bool gl_sharing = false;           // cl_khr_gl_sharing is advertised (the bridge still probes it)
+  // Images can be made on buffers (cl_khr_image2d_from_buffer) whose rows are a multiple of so many texels apart;
+  // 0: they cannot.
+  int image_pitch_texels = 0;
+  bool gl_sharing = false;  // cl_khr_gl_sharing is advertised (the bridge still probes it)
 };
 
 class Device {

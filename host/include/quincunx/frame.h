@@ -33,7 +33,7 @@ struct FrameInputs {
   ImageView depth = {};     // R32F, reversed infinite depth
   ImageView velocity = {};  // RG16F or RG32F, this position - previous position
   ImageView reactive = {};  // R8, 0: trust history, 1: ignore it
-  Extent render = {};       // the viewport, within the images' extents; any size from 1x1
+  Extent render = {};       // the viewport, within the images' extents (placed: just that); any size from 1x1
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}

@@ -53,6 +53,18 @@ struct MotionBlurSettings {
   friend bool operator==(const MotionBlurSettings&, const MotionBlurSettings&) = default;
 };
 
+// How the memory of a frame's images follows the resolution.
+enum class Targets : std::uint8_t {
+  kViewport,  // images of the largest viewport's size; a frame uses the top left part of each
+  // Images of exactly the viewport's size, tightly packed in memory that is sized for the largest viewport; made
+  // again at each resolution in a part of it that no frame is read from. Nothing lies outside the viewport then.
+  // After D3D12's placed resources as used by Microsoft and Intel, "Dynamic Resolution Rendering Update for
+  // DirectX 12", 2018.
+  kPlaced,
+};
+
+const char* name_of(Targets targets);  // "placed"
+
 struct ResolveSettings {
   Method method = Method::kQuincunx;
   Extent output = {};                            // the picture's size
@@ -60,7 +72,8 @@ struct ResolveSettings {
   PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
   PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
-  Storage storage = Storage::kBuffer;            // of the inputs and the presented picture
+  Storage storage = Storage::kBuffer;            // of the inputs; see ResolvePlan::presented_storage()
+  Targets targets = Targets::kViewport;          // of the inputs and the service's own images of a viewport
   bool present = true;                           // run the present pass
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;
@@ -140,6 +153,11 @@ struct ResolvePlan {
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
+  // Of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an image of that
+  // size is not made again and so needs no such memory.
+  Storage presented_storage() const;
+  // Of the caller's images of one frame, which are at most this large: both kinds of targets need as much for it.
+  std::uint64_t frame_bytes() const;
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.
   bool reads_history(Extent render) const;

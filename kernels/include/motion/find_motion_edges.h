@@ -36,7 +36,8 @@ static inline float4 motion_edges_at(const ReprojectParams* params, VELOCITY_TEX
 // as 0.
 static inline float4 previous_motion_edges(const ReprojectParams* params, __global const float* reprojection, int4 x,
                                            int4 y) {
-  const int4 at = 4 * (params->reprojection.offset + y * params->reprojection.pitch + x) + 3;
+  const TexelLayout layout = params->previous_reprojection;
+  const int4 at = 4 * (layout.offset + y * layout.pitch + x) + 3;
   const float4 edges = (float4)(reprojection[at.s0], reprojection[at.s1], reprojection[at.s2], reprojection[at.s3]);
   return fmax(edges, (float4)(0.0f));
 }
