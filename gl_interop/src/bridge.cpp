@@ -42,7 +42,8 @@ Result<std::unique_ptr<Bridge>> make_host_copy(const Device& device, const Bridg
                                                std::string reason) {
   const Transfer transfer = device.info().host_unified_memory ? Transfer::kZeroCopy : Transfer::kExplicit;
   try {
-    return std::unique_ptr<Bridge>(std::make_unique<HostCopy>(device, settings, std::move(reason), transfer));
+    return std::unique_ptr<Bridge>(std::make_unique<HostCopy>(device, settings, std::move(reason), transfer,
+                                                              placed_form_for(device.info())));
   } catch (const std::exception& error) {
     return Status::device(
         fmt::format("the copying bridge to '{}' could not be made: {}", device.info().name, error.what()));
@@ -67,7 +68,16 @@ Result<std::unique_ptr<Bridge>> Bridge::create(const EglContext& context, const 
                                                const BridgeSettings& settings) {
   if (Status status = check(context, settings); !status.ok()) return status;
   std::string reason = "copying was asked for";
-  if (settings.interop != Interop::kCopy) {
+  const bool placed = settings.targets == Targets::kPlaced;
+  if (placed && settings.interop == Interop::kGl) {
+    return Status::invalid(
+        "interop 'gl' cannot have placed targets, because textures lie in memory of OpenGL's own; use 'copy' "
+        "or "
+        "'auto', or viewport targets");
+  }
+  if (placed && settings.interop == Interop::kAuto) {
+    reason = "placed targets lie in memory of OpenCL's, not in OpenGL's textures";
+  } else if (settings.interop != Interop::kCopy) {
     auto shared = GlSharing::create(context, device, settings);
     if (shared.ok()) {
       spdlog::info("interop: gl ({})", shared.value()->reason());

@@ -144,8 +144,19 @@ GlSharing::Slot GlSharing::make_slot() {
   return slot;
 }
 
-Result<const RenderTargets*> GlSharing::begin_draw(int slot) {
-  if (Status status = ring_.begin_draw(slot); !status.ok()) return status;
+Bridge::Memory GlSharing::memory() const {
+  Memory memory;
+  for (const Slot& slot : slots_) {
+    memory.gl_bytes += slot.targets.bytes();
+    if (!slot.depth_copy) continue;
+    memory.gl_bytes +=
+        static_cast<std::uint64_t>(settings_.target.area()) * bytes_per_pixel(PixelFormat::kR32F);
+  }
+  return memory;
+}
+
+Result<const RenderTargets*> GlSharing::begin_draw(int slot, Extent render) {
+  if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
   try {
     slot_at(slot).shared.release();  // nothing to do where acquire() of a later slot has done it
     slot_at(slot).shared.wait_for_release();
@@ -169,9 +180,9 @@ void GlSharing::copy_depth(const Slot& slot, Extent render) const {
   glUseProgram(0);
 }
 
-Status GlSharing::submit(int slot, Extent render) {
-  if (Status status = ring_.submit(slot, render); !status.ok()) return status;
-  if (settings_.depth) copy_depth(slot_at(slot), render);
+Status GlSharing::submit(int slot) {
+  if (Status status = ring_.submit(slot); !status.ok()) return status;
+  if (settings_.depth) copy_depth(slot_at(slot), ring_.render(slot));
   glFlush();
   return {};
 }

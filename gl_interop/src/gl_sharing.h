@@ -26,8 +26,10 @@ class GlSharing final : public Bridge {
   ~GlSharing() override;
 
   Interop kind() const override { return Interop::kGl; }
-  Result<const RenderTargets*> begin_draw(int slot) override;
-  Status submit(int slot, Extent render) override;
+  Storage storage() const override { return Storage::kImage; }
+  Memory memory() const override;
+  Result<const RenderTargets*> begin_draw(int slot, Extent render) override;
+  Status submit(int slot) override;
   Result<SharedFrame> acquire(int slot) override;
   Result<ImageView> begin_present() override;
   Status present() override;

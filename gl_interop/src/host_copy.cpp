@@ -8,56 +8,41 @@
 namespace quincunx::gl {
 namespace {
 
-// Rows start on a cache line pair, which is also what PoCL's widest loads want.
-constexpr std::size_t kRowAlignment = 128;
-
-std::size_t round_up(std::size_t value, std::size_t step) {
-  return (value + step - 1) / step * step;
-}
-
-// Places the planes one behind the other; each starts at a whole number of its own rows. Returns the bytes of
-// all.
-std::size_t place(const std::vector<Plane>& planes, Extent target, SharedFrame* views) {
-  std::size_t end = 0;
-  for (const Plane& plane : planes) {
-    ImageView& view = view_of(*views, plane.kind);
-    view.format = plane.format;
-    view.extent = target;
-    view.pitch = round_up(target.width * bytes_per_pixel(plane.format), kRowAlignment);
-    view.offset = round_up(end, view.pitch);
-    end = view.offset + view.pitch * target.height;
-  }
-  return end;
-}
-
 void* offset_pointer(std::size_t offset) {
   return reinterpret_cast<void*>(offset);
 }
 
 }  // namespace
 
-HostCopy::Slot HostCopy::make_slot(Transfer transfer) {
-  SharedFrame views;
-  const std::size_t bytes = place(planes_, settings_.target, &views);
-  Slot slot = {.pixels = PixelBuffer(device_, bytes, transfer), .views = views, .read_back = {}};
-  for (const Plane& plane : planes_)
-    view_of(slot.views, plane.kind).memory = slot.pixels.cl_buffer();
-  return slot;
+// Viewport targets: memory of its own for each slot. Placed ones: all slots in one allocation.
+void HostCopy::make_slots(Transfer transfer) {
+  const bool placed = settings_.targets == Targets::kPlaced;
+  const FrameLayout layout = lay_out(planes_, settings_.target, settings_.targets, form_.row_texels);
+  const std::size_t bytes = PixelMemory::whole_pages(layout.bytes);
+  const auto count = static_cast<std::size_t>(settings_.slots);
+  const auto memory = placed ? std::make_shared<PixelMemory>(device_, count * bytes, transfer) : nullptr;
+  slots_.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    PixelBuffer pixels = placed ? PixelBuffer(device_, memory, i * bytes, bytes)
+                                : PixelBuffer(device_, layout.bytes, transfer);
+    SlotImages images(device_, planes_, layout, form_, pixels);
+    slots_.push_back({.pixels = std::move(pixels), .images = std::move(images), .read_back = {}});
+  }
 }
 
 HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::string reason,
-                   Transfer transfer)
+                   Transfer transfer, const PlacedForm& form)
     : Bridge(settings, std::move(reason)),
       device_(device),
       planes_(planes_of(settings)),
-      targets_({.target = settings.target, .velocity = settings.velocity, .reactive = settings.reactive}),
+      form_(settings.targets == Targets::kPlaced ? form : PlacedForm{}),
+      pool_({.target = settings.target, .velocity = settings.velocity, .reactive = settings.reactive}),
+      targets_(&pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target)),
       ring_(settings.slots, settings.target),
       output_(device, static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8),
               transfer),
       presented_(Texture::create()) {
-  slots_.reserve(static_cast<std::size_t>(settings.slots));
-  for (int i = 0; i < settings.slots; ++i)
-    slots_.push_back(make_slot(transfer));
+  make_slots(transfer);
 
   output_view_ = {.memory = output_.cl_buffer(),
                   .format = PixelFormat::kRGBA8,
@@ -68,7 +53,7 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
   while (glGetError() != GL_NO_ERROR) {
   }
-  targets_.clear({1, 1});
+  targets_->clear({1, 1});
   read_back(slots_.front(), {1, 1});
   slots_.front().read_back.wait();
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
@@ -82,11 +67,12 @@ HostCopy::~HostCopy() {
 }
 
 void HostCopy::read_back(Slot& slot, Extent render) {
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, targets_.framebuffer());
+  SharedFrame regions = slot.images.regions();
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, targets_->framebuffer());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.gl_buffer());
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   for (const Plane& plane : planes_) {
-    const ImageView& view = view_of(slot.views, plane.kind);
+    const ImageView& view = view_of(regions, plane.kind);
     const GlFormat names = gl_format(plane.format);
     const bool is_depth = plane.kind == PlaneKind::kDepth;
     if (!is_depth) glReadBuffer(plane.attachment);
@@ -106,25 +92,45 @@ void HostCopy::hand_over(Slot& slot, Extent render) {
     slot.pixels.hand_over();
     return;
   }
+  SharedFrame regions = slot.images.regions();
   for (const Plane& plane : planes_)
-    slot.pixels.enqueue_write(view_of(slot.views, plane.kind), render);
+    slot.pixels.enqueue_write(view_of(regions, plane.kind), render);
 }
 
-Result<const RenderTargets*> HostCopy::begin_draw(int slot) {
-  if (Status status = ring_.begin_draw(slot); !status.ok()) return status;
+// Nothing is in use here: OpenCL has given the slot back, and GL itself keeps textures until it has read them.
+void HostCopy::resize(Slot& slot, Extent render) {
+  traffic_.resize_us = 0;
+  if (settings_.targets == Targets::kViewport) return;
+  const bool same = targets_->extent() == render && slot.images.extent() == render;
+  const Stopwatch watch;
+  targets_ = &pool_.at(render);
+  slot.images.resize(render);
+  if (!same) traffic_.resize_us = 1000 * watch.milliseconds();
+}
+
+Bridge::Memory HostCopy::memory() const {
+  Memory memory{.gl_bytes = pool_.bytes(), .opencl_bytes = 0};
+  for (const Slot& slot : slots_)
+    memory.opencl_bytes += slot.pixels.size();
+  return memory;
+}
+
+Result<const RenderTargets*> HostCopy::begin_draw(int slot, Extent render) {
+  if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
   try {
     PixelBuffer& pixels = slot_at(slot).pixels;
     if (!pixels.host_owns()) pixels.take_back(PixelBuffer::Access::kOverwrite);
     pixels.wait();
-    return &targets_;
+    resize(slot_at(slot), render);
+    return targets_;
   } catch (const std::exception& error) {
     return Status::device(fmt::format("begin_draw({}) on '{}': {}", slot, device_.info().name, error.what()));
   }
 }
 
-Status HostCopy::submit(int slot, Extent render) {
-  if (Status status = ring_.submit(slot, render); !status.ok()) return status;
-  read_back(slot_at(slot), render);
+Status HostCopy::submit(int slot) {
+  if (Status status = ring_.submit(slot); !status.ok()) return status;
+  read_back(slot_at(slot), ring_.render(slot));
   return {};
 }
 
@@ -150,7 +156,7 @@ Result<SharedFrame> HostCopy::acquire(int slot) {
         static_cast<std::uint64_t>(ring_.render(slot).area()) * bytes_per_pixel(plane.format);
   }
   traffic_.acquire_ms = watch.milliseconds();
-  return slot_at(slot).views;
+  return slot_at(slot).images.views();
 }
 
 Result<ImageView> HostCopy::begin_present() {

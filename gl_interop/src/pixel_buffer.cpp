@@ -19,11 +19,12 @@ std::size_t bytes_to_page(const void* address) {
 
 }  // namespace
 
-PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer)
-    : device_(device),
-      transfer_(transfer),
-      size_((bytes + kPageBytes - 1) / kPageBytes * kPageBytes),
-      buffer_(Buffer::create()) {
+std::size_t PixelMemory::whole_pages(std::size_t bytes) {
+  return (bytes + kPageBytes - 1) / kPageBytes * kPageBytes;
+}
+
+PixelMemory::PixelMemory(const Device& device, std::size_t bytes, Transfer transfer)
+    : transfer_(transfer), size_(whole_pages(bytes)), buffer_(Buffer::create()) {
   constexpr GLbitfield kAccess =
       GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   const auto allocated = static_cast<GLsizeiptr>(size_ + kPageBytes);
@@ -38,11 +39,30 @@ PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer trans
 
   cl_int code = CL_SUCCESS;
   const bool in_place = transfer_ == Transfer::kZeroCopy;
-  memory_ = ClMem::adopt(clCreateBuffer(
-      device_.context(), CL_MEM_READ_WRITE | (in_place ? CL_MEM_USE_HOST_PTR : cl_mem_flags{0}), size_,
-      in_place ? bytes_ : nullptr, &code));
+  memory_ = ClMem::adopt(
+      clCreateBuffer(device.context(), CL_MEM_READ_WRITE | (in_place ? CL_MEM_USE_HOST_PTR : cl_mem_flags{0}),
+                     size_, in_place ? bytes_ : nullptr, &code));
   check_cl(code, "clCreateBuffer for a pixel buffer");
-  if (in_place) {
+}
+
+ClMem PixelMemory::sub_buffer(std::size_t offset, std::size_t bytes) const {
+  const cl_buffer_region region = {offset, bytes};
+  cl_int code = CL_SUCCESS;
+  ClMem part =
+      ClMem::adopt(clCreateSubBuffer(memory_.get(), 0, CL_BUFFER_CREATE_TYPE_REGION, &region, &code));
+  check_cl(code, "clCreateSubBuffer for a part of a pixel buffer");
+  return part;
+}
+
+PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer)
+    : PixelBuffer(device, std::make_shared<PixelMemory>(device, bytes, transfer), 0,
+                  PixelMemory::whole_pages(bytes)) {}
+
+PixelBuffer::PixelBuffer(const Device& device, std::shared_ptr<PixelMemory> memory, std::size_t offset,
+                         std::size_t bytes)
+    : device_(device), memory_(std::move(memory)), offset_(offset), size_(bytes) {
+  if (size_ < memory_->size()) part_ = memory_->sub_buffer(offset_, size_);
+  if (transfer() == Transfer::kZeroCopy) {
     host_owns_ = false;
     take_back(Access::kOverwrite);
     wait();
@@ -52,8 +72,8 @@ PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer trans
 PixelBuffer::~PixelBuffer() {
   if (!memory_) return;  // moved from
   cl_int code = CL_SUCCESS;
-  if (transfer_ == Transfer::kZeroCopy && host_owns_) {
-    code = clEnqueueUnmapMemObject(device_.queue(), memory_.get(), bytes_, 0, nullptr, nullptr);
+  if (transfer() == Transfer::kZeroCopy && host_owns_) {
+    code = clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr);
     if (code != CL_SUCCESS) log_release_failure(code);
   }
   // OpenCL may still be at work on the memory that GL is about to free.
@@ -65,39 +85,39 @@ void PixelBuffer::take_back(Access access) {
   const cl_map_flags flags = access == Access::kRead ? CL_MAP_READ : CL_MAP_WRITE_INVALIDATE_REGION;
   cl_int code = CL_SUCCESS;
   cl_event event = nullptr;
-  const void* mapped = clEnqueueMapBuffer(device_.queue(), memory_.get(), CL_FALSE, flags, 0, size_, 0,
-                                          nullptr, &event, &code);
+  const void* mapped =
+      clEnqueueMapBuffer(device_.queue(), cl_buffer(), CL_FALSE, flags, 0, size_, 0, nullptr, &event, &code);
   check_cl(code, "clEnqueueMapBuffer");
   pending_ = ClEvent::adopt(event);
   host_owns_ = true;
-  if (mapped != bytes_)
+  if (mapped != own_bytes())
     throw InteropError("clEnqueueMapBuffer did not give back the host memory it was made of");
 }
 
 void PixelBuffer::hand_over() {
   if (!host_owns_) return;
   wait();
-  check_cl(clEnqueueUnmapMemObject(device_.queue(), memory_.get(), bytes_, 0, nullptr, nullptr),
+  check_cl(clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr),
            "clEnqueueUnmapMemObject");
   host_owns_ = false;
 }
 
 void PixelBuffer::enqueue_write(const ImageView& view, Extent extent) {
-  // Offsets are whole rows, so that the rectangle lies within rows on both sides.
-  const std::array<std::size_t, 3> origin = {0, view.offset / view.pitch, 0};
+  const std::array<std::size_t, 3> origin = {view.offset % view.pitch, view.offset / view.pitch, 0};
   const std::array<std::size_t, 3> region = {extent.width * bytes_per_pixel(view.format),
                                              static_cast<std::size_t>(extent.height), 1};
   cl_event event = nullptr;
-  check_cl(clEnqueueWriteBufferRect(device_.queue(), memory_.get(), CL_FALSE, origin.data(), origin.data(),
-                                    region.data(), view.pitch, 0, view.pitch, 0, bytes_, 0, nullptr, &event),
-           "clEnqueueWriteBufferRect");
+  check_cl(
+      clEnqueueWriteBufferRect(device_.queue(), cl_buffer(), CL_FALSE, origin.data(), origin.data(),
+                               region.data(), view.pitch, 0, view.pitch, 0, own_bytes(), 0, nullptr, &event),
+      "clEnqueueWriteBufferRect");
   pending_ = ClEvent::adopt(event);
 }
 
 void PixelBuffer::enqueue_read() {
   cl_event event = nullptr;
   check_cl(
-      clEnqueueReadBuffer(device_.queue(), memory_.get(), CL_FALSE, 0, size_, bytes_, 0, nullptr, &event),
+      clEnqueueReadBuffer(device_.queue(), cl_buffer(), CL_FALSE, 0, size_, own_bytes(), 0, nullptr, &event),
       "clEnqueueReadBuffer");
   pending_ = ClEvent::adopt(event);
 }

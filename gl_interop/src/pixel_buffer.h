@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// PixelBuffer: one piece of host memory that GL transfers pixels with and OpenCL reads or writes.
+// PixelMemory, PixelBuffer: host memory that GL transfers pixels with and OpenCL reads or writes, and a part of it
+// that changes owner as a whole.
 //
 // A GL pixel buffer, mapped persistently and coherently. Where the OpenCL device shares the host's memory
 // (kZeroCopy), the mapped memory itself is an OpenCL buffer (CL_MEM_USE_HOST_PTR) that changes owner by
@@ -8,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "cl_handle.h"
 #include "quincunx/device.h"
@@ -17,22 +19,59 @@ namespace quincunx::gl {
 
 enum class Transfer { kZeroCopy, kExplicit };
 
+class PixelMemory {
+ public:
+  // At least `bytes`. Throws InteropError.
+  PixelMemory(const Device& device, std::size_t bytes, Transfer transfer);
+  PixelMemory(const PixelMemory&) = delete;
+  PixelMemory& operator=(const PixelMemory&) = delete;
+
+  static std::size_t whole_pages(std::size_t bytes);
+
+  GLuint gl_buffer() const { return buffer_.get(); }
+  std::size_t gl_offset() const { return gl_offset_; }  // of byte 0 in gl_buffer()
+  std::uint8_t* bytes() const { return bytes_; }
+  std::size_t size() const { return size_; }
+  cl_mem cl_buffer() const { return memory_.get(); }
+  Transfer transfer() const { return transfer_; }
+
+  // An OpenCL buffer of a part, which begins on a page.
+  ClMem sub_buffer(std::size_t offset, std::size_t bytes) const;
+
+ private:
+  Transfer transfer_;
+  std::size_t size_;
+  Buffer buffer_;
+  std::size_t gl_offset_ = 0;
+  std::uint8_t* bytes_ = nullptr;
+  ClMem memory_;
+};
+
 class PixelBuffer {
  public:
-  // `bytes` of memory; the host (and GL) own it first. Throws InteropError.
+  // Memory of its own, or `bytes` of shared memory from `offset`, both whole pages. The host (and GL) own it first.
+  // Throws InteropError.
   PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer);
+  PixelBuffer(const Device& device, std::shared_ptr<PixelMemory> memory, std::size_t offset,
+              std::size_t bytes);
   ~PixelBuffer();
   PixelBuffer(PixelBuffer&&) noexcept = default;
   PixelBuffer& operator=(PixelBuffer&&) = delete;
   PixelBuffer(const PixelBuffer&) = delete;
   PixelBuffer& operator=(const PixelBuffer&) = delete;
 
-  GLuint gl_buffer() const { return buffer_.get(); }
-  std::size_t gl_offset() const { return gl_offset_; }  // of byte 0 in gl_buffer()
-  const std::uint8_t* bytes() const { return bytes_; }
-  cl_mem cl_buffer() const { return memory_.get(); }
-  Transfer transfer() const { return transfer_; }
+  GLuint gl_buffer() const { return memory_->gl_buffer(); }
+  std::size_t gl_offset() const { return memory_->gl_offset() + offset_; }  // of byte 0 in gl_buffer()
+  const std::uint8_t* bytes() const { return own_bytes(); }
+  std::size_t size() const { return size_; }
+  cl_mem cl_buffer() const { return part_ ? part_.get() : memory_->cl_buffer(); }
+  Transfer transfer() const { return memory_->transfer(); }
   bool host_owns() const { return host_owns_; }
+
+  // An OpenCL buffer of a part, which begins on a page. It changes owner with this one.
+  ClMem sub_buffer(std::size_t offset, std::size_t bytes) const {
+    return memory_->sub_buffer(offset_ + offset, bytes);
+  }
 
   // kZeroCopy: enqueues the return to the host. Work enqueued before it may still use the memory; wait()
   // waits for it. The old content is kept only for kRead.
@@ -43,18 +82,18 @@ class PixelBuffer {
   // kZeroCopy: hands the memory to the commands that are enqueued after this.
   void hand_over();
 
-  // kExplicit: copies without waiting; wait() waits for the last of them.
+  // kExplicit: copies without waiting; wait() waits for the last of them. `view` is a part of this buffer.
   void enqueue_write(const ImageView& view, Extent extent);
   void enqueue_read();
 
  private:
+  std::uint8_t* own_bytes() const { return memory_->bytes() + offset_; }
+
   Device device_;
-  Transfer transfer_;
+  std::shared_ptr<PixelMemory> memory_;
+  std::size_t offset_;
   std::size_t size_;
-  Buffer buffer_;
-  std::size_t gl_offset_ = 0;
-  std::uint8_t* bytes_ = nullptr;
-  ClMem memory_;
+  ClMem part_;  // empty where this is all of the memory
   ClEvent pending_;
   bool host_owns_ = true;
 };

@@ -25,6 +25,28 @@ GlFormat gl_format(PixelFormat format) {
   return {};
 }
 
+cl_image_format cl_format(PixelFormat format) {
+  switch (format) {
+    case PixelFormat::kR8:
+      return {CL_R, CL_UNORM_INT8};
+    case PixelFormat::kR32F:
+      return {CL_R, CL_FLOAT};
+    case PixelFormat::kRG16F:
+      return {CL_RG, CL_HALF_FLOAT};
+    case PixelFormat::kRG32F:
+      return {CL_RG, CL_FLOAT};
+    case PixelFormat::kRGBA8:
+      return {CL_RGBA, CL_UNORM_INT8};
+    case PixelFormat::kRGBA16F:
+      return {CL_RGBA, CL_HALF_FLOAT};
+    case PixelFormat::kRGBA32F:
+      return {CL_RGBA, CL_FLOAT};
+    case PixelFormat::kNone:
+      break;
+  }
+  return {};
+}
+
 std::vector<Plane> planes_of(const BridgeSettings& settings) {
   std::vector<Plane> planes = {{PlaneKind::kColour, PixelFormat::kRGBA16F, GL_COLOR_ATTACHMENT0}};
   if (settings.depth) planes.push_back({PlaneKind::kDepth, PixelFormat::kR32F, GL_DEPTH_ATTACHMENT});

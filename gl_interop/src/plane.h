@@ -20,6 +20,9 @@ struct GlFormat {
 
 GlFormat gl_format(PixelFormat format);  // of the formats that the bridge uses
 
+// The channels of an OpenCL image of a format.
+cl_image_format cl_format(PixelFormat format);
+
 enum class PlaneKind { kColour, kDepth, kVelocity, kReactive };
 
 struct Plane {

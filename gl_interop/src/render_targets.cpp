@@ -78,6 +78,13 @@ RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target) {
   }
 }
 
+std::uint64_t RenderTargets::bytes() const {
+  const std::size_t texel = bytes_per_pixel(PixelFormat::kRGBA16F) + bytes_per_pixel(PixelFormat::kR32F) +
+                            (velocity_ ? bytes_per_pixel(PixelFormat::kRG16F) : 0) +
+                            (reactive_ ? bytes_per_pixel(PixelFormat::kR8) : 0);
+  return static_cast<std::uint64_t>(extent_.area()) * texel;
+}
+
 void RenderTargets::clear(Extent render) const {
   constexpr std::array<GLfloat, 4> kZero = {0, 0, 0, 0};
   const ScissorScope restore;

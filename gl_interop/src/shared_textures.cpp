@@ -14,28 +14,6 @@
 namespace quincunx::gl {
 namespace {
 
-cl_image_format expected_format(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kR8:
-      return {CL_R, CL_UNORM_INT8};
-    case PixelFormat::kR32F:
-      return {CL_R, CL_FLOAT};
-    case PixelFormat::kRG16F:
-      return {CL_RG, CL_HALF_FLOAT};
-    case PixelFormat::kRG32F:
-      return {CL_RG, CL_FLOAT};
-    case PixelFormat::kRGBA8:
-      return {CL_RGBA, CL_UNORM_INT8};
-    case PixelFormat::kRGBA16F:
-      return {CL_RGBA, CL_HALF_FLOAT};
-    case PixelFormat::kRGBA32F:
-      return {CL_RGBA, CL_FLOAT};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
-}
-
 constexpr int kProbeSide = 16;
 
 // Every byte takes many values; no half or float of it is NaN or infinite, which a driver may rewrite.
@@ -135,7 +113,7 @@ cl_mem SharedTextures::add(GLuint texture, PixelFormat format, cl_mem_flags flag
   check_cl(code, "clCreateFromGLTexture");
   cl_image_format seen = {};
   check_cl(clGetImageInfo(image.get(), CL_IMAGE_FORMAT, sizeof(seen), &seen, nullptr), "clGetImageInfo");
-  const cl_image_format wanted = expected_format(format);
+  const cl_image_format wanted = cl_format(format);
   if (seen.image_channel_order != wanted.image_channel_order ||
       seen.image_channel_data_type != wanted.image_channel_data_type) {
     throw InteropError(

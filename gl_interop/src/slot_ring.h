@@ -15,8 +15,8 @@ class SlotRing {
 
   // Each checks the call of the same name on the bridge and, when it is right, takes note of it. Errors:
   // kInvalidArgument.
-  Status begin_draw(int slot);
-  Status submit(int slot, Extent render);
+  Status begin_draw(int slot, Extent render);
+  Status submit(int slot);
   Status acquire(int slot);
 
   Extent render(int slot) const { return at(slot).render; }

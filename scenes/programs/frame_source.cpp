@@ -59,10 +59,12 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   bridging.interop = settings_.interop;
   bridging.target = sequence_->target();
   bridging.output = sequence_->output();
+  bridging.targets = resolves.front().targets;
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
     resolve.output = bridging.output;
     resolve.target = bridging.target;
+    resolve.targets = bridging.targets;
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
     bridging.depth |= plan->reads_depth;
@@ -100,7 +102,7 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   const bool cut = is_cut(scene(), view.previous_seconds, view.seconds);
   DrawnFrame frame = {.index = index, .view = view, .reset = cut || index == 0};
   if (cut) frame.view.previous_seconds = view.seconds;
-  auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()));
+  auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()), frame.view.render);
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
   if (keep_targets) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
@@ -109,8 +111,7 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
 }
 
 Status FrameSource::submit() {
-  const DrawnFrame& frame = drawn_.back();
-  return bridge_->submit(static_cast<int>(frame.index % bridge_->slots()), frame.view.render);
+  return bridge_->submit(static_cast<int>(drawn_.back().index % bridge_->slots()));
 }
 
 Result<FrameInputs> FrameSource::acquire() {

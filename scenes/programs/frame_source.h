@@ -59,8 +59,8 @@ class FrameSource {
   // have. Before the first draw(). `resolve.output` and `target` are taken from the sequence.
   Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
-  // The same for several resolves of the same frames: the slots have what any of their plans reads. In their
-  // order; at least one.
+  // The same for several resolves of the same frames: the slots have what any of their plans reads, and the kind of
+  // targets that the first one asks for. In their order; at least one.
   Result<std::vector<ResolvePlan>> connect_all(std::vector<ResolveSettings> resolves,
                                                HandOver hand_over = HandOver::kPlanned);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cl_interposer.h"
 
+#include <CL/cl_ext.h>
 #include <CL/cl_gl.h>
 #include <dlfcn.h>
 #include <epoxy/gl.h>
@@ -30,11 +31,20 @@ struct SharedTexture {
   bool acquired = false;
 };
 
+struct ImageOnBuffer {
+  cl_mem buffer = nullptr;
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::size_t pitch = 0;
+};
+
 struct State {
   ClCounts counts;
   bool sharing = false;
   bool gl_event = false;
   PretendSharing::Flaw flaw = PretendSharing::Flaw::kNone;
+  bool images_on_buffers = false;
+  std::map<cl_mem, ImageOnBuffer> on_buffers;
   std::map<cl_mem, SharedTexture> textures;
   std::map<cl_context, std::vector<cl_context_properties>> properties;
 };
@@ -65,6 +75,56 @@ constexpr std::array kKnownFormats = {
     KnownFormat{GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4, {CL_RGBA, CL_UNORM_INT8}},
     KnownFormat{GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1, {CL_R, CL_UNORM_INT8}},
 };
+
+// Any format of the right size will do: texels only pass through.
+cl_image_format stand_in_of(std::size_t texel) {
+  if (texel == 8) return {CL_RGBA, CL_UNORM_INT16};
+  if (texel == 1) return {CL_R, CL_UNORM_INT8};
+  return {CL_RGBA, CL_UNORM_INT8};
+}
+
+std::size_t texel_bytes(const cl_image_format& format) {
+  const auto known = std::find_if(kKnownFormats.begin(), kKnownFormats.end(), [&](const KnownFormat& entry) {
+    return entry.reported.image_channel_order == format.image_channel_order &&
+           entry.reported.image_channel_data_type == format.image_channel_data_type;
+  });
+  return known == kKnownFormats.end() ? 0 : known->texel;
+}
+
+cl_mem create_on_buffer(cl_context context, cl_mem_flags flags, const cl_image_format& format,
+                        const cl_image_desc& desc, cl_int* code) {
+  const std::size_t texel = texel_bytes(format);
+  std::size_t bytes = 0;
+  clGetMemObjectInfo(desc.buffer, CL_MEM_SIZE, sizeof(bytes), &bytes, nullptr);
+  const bool right = texel != 0 && desc.image_row_pitch % (kImagePitchTexels * texel) == 0 &&
+                     desc.image_row_pitch >= desc.image_width * texel &&
+                     bytes >= desc.image_row_pitch * desc.image_height;
+  if (!right) {
+    *code = CL_INVALID_IMAGE_DESCRIPTOR;
+    return nullptr;
+  }
+  const cl_image_format stand_in = stand_in_of(texel);
+  cl_image_desc plain = desc;
+  plain.buffer = nullptr;
+  plain.image_row_pitch = 0;
+  const cl_mem image =
+      next<decltype(clCreateImage)>("clCreateImage")(context, flags, &stand_in, &plain, nullptr, code);
+  if (image != nullptr)
+    state().on_buffers[image] = {desc.buffer, desc.image_width, desc.image_height, desc.image_row_pitch};
+  return image;
+}
+
+void update_images_on_buffers(cl_command_queue queue) {
+  for (const auto& [image, on] : state().on_buffers) {
+    std::vector<std::uint8_t> rows(on.pitch * on.height);
+    const std::array<std::size_t, 3> origin = {0, 0, 0};
+    const std::array<std::size_t, 3> region = {on.width, on.height, 1};
+    next<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer")(queue, on.buffer, CL_TRUE, 0, rows.size(),
+                                                               rows.data(), 0, nullptr, nullptr);
+    next<decltype(clEnqueueWriteImage)>("clEnqueueWriteImage")(
+        queue, image, CL_TRUE, origin.data(), region.data(), on.pitch, 0, rows.data(), 0, nullptr, nullptr);
+  }
+}
 
 bool describe(GLuint texture, SharedTexture* shared) {
   GLint internal = 0;
@@ -166,6 +226,15 @@ PretendSharing::~PretendSharing() {
   state().properties.clear();
 }
 
+PretendImagesOnBuffers::PretendImagesOnBuffers() {
+  state().images_on_buffers = true;
+}
+
+PretendImagesOnBuffers::~PretendImagesOnBuffers() {
+  state().images_on_buffers = false;
+  state().on_buffers.clear();
+}
+
 int acquired_textures() {
   return static_cast<int>(std::count_if(state().textures.begin(), state().textures.end(),
                                         [](const auto& entry) { return entry.second.acquired; }));
@@ -180,13 +249,20 @@ extern "C" {
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std::size_t room, void* value,
                                    std::size_t* bytes_ret) {
   const auto real = next<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
-  if (name != CL_DEVICE_EXTENSIONS || !state().sharing) return real(device, name, room, value, bytes_ret);
+  if (name == CL_DEVICE_IMAGE_PITCH_ALIGNMENT_KHR && state().images_on_buffers) {
+    const cl_uint texels = kImagePitchTexels;
+    return copy_out(&texels, sizeof(texels), room, value, bytes_ret);
+  }
+  if (name != CL_DEVICE_EXTENSIONS || !(state().sharing || state().images_on_buffers))
+    return real(device, name, room, value, bytes_ret);
   std::size_t bytes = 0;
   if (const cl_int code = real(device, name, 0, nullptr, &bytes); code != CL_SUCCESS) return code;
   std::string all(bytes, '\0');
   if (const cl_int code = real(device, name, bytes, all.data(), nullptr); code != CL_SUCCESS) return code;
   all.resize(std::strlen(all.c_str()));
-  all += state().gl_event ? " cl_khr_gl_sharing cl_khr_gl_event" : " cl_khr_gl_sharing";
+  if (state().sharing) all += " cl_khr_gl_sharing";
+  if (state().sharing && state().gl_event) all += " cl_khr_gl_event";
+  if (state().images_on_buffers) all += " cl_khr_image2d_from_buffer";
   return copy_out(all.c_str(), all.size() + 1, room, value, bytes_ret);
 }
 
@@ -229,10 +305,7 @@ cl_mem CL_API_CALL clCreateFromGLTexture(cl_context context, cl_mem_flags flags,
     *code = CL_INVALID_IMAGE_FORMAT_DESCRIPTOR;
     return nullptr;
   }
-  // Any format of the right size will do: texels only pass through.
-  cl_image_format stand_in = {CL_RGBA, CL_UNORM_INT8};
-  if (shared.texel == 8) stand_in = {CL_RGBA, CL_UNORM_INT16};
-  if (shared.texel == 1) stand_in = {CL_R, CL_UNORM_INT8};
+  const cl_image_format stand_in = stand_in_of(shared.texel);
   cl_image_desc desc = {};
   desc.image_type = CL_MEM_OBJECT_IMAGE2D;
   desc.image_width = static_cast<std::size_t>(shared.width);
@@ -271,6 +344,7 @@ cl_int CL_API_CALL clReleaseMemObject(cl_mem memory) {
   // A released image that OpenCL still holds stays in the list, for acquired_textures() to show.
   const auto found = state().textures.find(memory);
   if (found != state().textures.end() && !found->second.acquired) state().textures.erase(found);
+  state().on_buffers.erase(memory);
   return next<decltype(clReleaseMemObject)>("clReleaseMemObject")(memory);
 }
 
@@ -283,7 +357,34 @@ cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, std::s
 cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
                                  const cl_image_desc* desc, void* host, cl_int* code) {
   ++state().counts.creations;
+  if (desc->buffer != nullptr && state().images_on_buffers)
+    return create_on_buffer(context, flags, *format, *desc, code);
   return next<decltype(clCreateImage)>("clCreateImage")(context, flags, format, desc, host, code);
+}
+
+cl_mem CL_API_CALL clCreateSubBuffer(cl_mem buffer, cl_mem_flags flags, cl_buffer_create_type type,
+                                     const void* info, cl_int* code) {
+  ++state().counts.creations;
+  return next<decltype(clCreateSubBuffer)>("clCreateSubBuffer")(buffer, flags, type, info, code);
+}
+
+cl_int CL_API_CALL clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void* mapped, cl_uint count,
+                                           const cl_event* wait, cl_event* event) {
+  const cl_int code = next<decltype(clEnqueueUnmapMemObject)>("clEnqueueUnmapMemObject")(
+      queue, memory, mapped, count, wait, event);
+  update_images_on_buffers(queue);
+  return code;
+}
+
+cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+                                            const std::size_t* to, const std::size_t* from,
+                                            const std::size_t* region, std::size_t row, std::size_t slice,
+                                            std::size_t host_row, std::size_t host_slice, const void* host,
+                                            cl_uint count, const cl_event* wait, cl_event* event) {
+  const cl_int code = next<decltype(clEnqueueWriteBufferRect)>("clEnqueueWriteBufferRect")(
+      queue, buffer, blocking, to, from, region, row, slice, host_row, host_slice, host, count, wait, event);
+  update_images_on_buffers(queue);
+  return code;
 }
 
 cl_int CL_API_CALL clFinish(cl_command_queue queue) {

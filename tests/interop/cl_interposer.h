@@ -12,7 +12,7 @@
 namespace quincunx::gl::testing {
 
 struct ClCounts {
-  int creations = 0;       // buffers and images
+  int creations = 0;       // buffers, parts of them, and images
   int blocking_waits = 0;  // clFinish, and transfers and maps that block
   int acquires = 0;        // calls of clEnqueueAcquireGLObjects, and of its counterpart
   int releases = 0;
@@ -29,6 +29,19 @@ class PretendSharing {
   PretendSharing(const PretendSharing&) = delete;
   PretendSharing& operator=(const PretendSharing&) = delete;
 };
+
+// While it lives, every device makes images on buffers (cl_khr_image2d_from_buffer), with rows at multiples of
+// kImagePitchTexels. What such an image must be is checked; its texels are copied from the buffer when the buffer is
+// unmapped or written.
+class PretendImagesOnBuffers {
+ public:
+  PretendImagesOnBuffers();
+  ~PretendImagesOnBuffers();
+  PretendImagesOnBuffers(const PretendImagesOnBuffers&) = delete;
+  PretendImagesOnBuffers& operator=(const PretendImagesOnBuffers&) = delete;
+};
+
+constexpr int kImagePitchTexels = 16;
 
 int acquired_textures();  // how many OpenCL holds now
 

@@ -28,12 +28,12 @@ class GlSharingTest : public InteropTest {
   }
 
   void draw(Bridge& bridge, int slot, std::uint32_t seed) {
-    auto targets = bridge.begin_draw(slot);
+    auto targets = bridge.begin_draw(slot, kRender);
     ASSERT_TRUE(targets.ok()) << targets.status().message();
     for (const Plane& plane : planes_) {
       fill_plane(*targets.value(), plane, random_texels(plane.format, kTarget, seed));
     }
-    ASSERT_TRUE(bridge.submit(slot, kRender).ok());
+    ASSERT_TRUE(bridge.submit(slot).ok());
   }
 
   // Raw texels of an image; Device::download would ask for the stand-in's own formats.

@@ -13,12 +13,12 @@ constexpr Extent kRender = {45, 31};
 class RingTest : public InteropTest {
  protected:
   void draw(Bridge& bridge, int slot, std::uint32_t seed) {
-    auto targets = bridge.begin_draw(slot);
+    auto targets = bridge.begin_draw(slot, kRender);
     ASSERT_TRUE(targets.ok()) << targets.status().message();
     for (const Plane& plane : planes_) {
       fill_plane(*targets.value(), plane, random_texels(plane.format, kTarget, seed));
     }
-    ASSERT_TRUE(bridge.submit(slot, kRender).ok());
+    ASSERT_TRUE(bridge.submit(slot).ok());
   }
 
   void expect_frame(SharedFrame frame, std::uint32_t seed) {

@@ -35,12 +35,12 @@ void RoundTripTest::expect_exact(const Case& c, Transfer transfer) {
 
   // Twice in the same slot: the second time OpenCL's memory holds what must stay outside the viewport.
   for (const std::uint32_t seed : {11u, 12u}) {
-    auto targets = bridge.begin_draw(0);
+    auto targets = bridge.begin_draw(0, c.render);
     ASSERT_TRUE(targets.ok()) << targets.status().message();
     for (const Plane& plane : planes) {
       fill_plane(*targets.value(), plane, random_texels(plane.format, c.target, seed));
     }
-    ASSERT_TRUE(bridge.submit(0, c.render).ok());
+    ASSERT_TRUE(bridge.submit(0).ok());
     auto frame = bridge.acquire(0);
     ASSERT_TRUE(frame.ok()) << frame.status().message();
     for (const Plane& plane : planes) {
@@ -83,12 +83,12 @@ TEST_F(RoundTripTest, CopiedToTheDevice) {
 TEST_F(RoundTripTest, PlanesThatWereNotAskedForAreEmpty) {
   auto bridge = Bridge::create(*context_, *device_, {.target = {16, 16}, .output = {16, 16}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
-  auto targets = bridge.value()->begin_draw(0);
+  auto targets = bridge.value()->begin_draw(0, {16, 16});
   ASSERT_TRUE(targets.ok());
   EXPECT_EQ(targets.value()->velocity(), 0u);
   EXPECT_EQ(targets.value()->reactive(), 0u);
   targets.value()->clear({16, 16});
-  ASSERT_TRUE(bridge.value()->submit(0, {16, 16}).ok());
+  ASSERT_TRUE(bridge.value()->submit(0).ok());
   auto frame = bridge.value()->acquire(0);
   ASSERT_TRUE(frame.ok());
   EXPECT_TRUE(frame->colour);
@@ -137,7 +137,7 @@ TEST_F(RoundTripTest, DrawnPictureHasItsTopRowFirst) {
   constexpr Extent kRender = {20, 14};
   auto bridge = Bridge::create(*context_, *device_, all_planes(kTarget, {8, 8}));
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
-  auto targets = bridge.value()->begin_draw(1);
+  auto targets = bridge.value()->begin_draw(1, kRender);
   ASSERT_TRUE(targets.ok());
   const Program program = build(kVertexSource, kFragmentSource);
   const VertexArray vertices = VertexArray::create();
@@ -150,7 +150,7 @@ TEST_F(RoundTripTest, DrawnPictureHasItsTopRowFirst) {
   glViewport(0, 0, kRender.width, kRender.height);
   targets.value()->clear(kRender);
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-  ASSERT_TRUE(bridge.value()->submit(1, kRender).ok());
+  ASSERT_TRUE(bridge.value()->submit(1).ok());
   auto frame = bridge.value()->acquire(1);
   ASSERT_TRUE(frame.ok());
 

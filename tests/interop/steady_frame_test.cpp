@@ -12,10 +12,10 @@ class SteadyFrameTest : public InteropTest {
   static void run_frame(Bridge& bridge, int frame) {
     const int slot = frame % bridge.slots();
     const Extent render = {20 + frame % 40, 50 - frame % 30};
-    auto targets = bridge.begin_draw(slot);
+    auto targets = bridge.begin_draw(slot, render);
     ASSERT_TRUE(targets.ok()) << targets.status().message();
     targets.value()->clear(render);
-    ASSERT_TRUE(bridge.submit(slot, render).ok());
+    ASSERT_TRUE(bridge.submit(slot).ok());
     auto inputs = bridge.acquire(slot);
     ASSERT_TRUE(inputs.ok()) << inputs.status().message();
     ASSERT_TRUE(bridge.begin_present().ok());

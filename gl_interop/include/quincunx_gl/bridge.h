@@ -7,7 +7,7 @@
 // memory. A ring of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
 //
 // The life of a frame in slot s:
-//   begin_draw(s), draw, submit(s, render)
+//   begin_draw(s, render), draw, submit(s)
 //   acquire(s), service.dispatch(...)    s is held, and so is the slot before it, until the next dispatch
 //   present(), then presented_pixels() or presented_texture()
 // All calls come from the thread where the GL context is current.
@@ -18,6 +18,7 @@
 #include <string>
 
 #include "quincunx/device.h"
+#include "quincunx/resolve_plan.h"
 #include "quincunx_gl/egl_context.h"
 #include "quincunx_gl/render_targets.h"
 
@@ -28,17 +29,19 @@ enum class Interop { kAuto, kGl, kCopy };
 const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
-  Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
-  Extent target = {};                // of the inputs
-  Extent output = {};                // of the presented picture
-  bool depth = false;                // hand depth over
-  bool velocity = false;             // draw and hand over velocity
-  bool reactive = false;             // draw and hand over reactive values
-  int slots = 3;                     // >= 3 where the previous frame is read
+  Interop interop = Interop::kAuto;      // kGl and kCopy insist: create() fails where the backend cannot work
+  Extent target = {};                    // of the inputs
+  Extent output = {};                    // of the presented picture
+  bool depth = false;                    // hand depth over
+  bool velocity = false;                 // draw and hand over velocity
+  bool reactive = false;                 // draw and hand over reactive values
+  int slots = 3;                         // >= 3 where the previous frame is read
+  Targets targets = Targets::kViewport;  // kPlaced: HostCopy only, kGl then fails
 };
 
-// The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed. Empty where
-// not handed over. All have the target extent and, where they are buffers, its pitch.
+// The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed, and with placed
+// targets until the slot is drawn again. Empty where not handed over. All have the target extent and, where they are
+// buffers, its pitch; placed ones have the viewport's.
 struct SharedFrame {
   ImageView colour;
   ImageView depth;
@@ -60,14 +63,16 @@ class Bridge {
 
   virtual Interop kind() const = 0;                      // kGl or kCopy
   const std::string& reason() const { return reason_; }  // one sentence: why this backend
-  Storage storage() const { return kind() == Interop::kGl ? Storage::kImage : Storage::kBuffer; }
+  virtual Storage storage() const = 0;                   // of the inputs
   int slots() const { return settings_.slots; }
 
-  // The framebuffer of a slot. Takes the slot back from OpenCL: waits until the work that reads it is done.
-  virtual Result<const RenderTargets*> begin_draw(int slot) = 0;
+  // The framebuffer of a slot, for a frame of the viewport `render`: its top left part, or with placed targets the
+  // whole of it; those stay until the next begin_draw(). Takes the slot back from OpenCL: waits until the work that
+  // reads it is done.
+  virtual Result<const RenderTargets*> begin_draw(int slot, Extent render) = 0;
 
-  // After drawing: starts handing the top left `render` of the slot over. Does not wait.
-  virtual Status submit(int slot, Extent render) = 0;
+  // After drawing: starts handing the viewport over. Does not wait.
+  virtual Status submit(int slot) = 0;
 
   // Makes the slot readable by OpenCL: waits for GL where it must. Commands enqueued on the device's queue
   // after this see the frame.
@@ -82,6 +87,13 @@ class Bridge {
   virtual GLuint presented_texture() const = 0;        // RGBA8, row 0 on top
   virtual const std::uint8_t* presented_pixels() = 0;  // RGBA8, tightly packed; valid until begin_present()
 
+  // What the frames lie in, without the presented picture: what is allocated now.
+  struct Memory {
+    std::uint64_t gl_bytes = 0;      // render targets
+    std::uint64_t opencl_bytes = 0;  // what OpenCL reads, where that is not the render targets themselves
+  };
+  virtual Memory memory() const = 0;
+
   // Bytes moved between GL and OpenCL by the last submit() + acquire(), and by the last present(); and the
   // time in ms that acquire() waited and present() took on the host.
   struct Traffic {
@@ -89,6 +101,9 @@ class Bridge {
     std::uint64_t bytes_out = 0;
     double acquire_ms = 0;
     double present_ms = 0;
+    // Host time that the last begin_draw() spent on images of another size than the frame before's; 0: they have
+    // the same size.
+    double resize_us = 0;
   };
   const Traffic& traffic() const { return traffic_; }
 

@@ -4,6 +4,8 @@
 
 #include <epoxy/gl.h>
 
+#include <cstdint>
+
 #include "quincunx/image.h"
 #include "quincunx_gl/handle.h"
 
@@ -25,6 +27,7 @@ class RenderTargets {
   explicit RenderTargets(const TargetNeeds& needs);
 
   Extent extent() const { return extent_; }
+  std::uint64_t bytes() const;  // of all textures
   GLuint framebuffer() const { return framebuffer_.get(); }
   GLuint colour() const { return colour_.get(); }
   GLuint depth() const { return depth_.get(); }        // DEPTH_COMPONENT32F
