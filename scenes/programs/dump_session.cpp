@@ -231,7 +231,8 @@ Status DumpSession::collect_targets() {
   planes_[Stage::kVelocity] = std::move(motion);
   planes_[Stage::kReactive] = {render, {"mask"}, {reactive_mask(file)}, tools::ChannelType::kHalf};
 
-  const Extent target = source_->sequence().target();
+  const bool placed = service_->plan().settings.targets == Targets::kPlaced;
+  const Extent target = placed ? render : source_->sequence().target();
   std::vector<float> cleared(static_cast<std::size_t>(target.area()));
   for (int y = 0; y < render.height; ++y) {
     const auto row = cleared.begin() + static_cast<std::ptrdiff_t>(y) * target.width;

@@ -39,6 +39,8 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
                                                          {"quincunx", Jitter::kQuincunx},
                                                          {"quincunx-half", Jitter::kQuincunxHalf},
                                                          {"halton", Jitter::kHalton}};
+  static const std::map<std::string, Targets> kTargets = {{name_of(Targets::kViewport), Targets::kViewport},
+                                                          {name_of(Targets::kPlaced), Targets::kPlaced}};
 
   app.add_option("--scene", options.scene,
                  "Built-in scene, or a .gltf or .glb file (default: the first of the list)");
@@ -60,6 +62,8 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
       .type_name("PATH")
       .excludes(scale);
   tools::add_resolve_options(app, options.resolve);
+  tools::add_choice(app, "--targets", options.resolve.targets, kTargets,
+                    "viewport (default): a part of large targets; placed: targets of just that size");
   tools::add_choice(app, "--jitter", options.jitter, kJitters,
                     "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
@@ -123,6 +127,12 @@ Jitter jitter_for(const PictureOptions& options) {
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   auto path = scale_path_for(options);
   if (!path.ok()) return path.status();
+  if (options.resolve.targets == Targets::kPlaced && options.interop == gl::Interop::kGl) {
+    return Status::invalid(
+        "--targets placed and --interop gl exclude each other: OpenGL's textures cannot be placed in memory "
+        "that OpenCL "
+        "reads; leave one of them out");
+  }
   FrameSourceSettings source;
   source.scene = options.scene;
   source.seed = options.seed;

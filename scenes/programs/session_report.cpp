@@ -18,6 +18,13 @@ std::string scale_text(const RenderOptions& options) {
   return options.scale_path.empty() ? options.scale : options.scale_path;
 }
 
+std::string targets_text(Targets targets, const gl::Bridge::Memory& memory) {
+  constexpr double kMebi = 1 << 20;
+  return fmt::format("{}: {:.1f} MiB of OpenGL's, {:.1f} MiB of OpenCL's", name_of(targets),
+                     static_cast<double>(memory.gl_bytes) / kMebi,
+                     static_cast<double>(memory.opencl_bytes) / kMebi);
+}
+
 }  // namespace
 
 tools::RunReport RenderSession::report() const {
@@ -36,6 +43,7 @@ tools::RunReport RenderSession::report() const {
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"tone map", name_of(options_.resolve.tone_map)},
+      {"targets", targets_text(plan().settings.targets, source_->bridge().memory())},
       {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap", options_.overlap && (!paced_ || paced_->overlaps())

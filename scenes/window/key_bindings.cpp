@@ -123,6 +123,10 @@ constexpr std::array kBindings = std::to_array<KeyBinding>({
     {GLFW_KEY_COMMA, "comma", ",", "one frame back, while frozen",
      [](WindowSettings& settings, bool) { --settings.step; }},
     {GLFW_KEY_Z, "z", "Z", "zoom to pixels: 2, 4 ... 32 times", step_zoom},
+    {GLFW_KEY_A, "a", "A", "allocation of targets: viewport or placed",
+     [](WindowSettings& settings, bool back) {
+       settings.look.targets = neighbour(settings.look.targets, kTargetKinds, back);
+     }},
     {GLFW_KEY_S, "s", "S", "screenshot (PNG)",
      [](WindowSettings& settings, bool) { settings.screenshot = true; }},
     {GLFW_KEY_D, "d", "D", "dump targets and picture (EXR)",

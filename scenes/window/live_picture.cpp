@@ -51,6 +51,7 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   wanted.resolve.blur.samples = look.blur_samples;
   wanted.resolve.tone_map = look.tone_map;
   wanted.resolve.dither = look.dither;
+  wanted.resolve.targets = look.targets;
   choose_method(wanted.resolve, look.method);
   return wanted;
 }
@@ -117,7 +118,7 @@ Status LivePicture::open_compared(const ResolvePlan& plan) {
     auto service = ResolveService::create(device, plan);
     if (!service.ok()) return service.status();
     other_service_.emplace(std::move(service).value());
-    auto image = device.allocate(output(), PixelFormat::kRGBA8, plan.settings.storage);
+    auto image = device.allocate(output(), PixelFormat::kRGBA8, plan.presented_storage());
     if (!image.ok()) return image.status();
     other_image_ = std::move(image).value();
   } else {

@@ -88,6 +88,7 @@ void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   choose_text("method", method_names(), look.method);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
+  choose_value("targets", kTargetKinds, look.targets);
   choose_value("resolution", kResolutionModes, settings.resolution.mode);
   label("scale");
   float scale = settings.resolution.scale;

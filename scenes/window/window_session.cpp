@@ -50,6 +50,7 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.blur_samples = options.resolve.blur.samples;
   settings.look.tone_map = options.resolve.tone_map;
   settings.look.dither = options.resolve.dither;
+  settings.look.targets = options.resolve.targets;
   settings.look.jitter = options.jitter;
   settings.resolution.scale = scale.x;
   settings.show_ui = options.show_ui;

@@ -51,6 +51,8 @@ constexpr int kControllers = 3;  // all but ControllerKind::kFixed
 inline const std::string kCompareNothing = "";
 inline const std::string kCompareTruth = "truth";
 
+constexpr int kTargetKinds = 2;
+
 // How the picture is made; a change of these makes passes and buffers anew.
 struct LookSettings {
   std::string scene;                       // as open_scene() takes it
@@ -60,6 +62,7 @@ struct LookSettings {
   int blur_samples = 8;
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;
+  Targets targets = Targets::kViewport;
   std::optional<tools::Jitter> jitter;  // absent: the one that suits the method
 
   bool compares_methods() const { return compared != kCompareNothing && compared != kCompareTruth; }

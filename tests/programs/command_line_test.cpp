@@ -61,6 +61,8 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_NE(still.out.find("WEIGHT=0"), std::string::npos) << still.out;
   const ProgramResult mean = run("--explain --scene wheel --method quincunx:mean");
   EXPECT_NE(mean.out.find("WEIGHT=0"), std::string::npos) << mean.out;
+  const ProgramResult placed = run("--explain --scene wheel --targets placed");
+  EXPECT_NE(placed.out.find("Targets        placed"), std::string::npos) << placed.out;
 }
 
 TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
@@ -77,6 +79,8 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   for (const char* amount : {"-0.1", "1.1", "nan", "much"})
     expect_refused(std::string("--scene chart --sharpen ") + amount, 2, "--sharpen");
   expect_refused("--velocity-weight -1", 2, "--velocity-weight");
+  expect_refused("--targets large", 2, "'large' is none of placed, viewport");
+  expect_refused("--scene chart --targets placed --interop gl", 2, "exclude each other");
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");

@@ -87,6 +87,20 @@ TEST_F(Dump, EveryStageHasAPictureAndTheFilesAreNamed) {
   EXPECT_GE(image("d/frame.0003.output.exr").channel("truth.G"), 0);
 }
 
+TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
+  const std::string run =
+      "-q --scene wheel --output 96x54 --scale 0.5,0.6 --method temporal --frame 3 --out ";
+  expect_done(dump(run + "'{}/viewport'"));
+  expect_done(dump(run + "'{}/placed' --targets placed"));
+  for (const char* part : {"render", "history", "output"}) {
+    const std::string file = "/frame.0003." + std::string(part) + ".exr";
+    EXPECT_EQ(image("placed" + file).pixels, image("viewport" + file).pixels) << part;
+  }
+  const auto target = image("placed/frame.0003.target.exr");
+  EXPECT_EQ(target.extent, image("placed/frame.0003.render.exr").extent);
+  EXPECT_EQ(std::count(target.pixels.begin(), target.pixels.end(), 1.0f), target.extent.area());
+}
+
 // Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
 // hardly known and the rounding of history to halves.
 TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {

@@ -79,6 +79,23 @@ TEST_F(EndToEnd, TwoRunsAgreeBitForBit) {
   }
 }
 
+// Placed targets change no bit of any picture, whatever the resolution does, for frames of their own and for history.
+TEST_F(EndToEnd, PlacedTargetsGiveTheSamePictures) {
+  for (const std::string method :
+       {"bilinear", "quincunx", "quincunx:reprojected", "temporal:fast", "temporal"}) {
+    const std::string arguments =
+        "--scene wheel --scale-path random:0.2,1.4 --seed 5 --frames 6 --method " + method + " --out ";
+    render(arguments + "'{}/viewport.%04d.png'");
+    render(arguments + "'{}/placed.%04d.png' --targets placed");
+    render(arguments + "'{}/finished.%04d.png' --targets placed --no-overlap");
+    for (int index = 0; index < 6; ++index) {
+      const std::string number = ".000" + std::to_string(index) + ".png";
+      EXPECT_EQ(image("placed" + number).pixels, image("viewport" + number).pixels) << method << index;
+      EXPECT_EQ(image("finished" + number).pixels, image("viewport" + number).pixels) << method << index;
+    }
+  }
+}
+
 TEST_F(EndToEnd, TheTargetFileHoldsEveryChannel) {
   render("--scene occluders --scale 0.5 --frames 2 --exr-frame 1 --out '{}/f.%04d.png'");
   const auto targets = image("frame_0001_targets.exr");

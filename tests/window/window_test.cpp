@@ -42,6 +42,22 @@ TEST_F(Window, ShowsTheBitsOfARunWithoutOne) {
   }
 }
 
+TEST_F(Window, PlacedTargetsShowTheSameBits) {
+  write_script("5 key s\n");
+  const std::string arguments = "--scene wheel --scale 0.71 --method temporal ";
+  render_headless(arguments + "--frames 6 --out '{}/headless.%04d.png'");
+  ASSERT_EQ(run_window(arguments + "--targets placed --frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("headless.0005.png").pixels);
+
+  // The other kind from frame 2 on; this method needs nothing of the frames before.
+  std::filesystem::remove_all(path("captures"));
+  write_script("2 key a\n5 key s\n");
+  const std::string single = "--scene wheel --scale 0.71 --method mitchell ";
+  render_headless(single + "--frames 6 --out '{}/single.%04d.png'");
+  ASSERT_EQ(run_window(single + "--frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("single.0005.png").pixels);
+}
+
 TEST_F(Window, DumpsWhatARunWithoutOneDumps) {
   write_script("4 key d\n");
   const std::string arguments = "--scene wheel --scale 0.71 ";
