@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/resize/resize_command.h"
 #include "bench/traces/trace_command.h"
 #include "programs/picture_options.h"
 #include "quincunx/extent.h"
@@ -30,6 +31,7 @@ struct BenchOptions : scenes::PictureOptions {
   std::string from;     // a bench.json instead of measuring; empty: measure
   bool list_methods = false;
   traces::TraceOptions traces;
+  ResizeOptions resize;
   bool json = false;
 
   std::string command_line;

@@ -88,6 +88,20 @@ int replay_traces(const BenchOptions& options) {
   return tools::kDone;
 }
 
+int measure_resizing(const BenchOptions& options) {
+  const auto result = run_resize(options);
+  if (!result.ok()) return tools::fail(result.status());
+  if (!options.out.empty()) {
+    if (Status status = write_files(result.value(), options.out); !status.ok()) return tools::fail(status);
+  }
+  if (options.json) {
+    fmt::print("{}", json_of(result.value()));
+  } else if (!options.quiet) {
+    fmt::print("{}", text_of(result.value()));
+  }
+  return tools::kDone;
+}
+
 int run(int argc, char** argv) {
   BenchOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
@@ -102,6 +116,8 @@ int run(int argc, char** argv) {
     scenes::print_devices(options);
   } else if (options.traces.wanted) {
     return replay_traces(options);
+  } else if (options.resize.wanted) {
+    return measure_resizing(options);
   } else {
     return measure(options);
   }
