@@ -2,7 +2,10 @@
 // The only file that includes CLI11.
 #include "tools/program/command_line.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdint>
 #include <set>
 #include <utility>
@@ -23,6 +26,15 @@ void report_usage_errors(const Call& call) {
   }
 }
 
+// CLI11's own checks print the largest double, which has 309 digits.
+Complaint unless_number(const char* kind, bool (*good)(double)) {
+  return [kind, good](const std::string& text) {
+    const std::optional<double> number = number_in(text);
+    if (number && std::isfinite(*number) && good(*number)) return std::string();
+    return fmt::format("'{}' is no {}", text, kind);
+  };
+}
+
 }  // namespace
 
 Option Option::check(Complaint complaint) const {
@@ -35,10 +47,12 @@ Option Option::in_range(double lowest, double highest) const {
   return Option(option_->check(CLI::Range(lowest, highest)));
 }
 Option Option::positive() const {
-  return Option(option_->check(CLI::PositiveNumber));
+  return Option(
+      option_->check(unless_number("positive number", [](double number) { return number > 0; }), "POSITIVE"));
 }
 Option Option::non_negative() const {
-  return Option(option_->check(CLI::NonNegativeNumber));
+  return Option(option_->check(unless_number("number from 0 on", [](double number) { return number >= 0; }),
+                               "NONNEGATIVE"));
 }
 Option Option::one_of(std::initializer_list<int> values) const {
   return Option(option_->check(CLI::IsMember(std::set<int>(values)).description("")));
