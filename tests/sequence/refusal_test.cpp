@@ -11,7 +11,17 @@ namespace {
 
 const std::string kRun = "'{}/f.%04d.exr' --out '{}/o/u.%04d.exr' ";
 
-class Refusal : public testing::SequenceTest {};
+// Bytes of a file whose header is good and whose pixels are not.
+std::string with_bad_pixels(std::string bytes) {
+  return bytes.replace(bytes.size() * 2 / 3, 64, 64, '\x55');
+}
+
+class Refusal : public testing::SequenceTest {
+ protected:
+  static void write_bytes(const std::string& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+  }
+};
 
 TEST_F(Refusal, HelpVersionAndDevices) {
   const auto help = resolve("--help");
@@ -158,14 +168,20 @@ TEST_F(Refusal, CameraMotionNeedsItsMatrices) {
 TEST_F(Refusal, DamagedFiles) {
   write_frames(1, 4);
   const std::string whole = testing::read_file(input(3));
-  std::ofstream(input(3), std::ios::binary | std::ios::trunc) << "no picture";
+  write_bytes(input(3), "no picture");
   expect_refused(kRun, 1, "f.0003.exr' cannot be read");
-  std::ofstream(input(3), std::ios::binary | std::ios::trunc);
+  write_bytes(input(3), "");
   expect_refused(kRun, 1, "f.0003.exr' cannot be read");
   testing::write_deep_exr(input(3), {24, 14});
   expect_refused(kRun, 1, "f.0003.exr' holds deep pixels in channel 'R'");
-  // A good header before bad pixels shows only when they are read: what was done by then stays, whole.
-  std::ofstream(input(3), std::ios::binary | std::ios::trunc) << whole.substr(0, whole.size() * 2 / 3);
+  write_bytes(input(3), whole.substr(0, whole.size() * 2 / 3));
+  expect_refused(kRun, 1, "f.0003.exr' is cut short: 1 of its 1 blocks of pixels is missing");
+  const auto listing = resolve(kRun + "-n");
+  EXPECT_EQ(listing.exit_code, 1);
+  EXPECT_NE(listing.out.find("Missing   1 frame: 3\n  '" + input(3) + "' is cut short"), std::string::npos)
+      << listing.out;
+  // Bad pixels in a whole file show only when they are read: what was done by then stays, whole.
+  write_bytes(input(3), with_bad_pixels(whole));
   const auto result = resolve("'{}/f.%04d.exr' --out '{}/u.%04d.exr' -q");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("f.0003.exr' cannot be read"), std::string::npos) << result.err;
@@ -178,13 +194,13 @@ TEST_F(Refusal, BadFramesMayBeSkipped) {
   write_frames(1, 7);
   const std::string whole = testing::read_file(input(5));
   std::filesystem::remove(input(2));
-  std::ofstream(input(5), std::ios::binary | std::ios::trunc) << whole.substr(0, whole.size() * 2 / 3);
+  write_bytes(input(5), with_bad_pixels(whole));
   const auto result = resolve("'{}/f.%04d.exr' --out '{}/u.%04d.exr' --skip-bad-frames");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("frame 2 is missing"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("f.0005.exr' cannot be read"), std::string::npos) << result.err;
   // What follows a gap has no history.
-  std::ofstream(input(5), std::ios::binary | std::ios::trunc) << whole;
+  write_bytes(input(5), whole);
   resolve_to("cold", "--frames 3,6 --warm-up 0");
   resolve_to("warm", "--frames 4,7");
   for (const int number : {3, 6})

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "tools/image/exr_blocks.h"
 #include "tools/sequence/frame_numbers.h"
 
 namespace quincunx::tools {
@@ -52,6 +53,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.background = places->background;
   frame.reset = attributes->reset;
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
+  if (Status status = check_blocks(path); !status.ok()) return status;
   if (format.needs_camera && !attributes->world_to_ndc) {
     return Status::io(
         fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,

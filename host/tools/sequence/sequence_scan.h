@@ -47,7 +47,8 @@ std::vector<std::int64_t> with_history(std::span<const std::int64_t> wanted, int
 // The first frame of the sequence at or before `wanted`, which reaches back at most `warm_up` frames.
 std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up);
 
-// Reads the headers of `read` with so many threads. `wanted`: those to be resolved, ascending.
+// Reads the headers of `read`, and where their pixels lie, with so many threads. `wanted`: those to be resolved,
+// ascending.
 SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& format,
                            std::span<const std::int64_t> read, std::span<const std::int64_t> wanted,
                            int threads);
