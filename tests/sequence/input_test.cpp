@@ -97,9 +97,10 @@ TEST_F(Input, MotionOfOtherNamesNeedsItsMeaning) {
 }
 
 TEST_F(Input, ChannelsAreNamedInMessages) {
+  const ImageHeader header = header_of(frame(1));
   ChannelNames names;
-  names.colour = colour_channels_of("ViewLayer.Combined");
-  const auto places = find_channels("f.0001.exr", header_of(frame(1)), names);
+  names.colour = colour_channels_in(header, "ViewLayer.Combined");
+  const auto places = find_channels("f.0001.exr", header, names);
   ASSERT_FALSE(places.ok());
   EXPECT_EQ(places.status().message(),
             "'f.0001.exr' has no channel 'ViewLayer.Combined.R'; it has R, G, B, A, backward.u, backward.v");

@@ -144,6 +144,10 @@ void add_picture_options(CommandLine& app, ResolveOptions& options) {
   add_choice(app, "--store", options.stored, kTypes, "half (default) or float in an EXR");
   app.add_option("--truth", options.truth, "True pictures to score the frames against, where there are any")
       .type_name("PATTERN");
+  app.add_option("--truth-colour,--truth-color", options.truth_colour,
+                 "Layer of the true pictures (default: without layer)")
+      .type_name("LAYER")
+      .needs("--truth");
 }
 
 void add_run_options(CommandLine& app, ResolveOptions& options) {

@@ -21,7 +21,8 @@ struct ResolveOptions {
   ResolveSettings resolve;  // sizes and formats follow from the frames
   ChannelType stored = ChannelType::kHalf;
   float exposure = 0;
-  std::string truth;  // pattern; empty: none
+  std::string truth;         // pattern; empty: none
+  std::string truth_colour;  // its layer, as SequenceInput has it
 
   std::optional<std::vector<std::int64_t>> frames;  // absent: all there are
   std::optional<int> warm_up;                       // absent: what the method looks back

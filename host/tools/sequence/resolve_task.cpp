@@ -139,7 +139,7 @@ Status ResolveTask::check(bool skip_bad_frames) const {
   for (const ScannedFrame& frame : scan.frames)
     read.push_back(input.expand(frame.number));
   for (const std::int64_t frame : asked) {
-    if (truth) read.push_back(truth->expand(frame));
+    if (truth) read.push_back(truth->pattern.expand(frame));
   }
   return output->check_names(scan.wanted(), read);
 }
@@ -151,7 +151,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   if (!options.truth.empty()) {
     auto truth = parse_input(options.truth, "truth pattern");
     if (!truth.ok()) return truth.status();
-    task.truth = std::move(truth).value();
+    task.truth = TruthFiles{std::move(truth).value(), options.truth_colour};
   }
   SequenceInput sequence = options.sequence;
   auto jitter = JitterSource::parse(options.jitter);

@@ -10,6 +10,7 @@
 #include "tools/sequence/resolve_options.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_scan.h"
+#include "tools/sequence/sequence_scores.h"
 
 namespace quincunx::tools {
 
@@ -22,7 +23,7 @@ struct ResolveTask {
   SequenceScan scan = {};                // of the rest and their history
   ResolvePlan plan = {};                 // for the largest frame
   std::optional<SequenceOutput> output = {};
-  std::optional<FramePattern> truth = {};
+  std::optional<TruthFiles> truth = {};
 
   // Whether the run can begin: a problem of the scan (unless bad frames may be skipped) or of the names of
   // the files. Errors: as of SequenceScan::problem() and SequenceOutput::check_names().

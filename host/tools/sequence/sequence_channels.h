@@ -27,8 +27,12 @@ inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "back
 inline const std::string kDepthChannel = "Z";
 inline const std::string kReactiveChannel = "reactive.mask";
 
-// "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A.
-std::array<std::string, 4> colour_channels_of(const std::string& layer);
+// "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
+// first three. Where the file has neither they are R, G and B.
+std::array<std::string, 4> colour_channels_in(const ImageHeader& header, const std::string& layer);
+
+// "colour R,G,B,A", "grey Y,A".
+std::string colour_text(const ChannelNames& names);
 
 // Where they are in one file.
 struct ChannelPlaces {
@@ -45,8 +49,9 @@ struct ChannelPlaces {
 bool leaves_pixels_open(const ImagePart& part);
 
 // Errors: kIoFailure, one sentence with `path` and the channel: one that is missing, deep, of integers, or
-// in a part of another size.
+// in a part of another size. Where colour is missing the sentence says which layers would do; `option` is the one that
+// names a layer of these files.
 Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
-                                    const ChannelNames& names);
+                                    const ChannelNames& names, const std::string& option = "--colour");
 
 }  // namespace quincunx::tools

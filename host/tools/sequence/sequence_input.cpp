@@ -41,7 +41,7 @@ std::string optional_channel(const std::optional<std::string>& wanted, const std
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes) {
   SequenceFormat format;
-  format.channels.colour = colour_channels_of(input.colour_layer);
+  format.channels.colour = colour_channels_in(first, input.colour_layer);
   if (Status status = settle_motion(input, first_path, first, attributes, format); !status.ok())
     return status;
   format.channels.depth = optional_channel(input.depth, kDepthChannel, first);
@@ -86,8 +86,7 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
 
 std::string summary_of(const SequenceFormat& format) {
   const ChannelNames& channels = format.channels;
-  std::string text = fmt::format("colour {},{},{},{}", channels.colour[0], channels.colour[1],
-                                 channels.colour[2], channels.colour[3]);
+  std::string text = colour_text(channels);
   if (channels.has_velocity()) {
     text += fmt::format("; velocity {},{} {}", channels.velocity[0], channels.velocity[1],
                         name_of(format.units.convention));

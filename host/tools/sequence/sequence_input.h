@@ -30,7 +30,7 @@ enum class MotionSource : std::uint8_t {
 };
 
 struct SequenceInput {
-  std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A
+  std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
   MotionSource motion = MotionSource::kAutomatic;
   std::array<std::string, 2> velocity;  // of kChannels
   std::optional<VelocityUnits> units;   // needed for other channels than backward.u/.v

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tools/image/image_io.h"
+#include "tools/image/image_reader.h"
+#include "tools/sequence/sequence_channels.h"
 
 namespace quincunx::tools {
 namespace {
@@ -19,25 +20,27 @@ Status check_size(const std::string& path, Extent found, Extent wanted) {
                                 found.height, wanted.width, wanted.height));
 }
 
-Result<std::vector<float>> read_truth(const std::string& path, Extent extent) {
-  auto image = read_image(path);
-  if (!image.ok()) return image.status();
-  if (Status status = check_size(path, image->extent, extent); !status.ok()) return status;
-  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4, 1.0f);
+Result<std::vector<float>> read_truth(const std::string& path, const std::string& layer, Extent extent) {
+  auto reader = ImageReader::open(path);
+  if (!reader.ok()) return reader.status();
+  ChannelNames names;
+  names.colour = colour_channels_in(reader->header(), layer);
+  const auto places = find_channels(path, reader->header(), names, "--truth-colour");
+  if (!places.ok()) return Status::io("truth " + places.status().message());
+  if (Status status = check_size(path, places->display.extent, extent); !status.ok()) return status;
+  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
+  std::vector<ChannelTarget> targets;
   for (std::size_t c = 0; c < 3; ++c) {
-    const std::string name(1, "RGB"[c]);
-    const int channel = image->channel(name);
-    if (channel < 0) return Status::io(fmt::format("truth '{}' has no channel '{}'", path, name));
-    const std::size_t step = image->channels.size();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(extent.area()); ++i)
-      rgba[i * 4 + c] = image->pixels[i * step + static_cast<std::size_t>(channel)];
+    targets.push_back({*places->colour[c], ChannelType::kFloat, rgba.data() + c, 4 * sizeof(float),
+                       4 * sizeof(float) * static_cast<std::size_t>(extent.width)});
   }
+  if (Status status = reader->read(targets); !status.ok()) return status;
   return rgba;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const FramePattern& truth, Extent extent,
+Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles& truth, Extent extent,
                                                                std::span<const std::int64_t> frames) {
   if (extent.width < kSmallestSide || extent.height < kSmallestSide) {
     return Status::invalid(fmt::format("--truth needs an output of at least {0}x{0} pixels; this is {1}x{2}",
@@ -46,14 +49,14 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const FramePatter
   auto scores = std::unique_ptr<SequenceScores>(new SequenceScores(truth, extent));
   for (const std::int64_t frame : frames) {
     std::error_code error;
-    const std::string path = truth.expand(frame);
+    const std::string path = truth.pattern.expand(frame);
     if (!std::filesystem::exists(path, error)) continue;
     scores->known_.push_back(frame);
     scores->files_.push_back(path);
   }
   if (!scores->known_.empty()) return scores;
   return Status::io(
-      fmt::format("no file of truth pattern '{}' belongs to a frame of this run", truth.text()));
+      fmt::format("no file of truth pattern '{}' belongs to a frame of this run", truth.pattern.text()));
 }
 
 Status SequenceScores::add(std::int64_t frame, SharedPixels pixels) {
@@ -66,7 +69,7 @@ Status SequenceScores::finish() {
 }
 
 Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float>& pixels) {
-  const auto truth = read_truth(truth_.expand(frame), extent_);
+  const auto truth = read_truth(truth_.pattern.expand(frame), truth_.colour_layer, extent_);
   if (!truth.ok()) return truth.status();
   Measured now = {frame, MeasuredPicture(extent_, pixels), MeasuredPicture(extent_, truth.value())};
   const PictureScores scores = measure(now.picture, now.truth);

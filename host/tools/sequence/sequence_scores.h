@@ -18,12 +18,18 @@ namespace quincunx::tools {
 
 using SharedPixels = std::shared_ptr<const std::vector<float>>;  // linear RGBA
 
+// True pictures: linear colour of the output's size, as display windows tell it; nothing (black) beyond a data window.
+struct TruthFiles {
+  FramePattern pattern;
+  std::string colour_layer = {};  // as SequenceInput has it
+};
+
 // Measures on a thread of its own, a frame or two behind who adds them.
 class SequenceScores {
  public:
   // `frames`: those that will be added, ascending. Errors: kIoFailure where none of them has a true picture,
   // or one is damaged or has another size than `extent`.
-  static Result<std::unique_ptr<SequenceScores>> create(const FramePattern& truth, Extent extent,
+  static Result<std::unique_ptr<SequenceScores>> create(const TruthFiles& truth, Extent extent,
                                                         std::span<const std::int64_t> frames);
 
   // In ascending order. Frames without truth cost nothing. Errors: of an earlier frame's truth.
@@ -35,7 +41,7 @@ class SequenceScores {
   double busy_seconds() const { return queue_.busy_seconds(); }
 
  private:
-  SequenceScores(const FramePattern& truth, Extent extent) : truth_(truth), extent_(extent) {}
+  SequenceScores(const TruthFiles& truth, Extent extent) : truth_(truth), extent_(extent) {}
   Status measure_frame(std::int64_t frame, const std::vector<float>& pixels);
 
   struct Measured {
@@ -44,7 +50,7 @@ class SequenceScores {
     MeasuredPicture truth;
   };
 
-  FramePattern truth_;
+  TruthFiles truth_;
   Extent extent_;
   std::vector<std::int64_t> known_;  // frames that have a truth
   std::vector<std::string> files_;   // theirs
