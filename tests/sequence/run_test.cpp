@@ -162,7 +162,7 @@ TEST_F(Run, ConventionsOfMotionAgreeBitForBit) {
     }
   }
   // And motion matters at all.
-  resolve_to("none", "--output 20x10 --jitter quincunx --store float --velocity none");
+  resolve_to("none", "--output 20x10 --jitter quincunx --store float --velocity none --method quincunx");
   EXPECT_NE(channel(output(3, "none"), "R"), channel(output(3, "nuke"), "R"));
 }
 
@@ -217,7 +217,7 @@ TEST_F(Run, JitterOfAFileIsThatOfAttributes) {
   resolve_to("attribute", "--jitter attribute");
   resolve_to("pattern", "--jitter quincunx");
   resolve_to("file", fmt::format("--jitter '{}'", folder_.file("jitter.txt")));
-  resolve_to("none", "--jitter none");
+  resolve_to("none", "--jitter none --method quincunx");
   for (int number = 1; number <= 4; ++number) {
     EXPECT_EQ(channel(output(number, "attribute"), "G"), channel(output(number, "pattern"), "G"));
     EXPECT_EQ(channel(output(number, "attribute"), "G"), channel(output(number, "file"), "G"));
@@ -249,8 +249,8 @@ TEST_F(Run, FarMotionFromTheCameraMovesASky) {
 TEST_F(Run, CameraMotionComesFromDepthAndMatrices) {
   for (const auto& [number, place] : {std::pair{1, 0.0f}, {2, 0.0f}, {3, 2.0f}})
     write_frame(input(number), frame_of_camera(number, place));
-  resolve_to("camera", "--velocity camera");
-  resolve_to("still", "--velocity none");
+  resolve_to("camera", "--velocity camera --method quincunx");
+  resolve_to("still", "--velocity none --method quincunx");
   EXPECT_EQ(channel(output(2, "camera"), "R"), channel(output(2, "still"), "R"));
   EXPECT_NE(channel(output(3, "camera"), "R"), channel(output(3, "still"), "R"));
 }
@@ -405,7 +405,7 @@ TEST_F(Run, MemoryDoesNotGrowWithTheLength) {
     std::filesystem::create_hard_link(input(1), input(number));
   const auto peak = [&](int count) {
     const auto result =
-        resolve(fmt::format("'{}' --out '{}' --output 640x360 --jitter none --frames 1-{} --json",
+        resolve(fmt::format("'{}' --out '{}' --output 640x360 --method quincunx --frames 1-{} --json",
                             folder_.file("f.%04d.exr"), folder_.file("u.%04d.exr"), count));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return nlohmann::json::parse(result.out)["peak_memory_bytes"].get<double>();

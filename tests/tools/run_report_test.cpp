@@ -32,6 +32,10 @@ RunReport example(int frames) {
   const std::uint64_t bytes[] = {10000000, 20000000, 30000000};
   report.passes = {statistics_of("resolve_quincunx", "OpenCL event", samples, bytes)};
   report.left_out = {{"velocity target", "nothing moves"}};
+  report.warnings = {
+      "no jitter is known (--jitter): to temporal:balanced all frames have their samples at the same places, "
+      "and "
+      "together they tell little more than one"};
   for (int i = 0; i < frames; ++i) {
     FrameRow row;
     row.index = i;
@@ -79,6 +83,7 @@ TEST(RunReport, JsonHoldsEveryFrame) {
   EXPECT_EQ(json["passes"][0]["bytes"], 20000000);
   EXPECT_EQ(json["settings"]["jitter"], "on");
   EXPECT_EQ(json["left_out"][0]["why"], "nothing moves");
+  EXPECT_EQ(json["warnings"][0].get<std::string>().rfind("no jitter is known", 0), 0u);
   EXPECT_EQ(json["cl"]["compute_units"], 2);
 }
 

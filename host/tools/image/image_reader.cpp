@@ -31,6 +31,7 @@ ImagePart describe(const OIIO::ImageSpec& spec) {
   part.data = {spec.x, spec.y, {spec.width, spec.height}};
   part.display = {spec.full_x, spec.full_y, {spec.full_width, spec.full_height}};
   part.deep = spec.deep;
+  part.compression = spec.get_string_attribute("compression");
   for (int i = 0; i < spec.nchannels; ++i) {
     const OIIO::TypeDesc type = spec.channelformat(i);
     part.channels.push_back({.name = spec.channelnames[i],

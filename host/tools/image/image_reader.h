@@ -37,6 +37,7 @@ struct ImagePart {
   ImageWindow data;
   ImageWindow display;
   bool deep = false;
+  std::string compression;  // "zip", "dwaa"
   std::vector<HeaderChannel> channels;
 };
 

@@ -22,7 +22,7 @@ std::string complain_beyond_one(const std::string& text) {
 
 }  // namespace
 
-void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
+void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std::string& default_method) {
   static const std::map<std::string, ToneMap> kToneMaps = {
       {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
 
@@ -32,7 +32,8 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings) {
       {"layers", TemporalView::kLayers},       {"coverage", TemporalView::kCoverage},
       {"near", TemporalView::kNear},           {"far", TemporalView::kFar}};
 
-  add_choice(app, "--method", method_choices(), method_list() + " (default: quincunx)",
+  add_choice(app, "--method", method_choices(),
+             fmt::format("{} (default: {})", method_list(), default_method),
              [&settings](const MethodChoice& choice) { choose(settings, choice); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
                  "K of quincunx:velocity and :point: how fast motion takes the previous frame away")

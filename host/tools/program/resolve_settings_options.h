@@ -11,8 +11,9 @@ namespace quincunx::tools {
 class CommandLine;
 
 // --method with its forms and settings, --tone-map, --no-dither. `settings` must outlive the parsing and
-// holds the defaults.
-void add_resolve_options(CommandLine& app, ResolveSettings& settings);
+// holds the defaults. `default_method`: what --help says of the method's.
+void add_resolve_options(CommandLine& app, ResolveSettings& settings,
+                         const std::string& default_method = "quincunx");
 
 // What these options come to, as far as linear pixels depend on it: "quincunx:velocity, velocity weight 1".
 std::string resolve_settings_text(const ResolveSettings& settings);

@@ -140,6 +140,31 @@ void add_scores(std::string& text, const std::vector<ScoreRow>& rows) {
   add_score(text, "mean", mean_of(rows));
 }
 
+void add_list(std::string& text, const std::string& heading, const std::vector<std::string>& lines) {
+  if (lines.empty()) return;
+  add_heading(text, heading);
+  for (const std::string& line : lines)
+    text += fmt::format("  {}\n", line);
+}
+
+// Sentences, each from a line's beginning, broken at spaces.
+void add_sentences(std::string& text, const std::string& heading, const std::vector<std::string>& sentences) {
+  constexpr std::size_t kColumns = 96;
+  std::vector<std::string> lines;
+  for (std::string rest : sentences) {
+    std::string indent;
+    while (indent.size() + rest.size() > kColumns) {
+      const std::size_t space = rest.rfind(' ', kColumns - indent.size());
+      if (space == std::string::npos) break;
+      lines.push_back(indent + rest.substr(0, space));
+      rest.erase(0, space + 1);
+      indent = "  ";
+    }
+    lines.push_back(indent + rest);
+  }
+  add_list(text, heading, lines);
+}
+
 }  // namespace
 
 ScoreRow mean_of(std::span<const ScoreRow> rows) {
@@ -190,6 +215,7 @@ PassStatistics statistics_of(std::string name, std::string clock, std::span<cons
 std::string to_text(const RunReport& report) {
   std::string text = fmt::format("{} {}: run report\n\n", report.program, report.version);
   add_run(text, report);
+  add_sentences(text, "Warnings", report.warnings);
   add_devices(text, report);
   add_statistics(text, "OpenCL passes", report.passes);
   add_statistics(text, "Around them", report.steps);
@@ -202,11 +228,7 @@ std::string to_text(const RunReport& report) {
     for (const LeftOut& item : report.left_out)
       text += fmt::format("  {}: {}\n", item.what, item.why);
   }
-  if (!report.files.empty()) {
-    add_heading(text, "Files");
-    for (const std::string& file : report.files)
-      text += fmt::format("  {}\n", file);
-  }
+  add_list(text, "Files", report.files);
   return text;
 }
 

@@ -98,11 +98,12 @@ struct RunReport {
   std::vector<PassStatistics> passes;  // on the OpenCL device
   std::vector<PassStatistics> steps;   // around them: GL draw, hand over, present, file writing
   std::vector<FrameRow> frames;
-  std::vector<PacingRun> pacing;   // this run against a display, then those it is compared with; or none
-  std::vector<BusyTime> busy;      // kinds of work that overlap
-  std::vector<ScoreRow> scores;    // where there is a truth
-  std::vector<LeftOut> left_out;   // of the plan
-  std::vector<std::string> files;  // what was written, for the reader
+  std::vector<PacingRun> pacing;      // this run against a display, then those it is compared with; or none
+  std::vector<BusyTime> busy;         // kinds of work that overlap
+  std::vector<ScoreRow> scores;       // where there is a truth
+  std::vector<LeftOut> left_out;      // of the plan
+  std::vector<std::string> warnings;  // sentences: what the picture suffers from, and what would be better
+  std::vector<std::string> files;     // what was written, for the reader
   double wall_seconds = -1;
   std::int64_t peak_memory_bytes = -1;  // of the process
 };

@@ -156,6 +156,7 @@ std::string to_json(const RunReport& report) {
       {"busy_seconds", busy},
       {"scores", scores_json(report.scores)},
       {"left_out", left_out},
+      {"warnings", report.warnings},
       {"files", report.files},
       {"wall_seconds", known(report.wall_seconds)},
       {"peak_memory_bytes", known(report.peak_memory_bytes)},

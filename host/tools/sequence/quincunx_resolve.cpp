@@ -9,9 +9,11 @@
 #include <exception>
 
 #include "tools/image/image_reader.h"
+#include "tools/program/method_names.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
 #include "tools/sequence/frame_numbers.h"
+#include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/resolve_report.h"
 
 namespace quincunx::tools {
@@ -45,11 +47,11 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
     spdlog::warn("{} frames are there, but made otherwise; they are made again: {}", task.stale.size(),
                  frame_numbers_text(task.stale));
   }
-  if (task.plan.keeps_previous_frame() && task.plan.velocity == VelocitySource::kNone) {
-    spdlog::warn("no motion is known (--velocity): frames are taken together as if nothing moved");
-  }
-  if (options.resolve.blur.shutter > 0 && !task.plan.blurs())
-    spdlog::warn("no motion is known (--velocity): nothing is blurred");
+  if (!task.method_reason.empty())
+    spdlog::info("method {}: {} (--method takes another)", method_name(task.plan.settings),
+                 task.method_reason);
+  for (const std::string& warning : advice_on(task))
+    spdlog::warn("{}", warning);
   if (options.warm_up.value_or(0) > 0 && task.scan.frames.front().wanted) {
     spdlog::info("the sequence begins with frame {}: it has no history", task.scan.frames.front().number);
   }

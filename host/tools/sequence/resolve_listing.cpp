@@ -6,7 +6,7 @@
 
 #include "tools/program/method_names.h"
 #include "tools/sequence/frame_numbers.h"
-#include "tools/sequence/resolve_task.h"
+#include "tools/sequence/resolve_advice.h"
 
 namespace quincunx::tools {
 namespace {
@@ -60,7 +60,8 @@ std::string listing_text(const ResolveTask& task, bool verbose) {
   std::string text = line("Input", task.input.text());
   text += line("", summary_of(task.format));
   text += line("Output", task.output ? task.output->pattern.text() : "none: frames are only scored");
-  text += line("", fmt::format("{}, {}", size_text(task.format.output), method_name(task.plan.settings)));
+  text += line("", fmt::format("{}, {}{}", size_text(task.format.output), method_name(task.plan.settings),
+                               task.method_reason.empty() ? "" : fmt::format(" ({})", task.method_reason)));
   if (!task.there.empty()) text += line("There", counted(task.there));
   text += line("Make", counted(scan.wanted()));
   if (!task.stale.empty())
@@ -71,6 +72,8 @@ std::string listing_text(const ResolveTask& task, bool verbose) {
   if (const Extent target = scan.target(); target != Extent{})
     text += line(
         "", fmt::format("at most {}, {} colour", size_text(target), scan.half_colour() ? "half" : "float"));
+  for (const std::string& warning : advice_on(task))
+    text += line("Warning", warning);
   if (verbose) add_files(text, task);
   const std::vector<std::string> problems = problems_of(scan);
   text += line("Missing", problems.empty() ? "nothing" : counted(scan.bad()));
@@ -89,6 +92,8 @@ std::string listing_json(const ResolveTask& task) {
       {"output_size", {task.format.output.width, task.format.output.height}},
       {"largest_render_size", {target.width, target.height}},
       {"method", method_name(task.plan.settings)},
+      {"method_reason", task.method_reason},
+      {"warnings", advice_on(task)},
       {"there", task.there},
       {"make", scan.wanted()},
       {"read", read_frames(scan)},

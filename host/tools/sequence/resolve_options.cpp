@@ -139,7 +139,7 @@ void add_picture_options(CommandLine& app, ResolveOptions& options) {
          },
          "Size of the picture (default: attribute quincunx:outputSize)")
       .type_name("WxH");
-  add_resolve_options(app, options.resolve);
+  add_resolve_options(app, options.resolve, "what the frames offer decides");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour in a PNG (default: 1)").positive();
   add_choice(app, "--store", options.stored, kTypes, "half (default) or float in an EXR");
   app.add_option("--truth", options.truth, "True pictures to score the frames against, where there are any")
@@ -203,7 +203,10 @@ std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& opt
   add_channel_options(app, options);
   add_run_options(app, options);
   options.command_line = command_line_text("quincunx-resolve", argc, argv);
-  return app.parse(argc, argv, [&options] { check_needs(options); });
+  return app.parse(argc, argv, [&app, &options] {
+    options.method_named = app.has("--method");
+    check_needs(options);
+  });
 }
 
 }  // namespace quincunx::tools

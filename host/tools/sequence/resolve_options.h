@@ -14,11 +14,12 @@
 namespace quincunx::tools {
 
 struct ResolveOptions {
-  std::string input;        // pattern
-  std::string out;          // pattern; may be empty with --dry-run, --explain and --truth
-  SequenceInput sequence;   // how the frames are to be understood, but for the jitter
-  std::string jitter;       // as JitterSource::parse() takes it
-  ResolveSettings resolve;  // sizes and formats follow from the frames
+  std::string input;          // pattern
+  std::string out;            // pattern; may be empty with --dry-run, --explain and --truth
+  SequenceInput sequence;     // how the frames are to be understood, but for the jitter
+  std::string jitter;         // as JitterSource::parse() takes it
+  ResolveSettings resolve;    // sizes and formats follow from the frames
+  bool method_named = false;  // else it follows from the frames, too
   ChannelType stored = ChannelType::kHalf;
   float exposure = 0;
   std::string truth;         // pattern; empty: none

@@ -7,6 +7,7 @@
 #include "tools/program/method_names.h"
 #include "tools/program/pass_statistics.h"
 #include "tools/sequence/frame_numbers.h"
+#include "tools/sequence/resolve_advice.h"
 
 namespace quincunx::tools {
 namespace {
@@ -32,6 +33,7 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
                      {"read as", summary_of(task.format)},
                      {"frames", frame_numbers_text(outcome.resolved)},
                      {"threads", fmt::format("{}", options.threads)}};
+  if (!task.method_reason.empty()) report.settings.emplace_back("method chosen", task.method_reason);
   if (!task.there.empty()) report.settings.emplace_back("there", frame_numbers_text(task.there));
   if (!outcome.skipped.empty()) report.settings.emplace_back("skipped", frame_numbers_text(outcome.skipped));
   report.cl = {device.platform, device.name, device.driver, device.version, device.compute_units};
@@ -43,6 +45,8 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
   add_measured(report.frames, outcome.reports);
   report.scores.assign(scores.begin(), scores.end());
   report.left_out = task.plan.left_out;
+  report.warnings = advice_on(task);
+  report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   if (task.output && !outcome.resolved.empty()) {
     report.files = {task.output->path(outcome.resolved.front())};
     if (outcome.resolved.size() > 1) report.files.push_back(task.output->path(outcome.resolved.back()));

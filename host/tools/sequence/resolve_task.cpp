@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tools/program/method_names.h"
 #include "tools/program/resolve_settings_options.h"
+#include "tools/sequence/sequence_method.h"
 
 namespace quincunx::tools {
 namespace {
@@ -54,9 +56,17 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
   return first_error;
 }
 
-ResolveSettings settings_for(const ResolveOptions& options, const ResolveTask& task, Extent target,
-                             bool half_colour) {
-  ResolveSettings settings = options.resolve;
+void settle_method(const ResolveOptions& options, ResolveTask& task) {
+  task.resolve = options.resolve;
+  if (options.method_named) return;
+  const JitterKind jitter = kind_of(jitters_about(task.input, task.format, task.asked.front()));
+  const MethodDefault suited = default_method(task.format, jitter, task.resolve.far);
+  choose(task.resolve, method_choices().at(suited.name));
+  task.method_reason = suited.why;
+}
+
+ResolveSettings settings_for(const ResolveTask& task, Extent target, bool half_colour) {
+  ResolveSettings settings = task.resolve;
   settings.output = task.format.output;
   settings.target = target;
   settings.colour = half_colour ? PixelFormat::kRGBA16F : PixelFormat::kRGBA32F;
@@ -74,7 +84,7 @@ Result<std::optional<SequenceOutput>> output_for(const ResolveOptions& options, 
   if (!pattern.ok()) return pattern.status();
   SequenceOutput output = {
       .pattern = pattern.value(), .extent = task.format.output, .stored = options.stored};
-  output.settings = fmt::format("{}; output {}x{}; stored as {}", resolve_settings_text(options.resolve),
+  output.settings = fmt::format("{}; output {}x{}; stored as {}", resolve_settings_text(task.resolve),
                                 task.format.output.width, task.format.output.height,
                                 options.stored == ChannelType::kHalf ? "half" : "float");
   return std::optional(std::move(output));
@@ -110,8 +120,8 @@ std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTa
   return read;
 }
 
-Status settle_plan(const ResolveOptions& options, ResolveTask& task, Extent target, bool half_colour) {
-  auto plan = plan_for(needs_of(task.format), settings_for(options, task, target, half_colour));
+Status settle_plan(ResolveTask& task, Extent target, bool half_colour) {
+  auto plan = plan_for(needs_of(task.format), settings_for(task, target, half_colour));
   if (!plan.ok()) return plan.status();
   task.plan = std::move(plan).value();
   return {};
@@ -162,12 +172,13 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   auto format = settle_by_first(options, task, sequence);
   if (!format.ok()) return format.status();
   task.format = std::move(format).value();
+  settle_method(options, task);
   auto output = output_for(options, task);
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();
 
   // Which channels are read follows from a plan of any size.
-  if (Status status = settle_plan(options, task, task.format.output, true); !status.ok()) return status;
+  if (Status status = settle_plan(task, task.format.output, true); !status.ok()) return status;
   if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
   const int history = history_of(task.plan);
   if (task.output) {
@@ -179,8 +190,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
   task.format.background = task.scan.background();
   if (const Extent target = task.scan.target(); target != Extent{}) {
-    if (Status status = settle_plan(options, task, target, task.scan.half_colour()); !status.ok())
-      return status;
+    if (Status status = settle_plan(task, target, task.scan.half_colour()); !status.ok()) return status;
   }
   return task;
 }

@@ -21,6 +21,8 @@ struct ResolveTask {
   std::vector<std::int64_t> there = {};  // of them, by --resume
   std::vector<std::int64_t> stale = {};  // by --resume, too: there, but made otherwise; made again
   SequenceScan scan = {};                // of the rest and their history
+  ResolveSettings resolve = {};          // as asked for, with the method settled
+  std::string method_reason = {};        // why this one; empty: it was asked for
   ResolvePlan plan = {};                 // for the largest frame
   std::optional<SequenceOutput> output = {};
   std::optional<TruthFiles> truth = {};

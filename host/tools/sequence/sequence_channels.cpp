@@ -69,11 +69,13 @@ class Search {
   }
 
   const std::optional<ImageWindow>& display() const { return display_; }
+  bool dwa() const { return dwa_; }
   const Status& status() const { return status_; }
 
  private:
   void check(const std::string& name, ChannelPlace place) {
     const ImagePart& part = header_.parts[place.part];
+    dwa_ |= part.compression.starts_with("dwa");
     if (part.deep) {
       complain(fmt::format("holds deep pixels in channel '{}'; flat ones are needed", name));
     } else if (header_.at(place).integer) {
@@ -92,6 +94,7 @@ class Search {
   const std::string& path_;
   const ImageHeader& header_;
   std::optional<ImageWindow> display_;
+  bool dwa_ = false;
   Status status_;
 };
 
@@ -133,6 +136,7 @@ Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& 
   if (names.has_reactive()) places.reactive = search.find(names.reactive);
   if (!search.status().ok()) return search.status();
   places.display = *search.display();
+  places.dwa = search.dwa();
   places.background = !places.colour[3];
   for (const auto& place : places.colour)
     places.background &= !place || !leaves_pixels_open(header.parts[place->part]);

@@ -43,6 +43,7 @@ struct ChannelPlaces {
   ImageWindow display;  // of the parts in use
   bool half_colour = true;
   bool background = true;  // colour covers the display window, and there is no alpha
+  bool dwa = false;        // some of the channels are compressed with loss, by what their names end in
 };
 
 // Whether pixels of the display window lie outside the data window.

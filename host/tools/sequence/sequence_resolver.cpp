@@ -27,6 +27,7 @@ SequenceResolver::SequenceResolver(const Device& device, ResolveService service,
     : device_(device),
       service_(std::move(service)),
       job_(std::move(job)),
+      watch_(service_.plan(), job_.format.near_plane),
       writers_(writing_threads(job_.threads), 1) {}
 
 Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device& device,
@@ -102,6 +103,10 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
   // A frame that turned out bad while it was read may be missing here, too.
   inputs.reset = scanned.reset || last_ + 1 != frame.number;
   inputs.frame_index = static_cast<std::uint64_t>(frame.number);
+  for (std::string& warning : watch_.see(frame, inputs.reset)) {
+    spdlog::warn("{}", warning);
+    outcome_.warnings.push_back(std::move(warning));
+  }
   if (Status status = camera_of(frame, inputs); !status.ok()) return status;
   FrameReport report =
       service_.dispatch(inputs, outputs_for(service_.plan(), linear_.view(), presented_.view()));

@@ -20,6 +20,7 @@
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_reader.h"
 #include "tools/sequence/sequence_scores.h"
+#include "tools/sequence/sequence_watch.h"
 
 namespace quincunx::tools {
 
@@ -43,6 +44,7 @@ struct SequenceOutcome {
   std::vector<FrameReport> reports;    // of all that were dispatched, as far as they are known
   std::vector<double> upload_ms, resolve_ms;
   std::vector<BusyTime> busy;
+  std::vector<std::string> warnings;  // of what showed in the pixels
   double wall_seconds = 0;
 };
 
@@ -89,6 +91,7 @@ class SequenceResolver {
   Image presented_;
   std::int64_t last_ = -1;  // the frame that was resolved before; -1: none
   std::optional<Matrix> last_world_to_ndc_;
+  SequenceWatch watch_;
   std::int64_t count_ = 0;  // dispatched
   std::chrono::steady_clock::time_point last_delivery_;
   SequenceOutcome outcome_;

@@ -51,6 +51,9 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.render = places->display.extent;
   frame.half_colour = places->half_colour;
   frame.background = places->background;
+  frame.dwa = places->dwa;
+  frame.has_matrix = attributes->world_to_ndc.has_value();
+  frame.output = attributes->output;
   frame.reset = attributes->reset;
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
   if (Status status = check_blocks(path); !status.ok()) return status;
@@ -59,9 +62,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
         fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,
                     format.motion == MotionSource::kCamera ? "--velocity camera" : "--far camera"));
   }
-  const Vec2 ratio = {static_cast<float>(frame.render.width) / static_cast<float>(format.output.width),
-                      static_cast<float>(frame.render.height) / static_cast<float>(format.output.height)};
-  const auto jitter = format.jitter.at(path, frame.number, attributes.value(), ratio);
+  const auto jitter = format.jitter.at(path, frame.number, attributes.value(), format.ratio_of(frame.render));
   if (!jitter.ok()) return jitter.status();
   frame.jitter = jitter.value();
   return {};

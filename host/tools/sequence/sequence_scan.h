@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,7 +19,10 @@ struct ScannedFrame {
   bool wanted = false;  // else read as history only
   Extent render = {};
   bool half_colour = true;
-  bool background = true;  // as ChannelPlaces has it
+  bool background = true;             // as ChannelPlaces has it
+  bool dwa = false;                   // as ChannelPlaces has it
+  bool has_matrix = false;            // the attribute worldToNDC
+  std::optional<Extent> output = {};  // the attribute outputSize
   Vec2 jitter = {};
   bool reset = false;        // nothing of the frame before may be used: a cut, or it is not there
   std::string problem = {};  // empty: none; else one sentence that names the file

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/resolve_advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/program/method_names.h"
+#include "tools/sequence/sequence_method.h"
+
+namespace quincunx::tools {
+namespace {
+
+// Pixels of a frame by which its sides may be off, as they are integers.
+constexpr double kRounding = 1.5;
+
+std::string on_motion(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+  if (task.plan.velocity != VelocitySource::kNone) return {};
+  const bool camera =
+      std::all_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.has_matrix; });
+  const std::string remedy =
+      camera ? "--velocity, or --velocity camera if only the camera moves" : "--velocity";
+  if (task.plan.keeps_previous_frame())
+    return fmt::format("no motion is known ({}): frames are taken together as if nothing moved", remedy);
+  if (task.plan.settings.blur.shutter > 0)
+    return fmt::format("no motion is known ({}): nothing is blurred", remedy);
+  return {};
+}
+
+std::string on_jitter(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+  const bool reads_history = std::any_of(frames.begin(), frames.end(), [&](const ScannedFrame& frame) {
+    return !frame.reset && task.plan.reads_history(frame.render);
+  });
+  if (!reads_history) return {};
+  std::vector<Vec2> jitters;
+  for (const ScannedFrame& frame : frames)
+    jitters.push_back(frame.jitter);
+  const std::string method = method_name(task.plan.settings);
+  const JitterKind kind = kind_of(jitters);
+  if (kind == JitterKind::kNone) {
+    return fmt::format(
+        "no jitter is known (--jitter): to {} all frames have their samples at the same places, and "
+        "together they tell little more than one",
+        method);
+  }
+  if (task.plan.accumulates()) {
+    if (kind == JitterKind::kMany || frames.size() < 4) return {};
+    return fmt::format(
+        "the jitter has but two or three places, which {} has soon seen; render with one of many, as "
+        "halton",
+        method);
+  }
+  if (alternates(jitters)) return {};
+  return fmt::format(
+      "the jitter of most frames is not half a pixel from that of the frame before, as {} wants it; "
+      "render with that of quincunx, or say --method temporal",
+      method);
+}
+
+std::string on_compression(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+  const auto lossy = std::find_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.dwa; });
+  if (lossy == frames.end()) return {};
+  const bool data = task.format.channels.has_velocity() || task.format.channels.has_depth();
+  return fmt::format("'{}' is compressed with DWA, which loses something of colour{}; render with ZIP",
+                     task.input.expand(lossy->number),
+                     data ? ", and of motion and depth whose channels end in the letters of colour" : "");
+}
+
+// Sizes that nobody planned: not those that the frames ask for.
+std::vector<ScannedFrame> sized_by_hand(const ResolveTask& task, std::vector<ScannedFrame> frames) {
+  std::erase_if(frames, [&](const ScannedFrame& frame) { return frame.output == task.format.output; });
+  return frames;
+}
+
+std::string on_shape(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+  const Extent output = task.format.output;
+  const double shape = static_cast<double>(output.width) / output.height;
+  for (const ScannedFrame& frame : sized_by_hand(task, frames)) {
+    const double width = frame.render.width, height = frame.render.height;
+    if (std::abs(width - height * shape) <= kRounding || std::abs(height - width / shape) <= kRounding)
+      continue;
+    return fmt::format(
+        "frame {} is {}x{} pixels and the output {}x{}: the picture is stretched; {}x{} would keep its "
+        "shape",
+        frame.number, frame.render.width, frame.render.height, output.width, output.height, output.width,
+        std::max(std::lround(output.width * height / width), 1L));
+  }
+  return {};
+}
+
+std::string on_size(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+  const Extent output = task.format.output;
+  for (const ScannedFrame& frame : sized_by_hand(task, frames)) {
+    if (frame.render.width <= output.width && frame.render.height <= output.height) continue;
+    return fmt::format("the output, {}x{}, is smaller than frame {}, {}x{}: pixels are thrown away",
+                       output.width, output.height, frame.number, frame.render.width, frame.render.height);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<std::string> advice_on(const ResolveTask& task) {
+  std::vector<ScannedFrame> frames = task.scan.frames;
+  std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
+  if (frames.empty()) return {};
+  std::vector<std::string> advice = {on_motion(task, frames), on_jitter(task, frames),
+                                     on_compression(task, frames), on_shape(task, frames),
+                                     on_size(task, frames)};
+  std::erase(advice, "");
+  return advice;
+}
+
+}  // namespace quincunx::tools

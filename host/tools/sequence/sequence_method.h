@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Sequence method: which method suits a sequence, from what its frames offer. Thread-safe.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/sequence/frame_pattern.h"
+#include "tools/sequence/sequence_input.h"
+
+namespace quincunx::tools {
+
+// What the jitters of consecutive frames amount to. Places are apart that differ by more than 1/100 pixel.
+enum class JitterKind : std::uint8_t {
+  kNone,  // all at one place, one frame alone at the pixels' centres
+  kFew,   // two or three places in turn
+  kMany,  // as temporal wants it
+};
+JitterKind kind_of(std::span<const Vec2> jitters);
+
+// Whether the samples of most frames lie half a pixel, up to 0.15, from those of the frame before in x and in y, as the
+// two-frame method wants it. False for fewer than two frames.
+bool alternates(std::span<const Vec2> jitters);
+
+// Of the frames about `number`, half a dozen before and after it, ascending; those that cannot be read are left out. So
+// chunks of one sequence come to the same kind.
+std::vector<Vec2> jitters_about(const FramePattern& pattern, const SequenceFormat& format,
+                                std::int64_t number);
+
+struct MethodDefault {
+  std::string name;  // of method_choices()
+  std::string why;   // "motion, depth and a jitter are known"
+};
+
+// What is taken where nobody names a method. A camera's motion and `far` are made from depth: where it is missing that
+// is for the plan to refuse, not to be passed over.
+MethodDefault default_method(const SequenceFormat& format, JitterKind jitter, FarMotion far);
+
+}  // namespace quincunx::tools
