@@ -19,7 +19,10 @@ run_packages=(
 test_packages=(clang clang-format python3 chromium
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
 )
-optional_test_packages=(oclgrind)        # memory checks of kernels; Debian 13 has it no more
+optional_test_packages=(
+  oclgrind                               # memory checks of kernels; Debian 13 has it no more
+  slurm-wlm munge                        # a render farm of one node
+)
 
 say() { printf '%s\n' "$*"; }
 fail() {
