@@ -155,6 +155,36 @@ TEST_F(Advice, DwaIsNamedWithWhatItLoses) {
   }
 }
 
+// What the files say of alpha, of their data windows and of the camera, as the run understands it.
+TEST_F(Advice, TheListingSaysWhatTheFramesAre) {
+  const auto expect_said = [&](const testing::ExrPart& part, const std::string& what) {
+    testing::write_exr_parts(input(1), {part});
+    const auto result = resolve("'{}/f.%04d.exr' -n --output 24x14");
+    EXPECT_NE(result.out.find("at most 24x14, half colour, " + what + "\n"), std::string::npos) << result.out;
+  };
+  testing::ExrPart part = testing::simple_part({24, 14}, {"R", "G", "B"}, std::vector<float>(24 * 14 * 3));
+  expect_said(part, "opaque, camera not known");
+  part.data = {-1, -2, {26, 18}};  // overscan
+  part.pixels.resize(26 * 18 * 3);
+  expect_said(part, "opaque, camera not known");
+  part.data = {1, 0, {24, 14}};  // which leaves the left column open
+  expect_said(part, "with alpha, camera not known");
+  part.data = part.display;
+  part.channels.emplace_back("A");
+  part.types.push_back(OIIO::TypeHalf);
+  part.pixels.resize(24 * 14 * 4);
+  expect_said(part, "with alpha, camera not known");
+  testing::FrameFile file = frame(1);
+  file.attributes.push_back({"worldToNDC", tools::Matrix{}});
+  write_frame(input(1), file);
+  const auto said = listing("");
+  EXPECT_EQ(said["opaque"], false);
+  EXPECT_EQ(said["camera_known"], true);
+  const auto result = resolve("'{}/f.%04d.exr' --out '{}/u.%04d.exr' --json");
+  EXPECT_EQ(nlohmann::json::parse(result.out)["settings"]["frames are"],
+            "at most 24x14, half colour, with alpha, camera known");
+}
+
 TEST_F(Advice, SizesThatNobodyPlannedAreNamed) {
   write(Has::kNothing, tools::Jitter::kNone, 1);  // 24x14
   EXPECT_TRUE(warnings("").empty());              // 34x20, as the frames ask

@@ -15,12 +15,10 @@ namespace {
 // Pixels of a frame by which its sides may be off, as they are integers.
 constexpr double kRounding = 1.5;
 
-std::string on_motion(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
+std::string on_motion(const ResolveTask& task) {
   if (task.plan.velocity != VelocitySource::kNone) return {};
-  const bool camera =
-      std::all_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.has_matrix; });
   const std::string remedy =
-      camera ? "--velocity, or --velocity camera if only the camera moves" : "--velocity";
+      task.scan.has_matrices() ? "--velocity, or --velocity camera if only the camera moves" : "--velocity";
   if (task.plan.keeps_previous_frame())
     return fmt::format("no motion is known ({}): frames are taken together as if nothing moved", remedy);
   if (task.plan.settings.blur.shutter > 0)
@@ -105,9 +103,8 @@ std::vector<std::string> advice_on(const ResolveTask& task) {
   std::vector<ScannedFrame> frames = task.scan.frames;
   std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
   if (frames.empty()) return {};
-  std::vector<std::string> advice = {on_motion(task, frames), on_jitter(task, frames),
-                                     on_compression(task, frames), on_shape(task, frames),
-                                     on_size(task, frames)};
+  std::vector<std::string> advice = {on_motion(task), on_jitter(task, frames), on_compression(task, frames),
+                                     on_shape(task, frames), on_size(task, frames)};
   std::erase(advice, "");
   return advice;
 }

@@ -52,6 +52,12 @@ void add_files(std::string& text, const ResolveTask& task) {
 
 }  // namespace
 
+std::string summary_of(const SequenceScan& scan) {
+  return fmt::format("at most {}, {} colour, {}, {}", size_text(scan.target()),
+                     scan.half_colour() ? "half" : "float", scan.background() ? "opaque" : "with alpha",
+                     scan.has_matrices() ? "camera known" : "camera not known");
+}
+
 std::string listing_text(const ResolveTask& task, bool verbose) {
   const SequenceScan& scan = task.scan;
   const auto line = [](const char* what, const std::string& value) {
@@ -69,9 +75,7 @@ std::string listing_text(const ResolveTask& task, bool verbose) {
   text += line("Read", counted(read_frames(scan)));
   if (const Frames history = scan.history(); !history.empty())
     text += line("", fmt::format("{} (only as history)", counted(history)));
-  if (const Extent target = scan.target(); target != Extent{})
-    text += line(
-        "", fmt::format("at most {}, {} colour", size_text(target), scan.half_colour() ? "half" : "float"));
+  if (scan.target() != Extent{}) text += line("", summary_of(scan));
   for (const std::string& warning : advice_on(task))
     text += line("Warning", warning);
   if (verbose) add_files(text, task);
@@ -91,6 +95,8 @@ std::string listing_json(const ResolveTask& task) {
       {"output", task.output ? Json(task.output->pattern.text()) : Json(nullptr)},
       {"output_size", {task.format.output.width, task.format.output.height}},
       {"largest_render_size", {target.width, target.height}},
+      {"opaque", scan.background()},
+      {"camera_known", scan.has_matrices()},
       {"method", method_name(task.plan.settings)},
       {"method_reason", task.method_reason},
       {"warnings", advice_on(task)},

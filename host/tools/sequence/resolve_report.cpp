@@ -33,6 +33,7 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
                      {"read as", summary_of(task.format)},
                      {"frames", frame_numbers_text(outcome.resolved)},
                      {"threads", fmt::format("{}", options.threads)}};
+  if (!outcome.resolved.empty()) report.settings.emplace_back("frames are", summary_of(task.scan));
   if (!task.method_reason.empty()) report.settings.emplace_back("method chosen", task.method_reason);
   if (!task.there.empty()) report.settings.emplace_back("there", frame_numbers_text(task.there));
   if (!outcome.skipped.empty()) report.settings.emplace_back("skipped", frame_numbers_text(outcome.skipped));

@@ -36,6 +36,9 @@ struct ResolveTask {
 // have said otherwise, kIoFailure where the first frame cannot be used.
 Result<ResolveTask> prepare(const ResolveOptions& options);
 
+// What the good frames are, of which there must be one: "at most 454x255, half colour, with alpha, camera known".
+std::string summary_of(const SequenceScan& scan);
+
 // What --dry-run prints: text for a person, listing every file where `verbose`, or JSON.
 std::string listing_text(const ResolveTask& task, bool verbose);
 std::string listing_json(const ResolveTask& task);

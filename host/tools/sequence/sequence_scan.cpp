@@ -77,6 +77,11 @@ std::vector<std::int64_t> numbers_of(const std::vector<ScannedFrame>& frames, Ke
   return numbers;
 }
 
+bool all_good(const std::vector<ScannedFrame>& frames, bool ScannedFrame::*fact) {
+  return std::all_of(frames.begin(), frames.end(),
+                     [&](const ScannedFrame& frame) { return frame.*fact || !frame.problem.empty(); });
+}
+
 }  // namespace
 
 std::vector<std::int64_t> SequenceScan::wanted() const {
@@ -102,13 +107,15 @@ Extent SequenceScan::target() const {
 }
 
 bool SequenceScan::half_colour() const {
-  return std::all_of(frames.begin(), frames.end(),
-                     [](const ScannedFrame& frame) { return frame.half_colour || !frame.problem.empty(); });
+  return all_good(frames, &ScannedFrame::half_colour);
 }
 
 bool SequenceScan::background() const {
-  return std::all_of(frames.begin(), frames.end(),
-                     [](const ScannedFrame& frame) { return frame.background || !frame.problem.empty(); });
+  return all_good(frames, &ScannedFrame::background);
+}
+
+bool SequenceScan::has_matrices() const {
+  return all_good(frames, &ScannedFrame::has_matrix);
 }
 
 Status SequenceScan::problem() const {

@@ -34,10 +34,11 @@ struct SequenceScan {
   std::vector<std::int64_t> wanted() const;   // good or not
   std::vector<std::int64_t> history() const;  // read, but not wanted
   std::vector<std::int64_t> bad() const;
-  Extent target() const;     // holds the largest good frame; empty: there is none
-  bool half_colour() const;  // of all good frames
-  bool background() const;   // of all good frames
-  Status problem() const;    // kIoFailure: the first one and how many more; ok: none
+  Extent target() const;      // holds the largest good frame; empty: there is none
+  bool half_colour() const;   // of all good frames
+  bool background() const;    // of all good frames
+  bool has_matrices() const;  // all good frames know worldToNDC
+  Status problem() const;     // kIoFailure: the first one and how many more; ok: none
 };
 
 // What is asked for when no frames are named: from the first file of the pattern to the last, without gap.
