@@ -10,8 +10,8 @@
 #include "programs/render_options.h"
 #include "programs/render_session.h"
 #include "programs/truth_run.h"
+#include "tools/page/report_page.h"
 #include "tools/program/program.h"
-#include "tools/program/run_report.h"
 #include "window/window_run.h"
 
 namespace quincunx::scenes {

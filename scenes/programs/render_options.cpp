@@ -40,7 +40,7 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
       .non_negative()
       .type_name("N");
   app.add_option("--report", options.report,
-                 "Write BASE.txt and BASE.json: passes, bytes, viewports, devices")
+                 "Write BASE.html, .txt and .json: passes, bytes, viewports, devices")
       .type_name("BASE");
   app.add_flag("!--no-overlap", options.overlap,
                "Finish each frame before the next: slower, cleaner pass times");

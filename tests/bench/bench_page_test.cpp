@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bench/page_fixture.h"
 #include "bench/sample_result.h"
+#include "page_fixture.h"
 #include "skip.h"
 #include "tools/image/image_io.h"
 

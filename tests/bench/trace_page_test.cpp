@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/page_fixture.h"
+#include "page_fixture.h"
 #include "skip.h"
 
 namespace quincunx::traces {

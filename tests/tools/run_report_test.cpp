@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/program/run_report.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "temporary_folder.h"
 #include "tools/program/report_graph.h"
 
 namespace quincunx::tools {
@@ -115,14 +116,6 @@ TEST(RunReport, TextShowsFirstAndLastFrame) {
   const std::string text = to_text(example(240));
   EXPECT_NE(text.find("640x360"), std::string::npos);
   EXPECT_NE(text.find("1118x599"), std::string::npos);
-}
-
-TEST(RunReport, WritesBothFiles) {
-  const testing::TemporaryFolder folder;
-  ASSERT_TRUE(write_report(folder.file("report"), example(3)).ok());
-  EXPECT_TRUE(std::filesystem::exists(folder.file("report.txt")));
-  EXPECT_TRUE(std::filesystem::exists(folder.file("report.json")));
-  EXPECT_EQ(folder.entries(), 2);
 }
 
 TEST(RatioGraph, DrawsARampAndALevel) {

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "tools/program/atomic_file.h"
 #include "tools/program/report_graph.h"
 
 namespace quincunx::tools {
@@ -230,11 +229,6 @@ std::string to_text(const RunReport& report) {
   }
   add_list(text, "Files", report.files);
   return text;
-}
-
-Status write_report(const std::string& base, const RunReport& report) {
-  if (Status status = write_text(base + ".txt", to_text(report)); !status.ok()) return status;
-  return write_text(base + ".json", to_json(report));
 }
 
 }  // namespace quincunx::tools

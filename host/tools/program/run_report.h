@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// RunReport: what a run did and what it cost, as one page of text and as JSON.
+// RunReport: what a run did and what it cost, as one page of text and as JSON (and to look at: page/report_page.h).
 //
 // Plain data that a program fills; an empty string or a negative number means "not known" and is left out of
 // the text and null in the JSON. No device is needed to make one.
@@ -114,8 +114,5 @@ std::string to_text(const RunReport& report);
 
 // Everything, each frame on its own row of "frames".
 std::string to_json(const RunReport& report);
-
-// Writes `base`.txt and `base`.json. Errors: kIoFailure.
-Status write_report(const std::string& base, const RunReport& report);
 
 }  // namespace quincunx::tools

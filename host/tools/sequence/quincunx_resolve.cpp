@@ -9,6 +9,7 @@
 #include <exception>
 
 #include "tools/image/image_reader.h"
+#include "tools/page/report_page.h"
 #include "tools/program/method_names.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"

@@ -4,9 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "bench/page/page_template.h"
+#include "bench/page/bench_files.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
+#include "tools/page/page_template.h"
 
 namespace quincunx::bench {
 namespace {
@@ -64,10 +65,10 @@ Json page_json(const BenchResult& result, const Gallery& gallery) {
 }  // namespace
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
-  return page_from_template("bench.html",
-                            {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js",
-                             "tables.js", "viewer.js", "page.js"},
-                            page_json(result, gallery));
+  return tools::page_from_template(embedded_bench_files(), "bench.html",
+                                   {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js",
+                                    "tables.js", "viewer.js", "page.js"},
+                                   page_json(result, gallery));
 }
 
 }  // namespace quincunx::bench

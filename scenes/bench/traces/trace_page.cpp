@@ -5,7 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bench/page/page_template.h"
+#include "bench/page/bench_files.h"
+#include "tools/page/page_template.h"
 
 namespace quincunx::traces {
 namespace {
@@ -70,7 +71,8 @@ std::string page_of(const TraceRun& run, const std::string& command) {
       traces.push_back(trace_json(list.name, trace, settings));
     }
   }
-  return bench::page_from_template("traces.html", {"elements.js", "sorted_table.js", "traces.js"},
+  return tools::page_from_template(bench::embedded_bench_files(), "traces.html",
+                                   {"elements.js", "sorted_table.js", "traces.js"},
                                    {{"command", command},
                                     {"frames", longest},
                                     {"refresh_hz", settings.displays.front().refresh_hz},

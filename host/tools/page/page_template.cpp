@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-#include "bench/page/page_template.h"
+#include "tools/page/page_template.h"
 
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
 
-namespace quincunx::bench {
+namespace quincunx::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string_view file(std::string_view name) {
-  for (const EmbeddedFile& embedded : embedded_page_files()) {
-    if (embedded.name == name) return embedded.text;
+std::string_view file(std::span<const EmbeddedFile> own, std::string_view name) {
+  for (const auto files : {own, embedded_page_files()}) {
+    for (const EmbeddedFile& embedded : files) {
+      if (embedded.name == name) return embedded.text;
+    }
   }
   throw std::out_of_range("page file " + std::string(name));
 }
@@ -40,16 +42,16 @@ void put(std::string& page, std::string_view mark, std::string_view text) {
 
 }  // namespace
 
-std::string page_from_template(const char* html, std::initializer_list<const char*> scripts,
-                               const Json& figures) {
-  std::string page{file(html)};
+std::string page_from_template(std::span<const EmbeddedFile> own, const char* html,
+                               std::initializer_list<const char*> scripts, const Json& figures) {
+  std::string page{file(own, html)};
   std::string script;
   for (const char* name : scripts)
-    script += file(name);
-  put(page, "/*style*/", file("bench.css"));
+    script += file(own, name);
+  put(page, "/*style*/", file(own, "page.css"));
   put(page, "/*script*/", script);
   put(page, "/*data*/", safe_in_script(figures.dump(-1, ' ', false, Json::error_handler_t::replace)));
   return page;
 }
 
-}  // namespace quincunx::bench
+}  // namespace quincunx::tools

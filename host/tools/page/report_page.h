@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// The report of a run as a page to look at: warnings, scores, times and resolution over its frames, passes.
+#pragma once
+
+#include <string>
+
+#include "tools/program/run_report.h"
+
+namespace quincunx::tools {
+
+// One HTML file that needs nothing else: no network, no file beside it. Pure.
+std::string report_page(const RunReport& report);
+
+// Writes `base`.txt, `base`.json and `base`.html. Errors: kIoFailure.
+Status write_report(const std::string& base, const RunReport& report);
+
+}  // namespace quincunx::tools

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// The page of a run as a reader has it: opened in headless Chromium, where a probe script looks at what was drawn.
+#include "tools/page/report_page.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "page_fixture.h"
+#include "skip.h"
+
+namespace quincunx::tools {
+namespace {
+
+using testing::kListener;
+using testing::with;
+using Json = nlohmann::json;
+
+constexpr const char* kProbe = R"(<script>
+probe.wait();
+(async () => {
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const pause = () => new Promise((done) => setTimeout(done, 20));
+  for (let i = 0; i < 1000 && !all("#pass-plot svg").length; ++i) await pause();
+  const seen = window.seen;
+  const curves = (id) => all(`#${id} .curve`).map((path) => path.getAttribute("d"));
+  seen.title = document.title;
+  seen.warnings = all("#warning-list li").map((item) => item.textContent);
+  seen.sections = all("main section").filter((section) => !section.hidden).map((section) => section.id);
+  seen.links = all("nav a").map((link) => link.getAttribute("href"));
+  seen.times = curves("time-plot");
+  seen.ratios = curves("ratio-plot");
+  seen.marks = all("#time-plot circle").length;
+  seen.bars = all("#pass-plot rect").length;
+  seen.leftOut = document.getElementById("left-out-list").textContent;
+  seen.facts = document.getElementById("fact-list").textContent;
+  seen.scores = curves("score-plot");
+  const measure = document.getElementById("score-measure");
+  measure.value = "flip";
+  measure.dispatchEvent(new Event("change"));
+  seen.otherScores = curves("score-plot");
+  seen.lead = document.getElementById("scores-lead").textContent;
+  seen.pathsWithoutNumbers = all("svg path").filter((p) => /NaN|undefined|Infinity/.test(p.getAttribute("d"))).length;
+  const circle = document.querySelector("#time-plot circle");
+  if (circle) circle.dispatchEvent(new Event("mouseenter"));
+  seen.tip = document.getElementById("tip").textContent;
+  seen.wide = document.documentElement.scrollWidth > document.documentElement.clientWidth;
+  probe.end();
+})();
+</script>)";
+
+RunReport example(int frames) {
+  RunReport report;
+  report.program = "quincunx-resolve";
+  report.version = "0.1.0";
+  report.method = "temporal:balanced";
+  report.output = {640, 360};
+  report.target = {320, 180};
+  report.warnings = {"the sky </script> stands still & <b>rests</b>"};
+  report.settings = {{"method chosen", "motion, depth and a jitter are known"}};
+  report.left_out = {{"motion blur", "the shutter opens for no time"}};
+  report.passes = {statistics_of("resolve_temporal", "OpenCL event", std::vector<double>{1, 2, 4})};
+  report.steps = {statistics_of("upload", "host clock", std::vector<double>{3}),
+                  statistics_of("never", "host clock", {})};
+  for (int i = 0; i < frames; ++i) {
+    FrameRow row;
+    row.index = 100 + i;
+    row.render = {320, 180};
+    row.ratio = {.5f, i % 2 == 0 ? .5f : .6f};
+    row.frame_ms = 10 + i;
+    row.device_ms = i == 2 ? -1 : 5;  // not known: a gap
+    report.frames.push_back(row);
+    ScoreRow score;
+    score.index = row.index;
+    score.psnr_tone_mapped = i == 1 ? std::numeric_limits<double>::infinity() : 30 + i;
+    score.flip = .1 * i;
+    report.scores.push_back(score);
+  }
+  return report;
+}
+
+class ReportPage : public testing::PageInBrowser {
+ protected:
+  // What the probe saw.
+  Json seen(const RunReport& report, const std::string& options = "--window-size=1200,900") {
+    const std::string page = with(with(report_page(report), "<head>", kListener), "</body>", kProbe);
+    const std::string text = browse(page, options + " --dump-dom");
+    const std::string mark = "<pre id=\"probe\">";
+    const std::size_t at = text.find(mark);
+    EXPECT_NE(at, std::string::npos) << text_of("err");
+    if (at == std::string::npos) return {};
+    return Json::parse(text.substr(at + mark.size(), text.find("</pre>", at) - at - mark.size()));
+  }
+};
+
+TEST_F(ReportPage, DrawsWhatTheRunDid) {
+  if (!there()) QUINCUNX_SKIP("chromium is not installed");
+  const Json saw = seen(example(5));
+  EXPECT_EQ(saw["errors"], Json::array());
+  EXPECT_EQ(saw["title"], "quincunx-resolve: temporal:balanced");
+  EXPECT_EQ(saw["warnings"].size(), 1u);
+  EXPECT_EQ(saw["sections"],
+            Json({"warnings", "scores", "time", "resolution", "passes", "facts", "left-out"}));
+  EXPECT_EQ(saw["links"].size(), 7u);
+  ASSERT_EQ(saw["times"].size(), 2u);
+  const auto pieces = [](const Json& path) {
+    const auto text = path.get<std::string>();
+    return std::count(text.begin(), text.end(), 'M');
+  };
+  EXPECT_EQ(pieces(saw["times"][0]), 1);
+  EXPECT_EQ(pieces(saw["times"][1]), 2) << "the third frame's passes are not known";
+  EXPECT_EQ(saw["marks"], 5 + 4);
+  EXPECT_EQ(saw["ratios"].size(), 2u);
+  EXPECT_EQ(saw["bars"], 2) << "what never ran has no bar";
+  EXPECT_EQ(pieces(saw["scores"][0]), 2) << "an infinite ratio is a gap";
+  EXPECT_NE(saw["scores"], saw["otherScores"]);
+  EXPECT_NE(saw["lead"].get<std::string>().find("Mean of 5 frames: 0.2000"), std::string::npos)
+      << saw["lead"];
+  EXPECT_NE(saw["leftOut"].get<std::string>().find("the shutter opens for no time"), std::string::npos);
+  EXPECT_NE(saw["facts"].get<std::string>().find("motion, depth and a jitter are known"), std::string::npos);
+  EXPECT_NE(saw["tip"].get<std::string>().find("frame 100: 10.00 ms"), std::string::npos) << saw["tip"];
+  EXPECT_EQ(saw["pathsWithoutNumbers"], 0);
+}
+
+TEST_F(ReportPage, ARunOfOneFrameOrNoneAndASmallScreenAreDrawnToo) {
+  if (!there()) QUINCUNX_SKIP("chromium is not installed");
+  const Json one = seen(example(1), "--window-size=500,900");
+  EXPECT_EQ(one["errors"], Json::array());
+  EXPECT_EQ(one["pathsWithoutNumbers"], 0);
+  EXPECT_EQ(one["wide"], false);
+  RunReport report = example(0);
+  report.warnings.clear();
+  const Json none = seen(report);
+  EXPECT_EQ(none["errors"], Json::array());
+  EXPECT_EQ(none["sections"], Json({"passes", "facts", "left-out"}));
+}
+
+TEST_F(ReportPage, IsWrittenBesideTextAndJson) {
+  ASSERT_TRUE(write_report(folder_.file("report"), example(3)).ok());
+  for (const char* name : {"report.txt", "report.json", "report.html"})
+    EXPECT_TRUE(std::filesystem::exists(folder_.file(name))) << name;
+  EXPECT_EQ(folder_.entries(), 3);
+  EXPECT_EQ(text_of("report.html"), report_page(example(3)));
+}
+
+}  // namespace
+}  // namespace quincunx::tools
