@@ -389,6 +389,28 @@ TEST_F(Run, TheReportSaysWhatItCost) {
     EXPECT_GT(json["busy_seconds"][what], 0.0) << what;
   EXPECT_EQ(nlohmann::json::parse(testing::read_file(folder_.file("r/run.json"))), json);
   EXPECT_NE(testing::read_file(folder_.file("r/run.txt")).find("Overlap"), std::string::npos);
+  EXPECT_NE(testing::read_file(folder_.file("r/run.html")).find("\"pictures\":null"), std::string::npos);
+}
+
+// Of seven frames with a truth the page keeps six at most, each with its maps; the maps of ghosts where motion is read.
+TEST_F(Run, ThePageHasFramesBesideTheirTruth) {
+  write_frames(1, 7);
+  resolve_to("t", "--method bilinear --store float");
+  const auto pictures = [&](const std::string& method) {
+    const auto result =
+        resolve("'{}/f.%04d.exr' --truth '{}/t.%04d.exr' -q --report '{}/r' --method " + method);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const std::string page = testing::read_file(folder_.file("r.html"));
+    const std::size_t begin = page.find("{\"run\":");
+    return nlohmann::json::parse(page.substr(begin, page.find("</script>", begin) - begin))["pictures"];
+  };
+  const auto two_frames = pictures("quincunx");
+  EXPECT_EQ(two_frames["kinds"].size(), 5u);
+  ASSERT_EQ(two_frames["frames"].size(), 6u);
+  EXPECT_EQ(two_frames["frames"][5]["index"], 7);
+  EXPECT_EQ(two_frames["frames"][5]["pngs"].size(), 5u);
+  EXPECT_EQ(two_frames["width"], kOutput.width);
+  EXPECT_EQ(pictures("bilinear")["kinds"].size(), 4u);
 }
 
 // A frame's smallest large buffer is its half colour; a run that kept one of any kind for each frame would

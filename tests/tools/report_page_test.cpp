@@ -50,6 +50,62 @@ probe.wait();
 })();
 </script>)";
 
+// Looks through the pictures and their maps.
+constexpr const char* kPictureProbe = R"(<script>
+probe.wait();
+(async () => {
+  const all = (selector) => [...document.querySelectorAll(selector)];
+  const pause = () => new Promise((done) => setTimeout(done, 20));
+  const ready = async () => { for (let i = 0; i < 1000 && !all("#viewer .stage[data-ready]").length; ++i) await pause(); };
+  await ready();
+  const seen = window.seen;
+  const canvases = all("#viewer canvas");
+  const stage = document.querySelector("#viewer .stage");
+  const pixels = () => canvases.map((c) => [...c.getContext("2d").getImageData(1, 1, 1, 1).data].slice(0, 3));
+  const choose = async (select, index) => {
+    delete stage.dataset.ready;
+    select.selectedIndex = index;
+    select.dispatchEvent(new Event("change"));
+    await ready();
+    return pixels();
+  };
+  const [frame, left, right] = all("#viewer select");
+  seen.frames = [...frame.options].map((option) => option.textContent);
+  seen.kinds = [...left.options].map((option) => option.textContent);
+  seen.size = [canvases[0].width, canvases[0].height];
+  seen.first = pixels();
+  seen.captions = all("#viewer .captions span").map((span) => span.textContent);
+  seen.maps = [];
+  for (let kind = 2; kind < left.options.length; ++kind) seen.maps.push((await choose(left, kind))[0]);
+  seen.otherFrame = await choose(frame, 0);
+  seen.otherCaption = document.querySelector("#viewer .captions span").textContent;
+  const wipe = document.querySelector("#viewer .wipe");
+  seen.wiped = [10, 90].map((value) => { wipe.value = value; wipe.dispatchEvent(new Event("input")); return canvases[0].style.clipPath; });
+  probe.end();
+})();
+</script>)";
+
+// 40x30 pixels of one linear value.
+MeasuredPicture flat(float value) {
+  return MeasuredPicture({40, 30}, std::vector<float>(40 * 30 * 4, value));
+}
+
+// Frames 100 and 101: truth is 1, which is 1/2 when tone-mapped; the picture darkens.
+ReportPictures example_pictures() {
+  const MeasuredPicture truth = flat(1), first = flat(1), second = flat(.25f);
+  const std::vector<Vec2> still(4);
+  ReportPictures pictures;
+  EXPECT_TRUE(add_frame(pictures, 100, {.picture = first, .truth = truth, .motion = {{2, 2}, still}}).ok());
+  EXPECT_TRUE(add_frame(pictures, 101,
+                        {.picture = second,
+                         .truth = truth,
+                         .previous = &first,
+                         .previous_truth = &truth,
+                         .motion = {{2, 2}, still}})
+                  .ok());
+  return pictures;
+}
+
 RunReport example(int frames) {
   RunReport report;
   report.program = "quincunx-resolve";
@@ -83,8 +139,9 @@ RunReport example(int frames) {
 class ReportPage : public testing::PageInBrowser {
  protected:
   // What the probe saw.
-  Json seen(const RunReport& report, const std::string& options = "--window-size=1200,900") {
-    const std::string page = with(with(report_page(report), "<head>", kListener), "</body>", kProbe);
+  Json seen(const RunReport& report, const std::string& options = "--window-size=1200,900",
+            const ReportPictures& pictures = {}, const char* probe = kProbe) {
+    const std::string page = with(with(report_page(report, pictures), "<head>", kListener), "</body>", probe);
     const std::string text = browse(page, options + " --dump-dom");
     const std::string mark = "<pre id=\"probe\">";
     const std::size_t at = text.find(mark);
@@ -121,6 +178,26 @@ TEST_F(ReportPage, DrawsWhatTheRunDid) {
   EXPECT_NE(saw["facts"].get<std::string>().find("motion, depth and a jitter are known"), std::string::npos);
   EXPECT_NE(saw["tip"].get<std::string>().find("frame 100: 10.00 ms"), std::string::npos) << saw["tip"];
   EXPECT_EQ(saw["pathsWithoutNumbers"], 0);
+}
+
+TEST_F(ReportPage, ShowsFramesBesideTheirTruthAndWhatIsWrong) {
+  if (!there()) QUINCUNX_SKIP("chromium is not installed");
+  const Json saw = seen(example(2), "--window-size=1200,900", example_pictures(), kPictureProbe);
+  EXPECT_EQ(saw["errors"], Json::array());
+  EXPECT_EQ(saw["frames"], Json({"100", "101"}));
+  EXPECT_EQ(saw["kinds"], Json({"truth", "picture", "error", "flicker", "ghosts"}));
+  EXPECT_EQ(saw["size"], Json({40, 30}));
+  // sRGB of 1/2 and of .25/1.25, in 255 parts.
+  EXPECT_EQ(saw["first"], Json::parse("[[124, 124, 124], [188, 188, 188]]"));
+  EXPECT_EQ(saw["captions"][0], "pictureequals the truth") << "as its score says";
+  EXPECT_EQ(saw["maps"].size(), 3u);
+  const Json brightest =
+      Json::parse("[252, 253, 191]");  // a change of 64/255, a quarter: all that a map can show
+  EXPECT_EQ(saw["maps"][1], brightest);
+  EXPECT_EQ(saw["maps"][2], brightest);
+  EXPECT_EQ(saw["otherFrame"], Json::parse("[[0, 0, 4], [188, 188, 188]]")) << "before it there is no frame";
+  EXPECT_EQ(saw["otherCaption"], "ghostsno frame before it");
+  EXPECT_EQ(saw["wiped"][0], "inset(0px 90% 0px 0px)");
 }
 
 TEST_F(ReportPage, ARunOfOneFrameOrNoneAndASmallScreenAreDrawnToo) {

@@ -82,6 +82,49 @@ function drawOverFrames(host, frames, series, fromZero) {
 const isKnown = (series) => series.values.some((value) => value !== null);
 const column = (rows, take, name, unit, index) => ({ name, unit, values: rows.map(take), colour: colourOf(index) });
 
+// Some frames: what was made, the truth, and maps of what is wrong.
+class FrameViewer extends PictureViewer {
+  constructor(host) {
+    const frame = el("select");
+    super(host, page.pictures, [["Frame ", frame]], ["0", "FLIP 1; of changes .25"]);
+    this.number = frame;
+    this.decoded = new Map();
+    const { frames, kinds } = page.pictures;
+    options(frame, frames.map((one) => [one.index, one.index]), frames[frames.length - 1].index);
+    const entries = kinds.map((kind, i) => [i, kind.name]);
+    options(this.choices[0], entries, kinds.findIndex((kind) => kind.name === "picture"));
+    options(this.choices[1], entries, kinds.findIndex((kind) => kind.name === "truth"));
+    this.load();
+  }
+
+  caption(kind) {
+    const row = run.scores.frames.find((one) => String(one.index) === this.number.value);
+    const figures = {
+      truth: "", picture: row.psnr_tone_mapped === null ? "equals the truth" : `${number(row.psnr_tone_mapped, 4)} dB`, error: `FLIP ${number(row.flip)}`,
+      flicker: row.flicker === null ? "no frame before it" : `mean ${number(row.flicker)}`,
+      ghosts: row.flicker === null ? "no frame before it" : "",
+    };
+    return [el("b", {}, kind.name), figures[kind.name]];
+  }
+
+  decodedPicture(frame, index) {
+    const key = `${frame.index}|${index}`;
+    const paint = page.pictures.kinds[index].map ? paintMap : (picture) => picture;
+    if (!this.decoded.has(key)) this.decoded.set(key, decode(frame.pngs[index]).then(paint));
+    return this.decoded.get(key);
+  }
+
+  async load() {
+    const wanted = [this.number, ...this.choices].map((select) => select.value);
+    const frame = page.pictures.frames.find((one) => String(one.index) === wanted[0]);
+    const indices = wanted.slice(1).map(Number);
+    const pictures = await Promise.all(indices.map((index) => this.decodedPicture(frame, index)));
+    // Another choice may have overtaken this one.
+    if (wanted.some((value, i) => value !== [this.number, ...this.choices][i].value)) return;
+    this.show(pictures, indices.map((index) => this.caption(page.pictures.kinds[index])));
+  }
+}
+
 function drawScores() {
   hideTip();
   const rows = run.scores.frames;
@@ -162,6 +205,8 @@ function start() {
     ["resolution", run.frames.length > 0, drawRatios], ["passes", run.passes.length + run.steps.length > 0, drawPasses],
   ];
   show("warnings", run.warnings.length > 0);
+  show("pictures", page.pictures !== null);
+  if (page.pictures) new FrameViewer(byId("viewer"));
   for (const [id, is] of drawn) show(id, is);
   show("facts", true);
   show("left-out", run.left_out.length > 0);

@@ -59,20 +59,20 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
   spdlog::debug("{}", summary_of(task.format));
 }
 
-Status write_reports(const ResolveOptions& options, const RunReport& report) {
+Status write_reports(const ResolveOptions& options, const RunReport& report, const ReportPictures& pictures) {
   if (options.json) {
     fmt::print("{}\n", to_json(report));
   } else if (!options.quiet) {
     fmt::print("{}", to_text(report));
   }
-  return options.report.empty() ? Status() : write_report(options.report, report);
+  return options.report.empty() ? Status() : write_report(options.report, report, pictures);
 }
 
 Status resolve(const ResolveOptions& options, const ResolveTask& task) {
   const std::vector<std::int64_t> wanted = task.scan.wanted();
   std::unique_ptr<SequenceScores> scores;
   if (task.truth) {
-    auto created = SequenceScores::create(*task.truth, task.format.output, wanted);
+    auto created = SequenceScores::create(*task.truth, task.format.output, wanted, !options.report.empty());
     if (!created.ok()) return created.status();
     scores = std::move(created).value();
   }
@@ -101,7 +101,8 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
   }
   const std::vector<ScoreRow> rows = scores ? scores->rows() : std::vector<ScoreRow>();
   return write_reports(options,
-                       resolve_report(options, task, device->info(), resolver.value()->outcome(), rows));
+                       resolve_report(options, task, device->info(), resolver.value()->outcome(), rows),
+                       scores ? scores->pictures() : ReportPictures());
 }
 
 int run(int argc, char** argv) {

@@ -144,7 +144,9 @@ Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) 
     });
     if (!status.ok()) return status;
   }
-  return job_.scores != nullptr ? job_.scores->add(number, std::move(picture.linear)) : Status();
+  return job_.scores != nullptr
+             ? job_.scores->add(number, std::move(picture.linear), {frame.render, frame.velocity})
+             : Status();
 }
 
 Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {

@@ -14,6 +14,15 @@ namespace {
 
 constexpr int kSmallestSide = 11;  // of SSIM's window
 
+// Up to so many of them, at even distances, the last one included.
+std::vector<std::int64_t> spread(const std::vector<std::int64_t>& frames, std::size_t most) {
+  std::vector<std::int64_t> chosen;
+  const std::size_t count = std::min(frames.size(), most);
+  for (std::size_t i = 1; i <= count; ++i)
+    chosen.push_back(frames[i * frames.size() / count - 1]);
+  return chosen;
+}
+
 Status check_size(const std::string& path, Extent found, Extent wanted) {
   if (found == wanted) return {};
   return Status::io(fmt::format("truth '{}' is {}x{} pixels; the output is {}x{}", path, found.width,
@@ -41,7 +50,8 @@ Result<std::vector<float>> read_truth(const std::string& path, const std::string
 }  // namespace
 
 Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles& truth, Extent extent,
-                                                               std::span<const std::int64_t> frames) {
+                                                               std::span<const std::int64_t> frames,
+                                                               bool keep_pictures) {
   if (extent.width < kSmallestSide || extent.height < kSmallestSide) {
     return Status::invalid(fmt::format("--truth needs an output of at least {0}x{0} pixels; this is {1}x{2}",
                                        kSmallestSide, extent.width, extent.height));
@@ -54,21 +64,29 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles&
     scores->known_.push_back(frame);
     scores->files_.push_back(path);
   }
+  if (keep_pictures) scores->kept_ = spread(scores->known_, kMostPictures);
   if (!scores->known_.empty()) return scores;
   return Status::io(
       fmt::format("no file of truth pattern '{}' belongs to a frame of this run", truth.pattern.text()));
 }
 
-Status SequenceScores::add(std::int64_t frame, SharedPixels pixels) {
+Status SequenceScores::add(std::int64_t frame, SharedPixels pixels, const MotionField& motion) {
   if (!std::binary_search(known_.begin(), known_.end(), frame)) return {};
-  return queue_.push([this, frame, pixels = std::move(pixels)] { return measure_frame(frame, *pixels); });
+  std::vector<Vec2> velocity;
+  if (std::binary_search(kept_.begin(), kept_.end(), frame))
+    velocity.assign(motion.velocity.begin(), motion.velocity.end());
+  return queue_.push(
+      [this, frame, pixels = std::move(pixels), extent = motion.extent, velocity = std::move(velocity)] {
+        return measure_frame(frame, *pixels, {extent, velocity});
+      });
 }
 
 Status SequenceScores::finish() {
   return queue_.finish();
 }
 
-Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float>& pixels) {
+Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float>& pixels,
+                                     const MotionField& motion) {
   const auto truth = read_truth(truth_.pattern.expand(frame), truth_.colour_layer, extent_);
   if (!truth.ok()) return truth.status();
   Measured now = {frame, MeasuredPicture(extent_, pixels), MeasuredPicture(extent_, truth.value())};
@@ -79,9 +97,17 @@ Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float
                   .ssim = scores.ssim,
                   .flip = scores.flip,
                   .error_p99 = scores.error_p99};
-  if (before_ && before_->frame + 1 == frame)
-    row.flicker = flicker(now.picture, before_->picture, now.truth, before_->truth);
+  const bool follows = before_ && before_->frame + 1 == frame;
+  if (follows) row.flicker = flicker(now.picture, before_->picture, now.truth, before_->truth);
   rows_.push_back(row);
+  if (std::binary_search(kept_.begin(), kept_.end(), frame)) {
+    const JudgedFrame judged = {.picture = now.picture,
+                                .truth = now.truth,
+                                .previous = follows ? &before_->picture : nullptr,
+                                .previous_truth = follows ? &before_->truth : nullptr,
+                                .motion = motion};
+    if (Status status = add_frame(pictures_, frame, judged); !status.ok()) return status;
+  }
   before_ = std::move(now);
   return {};
 }

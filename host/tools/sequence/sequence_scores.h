@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tools/image/image_metrics.h"
+#include "tools/page/report_pictures.h"
 #include "tools/program/run_report.h"
 #include "tools/program/work_queue.h"
 #include "tools/sequence/frame_pattern.h"
@@ -28,21 +29,25 @@ struct TruthFiles {
 class SequenceScores {
  public:
   // `frames`: those that will be added, ascending. Errors: kIoFailure where none of them has a true picture,
-  // or one is damaged or has another size than `extent`.
+  // or one is damaged or has another size than `extent`. `keep_pictures`: of up to kMostPictures frames.
+  static constexpr std::size_t kMostPictures = 6;
   static Result<std::unique_ptr<SequenceScores>> create(const TruthFiles& truth, Extent extent,
-                                                        std::span<const std::int64_t> frames);
+                                                        std::span<const std::int64_t> frames,
+                                                        bool keep_pictures);
 
-  // In ascending order. Frames without truth cost nothing. Errors: of an earlier frame's truth.
-  Status add(std::int64_t frame, SharedPixels pixels);
+  // In ascending order. `motion` is copied where it is needed. Frames without truth cost nothing. Errors: of an earlier
+  // frame's truth.
+  Status add(std::int64_t frame, SharedPixels pixels, const MotionField& motion);
   Status finish();
 
-  const std::vector<ScoreRow>& rows() const { return rows_; }  // after finish()
+  const std::vector<ScoreRow>& rows() const { return rows_; }   // after finish()
+  const ReportPictures& pictures() const { return pictures_; }  // after finish()
   const std::vector<std::string>& files() const { return files_; }
   double busy_seconds() const { return queue_.busy_seconds(); }
 
  private:
   SequenceScores(const TruthFiles& truth, Extent extent) : truth_(truth), extent_(extent) {}
-  Status measure_frame(std::int64_t frame, const std::vector<float>& pixels);
+  Status measure_frame(std::int64_t frame, const std::vector<float>& pixels, const MotionField& motion);
 
   struct Measured {
     std::int64_t frame = 0;
@@ -54,7 +59,9 @@ class SequenceScores {
   Extent extent_;
   std::vector<std::int64_t> known_;  // frames that have a truth
   std::vector<std::string> files_;   // theirs
+  std::vector<std::int64_t> kept_;   // those whose pictures are kept
   std::optional<Measured> before_;
+  ReportPictures pictures_;
   std::vector<ScoreRow> rows_;
   WorkQueue queue_{1, 1};  // last: its thread uses the rest
 };

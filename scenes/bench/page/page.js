@@ -76,7 +76,7 @@ function startViewer() {
   const { width, height, frame } = page.gallery;
   byId("pictures-lead").append(
     `${width}×${height} pixels of measured frame ${frame + 1}, where the methods err most in the mean, as they are: no scaling. Tone mapped as the errors are measured. Error maps show FLIP.`);
-  new Viewer(byId("viewer"));
+  new Gallery(byId("viewer"));
 }
 
 function showFacts() {

@@ -2,11 +2,11 @@
 #include "bench/speed_error/bench_page.h"
 
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "bench/page/bench_files.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
+#include "tools/page/base64.h"
 #include "tools/page/page_template.h"
 
 namespace quincunx::bench {
@@ -14,27 +14,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t j = i; j < i + 3; ++j)
-      group = group << 8 | (j < bytes.size() ? bytes[j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j)
-      text += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
-
 Json gallery_json(const Gallery& gallery) {
   Json scenes = Json::array();
   for (const GalleryScene& scene : gallery.scenes) {
     Json sheets = Json::array();
     for (const Sheet& sheet : scene.sheets) {
-      sheets.push_back(
-          {{"scale", sheet.scale}, {"pictures", base64(sheet.pictures)}, {"errors", base64(sheet.errors)}});
+      sheets.push_back({{"scale", sheet.scale},
+                        {"pictures", tools::base64(sheet.pictures)},
+                        {"errors", tools::base64(sheet.errors)}});
     }
     scenes.push_back({{"name", scene.name}, {"x", scene.x}, {"y", scene.y}, {"sheets", std::move(sheets)}});
   }
@@ -67,7 +54,7 @@ Json page_json(const BenchResult& result, const Gallery& gallery) {
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
   return tools::page_from_template(embedded_bench_files(), "bench.html",
                                    {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js",
-                                    "tables.js", "viewer.js", "page.js"},
+                                    "tables.js", "viewer.js", "gallery.js", "page.js"},
                                    page_json(result, gallery));
 }
 
