@@ -18,8 +18,11 @@ const char* storage_option(Storage storage) {
 }
 
 std::string colour_options(const ResolveSettings& settings) {
-  if (settings.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
-  return fmt::format("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={}", precision_of(settings.colour));
+  const bool encoded = settings.colour == PixelFormat::kRGBA8;
+  if (settings.storage == Storage::kImage)
+    return encoded ? "-D SOURCE_STORAGE=IMAGE -D SOURCE_FORMAT=SRGB8" : "-D SOURCE_STORAGE=IMAGE";
+  return fmt::format("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={}",
+                     encoded ? "SRGB8" : precision_of(settings.colour));
 }
 
 std::string scale_options(const ResolveSettings& settings) {

@@ -16,7 +16,7 @@ class PresentPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ImageView& source = frame[facts().blurs() ? Resource::kBlurred : Resource::kResolved];
     const ImageView& presented = frame[Resource::kPresented];
-    const float exposure = frame.current.exposure;
+    const float exposure = facts().is_display_referred() ? 1 : frame.current.exposure;
     const PresentParams params{
         .width = frame.output.width,
         .height = frame.output.height,
@@ -50,10 +50,13 @@ void plan_present(const PlanFacts& facts, PassList& list) {
     list.left_out.push_back({"present", "no 8-bit picture is wanted"});
     return;
   }
+  const bool tone_maps = !facts.is_display_referred();
+  if (!tone_maps)
+    list.left_out.push_back({"exposure and tone map", "RGBA8 colour has both when it is drawn"});
   list.passes.push_back(
       {.kernel = "present",
        .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
-                              curve(settings.tone_map), settings.dither ? 1 : 0,
+                              curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
                               precision_of(settings.resolved), storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
        .uses = {{facts.blurs() ? Resource::kBlurred : Resource::kResolved, Access::kRead, Area::kOutput,

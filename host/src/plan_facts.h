@@ -15,6 +15,8 @@ struct PlanFacts {
   VelocitySource velocity;  // where passes find it; kNone where no pass reads it
 
   bool has_velocity() const { return velocity != VelocitySource::kNone; }
+  // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.
+  bool is_display_referred() const { return settings.colour == PixelFormat::kRGBA8; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
   bool keeps_previous_frame() const { return uses_earlier_frames(settings.method); }

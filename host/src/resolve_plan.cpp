@@ -45,7 +45,11 @@ Status check(const ResolveSettings& settings) {
   Complaints complaints;
   check_extent(complaints, "output", settings.output);
   check_extent(complaints, "target", settings.target);
-  check_format(complaints, "colour", settings.colour, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  if (settings.colour != PixelFormat::kRGBA8 && settings.colour != PixelFormat::kRGBA16F &&
+      settings.colour != PixelFormat::kRGBA32F) {
+    complaints.add(
+        fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
+  }
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,

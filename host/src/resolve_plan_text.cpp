@@ -9,6 +9,16 @@
 namespace quincunx {
 namespace {
 
+// Who makes the picture's light out of the scene's.
+std::string colour_text(const ResolveSettings& settings) {
+  const char* curve = name_of(settings.tone_map);
+  if (settings.colour == PixelFormat::kRGBA8)
+    return fmt::format("RGBA8, sRGB encoded; the renderer exposes and tone maps ({})", curve);
+  if (!settings.present) return fmt::format("{}, linear light", name_of(settings.colour));
+  return fmt::format("{}, linear light; the present pass exposes and tone maps ({})",
+                     name_of(settings.colour), curve);
+}
+
 std::string size_text(std::uint64_t bytes) {
   return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
 }
@@ -72,11 +82,11 @@ std::string ResolvePlan::explain() const {
   if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
   if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
   fmt::format_to(
-      out,
-      "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, tone map {}, dither {}\n",
+      out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, dither {}\n",
       name_of(settings.method), form, settings.output.width, settings.output.height, settings.target.width,
       settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
-      name_of(settings.tone_map), yes(settings.dither));
+      yes(settings.dither));
+  fmt::format_to(out, "Colour         {}\n", colour_text(settings));
   fmt::format_to(out, "Targets        {}\n", targets_text(*this));
   fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
                  name_of(velocity));

@@ -3,20 +3,23 @@
 //
 // Options, each with its default:
 //   SOURCE_STORAGE   BUFFER (default) | IMAGE         of colour, velocity, depth and reactive
-//   SOURCE_FORMAT    HALF (default) | FLOAT           of colour in a buffer
+//   SOURCE_FORMAT    HALF (default) | FLOAT | SRGB8   of colour in a buffer; SRGB8 of colour in an image, too
 //   VELOCITY_FORMAT  HALF (default) | FLOAT           of velocity in a buffer
 //   OUTPUT_FORMAT    FLOAT (default) | HALF           of the resolved picture, always a buffer
-// An image is read without a sampler; its format is the image's own.
+// An image is read without a sampler; its format is the image's own. SRGB8 is RGBA8 whose colour is sRGB encoded: every
+// load gives linear light.
 #pragma once
 
 #include "params.h"
 #include "sanitise.h"
+#include "srgb.h"
 
 // Not zero, so that a misspelt option is an error.
 #define BUFFER 1
 #define IMAGE 2
 #define HALF 3
 #define FLOAT 4
+#define SRGB8 5
 
 #ifndef SOURCE_STORAGE
 #define SOURCE_STORAGE BUFFER
@@ -33,8 +36,8 @@
 #if SOURCE_STORAGE != BUFFER && SOURCE_STORAGE != IMAGE
 #error "SOURCE_STORAGE must be BUFFER or IMAGE"
 #endif
-#if SOURCE_FORMAT != HALF && SOURCE_FORMAT != FLOAT
-#error "SOURCE_FORMAT must be HALF or FLOAT"
+#if SOURCE_FORMAT != HALF && SOURCE_FORMAT != FLOAT && SOURCE_FORMAT != SRGB8
+#error "SOURCE_FORMAT must be HALF, FLOAT or SRGB8"
 #endif
 #if VELOCITY_FORMAT != HALF && VELOCITY_FORMAT != FLOAT
 #error "VELOCITY_FORMAT must be HALF or FLOAT"
@@ -52,6 +55,8 @@
 #else
 #if SOURCE_FORMAT == HALF
 #define COLOUR_TEXELS __global const half*
+#elif SOURCE_FORMAT == SRGB8
+#define COLOUR_TEXELS __global const uchar*
 #else
 #define COLOUR_TEXELS __global const float*
 #endif
@@ -85,12 +90,24 @@ static inline int texel_index(TexelLayout layout, int x, int y) {
   return row_index(layout, y) + x;
 }
 
+#if SOURCE_STORAGE == IMAGE
+static inline float4 read_colour(COLOUR_TEXELS texels, int x, int y) {
+#if SOURCE_FORMAT == SRGB8
+  return linear_of_fractions(read_imagef(texels, (int2)(x, y)));
+#else
+  return read_imagef(texels, (int2)(x, y));
+#endif
+}
+#endif
+
 // One colour texel.
 static inline float4 load_colour(COLOUR_TEXELS texels, TexelLayout layout, int x, int y) {
 #if SOURCE_STORAGE == IMAGE
-  return read_imagef(texels, (int2)(x, y));
+  return read_colour(texels, x, y);
 #elif SOURCE_FORMAT == HALF
   return vload_half4(texel_index(layout, x, y), texels);
+#elif SOURCE_FORMAT == SRGB8
+  return linear_of_codes(vload4(texel_index(layout, x, y), texels));
 #else
   return vload4(texel_index(layout, x, y), texels);
 #endif
@@ -108,6 +125,8 @@ static inline void will_read_colour(COLOUR_TEXELS texels, TexelLayout layout, in
 #define COLOUR_ROW int
 #elif SOURCE_FORMAT == HALF
 #define COLOUR_ROW __global const uint2*
+#elif SOURCE_FORMAT == SRGB8
+#define COLOUR_ROW __global const uint*
 #else
 #define COLOUR_ROW __global const float4*
 #endif
@@ -123,11 +142,13 @@ static inline COLOUR_ROW colour_row(COLOUR_TEXELS texels, TexelLayout layout, in
 // The colour texels x and x + 1 of a row.
 static inline float8 load_colour_pair(COLOUR_TEXELS texels, COLOUR_ROW row, uint x) {
 #if SOURCE_STORAGE == IMAGE
-  return (float8)(read_imagef(texels, (int2)(x, row)), read_imagef(texels, (int2)(x + 1, row)));
+  return (float8)(read_colour(texels, x, row), read_colour(texels, x + 1, row));
 #elif SOURCE_FORMAT == HALF
   // Through private memory: PoCL 3.1 assumes 16-byte alignment in vload_half8, and texels promise 8.
   const uint4 bits = vload4(0, (__global const uint*)(row + x));
   return vload_half8(0, (__private const half*)&bits);
+#elif SOURCE_FORMAT == SRGB8
+  return (float8)(linear_of_codes(as_uchar4(row[x])), linear_of_codes(as_uchar4(row[x + 1])));
 #else
   return vload8(0, (__global const float*)(row + x));
 #endif

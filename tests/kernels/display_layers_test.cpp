@@ -116,7 +116,7 @@ TEST_P(DisplayLayers, TemporalDisplayShowsTheFarLayerAsIfItWereTheOnlyOne) {
 
 std::vector<StageVariant> variants() {
   using enum PixelFormat;
-  return {{}, {.history = kRGBA16F, .resolved = kRGBA16F}, {.storage = Storage::kImage}};
+  return {{}, {.colour = kRGBA8}, {.history = kRGBA16F, .resolved = kRGBA16F}, {.storage = Storage::kImage}};
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, DisplayLayers, ::testing::ValuesIn(variants()),

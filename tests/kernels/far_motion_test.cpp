@@ -374,10 +374,13 @@ INSTANTIATE_TEST_SUITE_P(
     Variants, FarMotionPasses,
     ::testing::Values(Variant{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
                       Variant{Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
-                      Variant{Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA16F}),
+                      Variant{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA8},
+                      Variant{Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
+                      Variant{Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA8}),
     [](const auto& instance) {
       const Variant& v = instance.param;
-      return fmt::format("{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity));
+      return fmt::format("{}_{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity),
+                         name_of(v.colour));
     });
 
 }  // namespace

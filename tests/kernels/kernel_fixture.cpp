@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -32,6 +33,26 @@ std::size_t area(Extent extent) {
 std::uint8_t unorm_code(double value) {
   return static_cast<std::uint8_t>(
       std::floor(std::clamp(std::isnan(value) ? 0.0 : value, 0.0, 1.0) * 255 + 0.5));
+}
+
+// What RGBA8 colour holds of light of any size: its fraction where it lies outside of [0, 1], so that all codes occur.
+Pixel encoded(const Pixel& light) {
+  Pixel codes = {};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const double held = light[c] >= 0 && light[c] <= 1 ? light[c] : light[c] - std::floor(light[c]);
+    codes[c] = c < 3 ? reference::srgb_of_linear(held) : held;
+  }
+  return codes;
+}
+
+// The floats nearest to linear light, which is what every pass takes RGBA8 for.
+Pixel decoded(const Pixel& codes) {
+  Pixel light = {};
+  for (std::size_t c = 0; c < 4; ++c) {
+    light[c] =
+        static_cast<double>(static_cast<float>(c < 3 ? reference::linear_of_srgb(codes[c]) : codes[c]));
+  }
+  return light;
 }
 
 // Frames lie in targets that are this much larger, at this offset.
@@ -263,7 +284,14 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
     return pixels;
   };
 
-  frame.reference.colour = put(formats.colour, colour, frame.inputs.colour);
+  if (formats.colour == PixelFormat::kRGBA8) {
+    std::vector<Pixel> codes(colour.size());
+    std::transform(colour.begin(), colour.end(), codes.begin(), encoded);
+    codes = put(formats.colour, codes, frame.inputs.colour);
+    std::transform(codes.begin(), codes.end(), std::back_inserter(frame.reference.colour), decoded);
+  } else {
+    frame.reference.colour = put(formats.colour, colour, frame.inputs.colour);
+  }
   if (formats.with_velocity) {
     // A few output pixels at most, so that the previous frame counts.
     std::vector<Pixel> velocity = pattern_pixels(spec.velocity, spec.render, spec.seed + 100);
@@ -315,6 +343,15 @@ void expect_close(const reference::Picture& expected, const std::vector<Pixel>& 
     if (!std::isfinite(allowed)) continue;  // a rounding decided what was compared
     record_error({.error = error, .bound = allowed, .largest = expected.largest[i], .stored = stored});
   }
+}
+
+bool holds_non_finite(PixelFormat format) {
+  return !is_unorm(format);
+}
+
+double input_rounding(PixelFormat format, double magnitude) {
+  if (format != PixelFormat::kRGBA8) return output_rounding(format, magnitude);
+  return reference::linear_of_srgb(1) - reference::linear_of_srgb(1 - 0.5 / 255);
 }
 
 double output_rounding(PixelFormat format, double magnitude) {

@@ -79,7 +79,7 @@ struct FrameSpec {
   double speed = .02;  // by which the velocity pattern is multiplied
 };
 
-// A frame for a pass and the same frame for its reference.
+// A frame for a pass, stored in its formats, and the same frame for its reference.
 struct TestFrame {
   FrameInputs inputs;
   reference::Frame reference;
@@ -97,6 +97,12 @@ Extent scaled(Extent output, double scale_x, double scale_y);
 void expect_close(const reference::Picture& expected, const std::vector<Pixel>& actual,
                   const std::function<double(std::size_t)>& bound, const std::string& what,
                   PixelFormat stored = PixelFormat::kRGBA32F);
+
+bool holds_non_finite(PixelFormat format);
+
+// How far a colour of this magnitude may be from what a format stores for it: in RGBA8, which ends at 1, half a code at
+// the bright end, where sRGB is steepest.
+double input_rounding(PixelFormat format, double magnitude);
 
 // What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal.
 double output_rounding(PixelFormat format, double magnitude);

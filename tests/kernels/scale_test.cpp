@@ -7,6 +7,7 @@
 #include <map>
 #include <string>
 
+#include "../reference/number_formats.h"
 #include "scale_fixture.h"
 
 namespace quincunx {
@@ -71,6 +72,26 @@ TEST_P(Scale, IsTheIdentityAtScaleOneWithoutJitter) {
   }
 }
 
+// Every code of every channel, as the float nearest to its light.
+TEST_P(Scale, EveryCodeOfEncodedColourGivesItsLight) {
+  if (GetParam().colour != PixelFormat::kRGBA8 || GetParam().method != Method::kPoint) return;
+  std::vector<Pixel> light;
+  for (int code = 0; code < 256; ++code) {
+    const double value = static_cast<double>(static_cast<float>(reference::linear_of_srgb(code / 255.0)));
+    light.push_back({value, value, value, code / 255.0});
+  }
+  Rig rig;
+  const Extent extent{256, 1};
+  const TestFrame frame = scale_.frame(rig, {.render = extent}, light);
+  const std::vector<Pixel> actual = scale_.run(rig, frame, extent).pixels;
+  for (std::size_t code = 0; code < 256; ++code) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto nearest = static_cast<double>(static_cast<float>(light[code][c]));
+      EXPECT_EQ(actual[code][c], testing::stored_value(GetParam().resolved, nearest)) << code << ", " << c;
+    }
+  }
+}
+
 TEST_P(Scale, PoisonOutsideTheViewportChangesNoBit) {
   for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
     Rig rig;
@@ -97,6 +118,7 @@ TEST_P(Scale, ATightImageGivesTheSameBits) {
 }
 
 TEST_P(Scale, ANonFiniteTexelChangesItsFootprintOnly) {
+  if (!testing::holds_non_finite(GetParam().colour)) return;
   const Extent output{90, 40};
   const Extent render = testing::scaled(output, .71, .71);
   const std::vector<Pixel> clean = pattern_pixels(Pattern::kNoise, render, 9);
@@ -152,15 +174,15 @@ TEST_P(Scale, JitterIsTakenBack) {
       Rig rig;
       const ScaleRig::Run actual =
           scale_.run(rig, scale_.frame(rig, {.render = render, .jitter = {jitter, jitter}}, colour), output);
-      // Half inputs round values up to 2 by 2^-11; so may a half output.
-      constexpr double kHalfRounding = 2 * 0x1p-11 + 2 * 0x1p-11;
+      // Inputs are rounded, some weights are negative, and a half output rounds again.
+      const double rounding = 2 * testing::input_rounding(GetParam().colour, 1) + 2 * 0x1p-11;
       const int margin = 4;
       for (int y = margin; y < output.height - margin; ++y) {
         for (int x = margin; x < output.width - margin; ++x) {
           const Pixel& pixel = actual.pixels[static_cast<std::size_t>(y * output.width + x)];
-          ASSERT_NEAR(pixel[0], (x + .5) / output.width, kHalfRounding)
+          ASSERT_NEAR(pixel[0], (x + .5) / output.width, rounding)
               << "scale " << scale << " jitter " << jitter;
-          ASSERT_NEAR(pixel[1], (y + .5) / output.height, kHalfRounding)
+          ASSERT_NEAR(pixel[1], (y + .5) / output.height, rounding)
               << "scale " << scale << " jitter " << jitter;
         }
       }
@@ -206,7 +228,7 @@ std::vector<ScaleVariant> variants() {
   for (const Method method :
        {kPoint, kBilinear, kBSpline, kCatmullRom, kMitchell, kLanczos2, kLanczos3, kNoise, kNoiseOffset}) {
     for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
-      for (const PixelFormat colour : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
+      for (const PixelFormat colour : {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F, PixelFormat::kRGBA8}) {
         for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F})
           all.push_back({method, storage, colour, resolved});
       }

@@ -193,6 +193,8 @@ std::vector<StageVariant> variants() {
   using enum PixelFormat;
   return {{},
           {.colour = kRGBA32F},
+          {.colour = kRGBA8},
+          {.storage = Storage::kImage, .colour = kRGBA8},
           {.history = kRGBA16F, .resolved = kRGBA16F},
           {.storage = Storage::kImage},
           {.alpha = true},

@@ -258,12 +258,15 @@ std::vector<StageVariant> variants() {
   using enum PixelFormat;
   return {{},
           {.colour = kRGBA32F},
+          {.colour = kRGBA8},
+          {.storage = Storage::kImage, .colour = kRGBA8},
           {.history = kRGBA16F},
           {.storage = Storage::kImage},
           {.moves = false},
           {.storage = Storage::kImage, .moves = false},
           {.layers = true},
           {.colour = kRGBA32F, .layers = true},
+          {.colour = kRGBA8, .layers = true},
           {.history = kRGBA16F, .layers = true},
           {.storage = Storage::kImage, .layers = true}};
 }

@@ -135,7 +135,7 @@ std::vector<PlanFacts> all_facts() {
   };
   const Extent output{64, 64};
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
-    for (const PixelFormat colour : {kRGBA16F, kRGBA32F}) {
+    for (const PixelFormat colour : {kRGBA16F, kRGBA32F, kRGBA8}) {
       for (const PixelFormat velocity : {kRG16F, kRG32F}) {
         for (const PixelFormat resolved : {kRGBA16F, kRGBA32F}) {
           ResolveSettings settings{.output = output,

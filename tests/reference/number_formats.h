@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// IEEE 754 half precision, by its definition.
+// IEEE 754 half precision and 8-bit sRGB (IEC 61966-2-1), by their definitions.
 #pragma once
 
 #include <cmath>
@@ -31,6 +31,16 @@ inline std::uint16_t half_bits(double value) {
   // A carry into the next exponent is right as it is: the fraction overflows into it.
   const int biased = magnitude < 0x1p-14 ? 0 : exponent + 14;
   return static_cast<std::uint16_t>(sign | ((biased << 10) + static_cast<int>(steps)));
+}
+
+// Linear light of an encoded value in [0, 1].
+inline double linear_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+// The encoded value of linear light in [0, 1].
+inline double srgb_of_linear(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
 }
 
 }  // namespace quincunx::reference

@@ -72,6 +72,8 @@ const LongRun kRuns[] = {
      1000},
     {"temporal", {.method = Method::kTemporal}, 1000},
     {"temporal_half", {.method = Method::kTemporal, .temporal = {.history = PixelFormat::kRGBA16F}}, 200},
+    {"temporal_rgba8", {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8}, 200},
+    {"velocity_rgba8", {.method = Method::kQuincunx, .colour = PixelFormat::kRGBA8}, 200},
     {"catmull_rom", {.method = Method::kCatmullRom}, 200},
     {"bilinear", {.method = Method::kBilinear}, 200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},

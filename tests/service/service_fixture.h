@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -18,7 +19,8 @@ namespace quincunx::testing {
 
 using Pixel = std::array<float, 4>;
 
-// The pictures of one frame in the formats of the default plan, but with float colour and velocity.
+// The pictures of one frame in the formats of the default plan, but with float velocity and with float colour or, where
+// the settings ask for it, RGBA8.
 struct HostFrame {
   Extent render = {};
   Vec2 jitter = {};
@@ -30,6 +32,19 @@ struct HostFrame {
   bool reset = false;
 };
 
+using Codes = std::array<std::uint8_t, 4>;
+
+// RGBA8 colour of linear light; what is not in [0, 1], as poison is not, becomes the largest code.
+inline Codes codes_of(const Pixel& light) {
+  Codes codes = {};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const double x = light[c] >= 0 && light[c] <= 1 ? static_cast<double>(light[c]) : 1;
+    const double encoded = c == 3 ? x : x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+    codes[c] = static_cast<std::uint8_t>(std::lround(255 * encoded));
+  }
+  return codes;
+}
+
 class ServiceRig {
  public:
   ServiceRig(const SceneNeeds& needs, Method method, Extent output, Extent target)
@@ -40,7 +55,7 @@ class ServiceRig {
       : device_(Device::open().value()) {
     settings.output = output;
     settings.target = target;
-    settings.colour = PixelFormat::kRGBA32F;
+    if (settings.colour != PixelFormat::kRGBA8) settings.colour = PixelFormat::kRGBA32F;
     settings.velocity = PixelFormat::kRG32F;
     settings.dither = false;
     plan_ = plan_for(needs, settings).value();
@@ -150,7 +165,11 @@ class ServiceRig {
   }
 
   void fill_slot(Slot& slot, const HostFrame& frame) {
-    fill<Pixel>(slot.colour, frame.render, frame.colour);
+    if (plan_.settings.colour == PixelFormat::kRGBA8) {
+      fill<Codes>(slot.colour, frame.render, [&](int x, int y) { return codes_of(frame.colour(x, y)); });
+    } else {
+      fill<Pixel>(slot.colour, frame.render, frame.colour);
+    }
     fill<Vec2>(slot.velocity, frame.render, frame.velocity);
     fill<float>(slot.depth, frame.render, frame.depth);
     fill<std::uint8_t>(slot.reactive, frame.render, frame.reactive);

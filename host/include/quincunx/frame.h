@@ -28,7 +28,8 @@ struct CameraMotion {
 // the service reads the previous frame where the caller left it and copies nothing. So give frames n and n - 1
 // different memory; a ring of three lets the renderer run ahead.
 struct FrameInputs {
-  ImageView colour = {};  // RGBA16F or RGBA32F, linear, premultiplied
+  // RGBA16F or RGBA32F: linear, premultiplied. RGBA8: exposed, tone mapped and sRGB encoded by the renderer.
+  ImageView colour = {};
   // The other images are read only where the plan says so.
   ImageView depth = {};     // R32F, reversed infinite depth
   ImageView velocity = {};  // RG16F or RG32F, this position - previous position
@@ -38,7 +39,7 @@ struct FrameInputs {
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
   CameraMotion camera = {};
-  float exposure = 0;             // multiplies linear colour in the present pass; 0: 1
+  float exposure = 0;             // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
   bool reset = false;             // a cut: nothing of the previous frame may be used
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
 };

@@ -15,14 +15,15 @@
 
 namespace quincunx {
 
-// Colour formats are linear light with premultiplied alpha. kRGBA8 of the present pass is sRGB encoded.
+// Colour formats are linear light with premultiplied alpha. kRGBA8 is sRGB encoded: linear light as the screen shall
+// show it, premultiplied, then each colour encoded by IEC 61966-2-1; alpha is not.
 enum class PixelFormat : std::uint8_t {
   kNone = 0,
   kR8,       // unsigned normalised: reactive values
   kR32F,     // depth
   kRG16F,    // velocity
   kRG32F,    // velocity
-  kRGBA8,    // presented picture
+  kRGBA8,    // presented picture; colour
   kRGBA16F,  // colour
   kRGBA32F,  // colour
 };

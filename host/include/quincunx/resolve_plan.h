@@ -69,15 +69,15 @@ struct ResolveSettings {
   Method method = Method::kQuincunx;
   Extent output = {};                            // the picture's size
   Extent target = {};                            // the inputs' allocated size: at least the largest viewport
-  PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA16F or RGBA32F
+  PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA8, RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
   PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
   Storage storage = Storage::kBuffer;            // of the inputs; see ResolvePlan::presented_storage()
   Targets targets = Targets::kViewport;          // of the inputs and the service's own images of a viewport
   bool present = true;                           // run the present pass
   bool clear = false;                            // ResolveService::clear() will be called
-  ToneMap tone_map = ToneMap::kAces;
-  bool dither = true;  // of the present pass: +- half a code value, fixed pattern
+  ToneMap tone_map = ToneMap::kAces;             // of the present pass; with RGBA8 colour of the renderer
+  bool dither = true;                            // of the present pass: +- half a code value, fixed pattern
   // Of filters that ring (SeparableFilter::rings): stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale

@@ -55,7 +55,8 @@ class ResolveService {
   // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.
   std::optional<FrameReport> next_completed();
 
-  // Fills the top left `render` of an image with one value (unused channels ignored): the partial clear.
+  // Fills the top left `render` of an image with one value (unused channels ignored; of RGBA8 the encoded one):
+  // the partial clear.
   // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
   Status clear(const ImageView& image, Extent render, const float value[4]);
 
