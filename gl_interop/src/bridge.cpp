@@ -34,6 +34,10 @@ Status check(const EglContext& context, const BridgeSettings& settings) {
     faults += fmt::format("{}slots is {} and must be {} to {}", faults.empty() ? "" : "; ", settings.slots,
                           kMinSlots, kMaxSlots);
   }
+  if (settings.colour != PixelFormat::kRGBA16F && settings.colour != PixelFormat::kRGBA8) {
+    faults += fmt::format("{}colour is {} and must be RGBA8 or RGBA16F", faults.empty() ? "" : "; ",
+                          name_of(settings.colour));
+  }
   if (!faults.empty()) return Status::invalid("BridgeSettings: " + faults);
   return {};
 }

@@ -120,19 +120,28 @@ GlSharing::~GlSharing() {
 }
 
 GlSharing::Slot GlSharing::make_slot() {
-  Slot slot = {
-      .targets = RenderTargets(
-          {.target = settings_.target, .velocity = settings_.velocity, .reactive = settings_.reactive}),
-      .depth_copy = {},
-      .shared = SharedTextures(device_),
-      .views = {}};
+  Slot slot = {.targets = RenderTargets(target_needs(settings_)),
+               .depth_copy = {},
+               .colour_codes = {},
+               .shared = SharedTextures(device_),
+               .views = {}};
   if (settings_.depth) {
     slot.depth_copy = Texture::create();
     glTextureStorage2D(slot.depth_copy.get(), 1, GL_R32F, settings_.target.width, settings_.target.height);
     glTextureParameteri(slot.depth_copy.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   }
+  GLuint colour = slot.targets.colour();
+  if (settings_.colour == PixelFormat::kRGBA8) {
+    // OpenCL 1.2 has no name for an encoded texture: it is given the codes. A view needs a name without a texture.
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    slot.colour_codes = Texture::adopt(name);
+    glTextureView(name, GL_TEXTURE_2D, colour, GL_RGBA8, 0, 1, 0, 1);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    colour = name;
+  }
   for (const Plane& plane : planes_) {
-    GLuint texture = slot.targets.colour();
+    GLuint texture = colour;
     if (plane.kind == PlaneKind::kDepth) texture = slot.depth_copy.get();
     if (plane.kind == PlaneKind::kVelocity) texture = slot.targets.velocity();
     if (plane.kind == PlaneKind::kReactive) texture = slot.targets.reactive();

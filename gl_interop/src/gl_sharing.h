@@ -39,7 +39,8 @@ class GlSharing final : public Bridge {
  private:
   struct Slot {
     RenderTargets targets;
-    Texture depth_copy;  // R32F; none where depth is not handed over
+    Texture depth_copy;    // R32F; none where depth is not handed over
+    Texture colour_codes;  // RGBA8: the codes of encoded colour; none of others
     SharedTextures shared;
     SharedFrame views;
   };

@@ -36,7 +36,7 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
       device_(device),
       planes_(planes_of(settings)),
       form_(settings.targets == Targets::kPlaced ? form : PlacedForm{}),
-      pool_({.target = settings.target, .velocity = settings.velocity, .reactive = settings.reactive}),
+      pool_(target_needs(settings)),
       targets_(&pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target)),
       ring_(settings.slots, settings.target),
       output_(device, static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8),

@@ -34,6 +34,9 @@ struct Plane {
 // Colour, and what the settings ask for.
 std::vector<Plane> planes_of(const BridgeSettings& settings);
 
+// What one framebuffer of the bridge holds.
+TargetNeeds target_needs(const BridgeSettings& settings);
+
 ImageView& view_of(SharedFrame& frame, PlaneKind kind);
 
 }  // namespace quincunx::gl

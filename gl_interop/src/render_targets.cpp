@@ -51,10 +51,11 @@ class ScissorScope {
 
 }  // namespace
 
-RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target) {
+RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target), colour_format_(needs.colour) {
   check_extent(extent_);
   framebuffer_ = Framebuffer::create();
-  colour_ = make_texture(GL_RGBA16F, extent_);
+  const bool encoded = colour_format_ == PixelFormat::kRGBA8;
+  colour_ = make_texture(encoded ? GL_SRGB8_ALPHA8 : GL_RGBA16F, extent_);
   depth_ = make_texture(GL_DEPTH_COMPONENT32F, extent_);
   if (needs.velocity) velocity_ = make_texture(GL_RG16F, extent_);
   if (needs.reactive) reactive_ = make_texture(GL_R8, extent_);
@@ -72,14 +73,14 @@ RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target) {
   glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(outputs.size()), outputs.data());
   const GLenum complete = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
   if (complete != GL_FRAMEBUFFER_COMPLETE) {
-    throw std::runtime_error(
-        fmt::format("a {}x{} framebuffer of RGBA16F, depth 32F{}{} is not complete (0x{:04x})", extent_.width,
-                    extent_.height, velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
+    throw std::runtime_error(fmt::format(
+        "a {}x{} framebuffer of {}, depth 32F{}{} is not complete (0x{:04x})", extent_.width, extent_.height,
+        name_of(colour_format_), velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
   }
 }
 
 std::uint64_t RenderTargets::bytes() const {
-  const std::size_t texel = bytes_per_pixel(PixelFormat::kRGBA16F) + bytes_per_pixel(PixelFormat::kR32F) +
+  const std::size_t texel = bytes_per_pixel(colour_format_) + bytes_per_pixel(PixelFormat::kR32F) +
                             (velocity_ ? bytes_per_pixel(PixelFormat::kRG16F) : 0) +
                             (reactive_ ? bytes_per_pixel(PixelFormat::kR8) : 0);
   return static_cast<std::uint64_t>(extent_.area()) * texel;

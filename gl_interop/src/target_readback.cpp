@@ -21,7 +21,11 @@ TargetPixels read_targets(const RenderTargets& targets, Extent render) {
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   TargetPixels pixels;
   pixels.render = render;
-  pixels.colour = read_texture<std::uint16_t>(targets.colour(), render, GL_RGBA, GL_HALF_FLOAT, 4);
+  if (targets.colour_format() == PixelFormat::kRGBA8) {
+    pixels.codes = read_texture<std::uint8_t>(targets.colour(), render, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+  } else {
+    pixels.colour = read_texture<std::uint16_t>(targets.colour(), render, GL_RGBA, GL_HALF_FLOAT, 4);
+  }
   pixels.depth = read_texture<float>(targets.depth(), render, GL_DEPTH_COMPONENT, GL_FLOAT, 1);
   pixels.velocity = read_texture<std::uint16_t>(targets.velocity(), render, GL_RG, GL_HALF_FLOAT, 2);
   pixels.reactive = read_texture<std::uint8_t>(targets.reactive(), render, GL_RED, GL_UNSIGNED_BYTE, 1);

@@ -11,6 +11,7 @@
 #include "programs/presenter.h"
 #include "programs/target_file.h"
 #include "render/truth.h"
+#include "tools/image/display_light.h"
 #include "tools/image/flip.h"
 #include "tools/image/image_io.h"
 #include "tools/image/image_metrics.h"
@@ -89,7 +90,7 @@ Status DumpSession::open() {
   auto source = FrameSource::create(settings.value());
   if (!source.ok()) return source.status();
   source_ = std::move(source).value();
-  exposure_ = options_.exposure > 0 ? options_.exposure : source_->scene().exposure;
+  exposure_ = source_->exposure();
   auto plan = source_->connect(options_.resolve, HandOver::kEvery);
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(source_->device(), plan.value());
@@ -137,6 +138,11 @@ Status DumpSession::choose_stages() {
   if (options_.truth == 0 && std::any_of(asked.begin(), asked.end(), needs_truth))
     options_.truth = kDefaultTruth;
   return {};
+}
+
+// Of every colour stage, truth included, so that errors are those of the picture.
+bool DumpSession::is_display_referred() const {
+  return options_.resolve.colour == PixelFormat::kRGBA8;
 }
 
 bool DumpSession::wants(Stage stage) const {
@@ -270,6 +276,8 @@ Status DumpSession::collect_output() {
                              .shutter_seconds = options_.resolve.blur.shutter / options_.fps},
                             current_->view.seconds);
   if (!truth.ok()) return truth.status();
+  if (is_display_referred())
+    truth = tools::display_light(truth.value(), options_.resolve.tone_map, exposure_);
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
   const tools::MeasuredPicture picture(output,
                                        blurred_ ? interleaved(planes_[Stage::kBlurred]) : resolved.value());
@@ -320,8 +328,10 @@ Status DumpSession::write_pictures() {
     if (stage == Stage::kPresented) {
       status = tools::write_png(files_.back(), planes.extent, presented_.data());
     } else if (is_colour(stage)) {
-      auto presenter = Presenter::create(source_->device(), planes.extent, options_.resolve.tone_map,
-                                         options_.resolve.dither, exposure_);
+      const bool shown = is_display_referred();
+      auto presenter = Presenter::create(source_->device(), planes.extent,
+                                         shown ? ToneMap::kClamp : options_.resolve.tone_map,
+                                         options_.resolve.dither, shown ? 1 : exposure_);
       if (!presenter.ok()) return presenter.status();
       auto codes = presenter->present(interleaved(planes));
       if (!codes.ok()) return codes.status();

@@ -39,6 +39,7 @@ class DumpSession {
   Result<std::vector<float>> accumulated() const;
   Result<std::vector<float>> download(const ImageView& image) const;
   bool wants(Stage stage) const;
+  bool is_display_referred() const;
   std::string path_of(const std::string& ending) const;
 
   DumpOptions options_;

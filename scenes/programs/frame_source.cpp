@@ -60,6 +60,8 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   bridging.target = sequence_->target();
   bridging.output = sequence_->output();
   bridging.targets = resolves.front().targets;
+  bridging.colour = resolves.front().colour;
+  display_ = {.exposure = exposure(), .tone_map = resolves.front().tone_map};
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
     resolve.output = bridging.output;
@@ -102,6 +104,7 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   const bool cut = is_cut(scene(), view.previous_seconds, view.seconds);
   DrawnFrame frame = {.index = index, .view = view, .reset = cut || index == 0};
   if (cut) frame.view.previous_seconds = view.seconds;
+  frame.view.display = display_;
   auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()), frame.view.render);
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
@@ -126,7 +129,7 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.render = frame.view.render;
   inputs.jitter = frame.view.jitter;
   inputs.camera = stage_->renderer->camera_motion(frame.view);
-  inputs.exposure = settings_.exposure > 0 ? settings_.exposure : scene().exposure;
+  inputs.exposure = exposure();
   inputs.frame_index = static_cast<std::uint64_t>(frame.index);
   inputs.reset = frame.reset;
   return inputs;

@@ -60,13 +60,15 @@ class FrameSource {
   Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
   // The same for several resolves of the same frames: the slots have what any of their plans reads, and the kind of
-  // targets that the first one asks for. In their order; at least one.
+  // targets, colour format and tone map that the first one asks for. In their order; at least one.
   Result<std::vector<ResolvePlan>> connect_all(std::vector<ResolveSettings> resolves,
                                                HandOver hand_over = HandOver::kPlanned);
 
   const Scene& scene() const { return stage_->scene; }
   const Device& device() const { return *stage_->device; }
   const gl::EglContext& context() const { return *stage_->context; }
+  // What multiplies linear colour: the option's, else the scene's.
+  float exposure() const { return settings_.exposure > 0 ? settings_.exposure : scene().exposure; }
   FrameSequence& sequence() { return *sequence_; }
   const FrameSequence& sequence() const { return *sequence_; }
   Renderer& renderer() { return *stage_->renderer; }
@@ -105,6 +107,7 @@ class FrameSource {
   std::shared_ptr<Stage> stage_;  // outlives what was made in its context
   std::optional<FrameSequence> sequence_;
   std::unique_ptr<gl::Bridge> bridge_;
+  Display display_;  // of targets with encoded colour
   std::deque<DrawnFrame> drawn_;
 };
 

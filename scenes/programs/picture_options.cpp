@@ -66,6 +66,11 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
                     "viewport (default): a part of large targets; placed: targets of just that size");
   tools::add_choice(app, "--jitter", options.jitter, kJitters,
                     "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
+  static const std::map<std::string, PixelFormat> kColours = {{"rgba16f", PixelFormat::kRGBA16F},
+                                                              {"rgba8", PixelFormat::kRGBA8}};
+  tools::add_choice(app, "--colour", options.resolve.colour, kColours,
+                    "Of the colour target: rgba16f (linear light) or rgba8 (exposed, tone mapped and sRGB "
+                    "encoded as it is drawn; default: rgba16f)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       .positive();
   app.add_option("--frames", options.frames, "Number of frames").positive().show_default();

@@ -23,6 +23,7 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
   app.add_option("--truth", options.truth,
                  "Supersampled truth instead: N x N samples a pixel at output size, box")
       .in_range(1, 64)
+      .excludes("--colour")
       .excludes("--target-fps")
       .excludes("--calibrate")
       .type_name("N");

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "programs/sequence_dump.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "programs/frame_source.h"
 #include "programs/target_file.h"
 #include "render/truth.h"
+#include "tools/image/display_light.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/progress.h"
 #include "tools/program/work_queue.h"
@@ -37,13 +40,17 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
   json["jitter_kind"] = name_of(jitter_for(options));
   json["near"] = source.scene().camera(options.start).near_plane;
   json["depth_kind"] = dump.linear_depth ? "linear" : "device-reversed";
-  json["exposure"] = options.exposure > 0 ? options.exposure : source.scene().exposure;
+  const bool encoded = options.resolve.colour == PixelFormat::kRGBA8;
+  json["exposure"] = encoded ? 1 : source.exposure();
+  if (encoded) json["tone_map"] = name_of(options.resolve.tone_map);
   if (dump.truth > 0) json["truth_samples"] = dump.truth * dump.truth;
   json["conventions"] = {
       {"pixels",
        "rows top-down; pixel (x, y) covers [x, x + 1] x [y, y + 1]; data and display window are the "
        "viewport"},
-      {"colour", "R G B A: linear, premultiplied, half; one sample a pixel at its centre + quincunx:jitter"},
+      {"colour", fmt::format("R G B A: linear{}, premultiplied, half; one sample a pixel at its centre + "
+                             "quincunx:jitter",
+                             encoded ? " light of the screen (exposed, tone mapped, of 8-bit sRGB)" : "")},
       {"jitter", "quincunx:jitter of each frame, pixels of that frame, +x right, +y down"},
       {"Z", dump.linear_depth ? "distance along the view axis, 1e10 where nothing was seen"
                               : "near / distance, 0 where nothing was seen"},
@@ -57,11 +64,14 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
 }
 
 Status write_truth_of(FrameSource& source, const SequenceDump& dump, const FrameView& view,
-                      std::int64_t index, Extent output, tools::WorkQueue& writer) {
+                      std::int64_t index, const PictureOptions& options, tools::WorkQueue& writer) {
   const auto pattern = tools::FramePattern::parse((folder_of(dump.pattern) / "truth.%04d.exr").string());
   if (!pattern.ok()) return pattern.status();
+  const Extent output = options.output;
   auto rgba = render_truth(source.renderer(), {.output = output, .samples = dump.truth}, view.seconds);
   if (!rgba.ok()) return rgba.status();
+  if (options.resolve.colour == PixelFormat::kRGBA8)
+    rgba = tools::display_light(rgba.value(), options.resolve.tone_map, source.exposure());
   return writer.push([path = pattern->expand(index), output, pixels = std::move(rgba).value()] {
     return write_rgba(path, output, pixels);
   });
@@ -103,7 +113,7 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
         [path = pattern->expand(index), file = std::move(file)] { return write_targets(path, file); });
     if (!status.ok()) return status;
     if (dump.truth > 0) {
-      if (Status truth = write_truth_of(frames, dump, frame.view, index, options.output, writer); !truth.ok())
+      if (Status truth = write_truth_of(frames, dump, frame.view, index, options, writer); !truth.ok())
         return truth;
     }
     frames.release();

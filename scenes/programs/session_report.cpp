@@ -42,6 +42,7 @@ tools::RunReport RenderSession::report() const {
       {"scale", scale_text(options_)},
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
+      {"colour", name_of(options_.resolve.colour)},
       {"tone map", name_of(options_.resolve.tone_map)},
       {"targets", targets_text(plan().settings.targets, source_->bridge().memory())},
       {"dither", options_.resolve.dither ? "on" : "off"},

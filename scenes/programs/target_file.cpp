@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/view_math.h"
+#include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
 #include "tools/sequence/exchange_format.h"
 
@@ -51,7 +52,11 @@ std::vector<Attribute> attributes_of(const TargetFile& file) {
 
 std::vector<float> colour_of(const gl::TargetPixels& pixels) {
   std::vector<float> rgba;
-  rgba.reserve(pixels.colour.size());
+  rgba.reserve(pixels.colour.size() + pixels.codes.size());
+  for (std::size_t i = 0; i < pixels.codes.size(); ++i) {
+    const float value = static_cast<float>(pixels.codes[i]) / 255;
+    rgba.push_back(i % 4 == 3 ? value : tools::linear_of_srgb(value));
+  }
   for (const std::uint16_t value : pixels.colour)
     rgba.push_back(glm::unpackHalf1x16(value));
   return rgba;
@@ -87,9 +92,12 @@ std::vector<float> reactive_mask(const TargetFile& file) {
 
 Status write_targets(const std::string& path, const TargetFile& file) {
   std::vector<Channel> channels;
-  const auto* colour = file.pixels.colour.data();
+  const std::vector<float> colour = colour_of(file.pixels);
   for (int i = 0; i < 4; ++i) {
-    channels.push_back({.name = kColourNames[i], .data = colour + i, .pixel_stride = 4 * sizeof(*colour)});
+    channels.push_back({.name = kColourNames[i],
+                        .type = ChannelType::kFloat,
+                        .data = colour.data() + i,
+                        .pixel_stride = 4 * sizeof(float)});
   }
   const std::vector<float> z = depth_of(file);
   channels.push_back(

@@ -29,8 +29,9 @@ struct FrameBlock {
   glm::vec4 zenith{0};
   glm::vec4 horizon{0};
   glm::vec4 ground{0};
+  glm::vec4 display{0};
 };
-static_assert(sizeof(FrameBlock) == 4 * 64 + 14 * 16);
+static_assert(sizeof(FrameBlock) == 4 * 64 + 15 * 16);
 
 struct MaterialBlock {
   glm::vec4 base_colour{1};

@@ -24,6 +24,7 @@ void write_to(bool velocity, bool reactive) {
 DrawState::DrawState() {
   glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
+  glEnable(GL_FRAMEBUFFER_SRGB);  // of targets that hold encoded colour, and of no others
   glDisable(GL_BLEND);
   glFrontFace(GL_CCW);
   glCullFace(GL_BACK);
@@ -33,6 +34,7 @@ DrawState::DrawState() {
 DrawState::~DrawState() {
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDisable(GL_DEPTH_TEST);
+  glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);

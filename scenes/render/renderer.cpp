@@ -30,11 +30,12 @@ Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
                       std::isfinite(view.seconds) && std::isfinite(view.previous_seconds) &&
                       std::isfinite(view.lod_bias) && std::isfinite(view.aspect) && view.aspect >= 0 &&
                       std::isfinite(view.least_size) && view.least_size >= 0 &&
-                      std::isfinite(view.shadow_age) && view.shadow_age >= 0;
+                      std::isfinite(view.shadow_age) && view.shadow_age >= 0 &&
+                      std::isfinite(view.display.exposure) && view.display.exposure > 0;
   if (!finite) {
     return Status::invalid(
-        "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size and shadow_age must be "
-        "finite, and the last three not negative");
+        "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size, shadow_age and "
+        "display.exposure must be finite, the last four not negative, and the exposure not 0");
   }
   return {};
 }
@@ -66,7 +67,8 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
   const Impl::View matrices = impl_->view_at(view);
   impl_->place_instances(view, velocity);
   impl_->make_lists(matrices, view);
-  impl_->upload_frame(impl_->frame_block(matrices, view));
+  const bool encoded = targets.colour_format() == PixelFormat::kRGBA8;
+  impl_->upload_frame(impl_->frame_block(matrices, view, encoded));
 
   const DrawState state;
   glBindVertexArray(impl_->surface_array.get());

@@ -10,11 +10,18 @@
 #include <vector>
 
 #include "quincunx/frame.h"
+#include "quincunx/method.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/render_targets.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
+
+// What targets that hold encoded colour (RGBA8) show of the scene's light; of others nothing is read.
+struct Display {
+  float exposure = 1;  // multiplies light before the curve; > 0
+  ToneMap tone_map = ToneMap::kAces;
+};
 
 struct FrameView {
   Extent render = {};           // viewport
@@ -28,6 +35,7 @@ struct FrameView {
   // Less work where detail may go; both 0: all of it.
   float least_size = 0;   // surfaces that span less than this part of the picture's height are left out
   double shadow_age = 0;  // seconds for which the drawn shadows of what moves may stay
+  Display display = {};
 };
 
 struct TruthSettings;

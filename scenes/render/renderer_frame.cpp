@@ -21,6 +21,19 @@ std::array<glm::vec4, 3> rows_of(const glm::mat4& affine) {
   return {rows[0], rows[1], rows[2]};
 }
 
+// As frame.glsl numbers them.
+float curve_of(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return 1;
+    case ToneMap::kReinhard:
+      return 2;
+    case ToneMap::kAces:
+      return 3;
+  }
+  return 1;
+}
+
 std::size_t most_particles(const Scene& scene, std::vector<Particle>& scratch) {
   std::size_t most = 0;
   for (int i = 0; scene.particles && i <= kParticleLooks; ++i) {
@@ -112,7 +125,7 @@ void Renderer::Impl::place_instances(const FrameView& view, bool with_previous) 
   if (scene.particles) scene.particles(view.seconds, particles);
 }
 
-FrameBlock Renderer::Impl::frame_block(const View& view, const FrameView& frame) const {
+FrameBlock Renderer::Impl::frame_block(const View& view, const FrameView& frame, bool encoded) const {
   const auto width = static_cast<float>(frame.render.width);
   const auto height = static_cast<float>(frame.render.height);
   const glm::dmat4& camera = view.now.world_from_camera;
@@ -139,6 +152,7 @@ FrameBlock Renderer::Impl::frame_block(const View& view, const FrameView& frame)
   block.zenith = glm::vec4(scene.sky.zenith, 0);
   block.horizon = glm::vec4(scene.sky.horizon, 0);
   block.ground = glm::vec4(scene.sky.ground, 0);
+  if (encoded) block.display = {frame.display.exposure, curve_of(frame.display.tone_map), 0, 0};
   return block;
 }
 

@@ -36,7 +36,7 @@ struct Renderer::Impl {
   float aspect_of(const FrameView& view) const;
   View view_at(const FrameView& view) const;
   void place_instances(const FrameView& view, bool with_previous);
-  FrameBlock frame_block(const View& view, const FrameView& frame) const;
+  FrameBlock frame_block(const View& view, const FrameView& frame, bool encoded) const;
   void make_lists(const View& view, const FrameView& frame);
   void upload_frame(const FrameBlock& block);
 

@@ -122,17 +122,13 @@ Status LivePicture::open_compared(const ResolvePlan& plan) {
     if (!image.ok()) return image.status();
     other_image_ = std::move(image).value();
   } else {
-    auto presenter = Presenter::create(device, output(), look_.tone_map, look_.dither, exposure());
+    auto presenter = Presenter::create(device, output(), look_.tone_map, look_.dither, source_->exposure());
     if (!presenter.ok()) return presenter.status();
     truth_presenter_.emplace(std::move(presenter).value());
   }
   compared_ = gl::Texture::create();
   glTextureStorage2D(compared_.get(), 1, GL_RGBA8, output().width, output().height);
   return {};
-}
-
-float LivePicture::exposure() const {
-  return options_.exposure > 0 ? options_.exposure : source_->scene().exposure;
 }
 
 FrameView LivePicture::view_of(std::int64_t index, Extent chosen) {

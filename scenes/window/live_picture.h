@@ -71,7 +71,6 @@ class LivePicture {
   Status bring_compared(const FrameView& view);
   void poll_timer();
   void collect_times();
-  float exposure() const;
 
   PictureOptions options_;
   gl::FrameTimer timer_;

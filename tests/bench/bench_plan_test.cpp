@@ -54,6 +54,18 @@ TEST(Plan, TakesEverythingWhereNothingIsChosen) {
   EXPECT_TRUE(plan->methods[plan->frame_method].is_default);
 }
 
+TEST(Plan, AMethodMayHaveEightBitColour) {
+  const auto plan = plan_from(parsed({"--methods", "quincunx,quincunx@rgba8"}));
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  EXPECT_EQ(plan->methods[1].name, plan->methods[0].name + "@rgba8");
+  EXPECT_EQ(plan->methods[0].resolve.colour, PixelFormat::kRGBA16F);
+  EXPECT_EQ(plan->methods[1].resolve.colour, PixelFormat::kRGBA8);
+  EXPECT_EQ(plan->methods[1].resolve.tone_map, ToneMap::kReinhard) << "the curve that the metrics have";
+  EXPECT_EQ(plan->methods[1].jitter, plan->methods[0].jitter);
+  EXPECT_EQ(plan->frame_method, 0u);
+  expect_refused({"--methods", "quincunx@rgba4"}, "no method 'quincunx@rgba4'");
+}
+
 TEST(Plan, QuickIsOnlyWhatWasNotGiven) {
   const auto plan = plan_from(parsed({"--quick", "--frames", "9", "--scenes", "pan"}));
   ASSERT_TRUE(plan.ok());

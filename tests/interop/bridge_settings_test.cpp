@@ -37,6 +37,9 @@ TEST_F(BridgeSettingsTest, EachBadFieldAloneIsRefused) {
   EXPECT_FALSE(contains(refusal({.target = {16, 16}, .output = {16, 1 << 20}}).message(), "target"));
   EXPECT_TRUE(
       contains(refusal({.target = {16, 16}, .output = {16, 16}, .slots = 17}).message(), "slots is 17"));
+  EXPECT_TRUE(
+      contains(refusal({.target = {16, 16}, .output = {16, 16}, .colour = PixelFormat::kRGBA32F}).message(),
+               "colour is RGBA32F and must be RGBA8 or RGBA16F"));
 }
 
 TEST_F(BridgeSettingsTest, AContextThatIsNotCurrentIsRefused) {

@@ -22,7 +22,7 @@ class GlSharingTest : public InteropTest {
   }
 
   Result<std::unique_ptr<Bridge>> make(Interop interop) {
-    BridgeSettings settings = all_planes(kTarget, kOutput);
+    BridgeSettings settings = all_planes(kTarget, kOutput, colour_);
     settings.interop = interop;
     return Bridge::create(*context_, *device_, settings);
   }
@@ -59,8 +59,30 @@ class GlSharingTest : public InteropTest {
     }
   }
 
-  const std::vector<Plane> planes_ = planes_of(all_planes(kTarget, kOutput));
+  void draw_encoded() {
+    colour_ = PixelFormat::kRGBA8;
+    planes_ = planes_of(all_planes(kTarget, kOutput, colour_));
+  }
+
+  PixelFormat colour_ = PixelFormat::kRGBA16F;
+  std::vector<Plane> planes_ = planes_of(all_planes(kTarget, kOutput));
 };
+
+// OpenCL sees the codes of encoded colour, as a view of the texture that GL encodes.
+TEST_F(GlSharingTest, EncodedColourArrivesAsCodes) {
+  const PretendSharing driver(false);
+  open_shared();
+  draw_encoded();
+  {
+    auto made = make(Interop::kGl);
+    ASSERT_TRUE(made.ok()) << made.status().message();
+    draw(*made.value(), 0, 5);
+    auto frame = made.value()->acquire(0);
+    ASSERT_TRUE(frame.ok()) << frame.status().message();
+    EXPECT_EQ(frame->colour.format, PixelFormat::kRGBA8);
+    expect_frame(frame.value(), 5);
+  }
+}
 
 TEST_F(GlSharingTest, FramesArriveAndHistoryStays) {
   for (const bool with_gl_event : {false, true}) {

@@ -110,8 +110,13 @@ inline Bytes read_plane(const RenderTargets& targets, const Plane& plane) {
   return texels;
 }
 
-inline BridgeSettings all_planes(Extent target, Extent output) {
-  return {.target = target, .output = output, .depth = true, .velocity = true, .reactive = true};
+inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colour = PixelFormat::kRGBA16F) {
+  return {.target = target,
+          .output = output,
+          .depth = true,
+          .velocity = true,
+          .reactive = true,
+          .colour = colour};
 }
 
 class InteropTest : public ::testing::Test {

@@ -25,11 +25,11 @@ constexpr std::array kCases = {
 
 class RoundTripTest : public InteropTest {
  protected:
-  void expect_exact(const Case& c, Transfer transfer);
+  void expect_exact(const Case& c, Transfer transfer, PixelFormat colour = PixelFormat::kRGBA16F);
 };
 
-void RoundTripTest::expect_exact(const Case& c, Transfer transfer) {
-  const BridgeSettings settings = all_planes(c.target, {8, 8});
+void RoundTripTest::expect_exact(const Case& c, Transfer transfer, PixelFormat colour) {
+  const BridgeSettings settings = all_planes(c.target, {8, 8}, colour);
   HostCopy bridge(*device_, settings, "test", transfer);
   const std::vector<Plane> planes = planes_of(settings);
 
@@ -78,6 +78,11 @@ TEST_F(RoundTripTest, HostMemoryInPlace) {
 TEST_F(RoundTripTest, CopiedToTheDevice) {
   for (const Case& c : kCases)
     expect_exact(c, Transfer::kExplicit);
+}
+
+TEST_F(RoundTripTest, EncodedColour) {
+  for (const Case& c : kCases)
+    expect_exact(c, Transfer::kZeroCopy, PixelFormat::kRGBA8);
 }
 
 TEST_F(RoundTripTest, PlanesThatWereNotAskedForAreEmpty) {

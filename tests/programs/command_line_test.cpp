@@ -66,6 +66,8 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
 }
 
 TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
+  expect_refused("--colour rgb8", 2, "--colour: 'rgb8' is none of rgba16f, rgba8");
+  expect_refused("--truth 2 --colour rgba8 --out x.png", 2, "--colour excludes --truth");
   expect_refused("--no-such-option", 2, "--no-such-option");
   expect_refused("--output 1280", 2, "WIDTHxHEIGHT");
   expect_refused("--output 0x720", 2, "WIDTHxHEIGHT");

@@ -47,7 +47,7 @@ TEST_F(EndToEnd, AStillSceneIsBitStableFromFrameThree) {
 }
 
 TEST_F(EndToEnd, ScaleOneWithoutJitterIsTheIdentity) {
-  for (const std::string method : {"point", "bilinear", "quincunx"}) {
+  for (const std::string method : {"point", "bilinear", "quincunx", "point --colour rgba8"}) {
     render("--scene chart --scale 1 --jitter none --frames 3 --exr-frame 2 --method " + method +
            " --out '{}/f.%04d.png'");
     const auto drawn = image("frame_0002_targets.exr");

@@ -8,7 +8,9 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "quincunx_gl/target_readback.h"
 #include "render_fixture.h"
+#include "tools/image/display_light.h"
 
 namespace quincunx::scenes::testing {
 namespace {
@@ -53,6 +55,39 @@ Scene rich_scene() {
   scene.lights = {{{0, 1, 1}, {2, 1, 0.5f}, 5}, {{2, 0, 1}, {0, 1, 2}, 3}};
   scene.camera = fixed_camera({0, 0.8f, 4}, {0, 0, 0});
   return scene;
+}
+
+// Targets of RGBA8 hold the light of the others exposed, through the curve and encoded. Nothing is blended here: that
+// happens on the screen's light, after the curve.
+TEST_F(RenderTest, EncodedTargetsHoldTheLightOfTheScreen) {
+  Scene scene = rich_scene();
+  scene.instances.erase(scene.instances.begin() + 1);
+  scene.particles = nullptr;
+  Renderer renderer = renderer_of(scene);
+  const gl::RenderTargets linear({.target = kSize});
+  const gl::RenderTargets encoded({.target = kSize, .colour = PixelFormat::kRGBA8});
+  FrameView view = view_of_size(kSize);
+  view.display.exposure = 1.5f;
+  for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
+    view.display.tone_map = tone_map;
+    ASSERT_TRUE(renderer.draw(linear, view).ok());
+    ASSERT_TRUE(renderer.draw(encoded, view).ok());
+    const std::vector<float> shown =
+        tools::display_light(read_back(linear).colour, tone_map, view.display.exposure);
+    const gl::TargetPixels pixels = gl::read_targets(encoded, kSize);
+    ASSERT_EQ(pixels.codes.size(), shown.size());
+    int differ = 0;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      if (i % 4 == 3) continue;
+      const double x = static_cast<double>(shown[i]);
+      const double exact = 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
+      // Half a code of rounding; a tenth that OpenGL allows the encoding beyond it; a tenth of the half that x was.
+      EXPECT_NEAR(static_cast<double>(pixels.codes[i]), exact, 0.7) << name_of(tone_map) << ", value " << i;
+      differ += pixels.codes[i] != 0 ? 1 : 0;
+    }
+    EXPECT_GT(differ, 1000) << "nothing is drawn";
+    EXPECT_EQ(read_back(linear).velocity, read_back(encoded).velocity);
+  }
 }
 
 TEST_F(RenderTest, ViewportLeavesTheRestOfTheTargetAlone) {

@@ -15,12 +15,14 @@ struct TargetNeeds {
   Extent target = {};    // allocated size, at least the largest viewport
   bool velocity = true;  // RG16F, uv per frame
   bool reactive = true;  // R8
+  PixelFormat colour =
+      PixelFormat::kRGBA16F;  // or RGBA8, which GL encodes as sRGB where it writes and blends
 };
 
 // One framebuffer with its textures, all of the target extent. The viewport is its part from (0, 0), which
 // with glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE) is the top left; texture row 0 is the top row. Move-only.
-// Fragment outputs: location 0 colour (RGBA16F, premultiplied), 1 velocity, 2 reactive; the draw buffers of
-// what was not asked for are GL_NONE.
+// Fragment outputs: location 0 colour (linear, premultiplied), 1 velocity, 2 reactive; the draw buffers of
+// what was not asked for are GL_NONE. Draw into RGBA8 with GL_FRAMEBUFFER_SRGB enabled.
 class RenderTargets {
  public:
   // Throws std::runtime_error when the framebuffer is incomplete.
@@ -30,6 +32,7 @@ class RenderTargets {
   std::uint64_t bytes() const;  // of all textures
   GLuint framebuffer() const { return framebuffer_.get(); }
   GLuint colour() const { return colour_.get(); }
+  PixelFormat colour_format() const { return colour_format_; }
   GLuint depth() const { return depth_.get(); }        // DEPTH_COMPONENT32F
   GLuint velocity() const { return velocity_.get(); }  // 0: not planned
   GLuint reactive() const { return reactive_.get(); }  // 0: not planned
@@ -40,6 +43,7 @@ class RenderTargets {
 
  private:
   Extent extent_ = {};
+  PixelFormat colour_format_;
   Framebuffer framebuffer_;
   Texture colour_;
   Texture depth_;

@@ -13,7 +13,8 @@ namespace quincunx::gl {
 // The top left `render` of each target, tightly packed, top row first; empty for targets that do not exist.
 struct TargetPixels {
   Extent render;
-  std::vector<std::uint16_t> colour;    // RGBA, half
+  std::vector<std::uint16_t> colour;    // RGBA, half; empty where the targets encode it
+  std::vector<std::uint8_t> codes;      // RGBA8, sRGB encoded; empty where they do not
   std::vector<float> depth;             // reversed infinite
   std::vector<std::uint16_t> velocity;  // RG, half, uv
   std::vector<std::uint8_t> reactive;

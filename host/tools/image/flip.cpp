@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "tools/image/display_light.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -69,10 +71,6 @@ Matrix from_white() {
   return matrix;
 }
 
-float linear_light(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-}
-
 // The opponent space YCxCz without its scales and offset, which every filter here, summing to 1, keeps:
 // luminance, red against green and blue against yellow.
 struct Opponent {
@@ -86,7 +84,7 @@ Opponent opponent(std::span<const float> srgb) {
     plane->reserve(srgb.size() / 3);
   for (std::size_t i = 0; i < srgb.size(); i += 3) {
     const Colour xyz =
-        matrix * Colour{linear_light(srgb[i]), linear_light(srgb[i + 1]), linear_light(srgb[i + 2])};
+        matrix * Colour{linear_of_srgb(srgb[i]), linear_of_srgb(srgb[i + 1]), linear_of_srgb(srgb[i + 2])};
     planes.y.push_back(xyz[1]);
     planes.cx.push_back(xyz[0] - xyz[1]);
     planes.cz.push_back(xyz[1] - xyz[2]);

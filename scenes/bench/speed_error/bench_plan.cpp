@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
 
 #include "catalog/scene_catalog.h"
 #include "tools/program/method_names.h"
@@ -26,21 +27,36 @@ std::string longest_name(const std::string& name) {
   return tools::method_name(settings);
 }
 
+constexpr std::string_view kEncoded = "@rgba8";
+
+// The method on RGBA8 colour. The curve is that of the metrics, which can be taken back to compare with truth.
+BenchMethod in_eight_bits(BenchMethod method) {
+  method.name += kEncoded;
+  method.summary += ", of RGBA8 colour";
+  method.resolve.colour = PixelFormat::kRGBA8;
+  method.resolve.tone_map = ToneMap::kReinhard;
+  method.is_default = false;
+  return method;
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
-    const std::string longest = longest_name(name);
+    const bool encoded = name.ends_with(kEncoded);
+    const std::string longest = longest_name(encoded ? name.substr(0, name.size() - kEncoded.size()) : name);
     const auto found = std::find_if(methods.begin(), methods.end(),
                                     [&](const BenchMethod& method) { return method.name == longest; });
     if (found == methods.end()) {
       std::string known;
       for (const BenchMethod& method : methods)
         known += (known.empty() ? "" : ", ") + method.name;
-      return Status::invalid(fmt::format("--methods: there is no method '{}'; there are {}", name, known));
+      return Status::invalid(
+          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it", name,
+                      known, kEncoded));
     }
-    chosen.push_back(*found);
+    chosen.push_back(encoded ? in_eight_bits(*found) : *found);
   }
   return chosen;
 }

@@ -11,6 +11,8 @@
 #include <tuple>
 #include <utility>
 
+#include "tools/image/display_light.h"
+
 namespace quincunx::bench {
 namespace {
 
@@ -50,10 +52,10 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   if (!copy.ok()) return copy.status();
   copy_.emplace(std::move(copy).value());
 
-  std::map<std::tuple<scenes::Jitter, float, bool>, std::vector<std::size_t>> feeds;
+  std::map<std::tuple<scenes::Jitter, float, bool, PixelFormat>, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.jitter, method.lod_bias, method.accumulates}].push_back(i);
+    feeds[{method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}].push_back(i);
   }
   entries_.resize(plan_.methods.size());
   for (const auto& [frames, methods] : feeds) {
@@ -78,7 +80,9 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
     auto contender = Contender::create(device_, feed->plans()[i]);
     if (!contender.ok()) return contender.status();
     if (i < methods.size()) {
-      entries_[methods[i]] = std::make_unique<Entry>(Entry{feeds_.size(), std::move(contender).value()});
+      const bool is_encoded = resolves[i].colour == PixelFormat::kRGBA8;
+      entries_[methods[i]] =
+          std::make_unique<Entry>(Entry{feeds_.size(), is_encoded, std::move(contender).value()});
     } else {
       presenter_ = std::make_unique<Contender>(std::move(contender).value());
       presenter_feed_ = feeds_.size();
@@ -110,7 +114,7 @@ Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
   const Extent output = plan_.conditions.output;
   std::vector<float> rgba(static_cast<std::size_t>(output.area()) * 4);
   if (Status status = device_.download(resolved_.view(), output, rgba.data()); !status.ok()) return status;
-  return rgba;
+  return entry.is_encoded ? tools::light_before_reinhard(rgba) : rgba;
 }
 
 Status CaseRun::measure_frame(int frame) {
@@ -125,9 +129,9 @@ Status CaseRun::measure_frame(int frame) {
   const auto at = static_cast<std::size_t>(frame - plan_.conditions.warm_up);
   const tools::MeasuredPicture* previous = at > 0 ? &truth_.pictures[at - 1] : nullptr;
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
-    entries_[i]->tally.add(
-        measured(plan_.conditions.output, std::move(pictures[i]), inputs_[entries_[i]->feed].exposure),
-        truth_.pictures[at], previous, truth_.masks[at]);
+    entries_[i]->tally.add(measured(plan_.conditions.output, std::move(pictures[i]),
+                                    entries_[i]->is_encoded ? 1 : inputs_[entries_[i]->feed].exposure),
+                           truth_.pictures[at], previous, truth_.masks[at]);
   });
   return {};
 }

@@ -44,6 +44,7 @@ class CaseRun {
   };
   struct Entry {
     std::size_t feed;
+    bool is_encoded;  // its pictures are exposed and tone mapped already
     Contender contender;
     QualityTally tally = {};
   };

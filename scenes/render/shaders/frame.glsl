@@ -18,12 +18,24 @@ layout(std140, binding = 0) uniform Frame {
   vec4 zenith;
   vec4 horizon;
   vec4 ground;
+  vec4 display;                   // x: exposure, y: curve of encoded targets: 1 clamp, 2 Reinhard, 3 ACES; 0: no such
 } frame;
 
 const float kLargestHalf = 65504.0;
 
-// Finite in RGBA16F whatever came before: max() also turns NaN into 0 where min and max follow IEEE 754.
-vec3 storable(vec3 colour) { return min(max(colour, vec3(0.0)), vec3(kLargestHalf)); }
+// Light on the screen, in [0, 1], by the curves of the present pass (colour.h).
+vec3 shown(vec3 light) {
+  vec3 x = min(light * frame.display.x, vec3(kLargestHalf));
+  if (frame.display.y == 2.0) return x / (1.0 + x);
+  if (frame.display.y == 3.0) x = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
+  return min(x, vec3(1.0));
+}
+
+// Finite in the target whatever came before: max() also turns NaN into 0 where min and max follow IEEE 754.
+vec3 storable(vec3 colour) {
+  vec3 light = min(max(colour, vec3(0.0)), vec3(kLargestHalf));
+  return frame.display.y == 0.0 ? light : shown(light);
+}
 
 // Sky radiance along a unit direction, blurred as a surface of this roughness sees it.
 vec3 sky_radiance(vec3 direction, float roughness) {

@@ -126,7 +126,7 @@ void main() {
 #endif
 #ifdef BLEND
   float alpha = clamp(base.a, 0.0, 1.0);
-  out_colour = vec4(storable(colour * alpha), alpha);
+  out_colour = vec4(storable(colour) * alpha, alpha);
   out_reactive = alpha * material.surface.w;
 #else
   out_colour = vec4(storable(colour), 1.0);
