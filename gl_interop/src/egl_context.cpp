@@ -14,11 +14,24 @@
 #include <utility>
 #include <vector>
 
+#include "quincunx_gl/capabilities.h"
+
 namespace quincunx::gl {
 namespace {
 
-constexpr int kMajorVersion = 4;
-constexpr int kMinorVersion = 5;
+// The least version that is taken, and what EGL calls it.
+struct ApiTraits {
+  const char* name;
+  EGLenum api;
+  EGLint renderable;
+  EGLint major, minor;
+};
+
+const ApiTraits& traits_of(Api api) {
+  static constexpr ApiTraits kDesktop = {"OpenGL 4.5 core", EGL_OPENGL_API, EGL_OPENGL_BIT, 4, 5};
+  static constexpr ApiTraits kEs = {"OpenGL ES 3.1", EGL_OPENGL_ES_API, EGL_OPENGL_ES3_BIT, 3, 1};
+  return api == Api::kGl45 ? kDesktop : kEs;
+}
 
 bool lists(const char* extensions, std::string_view wanted) {
   std::string_view rest = extensions != nullptr ? extensions : "";
@@ -111,7 +124,7 @@ struct EglContext::Impl {
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
     if (context == EGL_NO_CONTEXT || borrowed) return;
-    eglBindAPI(EGL_OPENGL_API);
+    eglBindAPI(traits_of(info.api).api);
     if (eglGetCurrentContext() == context &&
         eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) != EGL_TRUE) {
       spdlog::warn("{}", egl_error("eglMakeCurrent"));
@@ -134,7 +147,7 @@ struct EglContext::Impl {
   }
 
   // Opens `native` of `platform_enum`; "" when that worked, else what went wrong.
-  std::string open(EGLenum platform_enum, void* native, Platform platform);
+  std::string open(EGLenum platform_enum, void* native, Platform platform, Api wanted);
 
   // Takes the context that is current; "" when that worked, else what went wrong.
   std::string borrow_current();
@@ -145,16 +158,16 @@ struct EglContext::Impl {
 };
 
 std::string EglContext::Impl::make_context() {
+  const ApiTraits& api = traits_of(info.api);
   const char* extensions = eglQueryString(display.get(), EGL_EXTENSIONS);
   if (!lists(extensions, "EGL_KHR_surfaceless_context")) return "it lacks EGL_KHR_surfaceless_context";
 
   EGLConfig config = nullptr;  // EGL_NO_CONFIG_KHR
   if (!lists(extensions, "EGL_KHR_no_config_context")) {
-    constexpr std::array<EGLint, 5> kWanted = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, 0,
-                                               EGL_NONE};
+    const std::array<EGLint, 5> wanted = {EGL_RENDERABLE_TYPE, api.renderable, EGL_SURFACE_TYPE, 0, EGL_NONE};
     EGLint count = 0;
-    if (eglChooseConfig(display.get(), kWanted.data(), &config, 1, &count) != EGL_TRUE || count < 1) {
-      return "it has no EGL config for desktop OpenGL";
+    if (eglChooseConfig(display.get(), wanted.data(), &config, 1, &count) != EGL_TRUE || count < 1) {
+      return fmt::format("it has no EGL config for {}", api.name);
     }
   }
 #ifdef NDEBUG
@@ -162,40 +175,46 @@ std::string EglContext::Impl::make_context() {
 #else
   constexpr EGLint kDebug = EGL_TRUE;
 #endif
-  constexpr std::array<EGLint, 9> kAttributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                                 kMajorVersion,
-                                                 EGL_CONTEXT_MINOR_VERSION,
-                                                 kMinorVersion,
-                                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                                 EGL_CONTEXT_OPENGL_DEBUG,
-                                                 kDebug,
-                                                 EGL_NONE};
-  context = eglCreateContext(display.get(), config, EGL_NO_CONTEXT, kAttributes.data());
-  if (context == EGL_NO_CONTEXT) return egl_error("eglCreateContext for OpenGL 4.5 core");
+  std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, api.major,
+                                    EGL_CONTEXT_MINOR_VERSION, api.minor,
+                                    EGL_CONTEXT_OPENGL_DEBUG,  kDebug};
+  if (info.api == Api::kGl45) {
+    attributes.insert(attributes.end(),
+                      {EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT});
+  }
+  attributes.push_back(EGL_NONE);
+  context = eglCreateContext(display.get(), config, EGL_NO_CONTEXT, attributes.data());
+  if (context == EGL_NO_CONTEXT) return egl_error(fmt::format("eglCreateContext for {}", api.name).c_str());
   return {};
 }
 
 std::string EglContext::Impl::describe_context() {
   if (Status status = make_current(); !status.ok()) return status.message();
-  GLint major = 0;
-  GLint minor = 0;
-  glGetIntegerv(GL_MAJOR_VERSION, &major);
-  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  const Capabilities& can = renewed_capabilities();
+  info.api = can.api;
   info.vendor = gl_string(GL_VENDOR);
   info.renderer = gl_string(GL_RENDERER);
   info.version = gl_string(GL_VERSION);
   info.software = is_software(info.renderer);
-  if (std::pair(major, minor) < std::pair(kMajorVersion, kMinorVersion)) {
-    return fmt::format("'{}' offers OpenGL {}.{} where 4.5 is needed", info.renderer, major, minor);
+  const ApiTraits& api = traits_of(info.api);
+  if (can.version < 10 * api.major + api.minor) {
+    return fmt::format("'{}' offers version {}.{} where {} is needed", info.renderer, can.version / 10,
+                       can.version % 10, api.name);
   }
-  glEnable(GL_DEBUG_OUTPUT);
-  glDebugMessageCallback(log_gl_error, nullptr);
+  if (!can.missing.empty()) {
+    return fmt::format("'{}' offers OpenGL ES {}.{} without {}; 3.2 has it", info.renderer, can.version / 10,
+                       can.version % 10, can.missing);
+  }
+  if (info.api == Api::kGl45 || can.version >= 32 || epoxy_has_gl_extension("GL_KHR_debug")) {
+    glEnable(GL_DEBUG_OUTPUT);
+    glDebugMessageCallback(log_gl_error, nullptr);
+  }
   return {};
 }
 
-std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform platform) {
+std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform platform, Api wanted) {
   info.platform = platform;
+  info.api = wanted;
   const auto get_display =
       reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"));
   if (get_display == nullptr) return "EGL lacks eglGetPlatformDisplayEXT";
@@ -203,7 +222,7 @@ std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform
   if (handle == EGL_NO_DISPLAY) return egl_error("eglGetPlatformDisplayEXT");
   display = DisplayUse::initialise(handle);
   if (!display) return egl_error("eglInitialize");
-  if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) return egl_error("eglBindAPI for desktop OpenGL");
+  if (eglBindAPI(traits_of(info.api).api) != EGL_TRUE) return egl_error("eglBindAPI");
   if (std::string error = make_context(); !error.empty()) return error;
   return describe_context();
 }
@@ -259,7 +278,7 @@ const char* name_of(Platform platform) {
   return "unknown";
 }
 
-Result<EglContext> EglContext::create(Platform platform) {
+Result<EglContext> EglContext::create(Platform platform, Api api) {
   if (platform == Platform::kCurrent) {
     auto impl = std::make_unique<Impl>();
     if (const std::string error = impl->borrow_current(); !error.empty()) {
@@ -276,7 +295,7 @@ Result<EglContext> EglContext::create(Platform platform) {
     if (!error.empty()) note(&tried, "device platform", error);
     for (std::size_t i = 0; i < devices.size(); ++i) {
       auto impl = std::make_unique<Impl>();
-      error = impl->open(EGL_PLATFORM_DEVICE_EXT, devices[i], Platform::kDevice);
+      error = impl->open(EGL_PLATFORM_DEVICE_EXT, devices[i], Platform::kDevice, api);
       if (!error.empty()) {
         note(&tried, fmt::format("device platform, device {}", i), error);
       } else if (!impl->info.software) {
@@ -290,7 +309,7 @@ Result<EglContext> EglContext::create(Platform platform) {
     auto impl = std::make_unique<Impl>();
     std::string error = "EGL lacks EGL_MESA_platform_surfaceless";
     if (lists(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless")) {
-      error = impl->open(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, Platform::kSurfaceless);
+      error = impl->open(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, Platform::kSurfaceless, api);
     }
     if (error.empty()) return EglContext(std::move(impl));
     note(&tried, "surfaceless platform", error);
@@ -300,10 +319,10 @@ Result<EglContext> EglContext::create(Platform platform) {
     return EglContext(std::move(software));
   }
   return Status::unsupported(
-      fmt::format("no OpenGL 4.5 core context could be made without a window ({}); a GPU driver with EGL or, "
+      fmt::format("no {} context could be made without a window ({}); a GPU driver with EGL or, "
                   "for the CPU, "
                   "the Debian packages libegl1 and libgl1-mesa-dri provide one",
-                  tried));
+                  traits_of(api).name, tried));
 }
 
 EglContext::EglContext(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

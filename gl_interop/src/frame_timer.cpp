@@ -10,6 +10,8 @@
 #include <utility>
 
 #include "fence.h"
+#include "quincunx_gl/capabilities.h"
+#include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
 #include "stopwatch.h"
 
@@ -18,9 +20,10 @@ namespace {
 
 constexpr double kLeastMs = 1e-6;  // a frame without work may come back as 0, which no controller takes
 
-constexpr const char* kVertexSource = R"(#version 450 core
+constexpr const char* kVertexSource = R"(#version 310 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); })";
-constexpr const char* kFragmentSource = R"(#version 450 core
+constexpr const char* kFragmentSource = R"(#version 310 es
+precision highp float;
 layout(location = 0) out vec4 colour;
 void main() { colour = vec4(sin(gl_FragCoord.xy), 0.25, 0.5); })";
 
@@ -45,8 +48,8 @@ Program linked_program() {
 class KnownLoad {
  public:
   KnownLoad() : program_(linked_program()) {
-    glTextureStorage2D(texture_.get(), 1, GL_RGBA16F, kSide, kSide);
-    glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, texture_.get(), 0);
+    texture_storage(texture_.get(), 1, GL_RGBA16F, {kSide, kSide});
+    attach(framebuffer_.get(), GL_COLOR_ATTACHMENT0, texture_.get());
     glGetIntegerv(GL_VIEWPORT, viewport_before_.data());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
     glUseProgram(program_.get());
@@ -84,6 +87,15 @@ double query_ms(GLuint query) {
   GLuint64 nanoseconds = 0;
   glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
   return static_cast<double>(nanoseconds) * 1e-6;
+}
+
+// Whether something, a change of the clock for example, has made the times since the last look worthless. OpenGL ES
+// asks its callers to look (GL_EXT_disjoint_timer_query).
+bool times_are_disjoint() {
+  if (capabilities().api != Api::kEs3) return false;
+  GLint disjoint = 0;
+  glGetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+  return disjoint != 0;
 }
 
 // Whether queries see a load grow as the host's clock does.
@@ -159,17 +171,18 @@ FrameTimer& FrameTimer::operator=(FrameTimer&&) noexcept = default;
 Result<FrameTimer> FrameTimer::create(std::optional<TimerMethod> method) try {
   auto impl = std::make_unique<Impl>();
   if (!method) {
-    method = queries_agree() ? TimerMethod::kQuery : TimerMethod::kFence;
+    const bool has_queries = capabilities().time_queries;
+    method = has_queries && queries_agree() ? TimerMethod::kQuery : TimerMethod::kFence;
     spdlog::info("frame timer: {}",
-                 *method == TimerMethod::kQuery
-                     ? "GL_TIME_ELAPSED"
-                     : "fences (GL_TIME_ELAPSED does not agree with them on a known load)");
+                 *method == TimerMethod::kQuery ? "GL_TIME_ELAPSED"
+                 : has_queries ? "fences (GL_TIME_ELAPSED does not agree with them on a known load)"
+                               : "fences (the OpenGL ES context has no GL_EXT_disjoint_timer_query)");
   }
   impl->method = *method;
   for (Impl::Slot& slot : impl->slots) {
     if (*method != TimerMethod::kQuery) break;
     slot.query = TimeQuery::create();
-    if (!slot.query) return Status::device("glCreateQueries made no GL_TIME_ELAPSED query");
+    if (!slot.query) return Status::device("OpenGL made no GL_TIME_ELAPSED query");
   }
   return FrameTimer(std::move(impl));
 } catch (const std::exception& error) {
@@ -207,8 +220,10 @@ std::optional<TimedFrame> FrameTimer::poll() try {
   Impl::Slot& slot = impl_->slots[impl_->first];
   if (!impl_->done(slot)) return std::nullopt;
   TimedFrame result = slot.frame;
+  bool lost = false;
   if (impl_->method == TimerMethod::kQuery) {
     result.gpu_ms = query_ms(slot.query.get());
+    lost = times_are_disjoint();
   } else {
     const double now = impl_->clock.milliseconds();
     result.gpu_ms = now - std::max(slot.begun_ms, impl_->last_done_ms);
@@ -217,7 +232,7 @@ std::optional<TimedFrame> FrameTimer::poll() try {
   result.gpu_ms = std::max(result.gpu_ms, kLeastMs);
   impl_->first = (impl_->first + 1) % impl_->slots.size();
   --impl_->count;
-  return result;
+  return lost ? poll() : result;
 } catch (const std::exception&) {
   return std::nullopt;
 }

@@ -58,6 +58,7 @@ cl_context_properties context_property(cl_context context, cl_context_properties
 
 // Empty when the device shares with the context, else one clause that says why not.
 std::string find_obstacle(const EglContext& context, const Device& device, const std::vector<Plane>& planes) {
+  if (context.info().api != Api::kGl45) return "sharing is made for desktop OpenGL, and this is OpenGL ES";
   const std::string& name = device.info().name;
   if (!device.info().gl_sharing) return fmt::format("'{}' does not offer cl_khr_gl_sharing", name);
   const auto wanted = reinterpret_cast<cl_context_properties>(context.context());

@@ -3,16 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "quincunx_gl/capabilities.h"
+#include "quincunx_gl/gl_calls.h"
 #include "stopwatch.h"
 
 namespace quincunx::gl {
-namespace {
-
-void* offset_pointer(std::size_t offset) {
-  return reinterpret_cast<void*>(offset);
-}
-
-}  // namespace
 
 // Viewport targets: memory of its own for each slot. Placed ones: all slots in one allocation.
 void HostCopy::make_slots(Transfer transfer) {
@@ -48,7 +43,8 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
                   .format = PixelFormat::kRGBA8,
                   .extent = settings.output,
                   .pitch = settings.output.width * bytes_per_pixel(PixelFormat::kRGBA8)};
-  glTextureStorage2D(presented_.get(), 1, GL_RGBA8, settings.output.width, settings.output.height);
+  texture_storage(presented_.get(), 1, GL_RGBA8, settings.output);
+  if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target);
 
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
   while (glGetError() != GL_NO_ERROR) {
@@ -75,10 +71,15 @@ void HostCopy::read_back(Slot& slot, Extent render) {
     const ImageView& view = view_of(regions, plane.kind);
     const GlFormat names = gl_format(plane.format);
     const bool is_depth = plane.kind == PlaneKind::kDepth;
-    if (!is_depth) glReadBuffer(plane.attachment);
+    void* const start = slot.pixels.gl_pointer(view.offset);
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
+    if (is_depth && !capabilities().reads_depth) {
+      depth_reader_.read(targets_->depth(), render, start);
+      continue;
+    }
+    if (!is_depth) glReadBuffer(plane.attachment);
     glReadPixels(0, 0, render.width, render.height, is_depth ? GLenum{GL_DEPTH_COMPONENT} : names.format,
-                 names.type, offset_pointer(slot.pixels.gl_offset() + view.offset));
+                 names.type, start);
   }
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
@@ -188,8 +189,7 @@ Status HostCopy::present() {
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  glTextureSubImage2D(presented_.get(), 0, 0, 0, settings_.output.width, settings_.output.height, GL_RGBA,
-                      GL_UNSIGNED_BYTE, offset_pointer(output_.gl_offset()));
+  texture_write(presented_.get(), 0, settings_.output, GL_RGBA, GL_UNSIGNED_BYTE, output_.gl_pointer(0));
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   uploaded_.set();
   presenting_ = false;

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "depth_reader.h"
 #include "fence.h"
 #include "pixel_buffer.h"
 #include "plane.h"
@@ -59,6 +60,7 @@ class HostCopy final : public Bridge {
   PlacedForm form_;
   TargetPool pool_;
   const RenderTargets* targets_;  // that are drawn or were drawn last
+  DepthReader depth_reader_;
   SlotRing ring_;
   std::vector<Slot> slots_;
   PixelBuffer output_;

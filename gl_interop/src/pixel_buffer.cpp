@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "quincunx_gl/capabilities.h"
+
 namespace quincunx::gl {
 namespace {
 
@@ -24,18 +26,10 @@ std::size_t PixelMemory::whole_pages(std::size_t bytes) {
 }
 
 PixelMemory::PixelMemory(const Device& device, std::size_t bytes, Transfer transfer)
-    : transfer_(transfer), size_(whole_pages(bytes)), buffer_(Buffer::create()) {
-  constexpr GLbitfield kAccess =
-      GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-  const auto allocated = static_cast<GLsizeiptr>(size_ + kPageBytes);
-  glNamedBufferStorage(buffer_.get(), allocated, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
-  void* const mapped = glMapNamedBufferRange(buffer_.get(), 0, allocated, kAccess);
-  if (mapped == nullptr) {
-    throw InteropError(fmt::format("OpenGL could not map a pixel buffer of {} bytes (error 0x{:04x})",
-                                   allocated, glGetError()));
-  }
-  gl_offset_ = bytes_to_page(mapped);
-  bytes_ = static_cast<std::uint8_t*>(mapped) + gl_offset_;
+    : transfer_(transfer), size_(whole_pages(bytes)) {
+  std::uint8_t* const memory = capabilities().persistent_map ? map_buffer() : client_memory();
+  bytes_ = memory + bytes_to_page(memory);
+  gl_start_ = buffer_ ? bytes_ - memory : reinterpret_cast<std::intptr_t>(bytes_);
 
   cl_int code = CL_SUCCESS;
   const bool in_place = transfer_ == Transfer::kZeroCopy;
@@ -67,6 +61,26 @@ PixelBuffer::PixelBuffer(const Device& device, std::shared_ptr<PixelMemory> memo
     take_back(Access::kOverwrite);
     wait();
   }
+}
+
+std::uint8_t* PixelMemory::map_buffer() {
+  constexpr GLbitfield kAccess =
+      GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  const auto allocated = static_cast<GLsizeiptr>(size_ + kPageBytes);
+  buffer_ = Buffer::create();
+  glBindBuffer(GL_COPY_WRITE_BUFFER, buffer_.get());
+  glBufferStorage(GL_COPY_WRITE_BUFFER, allocated, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
+  void* const mapped = glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, allocated, kAccess);
+  if (mapped == nullptr) {
+    throw InteropError(fmt::format("OpenGL could not map a pixel buffer of {} bytes (error 0x{:04x})",
+                                   allocated, glGetError()));
+  }
+  return static_cast<std::uint8_t*>(mapped);
+}
+
+std::uint8_t* PixelMemory::client_memory() {
+  client_.resize(size_ + kPageBytes);
+  return client_.data();
 }
 
 PixelBuffer::~PixelBuffer() {

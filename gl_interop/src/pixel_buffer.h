@@ -2,14 +2,16 @@
 // PixelMemory, PixelBuffer: host memory that GL transfers pixels with and OpenCL reads or writes, and a part of it
 // that changes owner as a whole.
 //
-// A GL pixel buffer, mapped persistently and coherently. Where the OpenCL device shares the host's memory
-// (kZeroCopy), the mapped memory itself is an OpenCL buffer (CL_MEM_USE_HOST_PTR) that changes owner by
-// map and unmap; elsewhere (kExplicit) OpenCL has a buffer of its own and rectangles are copied.
+// A GL pixel buffer, mapped persistently and coherently; where GL cannot do that, client memory, and GL is waited for.
+// Where the OpenCL device shares the host's memory (kZeroCopy), that memory itself is an OpenCL buffer
+// (CL_MEM_USE_HOST_PTR) that changes owner by map and unmap; elsewhere (kExplicit) OpenCL has a buffer of its own and
+// rectangles are copied.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "cl_handle.h"
 #include "quincunx/device.h"
@@ -28,8 +30,10 @@ class PixelMemory {
 
   static std::size_t whole_pages(std::size_t bytes);
 
-  GLuint gl_buffer() const { return buffer_.get(); }
-  std::size_t gl_offset() const { return gl_offset_; }  // of byte 0 in gl_buffer()
+  GLuint gl_buffer() const { return buffer_.get(); }  // 0: client memory
+  void* gl_pointer(std::size_t offset) const {
+    return reinterpret_cast<void*>(gl_start_ + static_cast<std::intptr_t>(offset));
+  }
   std::uint8_t* bytes() const { return bytes_; }
   std::size_t size() const { return size_; }
   cl_mem cl_buffer() const { return memory_.get(); }
@@ -39,10 +43,14 @@ class PixelMemory {
   ClMem sub_buffer(std::size_t offset, std::size_t bytes) const;
 
  private:
+  std::uint8_t* map_buffer();
+  std::uint8_t* client_memory();
+
   Transfer transfer_;
   std::size_t size_;
   Buffer buffer_;
-  std::size_t gl_offset_ = 0;
+  std::vector<std::uint8_t> client_;  // where there is no buffer
+  std::intptr_t gl_start_ = 0;        // byte 0: its offset in the buffer, or its address
   std::uint8_t* bytes_ = nullptr;
   ClMem memory_;
 };
@@ -60,8 +68,9 @@ class PixelBuffer {
   PixelBuffer(const PixelBuffer&) = delete;
   PixelBuffer& operator=(const PixelBuffer&) = delete;
 
-  GLuint gl_buffer() const { return memory_->gl_buffer(); }
-  std::size_t gl_offset() const { return memory_->gl_offset() + offset_; }  // of byte 0 in gl_buffer()
+  GLuint gl_buffer() const { return memory_->gl_buffer(); }  // 0: client memory
+  // What GL takes for byte `offset` while gl_buffer() is bound.
+  void* gl_pointer(std::size_t offset) const { return memory_->gl_pointer(offset_ + offset); }
   const std::uint8_t* bytes() const { return own_bytes(); }
   std::size_t size() const { return size_; }
   cl_mem cl_buffer() const { return part_ ? part_.get() : memory_->cl_buffer(); }

@@ -6,17 +6,19 @@
 #include <array>
 #include <stdexcept>
 
+#include "quincunx_gl/gl_calls.h"
+
 namespace quincunx::gl {
 namespace {
 
 Texture make_texture(GLenum format, Extent extent) {
   Texture texture = Texture::create();
-  glTextureStorage2D(texture.get(), 1, format, extent.width, extent.height);
+  texture_storage(texture.get(), 1, format, extent);
   // Read texel by texel: a filter would mix in what lies outside the viewport.
-  glTextureParameteri(texture.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(texture.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-  glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  texture_parameter(texture.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST});
+  texture_parameter(texture.get(), GL_TEXTURE_MAG_FILTER, GLint{GL_NEAREST});
+  texture_parameter(texture.get(), GL_TEXTURE_WRAP_S, GLint{GL_CLAMP_TO_EDGE});
+  texture_parameter(texture.get(), GL_TEXTURE_WRAP_T, GLint{GL_CLAMP_TO_EDGE});
   return texture;
 }
 
@@ -61,17 +63,14 @@ RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target), 
   if (needs.reactive) reactive_ = make_texture(GL_R8, extent_);
 
   const GLuint name = framebuffer_.get();
-  glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT0, colour_.get(), 0);
-  glNamedFramebufferTexture(name, GL_DEPTH_ATTACHMENT, depth_.get(), 0);
-  if (velocity_) glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT1, velocity_.get(), 0);
-  if (reactive_) glNamedFramebufferTexture(name, GL_COLOR_ATTACHMENT2, reactive_.get(), 0);
-  const std::array<GLenum, 3> outputs = {
-      GL_COLOR_ATTACHMENT0,
-      static_cast<GLenum>(velocity_ ? GL_COLOR_ATTACHMENT1 : GL_NONE),
-      static_cast<GLenum>(reactive_ ? GL_COLOR_ATTACHMENT2 : GL_NONE),
-  };
-  glNamedFramebufferDrawBuffers(name, static_cast<GLsizei>(outputs.size()), outputs.data());
-  const GLenum complete = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
+  attach(name, GL_COLOR_ATTACHMENT0, colour_.get());
+  attach(name, GL_DEPTH_ATTACHMENT, depth_.get());
+  if (velocity_) attach(name, GL_COLOR_ATTACHMENT1, velocity_.get());
+  if (reactive_) attach(name, GL_COLOR_ATTACHMENT2, reactive_.get());
+  const GLenum second = velocity_ ? GL_COLOR_ATTACHMENT1 : GL_NONE;
+  const GLenum third = reactive_ ? GL_COLOR_ATTACHMENT2 : GL_NONE;
+  draw_buffers(name, {GL_COLOR_ATTACHMENT0, second, third});
+  const GLenum complete = framebuffer_status(name);
   if (complete != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error(fmt::format(
         "a {}x{} framebuffer of {}, depth 32F{}{} is not complete (0x{:04x})", extent_.width, extent_.height,
@@ -93,13 +92,13 @@ void RenderTargets::clear(Extent render) const {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 
   glDisable(GL_SCISSOR_TEST);
-  glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
+  gl::clear(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
 
   glEnable(GL_SCISSOR_TEST);
   glScissor(0, 0, render.width, render.height);
-  glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 0, kZero.data());
-  if (velocity_) glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 1, kZero.data());
-  if (reactive_) glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, 2, kZero.data());
+  gl::clear(framebuffer_.get(), GL_COLOR, 0, kZero.data());
+  if (velocity_) gl::clear(framebuffer_.get(), GL_COLOR, 1, kZero.data());
+  if (reactive_) gl::clear(framebuffer_.get(), GL_COLOR, 2, kZero.data());
 }
 
 }  // namespace quincunx::gl

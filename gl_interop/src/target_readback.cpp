@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include "quincunx_gl/target_readback.h"
 
+#include "depth_reader.h"
+#include "quincunx_gl/capabilities.h"
+#include "quincunx_gl/gl_calls.h"
+
 namespace quincunx::gl {
 namespace {
 
 template <typename T>
-std::vector<T> read_texture(GLuint texture, Extent render, GLenum format, GLenum type, int channels) {
-  if (texture == 0) return {};
+std::vector<T> read_plane(const RenderTargets& targets, GLenum attachment, Extent render, GLenum format,
+                          GLenum type, int channels) {
   std::vector<T> pixels(static_cast<std::size_t>(render.area()) * channels);
-  glGetTextureSubImage(texture, 0, 0, 0, 0, render.width, render.height, 1, format, type,
-                       static_cast<GLsizei>(pixels.size() * sizeof(T)), pixels.data());
+  read_attachment(targets.framebuffer(), attachment, render, format, type, pixels.data());
+  return pixels;
+}
+
+std::vector<float> read_depth(const RenderTargets& targets, Extent render) {
+  std::vector<float> pixels(static_cast<std::size_t>(render.area()));
+  if (capabilities().reads_depth) {
+    read_attachment(targets.framebuffer(), GL_COLOR_ATTACHMENT0, render, GL_DEPTH_COMPONENT, GL_FLOAT,
+                    pixels.data());
+  } else {
+    DepthReader(targets.extent()).read(targets.depth(), render, pixels.data());
+  }
   return pixels;
 }
 
@@ -22,13 +36,21 @@ TargetPixels read_targets(const RenderTargets& targets, Extent render) {
   TargetPixels pixels;
   pixels.render = render;
   if (targets.colour_format() == PixelFormat::kRGBA8) {
-    pixels.codes = read_texture<std::uint8_t>(targets.colour(), render, GL_RGBA, GL_UNSIGNED_BYTE, 4);
+    pixels.codes =
+        read_plane<std::uint8_t>(targets, GL_COLOR_ATTACHMENT0, render, GL_RGBA, GL_UNSIGNED_BYTE, 4);
   } else {
-    pixels.colour = read_texture<std::uint16_t>(targets.colour(), render, GL_RGBA, GL_HALF_FLOAT, 4);
+    pixels.colour =
+        read_plane<std::uint16_t>(targets, GL_COLOR_ATTACHMENT0, render, GL_RGBA, GL_HALF_FLOAT, 4);
   }
-  pixels.depth = read_texture<float>(targets.depth(), render, GL_DEPTH_COMPONENT, GL_FLOAT, 1);
-  pixels.velocity = read_texture<std::uint16_t>(targets.velocity(), render, GL_RG, GL_HALF_FLOAT, 2);
-  pixels.reactive = read_texture<std::uint8_t>(targets.reactive(), render, GL_RED, GL_UNSIGNED_BYTE, 1);
+  pixels.depth = read_depth(targets, render);
+  if (targets.velocity() != 0) {
+    pixels.velocity =
+        read_plane<std::uint16_t>(targets, GL_COLOR_ATTACHMENT1, render, GL_RG, GL_HALF_FLOAT, 2);
+  }
+  if (targets.reactive() != 0) {
+    pixels.reactive =
+        read_plane<std::uint8_t>(targets, GL_COLOR_ATTACHMENT2, render, GL_RED, GL_UNSIGNED_BYTE, 1);
+  }
   glPixelStorei(GL_PACK_ALIGNMENT, alignment);
   return pixels;
 }

@@ -30,6 +30,7 @@ struct FrameSourceSettings {
   std::string device;  // see Device::open
   gl::Interop interop = gl::Interop::kAuto;
   gl::Platform platform = gl::Platform::kAuto;
+  gl::Api api = gl::Api::kGl45;
 };
 
 enum class HandOver : std::uint8_t {

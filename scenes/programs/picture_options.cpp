@@ -91,6 +91,9 @@ void add_machine_options(tools::CommandLine& app, PictureOptions& options) {
   tools::add_choice(app, "--interop", options.interop, kInterops,
                     "How frames pass from OpenGL to OpenCL: auto, gl or copy");
   tools::add_choice(app, "--egl-platform", options.platform, kPlatforms, "auto, surfaceless or device");
+  static const std::map<std::string, gl::Api> kApis = {{"4.5", gl::Api::kGl45}, {"es3", gl::Api::kEs3}};
+  tools::add_choice(app, "--gl", options.api, kApis,
+                    "What draws: OpenGL 4.5 or es3, which is OpenGL ES 3.1 or later (default: 4.5)");
   app.add_flag("--list-scenes", options.list_scenes, "List the built-in scenes and why they are there");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices and the OpenGL renderer");
   app.add_flag("-q,--quiet", options.quiet, "Say nothing but errors");
@@ -105,7 +108,7 @@ void print_scenes() {
 
 void print_devices(const PictureOptions& options) {
   tools::print_opencl_devices();
-  auto context = gl::EglContext::create(options.platform);
+  auto context = gl::EglContext::create(options.platform, options.api);
   if (!context.ok()) {
     fmt::print("OpenGL    {}\n", context.status().message());
     return;
@@ -145,6 +148,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   source.device = options.device;
   source.interop = options.interop;
   source.platform = options.platform;
+  source.api = options.api;
   SequenceSettings& settings = source.sequence;
   settings.output = options.output;
   settings.scale_path = path.value();

@@ -33,6 +33,7 @@ struct PictureOptions {
   std::string device;
   gl::Interop interop = gl::Interop::kAuto;
   gl::Platform platform = gl::Platform::kAuto;
+  gl::Api api = gl::Api::kGl45;
   float exposure = 0;  // 0: the scene's own
 
   bool list_scenes = false;

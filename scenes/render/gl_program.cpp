@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "quincunx_gl/capabilities.h"
 #include "render/embedded_shaders.h"
 
 namespace quincunx::scenes {
@@ -57,8 +58,25 @@ std::string log_of(GLuint name, bool program) {
   return log.c_str();  // up to the terminating zero
 }
 
+// Desktop OpenGL 4.5 or OpenGL ES 3.1, 3.2. CLIP turns a place of clip space, y up and depth from 0 to 1, into that of
+// a context without clip control: rows top-down then come from the sign of y, and depth is spread to [-1, 1], from
+// which the viewport brings it back.
+std::string preamble() {
+  const gl::Capabilities& can = gl::capabilities();
+  std::string text = "#version 450 core\n";
+  if (can.api == gl::Api::kEs3) {
+    text = can.version >= 32 ? "#version 320 es\n" : "#version 310 es\n#define precise\n";
+    text += "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+    text += "precision highp sampler2DShadow;\n";
+  }
+  text += can.clip_control ? "#define CLIP(p) (p)\n"
+                           : "#define CLIP(p) vec4((p).x, -(p).y, 2.0 * (p).z - (p).w, (p).w)\n";
+  if (!can.depth_clamp) text += "#define CLAMPS_DEPTH\n";
+  return text;
+}
+
 Result<Shader> compile(GLenum stage, const std::string& file, const std::vector<std::string>& defines) {
-  std::string source = "#version 450 core\n";
+  std::string source = preamble();
   for (const std::string& define : defines)
     source += "#define " + define + "\n";
   std::vector<std::string> seen;
@@ -86,13 +104,9 @@ Result<gl::Program> link_program(const std::string& vertex, const std::string& f
   Result<Shader> vertex_shader = compile(GL_VERTEX_SHADER, vertex, defines);
   if (!vertex_shader.ok()) return vertex_shader.status();
   glAttachShader(program.get(), vertex_shader->get());
-  Shader fragment_shader;
-  if (!fragment.empty()) {
-    Result<Shader> result = compile(GL_FRAGMENT_SHADER, fragment, defines);
-    if (!result.ok()) return result.status();
-    fragment_shader = std::move(result).value();
-    glAttachShader(program.get(), fragment_shader.get());
-  }
+  Result<Shader> fragment_shader = compile(GL_FRAGMENT_SHADER, fragment, defines);
+  if (!fragment_shader.ok()) return fragment_shader.status();
+  glAttachShader(program.get(), fragment_shader->get());
   glLinkProgram(program.get());
   GLint linked = 0;
   glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);

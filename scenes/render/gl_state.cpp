@@ -3,6 +3,9 @@
 
 #include <epoxy/gl.h>
 
+#include "quincunx_gl/capabilities.h"
+#include "quincunx_gl/gl_calls.h"
+
 namespace quincunx::scenes {
 namespace {
 
@@ -22,19 +25,20 @@ void write_to(bool velocity, bool reactive) {
 }  // namespace
 
 DrawState::DrawState() {
-  glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+  if (gl::capabilities().clip_control) glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
-  glEnable(GL_FRAMEBUFFER_SRGB);  // of targets that hold encoded colour, and of no others
+  // Of targets that hold encoded colour, and of no others.
+  if (gl::capabilities().encodes_on_demand) glEnable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_BLEND);
-  glFrontFace(GL_CCW);
+  set_winding(false);
   glCullFace(GL_BACK);
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 DrawState::~DrawState() {
-  glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  if (gl::capabilities().clip_control) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   glDisable(GL_DEPTH_TEST);
-  glDisable(GL_FRAMEBUFFER_SRGB);
+  if (gl::capabilities().encodes_on_demand) glDisable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
@@ -47,21 +51,26 @@ DrawState::~DrawState() {
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
 }
 
+// Where a shader turns y over, it turns the winding, too.
+void set_winding(bool mirrored) {
+  glFrontFace(mirrored == gl::capabilities().clip_control ? GL_CW : GL_CCW);
+}
+
 void clear_for_frame(const gl::RenderTargets& targets, Extent render) {
   const float zero[] = {0, 0, 0, 0};
   glDepthMask(GL_TRUE);
   glDisable(GL_SCISSOR_TEST);
-  glClearNamedFramebufferfv(targets.framebuffer(), GL_DEPTH, 0, zero);
+  gl::clear(targets.framebuffer(), GL_DEPTH, 0, zero);
   glEnable(GL_SCISSOR_TEST);
   glScissor(0, 0, render.width, render.height);
-  if (targets.reactive() != 0) glClearNamedFramebufferfv(targets.framebuffer(), GL_COLOR, kReactive, zero);
+  if (targets.reactive() != 0) gl::clear(targets.framebuffer(), GL_COLOR, kReactive, zero);
 }
 
 void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value) {
   const float colour[] = {value, value, value, 1};
   glEnable(GL_SCISSOR_TEST);
   glScissor(corner.x, corner.y, size.x, size.y);
-  glClearNamedFramebufferfv(targets.framebuffer(), GL_COLOR, kColour, colour);
+  gl::clear(targets.framebuffer(), GL_COLOR, kColour, colour);
 }
 
 void set_opaque_state() {

@@ -19,6 +19,9 @@ class DrawState {
   DrawState& operator=(const DrawState&) = delete;
 };
 
+// Which triangles are seen from the front: those that run counter-clockwise, or with `mirrored` the others.
+void set_winding(bool mirrored);
+
 // Depth whole to infinity and the viewport's part of the reactive values to 0. Colour and velocity need no
 // clear: surfaces and sky cover every pixel. Leaves the scissor on the viewport.
 void clear_for_frame(const gl::RenderTargets& targets, Extent render);

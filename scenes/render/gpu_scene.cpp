@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "quincunx_gl/gl_calls.h"
 #include "render/frame_block.h"
 #include "render/texture_upload.h"
 
@@ -23,9 +24,8 @@ std::size_t aligned(std::size_t bytes) {
 gl::Buffer buffer_of(const void* data, std::size_t bytes) {
   gl::Buffer buffer = gl::Buffer::create();
   constexpr std::size_t kSmallest = 16;  // GL has no empty buffers
-  glNamedBufferStorage(buffer.get(), static_cast<GLsizeiptr>(std::max(bytes, kSmallest)), nullptr,
-                       GL_DYNAMIC_STORAGE_BIT);
-  if (bytes > 0) glNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(bytes), data);
+  gl::buffer_storage(buffer.get(), static_cast<GLsizeiptr>(std::max(bytes, kSmallest)));
+  if (bytes > 0) gl::buffer_write(buffer.get(), 0, static_cast<GLsizeiptr>(bytes), data);
   return buffer;
 }
 
@@ -122,7 +122,8 @@ void GpuScene::bind_material(int material) const {
   glBindBufferRange(GL_UNIFORM_BUFFER, kMaterialBinding, material_blocks_.get(),
                     static_cast<GLintptr>(static_cast<std::size_t>(material) * material_stride_),
                     sizeof(MaterialBlock));
-  glBindTextures(0, static_cast<GLsizei>(bound.textures.size()), bound.textures.data());
+  for (std::size_t unit = 0; unit < bound.textures.size(); ++unit)
+    gl::bind_texture(static_cast<GLuint>(unit), bound.textures[unit]);
   bound.double_sided ? glDisable(GL_CULL_FACE) : glEnable(GL_CULL_FACE);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
 #include "render/gl_state.h"
 #include "render/renderer_impl.h"
@@ -97,14 +98,13 @@ void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) {
   if (wanted.material != bound.material) gpu.bind_material(wanted.material);
   if (wanted.light_set != bound.light_set) gpu.bind_light_set(wanted.light_set);
   bound = wanted;
-  glFrontFace(batch.mirrored ? GL_CW : GL_CCW);
-  draw_mesh(part, batch.first, batch.count);
+  set_winding(batch.mirrored);
+  draw_mesh(part, instance_stream.get(), instance_offset, batch.first, batch.count);
 }
 
 void Renderer::Impl::draw_opaque(bool velocity) {
   set_opaque_state();
-  glBindVertexBuffer(kInstanceSlot, instance_stream.get(), instance_offset, sizeof(InstanceData));
-  glBindTextureUnit(kShadowUnit, shadows.texture());
+  gl::bind_texture(kShadowUnit, shadows.texture());
   bound = {};
   for (const Batch& batch : list.opaque())
     draw_batch(batch, velocity);
@@ -130,12 +130,12 @@ void Renderer::Impl::draw_blended() {
       draw_batch(batch, false);
       continue;
     }
-    glBindVertexBuffer(kInstanceSlot, particle_stream.get(), particle_offset, sizeof(Particle));
+    const auto first = static_cast<GLintptr>(batch.first * sizeof(Particle));
+    glBindVertexBuffer(kInstanceSlot, particle_stream.get(), particle_offset + first, sizeof(Particle));
     glUseProgram(particle_program.get());
     glDisable(GL_CULL_FACE);
     bound = {};
-    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count),
-                                      batch.first);
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renderer: draws a Scene with OpenGL 4.5 into the viewport of render targets.
+// Renderer: draws a Scene with OpenGL 4.5 or OpenGL ES 3.1 into the viewport of render targets.
 //
 // One geometry pass writes colour, depth and velocity; then sky, then transparents (colour and reactive
 // only), then the scene's faults (colour only). Reversed infinite depth, rows top-down, jitter through the

@@ -100,7 +100,6 @@ class Layouter {
     MeshRange range;
     range.first_index = static_cast<std::uint32_t>(first);
     range.index_count = static_cast<std::uint32_t>(count);
-    range.base_vertex = base_vertex_;
     range.material = mesh.material;
     for (std::size_t i = 0; i < count; ++i) {
       const glm::vec3& position = mesh.vertices[layout_.indices[first + i]].position;
@@ -115,7 +114,8 @@ class Layouter {
       const Mesh& mesh = scene_.meshes[m];
       const PartLimits limits = limits_for(static_cast<int>(m));
       const MeshParts parts = split_mesh(mesh, limits);
-      std::size_t first = layout_.indices.size();
+      const std::size_t begin = layout_.indices.size();
+      std::size_t first = begin;
       layout_.indices.insert(layout_.indices.end(), parts.indices.begin(), parts.indices.end());
       layout_.meshes.push_back(range_of(mesh, first, parts.indices.size()));
       parts_of_mesh_.push_back(
@@ -126,7 +126,10 @@ class Layouter {
       }
       parts_of_mesh_.back().count = static_cast<int>(layout_.parts.size()) - parts_of_mesh_.back().first;
       features_.push_back(features_of(mesh, scene_.materials[static_cast<std::size_t>(mesh.material)]));
-      base_vertex_ += static_cast<std::int32_t>(mesh.vertices.size());
+      // All meshes lie in one buffer.
+      for (std::size_t i = begin; i < layout_.indices.size(); ++i)
+        layout_.indices[i] += base_vertex_;
+      base_vertex_ += static_cast<std::uint32_t>(mesh.vertices.size());
     }
   }
 
@@ -226,7 +229,7 @@ class Layouter {
   std::vector<PartsOfMesh> parts_of_mesh_;
   std::vector<SurfaceFeatures> features_;
   std::map<SurfaceFeatures, int> programs_;
-  std::int32_t base_vertex_ = 0;
+  std::uint32_t base_vertex_ = 0;
 };
 
 }  // namespace

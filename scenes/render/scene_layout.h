@@ -37,7 +37,6 @@ struct SurfaceFeatures {
 struct MeshRange {
   std::uint32_t first_index = 0;
   std::uint32_t index_count = 0;
-  std::int32_t base_vertex = 0;
   Bounds box;  // mesh space
   int material = 0;
 };

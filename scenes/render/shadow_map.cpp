@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "quincunx_gl/capabilities.h"
+#include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
 #include "render/vertex_input.h"
 
@@ -19,23 +21,23 @@ constexpr float kConstantBias = 2.0f;
 gl::Texture depth_texture() {
   gl::Texture texture = gl::Texture::create();
   const GLuint name = texture.get();
-  glTextureStorage2D(name, 1, GL_DEPTH_COMPONENT16, kShadowTexels, kShadowTexels);
-  glTextureParameteri(name, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glTextureParameteri(name, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
-  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTextureParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_BORDER);
-  glTextureParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_BORDER);
+  gl::texture_storage(name, 1, GL_DEPTH_COMPONENT16, {kShadowTexels, kShadowTexels});
+  gl::texture_parameter(name, GL_TEXTURE_COMPARE_MODE, static_cast<GLint>(GL_COMPARE_REF_TO_TEXTURE));
+  gl::texture_parameter(name, GL_TEXTURE_COMPARE_FUNC, static_cast<GLint>(GL_LEQUAL));
+  gl::texture_parameter(name, GL_TEXTURE_MIN_FILTER, static_cast<GLint>(GL_LINEAR));
+  gl::texture_parameter(name, GL_TEXTURE_MAG_FILTER, static_cast<GLint>(GL_LINEAR));
+  gl::texture_parameter(name, GL_TEXTURE_WRAP_S, static_cast<GLint>(GL_CLAMP_TO_BORDER));
+  gl::texture_parameter(name, GL_TEXTURE_WRAP_T, static_cast<GLint>(GL_CLAMP_TO_BORDER));
   const float lit[] = {1, 1, 1, 1};
-  glTextureParameterfv(name, GL_TEXTURE_BORDER_COLOR, lit);
+  gl::texture_border(name, lit);
   return texture;
 }
 
 Result<gl::Framebuffer> depth_framebuffer(GLuint texture) {
   gl::Framebuffer framebuffer = gl::Framebuffer::create();
-  glNamedFramebufferTexture(framebuffer.get(), GL_DEPTH_ATTACHMENT, texture, 0);
-  glNamedFramebufferDrawBuffer(framebuffer.get(), GL_NONE);
-  if (glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+  gl::attach(framebuffer.get(), GL_DEPTH_ATTACHMENT, texture);
+  gl::draw_buffers(framebuffer.get(), {GL_NONE});
+  if (gl::framebuffer_status(framebuffer.get()) != GL_FRAMEBUFFER_COMPLETE) {
     return Status::device(
         "the driver refuses a framebuffer with only a 16-bit depth texture, which shadows need");
   }
@@ -44,7 +46,7 @@ Result<gl::Framebuffer> depth_framebuffer(GLuint texture) {
 
 void clear_depth(GLuint framebuffer) {
   const float infinity = 1;
-  glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &infinity);
+  gl::clear(framebuffer, GL_DEPTH, 0, &infinity);
 }
 
 }  // namespace
@@ -57,7 +59,7 @@ Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layou
     map.mask_of_mesh_.push_back(material.alpha_mode == AlphaMode::kMask &&
                                 material.base_colour_texture.texture >= 0);
   }
-  Result<gl::Program> solid = link_program("shadow.vert.glsl", "", {});
+  Result<gl::Program> solid = link_program("shadow.vert.glsl", "nothing.frag.glsl", {});
   if (!solid.ok()) return solid.status();
   map.solid_ = std::move(solid).value();
   Result<gl::Program> cut_out = link_program("shadow.vert.glsl", "shadow.frag.glsl", {"MASK"});
@@ -94,8 +96,11 @@ void ShadowMap::update(const SceneLayout& layout, const GpuScene& gpu,
     draw(layout, gpu, framebuffer, still_instances_);
   }
   if (!layout.shadow.moves) return;
-  glCopyImageSubData(still_texture_.get(), GL_TEXTURE_2D, 0, 0, 0, 0, texture_.get(), GL_TEXTURE_2D, 0, 0, 0,
-                     0, kShadowTexels, kShadowTexels, 1);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, still_framebuffer_.get());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
+  glBlitFramebuffer(0, 0, kShadowTexels, kShadowTexels, 0, 0, kShadowTexels, kShadowTexels,
+                    GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
   list_.build_casters(layout, placed, true);
   draw(layout, gpu, framebuffer_.get(), moving_instances_);
 }
@@ -104,10 +109,10 @@ void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint fram
                      StreamBuffer& instances) {
   const std::vector<InstanceData>& data = list_.instances();
   const GLintptr offset = instances.write(data.data(), data.size() * sizeof(InstanceData));
-  glBindVertexBuffer(kInstanceSlot, instances.get(), offset, sizeof(InstanceData));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
   glViewport(0, 0, kShadowTexels, kShadowTexels);
-  glEnable(GL_DEPTH_CLAMP);
+  const bool clamps = gl::capabilities().depth_clamp;
+  if (clamps) glEnable(GL_DEPTH_CLAMP);
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeBias, kConstantBias);
   for (const Batch& batch : list_.opaque()) {
@@ -115,10 +120,10 @@ void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint fram
     glUseProgram(mask_of_mesh_[mesh] ? cut_out_.get() : solid_.get());
     if (mask_of_mesh_[mesh]) gpu.bind_material(layout.meshes[mesh].material);
     glDisable(GL_CULL_FACE);  // open meshes cast shadows from both sides
-    draw_mesh(layout.meshes[mesh], batch.first, batch.count);
+    draw_mesh(layout.meshes[mesh], instances.get(), offset, batch.first, batch.count);
   }
   glDisable(GL_POLYGON_OFFSET_FILL);
-  glDisable(GL_DEPTH_CLAMP);
+  if (clamps) glDisable(GL_DEPTH_CLAMP);
 }
 
 }  // namespace quincunx::scenes

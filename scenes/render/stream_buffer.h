@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
 
 namespace quincunx::scenes {
@@ -16,15 +17,14 @@ class StreamBuffer {
   explicit StreamBuffer(std::size_t frame_bytes)
       : buffer_(gl::Buffer::create()),
         frame_bytes_((frame_bytes + kAlignment - 1) / kAlignment * kAlignment) {
-    glNamedBufferStorage(buffer_.get(), static_cast<GLsizeiptr>(kFrames * frame_bytes_ + kAlignment), nullptr,
-                         GL_DYNAMIC_STORAGE_BIT);
+    gl::buffer_storage(buffer_.get(), static_cast<GLsizeiptr>(kFrames * frame_bytes_ + kAlignment));
   }
 
   // Moves to the next frame's part and writes its start; returns the offset in the buffer.
   GLintptr write(const void* data, std::size_t bytes) {
     frame_ = (frame_ + 1) % kFrames;
     const auto offset = static_cast<GLintptr>(frame_ * frame_bytes_);
-    if (bytes > 0) glNamedBufferSubData(buffer_.get(), offset, static_cast<GLsizeiptr>(bytes), data);
+    if (bytes > 0) gl::buffer_write(buffer_.get(), offset, static_cast<GLsizeiptr>(bytes), data);
     return offset;
   }
 

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "quincunx_gl/gl_calls.h"
+
 namespace quincunx::scenes {
 namespace {
 
@@ -92,7 +94,7 @@ void upload_level(GLuint name, int index, const Level& level, float scale, bool 
       codes.push_back(code_of(t[c], srgb));
     codes.push_back(code_of(t.a * scale, false));
   }
-  glTextureSubImage2D(name, index, 0, 0, level.width, level.height, GL_RGBA, GL_UNSIGNED_BYTE, codes.data());
+  gl::texture_write(name, index, {level.width, level.height}, GL_RGBA, GL_UNSIGNED_BYTE, codes.data());
 }
 
 void upload_tested_levels(GLuint name, int levels, const Texture& texture, float cutoff) {
@@ -129,15 +131,17 @@ float affordable_anisotropy() {
 
 void set_sampling(GLuint name, const Texture& texture) {
   const float anisotropy = affordable_anisotropy();
-  glTextureParameteri(name, GL_TEXTURE_WRAP_S, wrap_mode(texture.wrap_u));
-  glTextureParameteri(name, GL_TEXTURE_WRAP_T, wrap_mode(texture.wrap_v));
-  glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, texture.nearest ? GL_NEAREST : GL_LINEAR);
-  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, texture.nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR);
+  gl::texture_parameter(name, GL_TEXTURE_WRAP_S, static_cast<GLint>(wrap_mode(texture.wrap_u)));
+  gl::texture_parameter(name, GL_TEXTURE_WRAP_T, static_cast<GLint>(wrap_mode(texture.wrap_v)));
+  gl::texture_parameter(name, GL_TEXTURE_MAG_FILTER,
+                        static_cast<GLint>(texture.nearest ? GL_NEAREST : GL_LINEAR));
+  gl::texture_parameter(name, GL_TEXTURE_MIN_FILTER,
+                        static_cast<GLint>(texture.nearest ? GL_NEAREST : GL_LINEAR_MIPMAP_LINEAR));
   if (texture.nearest || anisotropy <= 1 || !epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
     return;
   float most = 1;
   glGetFloatv(GL_MAX_TEXTURE_MAX_ANISOTROPY_EXT, &most);
-  glTextureParameterf(name, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, anisotropy));
+  gl::texture_parameter(name, GL_TEXTURE_MAX_ANISOTROPY_EXT, std::min(most, anisotropy));
 }
 
 }  // namespace
@@ -152,15 +156,15 @@ Result<gl::Texture> upload_texture(const Texture& texture, std::optional<float> 
   const int levels = std::bit_width(static_cast<unsigned>(std::max(texture.width, texture.height)));
   gl::Texture handle = gl::Texture::create();
   const GLuint name = handle.get();
-  glTextureStorage2D(name, levels, texture.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, texture.width, texture.height);
+  const Extent extent = {texture.width, texture.height};
+  gl::texture_storage(name, levels, texture.srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8, extent);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTextureSubImage2D(name, 0, 0, 0, texture.width, texture.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                      texture.rgba.data());
+  gl::texture_write(name, 0, extent, GL_RGBA, GL_UNSIGNED_BYTE, texture.rgba.data());
   set_sampling(name, texture);
   if (cutoff) {
     upload_tested_levels(name, levels, texture, *cutoff);
   } else {
-    glGenerateTextureMipmap(name);
+    gl::texture_mipmaps(name);
   }
   return handle;
 }

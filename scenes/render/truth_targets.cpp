@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
 #include "render/gl_state.h"
 
@@ -15,15 +16,14 @@ TruthTargets::TruthTargets(Extent output)
       sum_(gl::Texture::create()),
       sum_framebuffer_(gl::Framebuffer::create()),
       nothing_(gl::VertexArray::create()) {
-  glTextureStorage2D(sum_.get(), 1, GL_RGBA32F, output.width, output.height);
-  glNamedFramebufferTexture(sum_framebuffer_.get(), GL_COLOR_ATTACHMENT0, sum_.get(), 0);
+  gl::texture_storage(sum_.get(), 1, GL_RGBA32F, output);
+  gl::attach(sum_framebuffer_.get(), GL_COLOR_ATTACHMENT0, sum_.get());
 }
 
 Result<TruthTargets> TruthTargets::create(Extent output) {
   try {
     TruthTargets targets(output);
-    if (glCheckNamedFramebufferStatus(targets.sum_framebuffer_.get(), GL_FRAMEBUFFER) !=
-        GL_FRAMEBUFFER_COMPLETE) {
+    if (gl::framebuffer_status(targets.sum_framebuffer_.get()) != GL_FRAMEBUFFER_COMPLETE) {
       return Status::device(
           "the driver refuses a framebuffer with an RGBA32F texture, which truth is summed up in");
     }
@@ -38,7 +38,7 @@ Result<TruthTargets> TruthTargets::create(Extent output) {
 
 void TruthTargets::clear() {
   const float zero[] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(sum_framebuffer_.get(), GL_COLOR, 0, zero);
+  gl::clear(sum_framebuffer_.get(), GL_COLOR, 0, zero);
 }
 
 void TruthTargets::add(float weight) {
@@ -51,14 +51,14 @@ void TruthTargets::add(float weight) {
   glBindVertexArray(nothing_.get());
   glUseProgram(program_.get());
   glProgramUniform1f(program_.get(), 0, weight);
-  glBindTextureUnit(0, frame_.colour());
+  gl::bind_texture(0, frame_.colour());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 std::vector<float> TruthTargets::read() const {
   std::vector<float> pixels(static_cast<std::size_t>(frame_.extent().area()) * 4);
-  glGetTextureImage(sum_.get(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(pixels.size() * sizeof(float)),
-                    pixels.data());
+  gl::read_attachment(sum_framebuffer_.get(), GL_COLOR_ATTACHMENT0, frame_.extent(), GL_RGBA, GL_FLOAT,
+                      pixels.data());
   return pixels;
 }
 

@@ -13,7 +13,9 @@ inline constexpr GLuint kInstanceSlot = 1;
 gl::VertexArray surface_vertex_array(const GpuScene& gpu);  // the instance buffer is bound per frame
 gl::VertexArray particle_vertex_array();                    // the same
 
-// One instanced draw of a mesh; the vertex array, program and material are bound.
-void draw_mesh(const MeshRange& mesh, std::uint32_t first_instance, std::uint32_t count);
+// One instanced draw of a mesh; the vertex array, program and material are bound. `instances`: a buffer of InstanceData
+// from `offset` on, of which `count` from `first` on are drawn.
+void draw_mesh(const MeshRange& mesh, GLuint instances, GLintptr offset, std::uint32_t first,
+               std::uint32_t count);
 
 }  // namespace quincunx::scenes

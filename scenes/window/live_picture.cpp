@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "programs/target_file.h"
+#include "quincunx_gl/gl_calls.h"
 #include "render/truth.h"
 #include "tools/program/clock.h"
 #include "tools/program/method_names.h"
@@ -127,7 +128,7 @@ Status LivePicture::open_compared(const ResolvePlan& plan) {
     truth_presenter_.emplace(std::move(presenter).value());
   }
   compared_ = gl::Texture::create();
-  glTextureStorage2D(compared_.get(), 1, GL_RGBA8, output().width, output().height);
+  gl::texture_storage(compared_.get(), 1, GL_RGBA8, output());
   return {};
 }
 
@@ -221,8 +222,7 @@ Status LivePicture::bring_compared(const FrameView& view) {
     pixels = std::move(presented).value();
   }
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTextureSubImage2D(compared_.get(), 0, 0, 0, output().width, output().height, GL_RGBA, GL_UNSIGNED_BYTE,
-                      pixels.data());
+  gl::texture_write(compared_.get(), 0, output(), GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
   return {};
 }
 

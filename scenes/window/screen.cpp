@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
 
 namespace quincunx::scenes {
@@ -48,11 +49,11 @@ void Screen::show(const ScreenPicture& picture, const ZoomSettings& zoom, float 
   glUniform2i(kOrigin, origin.x, origin.y);
   glUniform1i(kZoom, zoom.factor);
   glUniform1i(kSplit, splits ? side : window.width);
-  glBindTextureUnit(0, picture.picture);
-  glBindTextureUnit(1, splits ? picture.compared : picture.picture);
+  gl::bind_texture(0, picture.picture);
+  gl::bind_texture(1, splits ? picture.compared : picture.picture);
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindTextureUnit(0, 0);
-  glBindTextureUnit(1, 0);
+  gl::bind_texture(0, 0);
+  gl::bind_texture(1, 0);
   glUseProgram(0);
   glBindVertexArray(0);
 }
@@ -61,9 +62,9 @@ Screen::Layer Screen::layer(Extent window) {
   const bool renewed = layer_extent_ != window;
   if (renewed) {
     layer_texture_ = gl::Texture::create();
-    glTextureStorage2D(layer_texture_.get(), 1, GL_RGBA8, window.width, window.height);
+    gl::texture_storage(layer_texture_.get(), 1, GL_RGBA8, window);
     layer_framebuffer_ = gl::Framebuffer::create();
-    glNamedFramebufferTexture(layer_framebuffer_.get(), GL_COLOR_ATTACHMENT0, layer_texture_.get(), 0);
+    gl::attach(layer_framebuffer_.get(), GL_COLOR_ATTACHMENT0, layer_texture_.get());
     layer_extent_ = window;
     clear_layer();
   }
@@ -72,7 +73,7 @@ Screen::Layer Screen::layer(Extent window) {
 
 void Screen::clear_layer() {
   const float zero[] = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(layer_framebuffer_.get(), GL_COLOR, 0, zero);
+  gl::clear(layer_framebuffer_.get(), GL_COLOR, 0, zero);
 }
 
 void Screen::lay_over(Extent window) {
@@ -82,9 +83,9 @@ void Screen::lay_over(Extent window) {
   glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   glBindVertexArray(nothing_.get());
   glUseProgram(layer_program_.get());
-  glBindTextureUnit(0, layer_texture_.get());
+  gl::bind_texture(0, layer_texture_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindTextureUnit(0, 0);
+  gl::bind_texture(0, 0);
   glUseProgram(0);
   glBindVertexArray(0);
   glDisable(GL_BLEND);

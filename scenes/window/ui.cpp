@@ -11,12 +11,33 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include "quincunx_gl/capabilities.h"
 #include "tools/image/text_painter.h"
 
 namespace quincunx::scenes {
 namespace {
 
 constexpr float kFontPixels = 14;
+
+// Dear ImGui as distributions build it asks for state that desktop OpenGL alone has. OpenGL ES refuses that and changes
+// nothing, so for the life of the guard the refusals are neither logged nor left behind.
+class RefusalsOfEs {
+ public:
+  RefusalsOfEs() {
+    if (is_es_) glDisable(GL_DEBUG_OUTPUT);
+  }
+  ~RefusalsOfEs() {
+    if (!is_es_) return;
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    glEnable(GL_DEBUG_OUTPUT);
+  }
+  RefusalsOfEs(const RefusalsOfEs&) = delete;
+  RefusalsOfEs& operator=(const RefusalsOfEs&) = delete;
+
+ private:
+  bool is_es_ = gl::capabilities().api == gl::Api::kEs3;
+};
 
 void load_font() {
   // What the texts of the interface have beyond Latin: multiplication sign, arrows, dots, ellipsis.
@@ -74,7 +95,8 @@ Ui::Ui(GLFWwindow* window) {
   load_font();
   set_looks();
   ImGui_ImplGlfw_InitForOpenGL(window, true);
-  ImGui_ImplOpenGL3_Init("#version 450 core");
+  const RefusalsOfEs guard;
+  ImGui_ImplOpenGL3_Init(gl::capabilities().api == gl::Api::kGl45 ? "#version 450 core" : "#version 300 es");
 }
 
 Ui::~Ui() {
@@ -84,6 +106,7 @@ Ui::~Ui() {
 }
 
 void Ui::draw_content(const std::function<void()>& content, GLuint framebuffer, Extent window) {
+  const RefusalsOfEs guard;
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();

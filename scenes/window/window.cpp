@@ -40,7 +40,8 @@ Status give_up(const std::string& what) {
 
 }  // namespace
 
-Result<std::unique_ptr<Window>> Window::create(Extent size, const std::string& title, bool vsync) {
+Result<std::unique_ptr<Window>> Window::create(Extent size, const std::string& title, bool vsync,
+                                               gl::Api api) {
   glfwSetErrorCallback(note_error);
   end_when_display_is_lost();
 #ifdef GLFW_PLATFORM_X11
@@ -48,15 +49,19 @@ Result<std::unique_ptr<Window>> Window::create(Extent size, const std::string& t
   if (std::getenv("XDG_RUNTIME_DIR") == nullptr) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() != GLFW_TRUE) return give_up("no window could be opened");
-  glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_API);
+  const bool desktop = api == gl::Api::kGl45;
+  glfwWindowHint(GLFW_CLIENT_API, desktop ? GLFW_OPENGL_API : GLFW_OPENGL_ES_API);
   glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, desktop ? 4 : 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, desktop ? 5 : 1);
+  if (desktop) glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
   GLFWwindow* handle = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
-  if (handle == nullptr) return give_up("no window with OpenGL 4.5 core through EGL could be opened");
+  if (handle == nullptr) {
+    return give_up(desktop ? "no window with OpenGL 4.5 core through EGL could be opened"
+                           : "no window with OpenGL ES 3.1 through EGL could be opened");
+  }
   glfwMakeContextCurrent(handle);
   glfwSwapInterval(vsync ? 1 : 0);
   auto window = std::unique_ptr<Window>(new Window(handle));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Window: a window with an OpenGL 4.5 core context made through EGL (GLFW). One a process; main thread only.
+// Window: a window with an OpenGL 4.5 core or OpenGL ES 3.1 context made through EGL (GLFW). One a process; main
+// thread only.
 //
 // When an X11 display goes away, any call may end the program, with exit status 1 and one sentence in the
 // log: X11's library leaves no other way.
@@ -11,6 +12,7 @@
 
 #include "quincunx/extent.h"
 #include "quincunx/status.h"
+#include "quincunx_gl/capabilities.h"
 
 struct GLFWwindow;
 
@@ -32,7 +34,8 @@ class Window {
  public:
   // Opens it with its context current. Without `vsync` pictures are shown as soon as they are there. Errors:
   // kUnsupported, saying why there is no display or no context.
-  static Result<std::unique_ptr<Window>> create(Extent size, const std::string& title, bool vsync);
+  static Result<std::unique_ptr<Window>> create(Extent size, const std::string& title, bool vsync,
+                                                gl::Api api);
 
   ~Window();
   Window(const Window&) = delete;

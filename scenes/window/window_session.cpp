@@ -83,7 +83,7 @@ Status WindowSession::open() {
   if (!source.ok()) return source.status();
   settings_ = settings_for(options_, source->sequence.scale_path.at(0, 1));
   Device::list();  // some drivers want OpenCL enumerated before a GL context exists
-  auto window = Window::create(options_.output, "Quincunx", options_.vsync);
+  auto window = Window::create(options_.output, "Quincunx", options_.vsync, options_.api);
   if (!window.ok()) return window.status();
   window_ = std::move(window).value();
   ui_ = std::make_unique<Ui>(window_->handle());

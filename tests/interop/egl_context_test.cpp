@@ -16,11 +16,15 @@ void expect_usable(const EglContext& context) {
   EXPECT_EQ(eglGetCurrentContext(), context.context());
   GLint major = 0;
   GLint minor = 0;
-  GLint profile = 0;
+  GLint profile = GL_CONTEXT_CORE_PROFILE_BIT;
   glGetIntegerv(GL_MAJOR_VERSION, &major);
   glGetIntegerv(GL_MINOR_VERSION, &minor);
-  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
-  EXPECT_GE(major * 10 + minor, 45);
+  const bool desktop = context.info().api == Api::kGl45;
+  if (desktop) glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  EXPECT_GE(major * 10 + minor, desktop ? 45 : 31);
+  EXPECT_EQ(epoxy_is_desktop_gl(), desktop);
+  EXPECT_EQ(capabilities().api, context.info().api);
+  EXPECT_EQ(capabilities().version, major * 10 + minor);
   EXPECT_TRUE(profile & GL_CONTEXT_CORE_PROFILE_BIT);
   EXPECT_FALSE(context.info().renderer.empty());
   EXPECT_FALSE(context.info().vendor.empty());
@@ -40,6 +44,35 @@ TEST(EglContext, DevicePlatform) {
   if (!context.ok()) QUINCUNX_SKIP(context.status().message());
   EXPECT_EQ(context->info().platform, Platform::kDevice);
   expect_usable(context.value());
+}
+
+TEST(EglContext, OpenGlEsOnEveryPlatform) {
+  for (const Platform platform : {Platform::kSurfaceless, Platform::kDevice, Platform::kAuto}) {
+    auto context = EglContext::create(platform, Api::kEs3);
+    if (!context.ok()) QUINCUNX_SKIP(context.status().message());
+    EXPECT_EQ(context->info().api, Api::kEs3);
+    if (platform != Platform::kAuto) {
+      EXPECT_EQ(context->info().platform, platform);
+    }
+    expect_usable(context.value());
+    // That of a window, which someone else has made.
+    auto borrowed = EglContext::create(Platform::kCurrent);
+    ASSERT_TRUE(borrowed.ok()) << borrowed.status().message();
+    EXPECT_EQ(borrowed->info().api, Api::kEs3);
+  }
+}
+
+TEST(EglContext, CapabilitiesAreThoseOfTheCurrentContext) {
+  auto desktop = EglContext::create();
+  auto es = EglContext::create(Platform::kAuto, Api::kEs3);
+  ASSERT_TRUE(desktop.ok() && es.ok());
+  EXPECT_FALSE(capabilities().reads_depth);
+  ASSERT_TRUE(desktop->make_current().ok());
+  expect_usable(desktop.value());
+  EXPECT_TRUE(capabilities().reads_depth);
+  EXPECT_TRUE(capabilities().clip_control);
+  ASSERT_TRUE(es->make_current().ok());
+  expect_usable(es.value());
 }
 
 TEST(EglContext, AutoTakesADeviceOnlyForAGpu) {

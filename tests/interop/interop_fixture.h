@@ -15,6 +15,7 @@
 #include "host_copy.h"
 #include "plane.h"
 #include "quincunx_gl/bridge.h"
+#include "quincunx_gl/gl_calls.h"
 
 namespace quincunx::gl::testing {
 
@@ -96,8 +97,7 @@ inline void fill_plane(const RenderTargets& targets, const Plane& plane, const B
   const GlFormat names = gl_format(plane.format);
   const GLenum format = plane.kind == PlaneKind::kDepth ? GLenum{GL_DEPTH_COMPONENT} : names.format;
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(texture_of(targets, plane.kind), 0, 0, 0, targets.extent().width,
-                      targets.extent().height, format, names.type, texels.data());
+  texture_write(texture_of(targets, plane.kind), 0, targets.extent(), format, names.type, texels.data());
 }
 
 inline Bytes read_plane(const RenderTargets& targets, const Plane& plane) {
@@ -121,8 +121,10 @@ inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colou
 
 class InteropTest : public ::testing::Test {
  protected:
+  virtual Api api() const { return Api::kGl45; }
+
   void SetUp() override {
-    auto context = EglContext::create();
+    auto context = EglContext::create(Platform::kAuto, api());
     ASSERT_TRUE(context.ok()) << context.status().message();
     context_ = std::make_unique<EglContext>(std::move(context).value());
     auto device = open_device(*context_, "", Interop::kCopy);

@@ -30,10 +30,10 @@ TEST_F(SteadyFrameTest, AllocatesNothingAndDrainsNoQueue) {
       run_frame(bridge, frame);
     glFinish();
     const CallCounter<&epoxy_glCreateBuffers> buffers;
-    const CallCounter<&epoxy_glNamedBufferStorage> storages;
-    const CallCounter<&epoxy_glMapNamedBufferRange> maps;
+    const CallCounter<&epoxy_glBufferStorage> storages;
+    const CallCounter<&epoxy_glMapBufferRange> maps;
     const CallCounter<&epoxy_glCreateTextures> textures;
-    const CallCounter<&epoxy_glTextureStorage2D> texture_storages;
+    const CallCounter<&epoxy_glTexStorage2D> texture_storages;
     const CallCounter<&epoxy_glCreateFramebuffers> framebuffers;
     const CallCounter<&epoxy_glFinish> finishes;
     cl_counts() = {};
@@ -51,8 +51,8 @@ TEST_F(SteadyFrameTest, AllocatesNothingAndDrainsNoQueue) {
 // The counters themselves: a bridge that is made does count.
 TEST_F(SteadyFrameTest, MakingABridgeIsCounted) {
   { const HostCopy warm(*device_, all_planes({8, 8}, {8, 8}), "test", Transfer::kZeroCopy); }
-  const CallCounter<&epoxy_glNamedBufferStorage> storages;
-  const CallCounter<&epoxy_glTextureStorage2D> textures;
+  const CallCounter<&epoxy_glBufferStorage> storages;
+  const CallCounter<&epoxy_glTexStorage2D> textures;
   cl_counts() = {};
   const HostCopy bridge(*device_, all_planes({8, 8}, {8, 8}), "test", Transfer::kZeroCopy);
   EXPECT_EQ(storages.count(), bridge.slots() + 1);  // one for each slot, one for the picture

@@ -29,15 +29,15 @@ enum class Interop { kAuto, kGl, kCopy };
 const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
-  Interop interop = Interop::kAuto;      // kGl and kCopy insist: create() fails where the backend cannot work
-  Extent target = {};                    // of the inputs
-  Extent output = {};                    // of the presented picture
-  bool depth = false;                    // hand depth over
-  bool velocity = false;                 // draw and hand over velocity
-  bool reactive = false;                 // draw and hand over reactive values
+  Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
+  Extent target = {};                // of the inputs
+  Extent output = {};                // of the presented picture
+  bool depth = false;                // hand depth over
+  bool velocity = false;             // draw and hand over velocity
+  bool reactive = false;             // draw and hand over reactive values
   PixelFormat colour = PixelFormat::kRGBA16F;  // or RGBA8: see RenderTargets
-  int slots = 3;                         // >= 3 where the previous frame is read
-  Targets targets = Targets::kViewport;  // kPlaced: HostCopy only, kGl then fails
+  int slots = 3;                               // >= 3 where the previous frame is read
+  Targets targets = Targets::kViewport;        // kPlaced: HostCopy only, kGl then fails
 };
 
 // The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed, and with placed

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// EglContext: an OpenGL 4.5 core context, either one of its own without a window or that of a window made
-// elsewhere.
+// EglContext: an OpenGL 4.5 core or OpenGL ES 3.1 context, either one of its own without a window or that of a
+// window made elsewhere.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "quincunx/status.h"
+#include "quincunx_gl/capabilities.h"
 
 namespace quincunx::gl {
 
@@ -24,7 +25,8 @@ struct EglInfo {
   std::string vendor;                   // GL_VENDOR
   std::string renderer;                 // GL_RENDERER
   std::string version;                  // GL_VERSION
-  bool software = false;                // llvmpipe, softpipe, swrast
+  Api api = Api::kGl45;
+  bool software = false;  // llvmpipe, softpipe, swrast
 };
 
 // Owns display connection and context, except for kCurrent: that context stays its maker's, who keeps it
@@ -33,9 +35,9 @@ struct EglInfo {
 // objects. Debug output of the driver (errors, not chatter) goes to the log.
 class EglContext {
  public:
-  // Errors: kUnsupported with what was tried and what each said; for kCurrent also where no EGL context is
-  // current.
-  static Result<EglContext> create(Platform platform = Platform::kAuto);
+  // `api`: for kCurrent that of the context that is current, whatever is given. Errors: kUnsupported with what was
+  // tried and what each said; for kCurrent also where no EGL context is current.
+  static Result<EglContext> create(Platform platform = Platform::kAuto, Api api = Api::kGl45);
 
   ~EglContext();
   EglContext(EglContext&&) noexcept;

@@ -44,7 +44,8 @@ class FrameTimer {
   bool begin(std::uint64_t frame, Extent render);
   void end();
 
-  // The oldest frame that has come back, once each; nothing while there is none. Call until it says nothing.
+  // The oldest frame that has come back, once each; nothing while there is none. Call until it says nothing. Frames
+  // whose time the driver calls worthless stay untimed.
   // Throws nothing: a lost context looks like frames that never come back.
   std::optional<TimedFrame> poll();
 

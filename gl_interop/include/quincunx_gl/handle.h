@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Move-only owners of GL object names.
+// Move-only owners of GL object names. Of OpenGL ES a name is an object only once it was bound (gl_calls.h).
 #pragma once
 
 #include <epoxy/gl.h>
 
 #include <utility>
+
+#include "quincunx_gl/capabilities.h"
 
 namespace quincunx::gl {
 
@@ -43,7 +45,7 @@ class Handle {
 struct Texture2DTraits {
   static GLuint create() {
     GLuint name = 0;
-    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    capabilities().api == Api::kGl45 ? glCreateTextures(GL_TEXTURE_2D, 1, &name) : glGenTextures(1, &name);
     return name;
   }
   static void destroy(GLuint name) { glDeleteTextures(1, &name); }
@@ -51,7 +53,7 @@ struct Texture2DTraits {
 struct FramebufferTraits {
   static GLuint create() {
     GLuint name = 0;
-    glCreateFramebuffers(1, &name);
+    capabilities().api == Api::kGl45 ? glCreateFramebuffers(1, &name) : glGenFramebuffers(1, &name);
     return name;
   }
   static void destroy(GLuint name) { glDeleteFramebuffers(1, &name); }
@@ -59,7 +61,7 @@ struct FramebufferTraits {
 struct BufferTraits {
   static GLuint create() {
     GLuint name = 0;
-    glCreateBuffers(1, &name);
+    capabilities().api == Api::kGl45 ? glCreateBuffers(1, &name) : glGenBuffers(1, &name);
     return name;
   }
   static void destroy(GLuint name) { glDeleteBuffers(1, &name); }
@@ -67,7 +69,7 @@ struct BufferTraits {
 struct VertexArrayTraits {
   static GLuint create() {
     GLuint name = 0;
-    glCreateVertexArrays(1, &name);
+    capabilities().api == Api::kGl45 ? glCreateVertexArrays(1, &name) : glGenVertexArrays(1, &name);
     return name;
   }
   static void destroy(GLuint name) { glDeleteVertexArrays(1, &name); }
@@ -75,7 +77,7 @@ struct VertexArrayTraits {
 struct TimeQueryTraits {
   static GLuint create() {
     GLuint name = 0;
-    glCreateQueries(GL_TIME_ELAPSED, 1, &name);
+    capabilities().api == Api::kGl45 ? glCreateQueries(GL_TIME_ELAPSED, 1, &name) : glGenQueries(1, &name);
     return name;
   }
   static void destroy(GLuint name) { glDeleteQueries(1, &name); }

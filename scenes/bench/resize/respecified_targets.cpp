@@ -5,6 +5,8 @@
 
 #include <stdexcept>
 
+#include "quincunx_gl/gl_calls.h"
+
 namespace quincunx::bench {
 namespace {
 
@@ -24,11 +26,11 @@ constexpr std::array<GLenum, 3> kOutputs = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTAC
 RespecifiedTargets::RespecifiedTargets() : framebuffer_(gl::Framebuffer::create()) {
   for (gl::Texture& texture : textures_) {
     texture = gl::Texture::create();
-    glTextureParameteri(texture.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(texture.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTextureParameteri(texture.get(), GL_TEXTURE_MAX_LEVEL, 0);
+    gl::texture_parameter(texture.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST});
+    gl::texture_parameter(texture.get(), GL_TEXTURE_MAG_FILTER, GLint{GL_NEAREST});
+    gl::texture_parameter(texture.get(), GL_TEXTURE_MAX_LEVEL, GLint{0});
   }
-  glNamedFramebufferDrawBuffers(framebuffer_.get(), static_cast<GLsizei>(kOutputs.size()), kOutputs.data());
+  gl::draw_buffers(framebuffer_.get(), {kOutputs[0], kOutputs[1], kOutputs[2]});
 }
 
 void RespecifiedTargets::resize(Extent extent) {
@@ -37,18 +39,18 @@ void RespecifiedTargets::resize(Extent extent) {
     glBindTexture(GL_TEXTURE_2D, textures_[i].get());
     glTexImage2D(GL_TEXTURE_2D, 0, plane.internal, extent.width, extent.height, 0, plane.format, plane.type,
                  nullptr);
-    glNamedFramebufferTexture(framebuffer_.get(), plane.attachment, textures_[i].get(), 0);
+    gl::attach(framebuffer_.get(), plane.attachment, textures_[i].get());
   }
   glBindTexture(GL_TEXTURE_2D, 0);
-  if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_DRAW_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+  if (gl::framebuffer_status(framebuffer_.get()) != GL_FRAMEBUFFER_COMPLETE)
     throw std::runtime_error("a framebuffer of textures that were specified again is not complete");
 }
 
 void RespecifiedTargets::clear() const {
   constexpr std::array<GLfloat, 4> kZero = {0, 0, 0, 0};
-  glClearNamedFramebufferfv(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
+  gl::clear(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
   for (int output = 0; output < static_cast<int>(kOutputs.size()); ++output)
-    glClearNamedFramebufferfv(framebuffer_.get(), GL_COLOR, output, kZero.data());
+    gl::clear(framebuffer_.get(), GL_COLOR, output, kZero.data());
 }
 
 }  // namespace quincunx::bench

@@ -40,7 +40,7 @@ vec3 reflected(Surface s, vec3 to_light, float cosine) {
 // Two bilinear comparisons across a diagonal: a soft edge of two texels.
 float sunlight() {
 #ifdef SHADOWS
-  const vec3 kAside = vec3(0.5 / SHADOWS, -0.25 / SHADOWS, 0.0);
+  const vec3 kAside = vec3(0.5, -0.25, 0.0) / float(SHADOWS);
   vec3 p = vec3(v_shadow.xy, min(v_shadow.z, 1.0));
   return 0.5 * (texture(shadow_map, p + kAside) + texture(shadow_map, p - kAside));
 #else

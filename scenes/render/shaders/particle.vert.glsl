@@ -12,6 +12,6 @@ void main() {
   vec3 world = centre_radius.xyz +
                (frame.camera_right.xyz * v_corner.x + frame.camera_up.xyz * v_corner.y) * centre_radius.w;
   vec4 clip = frame.clip_from_world * vec4(world, 1.0);
-  gl_Position = vec4(clip.xy + frame.jitter_clip.xy * clip.w, clip.zw);
+  gl_Position = CLIP(vec4(clip.xy + frame.jitter_clip.xy * clip.w, clip.zw));
   v_colour = colour;
 }

@@ -10,7 +10,7 @@ layout(binding = 1) uniform sampler2D other;
 layout(location = 0) out vec4 out_colour;
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.x, window.y - 1 - int(gl_FragCoord.y));
+  ivec2 at = ivec2(int(gl_FragCoord.x), window.y - 1 - int(gl_FragCoord.y));
   ivec2 texel = origin + at / zoom;
   ivec2 size = textureSize(picture, 0);
   bool inside = all(greaterThanEqual(texel, ivec2(0))) && all(lessThan(texel, size));

@@ -3,7 +3,7 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 2) in vec2 uv;
-layout(location = 4) in vec4 world_rows[3];
+layout(location = 4) in mat3x4 world_rows;
 
 #ifdef MASK
 out vec2 v_uv;
@@ -14,7 +14,11 @@ void main() {
   vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));
   vec3 at = (frame.shadow_from_world * vec4(world, 1.0)).xyz;
   // Row 0 of the map is v = 0, whatever the clip origin: GL_UPPER_LEFT turns y over.
-  gl_Position = vec4(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, at.z, 1.0);
+  // Casters before the near plane lie on it: the rasteriser clamps them or, where it cannot, their corners are clamped.
+#ifdef CLAMPS_DEPTH
+  at.z = max(at.z, 0.0);
+#endif
+  gl_Position = CLIP(vec4(2.0 * at.x - 1.0, 1.0 - 2.0 * at.y, at.z, 1.0));
 #ifdef MASK
   v_uv = uv;
 #endif

@@ -6,8 +6,8 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec2 uv;
 layout(location = 3) in vec4 colour;
-layout(location = 4) in vec4 world_rows[3];     // world from mesh, this frame: rows of an affine matrix
-layout(location = 7) in vec4 previous_rows[3];  // the same in the previous frame
+layout(location = 4) in mat3x4 world_rows;     // world from mesh, this frame: rows of an affine matrix
+layout(location = 7) in mat3x4 previous_rows;  // the same in the previous frame
 
 invariant gl_Position;  // the variants with and without velocity draw the same picture
 
@@ -39,7 +39,7 @@ void main() {
   vec4 local = vec4(position, 1.0);
   vec3 world = vec3(dot(world_rows[0], local), dot(world_rows[1], local), dot(world_rows[2], local));
   precise vec4 clip = frame.clip_from_world * vec4(world, 1.0);
-  gl_Position = vec4(clip.xy + frame.jitter_clip.xy * clip.w, clip.zw);
+  gl_Position = CLIP(vec4(clip.xy + frame.jitter_clip.xy * clip.w, clip.zw));
   v_position = world;
 #ifndef UNLIT
   v_normal = world_normal(world_rows[0].xyz, world_rows[1].xyz, world_rows[2].xyz);

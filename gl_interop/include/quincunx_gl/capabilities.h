@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// What the current OpenGL context can do beyond what OpenGL 4.5 and OpenGL ES 3.1 have in common.
+#pragma once
+
+#include <string>
+
+namespace quincunx::gl {
+
+enum class Api {
+  kGl45,  // desktop OpenGL 4.5 core
+  kEs3,   // OpenGL ES 3.1 or later
+};
+
+const char* name_of(Api api);  // "4.5", "es3"
+
+struct Capabilities {
+  Api api = Api::kGl45;
+  int version = 0;              // 45, 31, 32
+  bool clip_control = false;    // else shaders turn y over and spread depth: CLIP_CONTROL of link_program()
+  bool depth_clamp = false;     // else shadow casters before the near plane are moved onto it
+  bool persistent_map = false;  // else pixels go through client memory, and GL is waited for
+  bool reads_depth = false;     // glReadPixels takes depth; else it is drawn into R32F first
+  bool encodes_on_demand = false;  // GL_FRAMEBUFFER_SRGB is a switch; else encoded targets are always encoded
+  bool time_queries = false;
+  std::string missing;  // what the renderer needs and the context lacks; empty: nothing
+};
+
+// Of the context that is current on this thread; found once for each context.
+const Capabilities& capabilities();
+
+// Finds them anew. EglContext does, whose context may lie where one that is gone has lain.
+const Capabilities& renewed_capabilities();
+
+}  // namespace quincunx::gl

@@ -1,0 +1,2 @@
+// nothing.frag: depth only.
+void main() {}
