@@ -59,6 +59,7 @@ TargetNeeds target_needs(const BridgeSettings& settings) {
   return {.target = settings.target,
           .velocity = settings.velocity,
           .reactive = settings.reactive,
+          .checkerboard = settings.checkerboard,
           .colour = settings.colour};
 }
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 #include "quincunx_gl/gl_calls.h"
 
@@ -31,6 +33,21 @@ void check_extent(Extent extent) {
   }
 }
 
+// Depth of infinity, and the pattern as stencil.
+void write_checkerboard(const Texture& texture, Extent extent) {
+  struct Texel {
+    float depth;
+    std::uint32_t stencil;
+  };
+  std::vector<Texel> texels;
+  texels.reserve(static_cast<std::size_t>(extent.area()));
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x)
+      texels.push_back({0, static_cast<std::uint32_t>((x + y) % 2)});
+  }
+  texture_write(texture.get(), 0, extent, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, texels.data());
+}
+
 // Restores the scissor of the caller: clear() is called in the middle of someone's frame.
 class ScissorScope {
  public:
@@ -53,18 +70,20 @@ class ScissorScope {
 
 }  // namespace
 
-RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target), colour_format_(needs.colour) {
+RenderTargets::RenderTargets(const TargetNeeds& needs)
+    : extent_(needs.target), colour_format_(needs.colour), has_checkerboard_(needs.checkerboard) {
   check_extent(extent_);
   framebuffer_ = Framebuffer::create();
   const bool encoded = colour_format_ == PixelFormat::kRGBA8;
   colour_ = make_texture(encoded ? GL_SRGB8_ALPHA8 : GL_RGBA16F, extent_);
-  depth_ = make_texture(GL_DEPTH_COMPONENT32F, extent_);
+  depth_ = make_texture(has_checkerboard_ ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, extent_);
+  if (has_checkerboard_) write_checkerboard(depth_, extent_);
   if (needs.velocity) velocity_ = make_texture(GL_RG16F, extent_);
   if (needs.reactive) reactive_ = make_texture(GL_R8, extent_);
 
   const GLuint name = framebuffer_.get();
   attach(name, GL_COLOR_ATTACHMENT0, colour_.get());
-  attach(name, GL_DEPTH_ATTACHMENT, depth_.get());
+  attach(name, has_checkerboard_ ? GL_DEPTH_STENCIL_ATTACHMENT : GL_DEPTH_ATTACHMENT, depth_.get());
   if (velocity_) attach(name, GL_COLOR_ATTACHMENT1, velocity_.get());
   if (reactive_) attach(name, GL_COLOR_ATTACHMENT2, reactive_.get());
   const GLenum second = velocity_ ? GL_COLOR_ATTACHMENT1 : GL_NONE;
@@ -73,13 +92,14 @@ RenderTargets::RenderTargets(const TargetNeeds& needs) : extent_(needs.target), 
   const GLenum complete = framebuffer_status(name);
   if (complete != GL_FRAMEBUFFER_COMPLETE) {
     throw std::runtime_error(fmt::format(
-        "a {}x{} framebuffer of {}, depth 32F{}{} is not complete (0x{:04x})", extent_.width, extent_.height,
-        name_of(colour_format_), velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
+        "a {}x{} framebuffer of {}, depth 32F{}{}{} is not complete (0x{:04x})", extent_.width, extent_.height,
+        name_of(colour_format_), has_checkerboard_ ? " with stencil" : "", velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
   }
 }
 
 std::uint64_t RenderTargets::bytes() const {
-  const std::size_t texel = bytes_per_pixel(colour_format_) + bytes_per_pixel(PixelFormat::kR32F) +
+  const std::size_t depth = (has_checkerboard_ ? 2 : 1) * bytes_per_pixel(PixelFormat::kR32F);
+  const std::size_t texel = bytes_per_pixel(colour_format_) + depth +
                             (velocity_ ? bytes_per_pixel(PixelFormat::kRG16F) : 0) +
                             (reactive_ ? bytes_per_pixel(PixelFormat::kR8) : 0);
   return static_cast<std::uint64_t>(extent_.area()) * texel;

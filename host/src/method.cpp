@@ -162,4 +162,8 @@ const char* name_of(ToneMap tone_map) {
   return "unknown";
 }
 
+const char* name_of(Shading shading) {
+  return shading == Shading::kCheckerboard ? "checkerboard" : "full";
+}
+
 }  // namespace quincunx

@@ -121,6 +121,10 @@ void bind_inputs(PassFrame& frame) {
   frame[Resource::kDepth] = frame.current.depth;
   frame[Resource::kReactive] = frame.current.reactive;
   frame[Resource::kDrawnVelocity] = frame.current.velocity;
+  frame[Resource::kShadedColour] = frame.current.colour;
+  frame[Resource::kShadedVelocity] = frame.current.velocity;
+  frame[Resource::kShadedDepth] = frame.current.depth;
+  frame[Resource::kShadedReactive] = frame.current.reactive;
   frame[Resource::kPreviousColour] = frame.previous.colour;
   frame[Resource::kPreviousVelocity] = frame.previous.velocity;
   frame[Resource::kPreviousDepth] = frame.previous.depth;

@@ -47,7 +47,7 @@ void plan_far_velocity(const PlanFacts& facts, PassList& list) {
   if (facts.settings.far == FarMotion::kAsDrawn) return;
   if (!facts.moves_far()) {
     const char* reason =
-        !facts.has_velocity()                       ? "no pass reads velocity"
+        !facts.reads_velocity()                     ? "no pass reads velocity"
         : !facts.needs.camera_motion                ? "the camera stands still, and so does what is far away"
         : facts.velocity == VelocitySource::kTarget ? "the method uses one frame only: there is no evidence"
                                                     : "velocity comes from depth and the camera everywhere";

@@ -6,6 +6,7 @@ namespace {
 
 // In the order in which they run.
 constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
+    plan_resolve_checkerboard,
     plan_velocity_from_depth,
     plan_far_motion,
     plan_far_velocity,
@@ -44,17 +45,18 @@ void note_unused_inputs(const PlanFacts& facts, const std::vector<ResourceUse>& 
     return false;
   };
   const bool several = facts.keeps_previous_frame();
-  if (!several) note("the previous frame", "the method uses one frame only");
+  if (!several && !facts.fills()) note("the previous frame", "the method uses one frame only");
   if (facts.velocity == VelocitySource::kCamera) {
     note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
-  } else if (!reads(Resource::kVelocity)) {
-    note("velocity", !several                              ? "the method uses one frame only"
+  } else if (!reads(Resource::kVelocity) && !reads(Resource::kShadedVelocity)) {
+    note("velocity", !several && !facts.fills()            ? "the method uses one frame only"
                      : facts.has_form(TwoFrameForm::kMean) ? "the form is the plain mean"
                                                            : "nothing moves: all frames count alike");
   }
   if (!reads(Resource::kDepth)) note("depth", "no pass reads it");
-  if (!facts.reads_reactive())
-    note("reactive values", several ? "the scene has no transparents" : "the method uses one frame only");
+  if (!reads(Resource::kReactive) && !reads(Resource::kShadedReactive))
+    note("reactive values",
+         facts.needs.transparents ? "the method uses one frame only" : "the scene has no transparents");
 }
 
 }  // namespace

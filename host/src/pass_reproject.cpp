@@ -7,35 +7,21 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "previous_places.h"
 
 namespace quincunx {
 namespace {
 
-// On one axis, from sample i of one frame to its place among the samples of another: i * step + start.
-struct Axis {
-  float step;
-  float start;
-};
-
-Axis axis_between(int from, double from_jitter, int to, double to_jitter) {
-  const double step = static_cast<double>(to) / from;
-  return {static_cast<float>(step), static_cast<float>((.5 + from_jitter) * step - .5 - to_jitter)};
-}
-
 void set_positions(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous) {
-  const Axis x =
-      axis_between(current.render.width, current.jitter.x, previous.render.width, previous.jitter.x);
-  const Axis y =
-      axis_between(current.render.height, current.jitter.y, previous.render.height, previous.jitter.y);
-  const VelocityScale to_previous = velocity_scale_to(current, previous.render);
-  params.step_x = x.step;
-  params.step_y = y.step;
-  params.start_x = x.start;
-  params.start_y = y.start;
-  params.motion_x = static_cast<float>(-to_previous.x);
-  params.motion_y = static_cast<float>(-to_previous.y);
-  params.edge_x = -.5f - previous.jitter.x;
-  params.edge_y = -.5f - previous.jitter.y;
+  const PreviousPlaces places = previous_places(current, previous);
+  params.step_x = places.step_x;
+  params.step_y = places.step_y;
+  params.start_x = places.start_x;
+  params.start_y = places.start_y;
+  params.motion_x = places.motion_x;
+  params.motion_y = places.motion_y;
+  params.edge_x = places.edge_x;
+  params.edge_y = places.edge_y;
 }
 
 void set_motion_edge(ReprojectParams& params, const FrameInputs& current, Extent output) {

@@ -18,7 +18,7 @@ class ResolveLayersPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     PositionTables& tables = frame.tables.positions();
-    const TemporalParams params = temporal_params(frame, device(), tables);
+    const TemporalParams params = temporal_params(frame, device(), tables, facts());
     const LayerPastParams before =
         layer_past_params(frame.previous, frame.output, layout_of(frame[Resource::kDepth]),
                           layout_of(frame[Resource::kPreviousDepth]));

@@ -39,7 +39,7 @@ class ResolveTemporalPass : public Pass {
     PositionTables& tables = frame.tables.positions();
     // A debug view is written here, the picture by temporal_display.
     const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
-    TemporalParams params = temporal_params(frame, device(), tables);
+    TemporalParams params = temporal_params(frame, device(), tables, facts());
     params.frame0.reactive = layout_if_used(frame, Resource::kReactive);
     params.frame1.reactive = layout_if_used(frame, Resource::kPreviousReactive);
     params.output = layout_of(frame[shown]);

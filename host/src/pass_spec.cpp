@@ -53,6 +53,14 @@ const char* name_of(Resource resource) {
       return "reactive";
     case Resource::kDrawnVelocity:
       return "drawn velocity";
+    case Resource::kShadedColour:
+      return "shaded colour";
+    case Resource::kShadedVelocity:
+      return "shaded velocity";
+    case Resource::kShadedDepth:
+      return "shaded depth";
+    case Resource::kShadedReactive:
+      return "shaded reactive";
     case Resource::kPreviousColour:
       return "colour of the previous frame";
     case Resource::kPreviousVelocity:

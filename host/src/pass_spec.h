@@ -30,6 +30,11 @@ enum class Resource : std::uint8_t {
   kDepth,
   kReactive,
   kDrawnVelocity,  // the caller's, where kVelocity is what the service makes of it
+  // The caller's where half of the pixels are shaded; the ones above are then what the service fills.
+  kShadedColour,
+  kShadedVelocity,
+  kShadedDepth,
+  kShadedReactive,
   kPreviousColour,
   kPreviousVelocity,
   kPreviousDepth,

@@ -7,6 +7,7 @@
 #include "pass_list.h"
 #include "pass_options.h"
 #include "temporal/temporal_params.h"
+#include "temporal_pass_params.h"
 
 namespace quincunx {
 namespace {
@@ -35,7 +36,8 @@ class TemporalTilesPass : public Pass {
         .start_y = (.5f + current.jitter.y) * spacing.y,
         .motion_x = motion.x,
         .motion_y = motion.y,
-        .judged_apart = settings().temporal.preset == TemporalPreset::kFast ? 4 : 2};
+        .judged_apart = settings().temporal.preset == TemporalPreset::kFast ? 4 : 2,
+        .parity = shaded_parity(facts(), current)};
     bind(params, frame[Resource::kColour],
          view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],

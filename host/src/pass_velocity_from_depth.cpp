@@ -30,7 +30,7 @@ class VelocityFromDepthPass : public Pass {
 }  // namespace
 
 void plan_velocity_from_depth(const PlanFacts& facts, PassList& list) {
-  if (facts.velocity != VelocitySource::kCamera) return;
+  if (facts.velocity != VelocitySource::kCamera || !facts.reads_velocity()) return;
   list.passes.push_back(
       {.kernel = "velocity_from_depth",
        .options = velocity_options(facts.settings),

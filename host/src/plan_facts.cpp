@@ -10,7 +10,8 @@ bool method_reads_velocity(const ResolveSettings& settings) {
 }
 
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
-  if (!method_reads_velocity(settings) && settings.blur.shutter == 0) return VelocitySource::kNone;
+  const bool fills = settings.shading == Shading::kCheckerboard;
+  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills) return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
@@ -19,6 +20,10 @@ VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& s
 
 PlanFacts::PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings)
     : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {}
+
+bool PlanFacts::reads_velocity() const {
+  return has_velocity() && (method_reads_velocity(settings) || settings.blur.shutter > 0);
+}
 
 bool is_dense(Extent render, Extent output) {
   constexpr double kDense = .64;  // output pixels a sample

@@ -17,6 +17,8 @@ struct PlanFacts {
   bool has_velocity() const { return velocity != VelocitySource::kNone; }
   // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.
   bool is_display_referred() const { return settings.colour == PixelFormat::kRGBA8; }
+  bool reads_velocity() const;  // some pass after those that complete the frame
+  bool fills() const { return settings.shading == Shading::kCheckerboard; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
   bool keeps_previous_frame() const { return uses_earlier_frames(settings.method); }
@@ -30,7 +32,7 @@ struct PlanFacts {
   }
   bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
     const bool possible = settings.far != FarMotion::kEvidence || keeps_previous_frame();
-    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget &&
+    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && reads_velocity() &&
            needs.camera_motion && possible;
   }
   bool fits_far() const { return moves_far() && settings.far == FarMotion::kEvidence; }

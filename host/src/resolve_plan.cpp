@@ -50,6 +50,8 @@ Status check(const ResolveSettings& settings) {
     complaints.add(
         fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
   }
+  if (settings.shading == Shading::kCheckerboard && settings.colour == PixelFormat::kRGBA8)
+    complaints.add("settings.colour is RGBA8; of a checkerboard it must be RGBA16F or RGBA32F, which are linear");
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
@@ -113,8 +115,8 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
     plan.passes.push_back({spec.kernel, spec.options, spec.reason, bytes_of(spec, largest)});
   for (const ResourceUse& use : resources_of(list.passes)) {
     plan.buffers.push_back(planned(use, largest));
-    plan.reads_depth |= use.resource == Resource::kDepth;
-    plan.reads_reactive |= use.resource == Resource::kReactive;
+    plan.reads_depth |= use.resource == Resource::kDepth || use.resource == Resource::kShadedDepth;
+    plan.reads_reactive |= use.resource == Resource::kReactive || use.resource == Resource::kShadedReactive;
   }
   plan.left_out = std::move(list.left_out);
   return plan;
@@ -125,11 +127,12 @@ bool ResolvePlan::accumulates() const {
 }
 
 bool ResolvePlan::keeps_previous_frame() const {
-  return uses_earlier_frames(settings.method);
+  return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull;
 }
 
 bool ResolvePlan::reads_history(Extent render) const {
-  return keeps_previous_frame() && !(accumulates() && is_dense(render, settings.output));
+  if (accumulates()) return !is_dense(render, settings.output);
+  return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
 }
 
 bool ResolvePlan::moves_far() const {

@@ -74,7 +74,7 @@ void ResolveService::Impl::warm_up() {
 // What validate() cannot see: the previous frame must still be where it was. Of the images that change with every
 // frame, one that is read again tells.
 Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
-  if (!has_history(inputs)) return {};
+  if (!has_history(inputs) || !plan.keeps_previous_frame()) return {};
   const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
     return chain.has(previous_of(resource)) && now.memory == before.memory && now.offset == before.offset;
   };

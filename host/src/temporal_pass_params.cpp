@@ -3,7 +3,12 @@
 
 namespace quincunx {
 
-TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables) {
+int shaded_parity(const PlanFacts& facts, const FrameInputs& frame) {
+  return facts.fills() ? frame.parity : -1;
+}
+
+TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables,
+                               const PlanFacts& facts) {
   const Extent output = frame.output;
   const Extent now = frame.current.render;
   const Extent before = frame.previous.render;
@@ -24,7 +29,8 @@ TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& devic
           .spacing_x = spacing.x,
           .spacing_y = spacing.y,
           .tiles_x = tiles.width,
-          .tiles_y = tiles.height};
+          .tiles_y = tiles.height,
+          .parity = shaded_parity(facts, frame.current)};
 }
 
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,

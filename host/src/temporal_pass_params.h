@@ -7,8 +7,12 @@
 
 namespace quincunx {
 
+// Which samples of a frame are shaded: TemporalParams::parity.
+int shaded_parity(const PlanFacts& facts, const FrameInputs& frame);
+
 // Without reactive values and a view.
-TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables);
+TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables,
+                               const PlanFacts& facts);
 
 // `picture`: where it goes.
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,

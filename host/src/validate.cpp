@@ -98,7 +98,11 @@ constexpr struct {
                {"velocity", "velocity", &FrameInputs::velocity},
                {"drawn velocity", "velocity", &FrameInputs::velocity},
                {"depth", "depth", &FrameInputs::depth},
-               {"reactive", "reactive", &FrameInputs::reactive}};
+               {"reactive", "reactive", &FrameInputs::reactive},
+               {"shaded colour", "colour", &FrameInputs::colour},
+               {"shaded velocity", "velocity", &FrameInputs::velocity},
+               {"shaded depth", "depth", &FrameInputs::depth},
+               {"shaded reactive", "reactive", &FrameInputs::reactive}};
 
 constexpr struct {
   const char* name;
@@ -112,6 +116,14 @@ const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
   const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(),
                                   [name](const PlannedBuffer& buffer) { return buffer.name == name; });
   return found != plan.buffers.end() ? &*found : nullptr;
+}
+
+// At least one pixel must be shaded.
+void check_parity(FrameCheck& check, const FrameInputs& inputs) {
+  const bool has_both = inputs.render.width > 1 || inputs.render.height > 1;
+  if (inputs.parity == 0 || (inputs.parity == 1 && has_both)) return;
+  check.complain(fmt::format("parity is {}; it must be {}", inputs.parity,
+                             has_both ? "0 or 1" : "0 where the viewport is a single pixel"));
 }
 
 void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
@@ -132,6 +144,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
     check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
   }
   if (plan.reads_camera()) check_camera(check, inputs.camera);
+  if (plan.settings.shading == Shading::kCheckerboard) check_parity(check, inputs);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);

@@ -114,10 +114,11 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   const float4 sample = sample_at(colour, &params->frame, x, y);
   if (fabs(before.w) < KNOWN_CONFIDENCE || !is_valid(sample)) return;
 
-  const float4 left = sample_at(colour, &params->frame, x - 1, y);
-  const float4 right = sample_at(colour, &params->frame, x + 1, y);
-  const float4 above = sample_at(colour, &params->frame, x, y - 1);
-  const float4 below = sample_at(colour, &params->frame, x, y + 1);
+  const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
+  const float4 left = sample_at(colour, &params->frame, x - 1, y - aside);
+  const float4 right = sample_at(colour, &params->frame, x + 1, y + aside);
+  const float4 above = sample_at(colour, &params->frame, x + aside, y - 1);
+  const float4 below = sample_at(colour, &params->frame, x - aside, y + 1);
   const float4 around = 0.25f * (left + right + above + below);
   const float own = luma(sample), known = luma(before);
   const float scale = 1.0f / (1.0f + own + known);
@@ -137,9 +138,9 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
 }
 
 // The first column from `first` on that is judged in row y: those where column + y * apart / 2 is a multiple of
-// `apart`, a power of two.
-static inline int first_judged(int first, int y, int apart) {
-  const int shifted = first + apart / 2 * y;
+// `apart`, a power of two; on a checkerboard where column + y - parity is, which are shaded ones.
+static inline int first_judged(int first, int y, int apart, int parity) {
+  const int shifted = first + (parity >= 0 ? y - parity : apart / 2 * y);
   return first + (-shifted & (apart - 1));
 }
 
@@ -152,7 +153,7 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS de
   for (int y = first.y - 1; y <= last.y + 1; ++y)
     will_read_colour(colour, params->frame.colour, last.x + kColourAhead, y);
   for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first_judged(first.x, y, apart); x <= last.x; x += apart)
+    for (int x = first_judged(first.x, y, apart, params->parity); x <= last.x; x += apart)
       judge_sample(&evidence, colour, depth, depth_layout, past, params, tile, x, y);
   }
   return evidence;

@@ -12,6 +12,13 @@ namespace {
 constexpr Extent kFloor = {8, 8};
 constexpr int kStep = 2;
 
+// Both frames of a pair, which shade all pixels between them, have the same place of a long jitter: were its base 2 in
+// step with the parity, each half of the pixels would get only half of the places.
+std::int64_t jitter_index(const SequenceSettings& settings, std::int64_t index) {
+  const bool pairs = settings.shading == Shading::kCheckerboard && settings.jitter == Jitter::kHalton;
+  return pairs ? index / 2 : index;
+}
+
 }  // namespace
 
 Result<FrameSequence> FrameSequence::create(const SequenceSettings& settings) {
@@ -42,7 +49,8 @@ FrameView FrameSequence::at(std::int64_t index, Extent render) {
   static_cast<void>(viewport_.set_render(render));  // one that does not fit leaves the last one
   FrameView view;
   view.render = viewport_.render();
-  view.jitter = jitter_of(settings_.jitter, index, viewport_.ratio());
+  view.jitter = jitter_of(settings_.jitter, jitter_index(settings_, index), viewport_.ratio());
+  if (settings_.shading == Shading::kCheckerboard) view.parity = static_cast<int>(index & 1);
   view.seconds = settings_.start_seconds + static_cast<double>(index) / settings_.fps;
   view.previous_seconds = settings_.start_seconds + static_cast<double>(index - 1) / settings_.fps;
   view.aspect = static_cast<float>(settings_.output.width) / static_cast<float>(settings_.output.height);

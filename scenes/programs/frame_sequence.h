@@ -20,6 +20,7 @@ struct SequenceSettings {
   Extent output;
   ScalePath scale_path;
   Jitter jitter = Jitter::kNone;
+  Shading shading = Shading::kFull;
   std::int64_t frames = 1;
   double fps = 60;
   double start_seconds = 0;  // scene time of frame 0

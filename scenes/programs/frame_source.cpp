@@ -69,6 +69,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
     resolve.targets = bridging.targets;
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
+    bridging.checkerboard |= resolve.shading == Shading::kCheckerboard;
     bridging.depth |= plan->reads_depth;
     bridging.velocity |= plan->velocity == VelocitySource::kTarget;
     bridging.reactive |= plan->reads_reactive;
@@ -128,6 +129,7 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.reactive = shared->reactive;
   inputs.render = frame.view.render;
   inputs.jitter = frame.view.jitter;
+  inputs.parity = frame.view.parity.value_or(0);
   inputs.camera = stage_->renderer->camera_motion(frame.view);
   inputs.exposure = exposure();
   inputs.frame_index = static_cast<std::uint64_t>(frame.index);

@@ -71,6 +71,10 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
   tools::add_choice(app, "--colour", options.resolve.colour, kColours,
                     "Of the colour target: rgba16f (linear light) or rgba8 (exposed, tone mapped and sRGB "
                     "encoded as it is drawn; default: rgba16f)");
+  static const std::map<std::string, Shading> kShadings = {
+      {name_of(Shading::kFull), Shading::kFull}, {name_of(Shading::kCheckerboard), Shading::kCheckerboard}};
+  tools::add_choice(app, "--shading", options.resolve.shading, kShadings,
+                    "Pixels that a frame shades: full or checkerboard, every other one (default: full)");
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       .positive();
   app.add_option("--frames", options.frames, "Number of frames").positive().show_default();
@@ -153,6 +157,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   settings.output = options.output;
   settings.scale_path = path.value();
   settings.jitter = jitter_for(options);
+  settings.shading = options.resolve.shading;
   settings.frames = options.frames;
   settings.fps = options.fps;
   settings.start_seconds = options.start;

@@ -42,6 +42,7 @@ DrawState::~DrawState() {
   glDisable(GL_BLEND);
   glDisable(GL_CULL_FACE);
   glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_STENCIL_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
   glFrontFace(GL_CCW);
@@ -71,6 +72,12 @@ void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2
   glEnable(GL_SCISSOR_TEST);
   glScissor(corner.x, corner.y, size.x, size.y);
   gl::clear(targets.framebuffer(), GL_COLOR, kColour, colour);
+}
+
+void draw_checkerboard(int parity) {
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_EQUAL, parity, 1);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
 void set_opaque_state() {

@@ -29,6 +29,10 @@ void clear_for_frame(const gl::RenderTargets& targets, Extent render);
 // Gives a block of the colour target, `corner` its upper left pixel, one value in R, G and B, and alpha 1.
 void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value);
 
+// From here on pixels with (x + y) % 2 == parity alone are drawn, where the targets have a checkerboard. Nothing writes
+// the stencil, so a driver may test it before it shades.
+void draw_checkerboard(int parity);
+
 void set_opaque_state();   // writes colour, velocity, depth
 void set_sky_state();      // colour and velocity where nothing was drawn
 void set_blended_state();  // blends premultiplied colour, accumulates reactive values

@@ -38,6 +38,10 @@ Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
         "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size, shadow_age and "
         "display.exposure must be finite, the last four not negative, and the exposure not 0");
   }
+  if (view.parity && !targets.has_checkerboard())
+    return Status::invalid("FrameView::parity is given, but the targets have no checkerboard");
+  if (view.parity && *view.parity != 0 && *view.parity != 1)
+    return Status::invalid(fmt::format("FrameView::parity is {}; it must be 0 or 1", *view.parity));
   return {};
 }
 
@@ -77,6 +81,7 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
   clear_for_frame(targets, view.render);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
   glViewport(0, 0, view.render.width, view.render.height);
+  if (view.parity) draw_checkerboard(*view.parity);
   impl_->draw_opaque(velocity);
   impl_->draw_sky(velocity);
   impl_->draw_blended();

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "quincunx/frame.h"
@@ -32,6 +33,8 @@ struct FrameView {
   // several resolutions show the same only with the picture's own aspect.
   float aspect = 0;
   float lod_bias = 0;  // of every texture
+  // The pixels with (x + y) % 2 of this are drawn, 0 or 1, into targets that have a checkerboard; absent: all pixels.
+  std::optional<int> parity = {};
   // Less work where detail may go; both 0: all of it.
   float least_size = 0;   // surfaces that span less than this part of the picture's height are left out
   double shadow_age = 0;  // seconds for which the drawn shadows of what moves may stay

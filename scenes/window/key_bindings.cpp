@@ -110,6 +110,11 @@ constexpr std::array kBindings = std::to_array<KeyBinding>({
      [](WindowSettings& settings, bool back) {
        settings.look.method = neighbour(methods(false), settings.look.method, back);
      }},
+    {GLFW_KEY_X, "x", "X", "shading: full or checkerboard",
+     [](WindowSettings& settings, bool) {
+       Shading& shading = settings.look.shading;
+       shading = shading == Shading::kFull ? Shading::kCheckerboard : Shading::kFull;
+     }},
     {GLFW_KEY_B, "b", "B", "motion blur: longer shutter", step_shutter},
     {GLFW_KEY_V, "v", "V", "split view: truth, other methods", next_comparison},
     {GLFW_KEY_LEFT, "left", "Left", "split to the left",

@@ -53,6 +53,7 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   wanted.resolve.tone_map = look.tone_map;
   wanted.resolve.dither = look.dither;
   wanted.resolve.targets = look.targets;
+  wanted.resolve.shading = look.shading;
   choose_method(wanted.resolve, look.method);
   return wanted;
 }

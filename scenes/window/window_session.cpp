@@ -31,7 +31,8 @@ std::int64_t frames_before(const LookSettings& look) {
   const bool compared = look.compares_methods();
   const Method other = compared ? tools::method_choices().at(look.compared).method : method;
   const Method most = std::max(method, other);
-  return most < Method::kQuincunx ? 0 : most == Method::kQuincunx ? 1 : static_cast<std::int64_t>(kWarmUp);
+  if (most == Method::kTemporal) return static_cast<std::int64_t>(kWarmUp);
+  return most == Method::kQuincunx || look.shading == Shading::kCheckerboard ? 1 : 0;
 }
 
 // `base`, with a number behind it where there is such a file already: a frozen frame has many pictures.
@@ -51,6 +52,7 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.tone_map = options.resolve.tone_map;
   settings.look.dither = options.resolve.dither;
   settings.look.targets = options.resolve.targets;
+  settings.look.shading = options.resolve.shading;
   settings.look.jitter = options.jitter;
   settings.resolution.scale = scale.x;
   settings.show_ui = options.show_ui;

@@ -63,6 +63,7 @@ struct LookSettings {
   ToneMap tone_map = ToneMap::kAces;
   bool dither = true;
   Targets targets = Targets::kViewport;
+  Shading shading = Shading::kFull;
   std::optional<tools::Jitter> jitter;  // absent: the one that suits the method
 
   bool compares_methods() const { return compared != kCompareNothing && compared != kCompareTruth; }

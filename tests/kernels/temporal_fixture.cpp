@@ -212,6 +212,7 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
   params.judged_apart = r.judged_apart;
+  params.parity = r.parity;
   const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
   const cl::Buffer now = to_device(std::vector<TileReprojection>(r.before.size()));
   const cl::Buffer evidence = to_device(std::vector<TileEvidence>(r.before.size()));
@@ -275,6 +276,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const ImageView view = rig.output(variant_.resolved, output);
   const Counter counter = rig.counter();
   TemporalParams params{};
+  params.parity = r.parity;
   params.output_width = output.width;
   params.output_height = output.height;
   params.frame0 = source_of(in);

@@ -37,6 +37,7 @@ struct StageSpec {
   unsigned seed = 1;
   double outside = 0;
   bool tight = false;
+  int parity = -1;  // of a checkerboard's shaded samples; -1: all are
 };
 
 std::string name_of(const StageSpec& spec);

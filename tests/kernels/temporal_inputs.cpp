@@ -237,6 +237,7 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   reference::TemporalInputs& out = in.reference;
   out.frame = made.reference;
   out.judged_apart = spec.seed % 2 == 0 ? 2 : 4;
+  out.parity = spec.parity;
   out.previous_width = spec.previous.width;
   out.previous_height = spec.previous.height;
   out.output_width = spec.output.width;

@@ -83,6 +83,20 @@ TEST_P(Temporal, ResolveMatchesTheReferenceAtEverySizeScaleAndInput) {
   EXPECT_GE(decided_, compared_ * 3 / 4);
 }
 
+// A sample that is not shaded gives way to one that is.
+TEST_P(Temporal, SamplesOfACheckerboardMatchTheReference) {
+  const TemporalStages stages(GetParam());
+  for (StageSpec spec : testing::all_stage_specs({Pattern::kNoise, Pattern::kNonFinite})) {
+    spec.parity = static_cast<int>(spec.seed % 2);
+    Rig rig;
+    const StageInputs in = stages.inputs(rig, spec);
+    const auto tiles = stages.tiles(in, spec.seed);
+    compare_resolve(in, tiles, {}, stages.run_resolve(rig, in, tiles), spec);
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GE(decided_, compared_ * 3 / 4);
+}
+
 // What is copied without a look at each sample's reprojection is what a look at them gives.
 TEST_P(Temporal, CopyableTilesGiveTheSameBits) {
   if (!GetParam().moves) return;  // all are

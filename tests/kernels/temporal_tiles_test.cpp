@@ -142,8 +142,8 @@ void add_tile(reference::TotalLight& total, Allowed& allowed, const ExpectedTile
 TEST_P(TemporalTiles, MatchTheReferenceAtEverySizeAndScale) {
   const TemporalStages stages(GetParam());
   int totals = 0;
-  for (const StageSpec& spec :
-       testing::all_stage_specs({Pattern::kNoise, Pattern::kNonFinite, Pattern::kImpulse})) {
+  for (StageSpec spec : testing::all_stage_specs({Pattern::kNoise, Pattern::kNonFinite, Pattern::kImpulse})) {
+    spec.parity = static_cast<int>(spec.seed % 3) - 1;
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
     const auto actual = stages.run_tiles(in);

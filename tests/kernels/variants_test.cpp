@@ -51,15 +51,17 @@ TEST_P(KernelVariants, EveryRowBuilds) {
   EXPECT_GT(built, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Kernels, KernelVariants,
-    ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter", "scale_noise",
-                      "scale_noise_offset", "resolve_quincunx", "reproject", "resolve_reprojected",
-                      "layer_records", "advect_records", "layer_split", "temporal_tiles", "temporal_light",
-                      "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
-                      "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "present",
-                      "velocity_from_depth", "far_velocity", "far_surroundings", "far_fit", "far_match"),
-    [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
+                         ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter",
+                                           "scale_noise", "scale_noise_offset", "resolve_quincunx",
+                                           "reproject", "resolve_reprojected", "layer_records",
+                                           "advect_records", "layer_split", "temporal_tiles",
+                                           "temporal_light", "resolve_temporal", "resolve_layers",
+                                           "temporal_display", "display_layers", "motion_tiles",
+                                           "motion_neighbours", "motion_blur", "sharpen", "present",
+                                           "resolve_checkerboard", "velocity_from_depth", "far_velocity",
+                                           "far_surroundings", "far_fit", "far_match"),
+                         [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
   const std::vector<Row> all = rows();
@@ -152,6 +154,12 @@ std::vector<PlanFacts> all_facts() {
             add_methods(settings);
           }
           settings.method = Method::kBilinear;
+          settings.shading = Shading::kCheckerboard;
+          for (const float shutter : {0.0f, .5f}) {
+            settings.blur.shutter = shutter;
+            add_needs(settings);
+          }
+          settings.shading = Shading::kFull;
           for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
             for (const bool dither : {false, true}) {
               settings.tone_map = tone_map;

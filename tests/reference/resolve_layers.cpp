@@ -46,13 +46,6 @@ struct LayeredPixel {
   Real between = 0;  // D
 };
 
-template <typename Real>
-Neighbourhood<Real> neighbourhood_of(const TemporalInputs& in, int x, int y,
-                                     const std::array<double, 2>& phase) {
-  return {nearest_sample<Real>(x, in.output_width, in.frame.width, in.frame.jitter_x, phase[0]),
-          nearest_sample<Real>(y, in.output_height, in.frame.height, in.frame.jitter_y, phase[1])};
-}
-
 // ---- Samples as a layer has them.
 
 enum class Side { kNeither, kFar, kNear };
@@ -209,7 +202,7 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
 template <typename Real>
 NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& pixel) {
   const Frame& frame = in.now.frame;
-  const auto around = neighbourhood_of<Real>(in.now, pixel.x, pixel.y, pixel.layers->phase);
+  const auto around = nearest_samples<Real>(in.now, pixel.x, pixel.y, pixel.layers->phase);
   NearTexel<Real> near = fetch_near(in, pixel);
 
   // Reseed.
@@ -254,7 +247,7 @@ LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptio
   const TemporalInputs& now = in.now;
   const std::size_t tile = index_of(now.tiles_x(), x / kTile, y / kTile);
   const auto& phase = in.tiles[tile].reprojection.phase;
-  const auto near = neighbourhood_of<Real>(now, x, y, phase);
+  const auto near = nearest_samples<Real>(now, x, y, phase);
   const std::size_t sample = index_of(now.frame.width, near.x.sample, near.y.sample);
   const LayerSplit& split = in.splits[sample];
   const LayeredPixel<Real> pixel = {x,

@@ -31,9 +31,7 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
                                     const TemporalOptions& options, int x, int y) {
   const Frame& frame = in.frame;
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
-  const Neighbourhood<Real> near = {
-      nearest_sample<Real>(x, in.output_width, frame.width, frame.jitter_x, tile.phase[0]),
-      nearest_sample<Real>(y, in.output_height, frame.height, frame.jitter_y, tile.phase[1])};
+  const Neighbourhood<Real> near = nearest_samples<Real>(in, x, y, tile.phase);
   const Pixel& sample = texel_clamped(frame, near.x.sample, near.y.sample);
   Reprojection reprojection{.trust = 1};
   if (!in.reprojections.empty()) reprojection = in.reprojection_at(near.x.sample, near.y.sample);

@@ -43,13 +43,15 @@ Real luma(const PixelOf<Real>& c) {
   return max(.25 * (c[0] + c[2]) + .5 * c[1], 0);
 }
 
-// How far the luma of the mean of its four neighbours is from a sample's; 0 where that is not valid.
+// How far the luma of the mean of its four neighbours is from a sample's; 0 where that is not valid. On a checkerboard
+// they are the diagonal ones, which are shaded.
 template <typename Real>
 Real neighbour_error(const TemporalInputs& in, int x, int y, const Real& own) {
-  const auto left = as<Real>(texel_clamped(in.frame, x - 1, y));
-  const auto right = as<Real>(texel_clamped(in.frame, x + 1, y));
-  const auto above = as<Real>(texel_clamped(in.frame, x, y - 1));
-  const auto below = as<Real>(texel_clamped(in.frame, x, y + 1));
+  const int aside = in.parity >= 0 ? 1 : 0;
+  const auto left = as<Real>(texel_clamped(in.frame, x - 1, y - aside));
+  const auto right = as<Real>(texel_clamped(in.frame, x + 1, y + aside));
+  const auto above = as<Real>(texel_clamped(in.frame, x + aside, y - 1));
+  const auto below = as<Real>(texel_clamped(in.frame, x - aside, y + 1));
   PixelOf<Real> mean;
   for (std::size_t c = 0; c < 4; ++c)
     mean[c] = .25 * (left[c] + right[c] + above[c] + below[c]);
@@ -168,7 +170,8 @@ TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReproject
   const auto [columns, rows] = samples_of_tile<Real>(in, tile_x, tile_y);
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
-      const bool is_judge = (x + in.judged_apart / 2 * y) % in.judged_apart == 0;
+      const int place = in.parity >= 0 ? x + y - in.parity : x + in.judged_apart / 2 * y;
+      const bool is_judge = place % in.judged_apart == 0;
       if (is_judge) judge_sample(in, reprojection, x, y, evidence);
     }
   }

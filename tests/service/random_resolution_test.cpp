@@ -40,7 +40,20 @@ HostFrame poison(float value) {
   return frame;
 }
 
-// What lies outside the viewport changes no bit of any frame, and no frame has a value that is not finite.
+// Of a checkerboard: the pixels that are not shaded hold `value`.
+HostFrame with_holes(const HostFrame& frame, float value) {
+  HostFrame holed = frame;
+  const auto is_hole = [parity = frame.parity](int x, int y) { return (x + y) % 2 != parity; };
+  holed.colour = [=](int x, int y) {
+    return is_hole(x, y) ? Pixel{value, value, value, value} : frame.colour(x, y);
+  };
+  holed.velocity = [=](int x, int y) { return is_hole(x, y) ? Vec2{value, value} : frame.velocity(x, y); };
+  holed.depth = [=](int x, int y) { return is_hole(x, y) ? value : frame.depth(x, y); };
+  holed.reactive = [=](int x, int y) { return is_hole(x, y) ? std::uint8_t{255} : frame.reactive(x, y); };
+  return holed;
+}
+
+// What lies outside the viewport, or in pixels that are not shaded, changes no bit of any frame, and no frame has a value that is not finite.
 TEST_P(RandomResolution, PoisonOutsideNeverShows) {
   const LongRun& run = GetParam();
   ServiceRig clean({}, run.settings, kOutput, kTarget);
@@ -49,10 +62,13 @@ TEST_P(RandomResolution, PoisonOutsideNeverShows) {
   const float values[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity(), 1e30f};
   for (int i = 0; i < run.frames; ++i) {
-    const HostFrame frame = random_frame(random, kTarget);
+    HostFrame frame = random_frame(random, kTarget);
+    const bool checkerboard = run.settings.shading == Shading::kCheckerboard;
+    if (checkerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
     poisoned.flood(poison(values[i % 4]));
     const std::vector<Pixel> expected = clean.resolve(frame);
-    const std::vector<Pixel> actual = poisoned.resolve(frame);
+    const std::vector<Pixel> actual =
+        poisoned.resolve(checkerboard ? with_holes(frame, values[i % 4]) : frame);
     ASSERT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0)
         << "frame " << i << ", " << frame.render.width << "x" << frame.render.height;
     ASSERT_EQ(clean.presented(), poisoned.presented()) << "frame " << i;
@@ -76,6 +92,14 @@ const LongRun kRuns[] = {
     {"velocity_rgba8", {.method = Method::kQuincunx, .colour = PixelFormat::kRGBA8}, 200},
     {"catmull_rom", {.method = Method::kCatmullRom}, 200},
     {"bilinear", {.method = Method::kBilinear}, 200},
+    {"checkerboard_bilinear", {.method = Method::kBilinear, .shading = Shading::kCheckerboard}, 400},
+    {"checkerboard_quincunx",
+     {.method = Method::kQuincunx,
+      .shading = Shading::kCheckerboard,
+      .quincunx = {.form = TwoFrameForm::kReprojected},
+      .blur = {.shutter = 0.5f}},
+     400},
+    {"checkerboard_temporal", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}, 400},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},
 };
 

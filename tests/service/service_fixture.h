@@ -30,6 +30,7 @@ struct HostFrame {
   std::function<std::uint8_t(int x, int y)> reactive = [](int, int) { return std::uint8_t{0}; };
   CameraMotion camera = {};
   bool reset = false;
+  int parity = 0;
 };
 
 using Codes = std::array<std::uint8_t, 4>;
@@ -100,6 +101,7 @@ class ServiceRig {
     inputs.jitter = frame.jitter;
     inputs.camera = frame.camera;
     inputs.reset = frame.reset;
+    inputs.parity = frame.parity;
     inputs.frame_index = count_ - 1;
     return inputs;
   }

@@ -48,6 +48,21 @@ TEST_F(Validate, AGoodFramePasses) {
   EXPECT_TRUE(check().ok());
 }
 
+TEST_F(Validate, ACheckerboardHasAShadedPixel) {
+  inputs_.parity = 2;
+  EXPECT_TRUE(check().ok()) << "all pixels are shaded";
+  settings_.shading = Shading::kCheckerboard;
+  EXPECT_NE(check().message().find("parity is 2; it must be 0 or 1"), std::string::npos) << check().message();
+  inputs_.parity = 1;
+  EXPECT_TRUE(check().ok()) << check().message();
+  inputs_.render = {1, 1};
+  EXPECT_NE(check().message().find("it must be 0 where the viewport is a single pixel"), std::string::npos);
+  inputs_.render = {1, 2};
+  EXPECT_TRUE(check().ok()) << check().message();
+  inputs_.depth = {};
+  EXPECT_FALSE(check().ok()) << "surfaces are told by depth";
+}
+
 TEST_F(Validate, WhatThePlanDoesNotReadMayBeMissing) {
   inputs_.depth = {};
   EXPECT_TRUE(check().ok());

@@ -35,6 +35,7 @@ struct BridgeSettings {
   bool depth = false;                // hand depth over
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values
+  bool checkerboard = false;         // targets have the stencil of TargetNeeds::checkerboard
   PixelFormat colour = PixelFormat::kRGBA16F;  // or RGBA8: see RenderTargets
   int slots = 3;                               // >= 3 where the previous frame is read
   Targets targets = Targets::kViewport;        // kPlaced: HostCopy only, kGl then fails

@@ -15,6 +15,7 @@ struct TargetNeeds {
   Extent target = {};    // allocated size, at least the largest viewport
   bool velocity = true;  // RG16F, uv per frame
   bool reactive = true;  // R8
+  bool checkerboard = false;  // a stencil whose lowest bit is (x + y) % 2 of each pixel
   PixelFormat colour =
       PixelFormat::kRGBA16F;  // or RGBA8, which GL encodes as sRGB where it writes and blends
 };
@@ -33,17 +34,19 @@ class RenderTargets {
   GLuint framebuffer() const { return framebuffer_.get(); }
   GLuint colour() const { return colour_.get(); }
   PixelFormat colour_format() const { return colour_format_; }
-  GLuint depth() const { return depth_.get(); }        // DEPTH_COMPONENT32F
+  GLuint depth() const { return depth_.get(); }        // DEPTH_COMPONENT32F, or DEPTH32F_STENCIL8
   GLuint velocity() const { return velocity_.get(); }  // 0: not planned
   GLuint reactive() const { return reactive_.get(); }  // 0: not planned
+  bool has_checkerboard() const { return has_checkerboard_; }
 
   // Clears the viewport's part of colour, velocity and reactive (scissored, to 0), and depth whole (to 0:
-  // infinity). Leaves the scissor as it was and the colour and depth write masks on.
+  // infinity). Leaves the stencil and the scissor as they were and the colour and depth write masks on.
   void clear(Extent render) const;
 
  private:
   Extent extent_ = {};
   PixelFormat colour_format_;
+  bool has_checkerboard_ = false;
   Framebuffer framebuffer_;
   Texture colour_;
   Texture depth_;

@@ -89,6 +89,12 @@ enum class FarMotion : std::uint8_t {
 
 enum class ToneMap { kClamp, kReinhard, kAces };
 
+// Which pixels of the viewport a frame has.
+enum class Shading : std::uint8_t {
+  kFull,
+  kCheckerboard,  // every other one: FrameInputs::parity says which
+};
+
 const char* name_of(Method method);          // "quincunx"
 const char* name_of(TwoFrameForm form);      // "velocity"
 const char* name_of(Sampling sampling);      // "point"
@@ -96,5 +102,6 @@ const char* name_of(TemporalPreset preset);  // "balanced"
 const char* name_of(TemporalView view);      // "confidence"
 const char* name_of(FarMotion motion);       // "camera"
 const char* name_of(ToneMap tone_map);       // "aces"
+const char* name_of(Shading shading);        // "checkerboard"
 
 }  // namespace quincunx

@@ -74,6 +74,7 @@ struct ResolveSettings {
   PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
   Storage storage = Storage::kBuffer;            // of the inputs; see ResolvePlan::presented_storage()
   Targets targets = Targets::kViewport;          // of the inputs and the service's own images of a viewport
+  Shading shading = Shading::kFull;              // kCheckerboard: the other half is filled first
   bool present = true;                           // run the present pass
   bool clear = false;                            // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;             // of the present pass; with RGBA8 colour of the renderer

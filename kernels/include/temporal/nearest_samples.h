@@ -23,6 +23,19 @@ static inline Positions row_position(const TemporalParams* params, __global cons
   return row;
 }
 
+// On a checkerboard, from a sample that is not shaded to the next one of its row that is, on the pixel's own side where
+// there is one.
+static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams* params) {
+  const int last = params->frame0.width - 1;
+  const int8 is_shaded = ((nearest->x + nearest->y) & 1) == params->parity;
+  int8 step = select((int8)(-1), (int8)(1), nearest->from_x > 0.0f);
+  step = select(step, (int8)(1), nearest->x == 0);
+  step = select(step, (int8)(-1), nearest->x == last);
+  step = select(step, (int8)(0), is_shaded | (int8)(last == 0 ? -1 : 0));
+  nearest->x += step;
+  nearest->from_x -= convert_float8(step);
+}
+
 // Of the pixels from column x on.
 static inline NearestSamples find_nearest_samples(const TemporalParams* params, __global const int* positions, int x,
                                                   Positions row, TileReprojection tile) {
@@ -36,5 +49,6 @@ static inline NearestSamples find_nearest_samples(const TemporalParams* params, 
   nearest.y = nearest_samples(nearest.between_y).s0;
   nearest.from_x = place_x.fraction + convert_float8(place_x.texel - nearest.x);
   nearest.from_y = place_y.fraction.s0 + (float)(place_y.texel.s0 - nearest.y);
+  if (params->parity >= 0) move_to_shaded(&nearest, params);
   return nearest;
 }

@@ -21,8 +21,9 @@ typedef struct TemporalTileParams {
   float start_x, start_y;
   float motion_x, motion_y;  // from Reprojection's pixels of the previous viewport to output pixels
   int judged_apart;          // 2 or 4: one of so many samples judges history
+  int parity;                // as in TemporalParams
 } TemporalTileParams;
-QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 28);
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 32);
 
 typedef struct TemporalParams {
   int output_width;
@@ -38,8 +39,9 @@ typedef struct TemporalParams {
   float spacing_x, spacing_y;  // output pixels between neighbouring samples
   int tiles_x;
   int tiles_y;
+  int parity;  // of a checkerboard: sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
 } TemporalParams;
-QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 8);
+QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 12);
 
 typedef struct TemporalDisplayParams {
   int output_width;

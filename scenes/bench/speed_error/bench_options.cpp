@@ -30,7 +30,8 @@ void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
       .delimiter(',')
       .type_name("S,...");
   app.add_option("--methods", options.methods,
-                 "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour")
+                 "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
+                 "of frames with half of their pixels shaded")
       .delimiter(',')
       .type_name("NAME,...");
   app.add_flag("--list-methods", options.list_methods, "List the methods");

@@ -39,13 +39,27 @@ BenchMethod in_eight_bits(BenchMethod method) {
   return method;
 }
 
+// A method's twin of frames in which half of the pixels are shaded.
+constexpr std::string_view kCheckerboard = "checkerboard/";
+
+BenchMethod on_checkerboard(BenchMethod method) {
+  method.name = std::string(kCheckerboard) + method.name;
+  method.summary += ", of a checkerboard";
+  method.resolve.shading = Shading::kCheckerboard;
+  method.is_default = false;
+  return method;
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
     const bool encoded = name.ends_with(kEncoded);
-    const std::string longest = longest_name(encoded ? name.substr(0, name.size() - kEncoded.size()) : name);
+    const bool checkerboard = name.starts_with(kCheckerboard);
+    std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
+    if (checkerboard) plain.erase(0, kCheckerboard.size());
+    const std::string longest = longest_name(plain);
     const auto found = std::find_if(methods.begin(), methods.end(),
                                     [&](const BenchMethod& method) { return method.name == longest; });
     if (found == methods.end()) {
@@ -53,10 +67,12 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
       for (const BenchMethod& method : methods)
         known += (known.empty() ? "" : ", ") + method.name;
       return Status::invalid(
-          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it", name,
-                      known, kEncoded));
+          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it or {} before it",
+                      name, known, kEncoded, kCheckerboard));
     }
-    chosen.push_back(encoded ? in_eight_bits(*found) : *found);
+    if (encoded && checkerboard)
+      return Status::invalid(fmt::format("--methods: '{}': a checkerboard is of linear colour, so not {}", name, kEncoded));
+    chosen.push_back(encoded ? in_eight_bits(*found) : checkerboard ? on_checkerboard(*found) : *found);
   }
   return chosen;
 }
@@ -150,6 +166,7 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   const auto axis = static_cast<float>(scale);
   sequence.scale_path = scenes::ScalePath::fixed({axis, axis}).value();  // plan_from() has checked it
   sequence.jitter = method.jitter;
+  sequence.shading = method.resolve.shading;
   sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);
   sequence.fps = conditions.fps;
   sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));

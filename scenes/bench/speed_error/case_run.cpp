@@ -52,10 +52,10 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   if (!copy.ok()) return copy.status();
   copy_.emplace(std::move(copy).value());
 
-  std::map<std::tuple<scenes::Jitter, float, bool, PixelFormat>, std::vector<std::size_t>> feeds;
+  std::map<std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat>, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}].push_back(i);
+    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}].push_back(i);
   }
   entries_.resize(plan_.methods.size());
   for (const auto& [frames, methods] : feeds) {

@@ -39,4 +39,22 @@ struct Neighbourhood {
   Nearest<Real> x, y;
 };
 
+// Of pixel (x, y), whose picture lies at its centre + phase. On a checkerboard a sample that is not shaded gives way to
+// the next one of its row, on the side of the picture where there is one there.
+template <typename Real>
+Neighbourhood<Real> nearest_samples(const TemporalInputs& in, int x, int y,
+                                    const std::array<double, 2>& phase) {
+  Neighbourhood<Real> near = {
+      nearest_sample<Real>(x, in.output_width, in.frame.width, in.frame.jitter_x, phase[0]),
+      nearest_sample<Real>(y, in.output_height, in.frame.height, in.frame.jitter_y, phase[1])};
+  const bool is_shaded = in.parity < 0 || (near.x.sample + near.y.sample) % 2 == in.parity;
+  if (is_shaded || in.frame.width == 1) return near;
+  int step = near.x.past > 0 ? 1 : -1;
+  if (near.x.sample == 0) step = 1;
+  if (near.x.sample == in.frame.width - 1) step = -1;
+  near.x.sample += step;
+  near.x.past = near.x.past - step;
+  return near;
+}
+
 }  // namespace quincunx::reference

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// For resolve_checkerboard: the colour of a pixel that is not shaded.
+#pragma once
+
+#include "checkerboard/checkerboard_params.h"
+#include "checkerboard/stored_frame.h"
+#include "checkerboard/surfaces.h"
+
+#define LEAST_DIFFERENCE 1e-12f    // squared: two pairs that are equal count alike
+
+// Where one of the surfaces was that a pixel may show, and the trust in that.
+typedef struct PastPixel {
+  float x, y, trust;
+} PastPixel;
+
+// A neighbour's colour; weight 0 where there is none.
+typedef struct ShadedSample {
+  float4 colour;
+  float weight;
+} ShadedSample;
+
+static inline ShadedSample shaded_sample(const CheckerboardParams* params, COLOUR_TEXELS texels, int x, int y) {
+  ShadedSample sample = {(float4)(0.0f), 0.0f};
+  if (x < 0 || y < 0 || x >= params->width || y >= params->height) return sample;
+  const float4 colour = load_colour(texels, params->shaded.colour, x, y);
+  if (any_non_finite4(colour)) return sample;
+  sample.colour = colour;
+  sample.weight = 1.0f;
+  return sample;
+}
+
+// The neighbours on both sides of a pixel on one axis.
+typedef struct SamplePair {
+  float4 mean;
+  float difference;  // squared
+  int count;
+} SamplePair;
+
+static inline SamplePair pair_of(ShadedSample a, ShadedSample b) {
+  SamplePair pair;
+  const float4 apart = clamp(a.colour - b.colour, -INFINITY_STAND_IN, INFINITY_STAND_IN);
+  pair.count = (a.weight > 0.0f) + (b.weight > 0.0f);
+  pair.mean = (a.colour + b.colour) * (pair.count == 2 ? 0.5f : 1.0f);
+  pair.difference = dot(apart, apart);
+  return pair;
+}
+
+// The mean of both pairs, that of the more alike one counting more: by the squared difference of the other.
+static inline float4 mean_along_edge(SamplePair across, SamplePair down) {
+  if (across.count == 0) return down.mean;
+  if (down.count == 0) return across.mean;
+  const bool both = across.count == 2 && down.count == 2;
+  const float by_across = down.difference + LEAST_DIFFERENCE, by_down = across.difference + LEAST_DIFFERENCE;
+  const float part = both ? by_across / (by_across + by_down) : 0.5f;
+  return across.mean * part + down.mean * (1.0f - part);
+}
+
+// The range of the neighbours.
+typedef struct ColourRange {
+  float4 low, high;
+} ColourRange;
+
+static inline ColourRange widened(ColourRange range, ShadedSample sample) {
+  if (sample.weight == 0.0f) return range;
+  const ColourRange wider = {min(range.low, sample.colour), max(range.high, sample.colour)};
+  return wider;
+}
+
+// On one axis, as FourBetween.
+typedef struct Between {
+  int low, high;
+  float fraction;
+} Between;
+
+static inline Between between_two(float at, int size) {
+  const float whole = floor(at);
+  Between between;
+  between.fraction = at - whole;
+  between.low = clamp((int)whole, 0, size - 1);
+  between.high = clamp((int)whole + (between.fraction > 0.0f), 0, size - 1);
+  return between;
+}
+
+// The previous colour at a place over `rest`, by the trust in it.
+static inline float4 over_rest(const CheckerboardParams* params, COLOUR_TEXELS previous, PastPixel past,
+                               ColourRange range, float4 rest) {
+  if (past.trust <= 0.0f) return rest;
+  const Between column = between_two(past.x, params->previous_width);
+  const Between row = between_two(past.y, params->previous_height);
+  const float4 upper_left = load_colour(previous, params->previous_colour, column.low, row.low);
+  const float4 upper_right = load_colour(previous, params->previous_colour, column.high, row.low);
+  const float4 lower_left = load_colour(previous, params->previous_colour, column.low, row.high);
+  const float4 lower_right = load_colour(previous, params->previous_colour, column.high, row.high);
+  const int4 largest = larger_magnitude(larger_magnitude((int4)(0), upper_left), upper_right);
+  if (any_reached_infinity(larger_magnitude(larger_magnitude(largest, lower_left), lower_right))) return rest;
+  const float4 upper = upper_left + (upper_right - upper_left) * column.fraction;
+  const float4 lower = lower_left + (lower_right - lower_left) * column.fraction;
+  const float4 history = clamp(upper + (lower - upper) * row.fraction, range.low, range.high);
+  return history * past.trust + rest * (1.0f - past.trust);
+}
+
+static inline float4 filled_colour(const CheckerboardParams* params, COLOUR_TEXELS shaded, COLOUR_TEXELS previous,
+                                   int x, int y, PastPixel near, PastPixel far) {
+  const ShadedSample left = shaded_sample(params, shaded, x - 1, y), right = shaded_sample(params, shaded, x + 1, y);
+  const ShadedSample above = shaded_sample(params, shaded, x, y - 1), below = shaded_sample(params, shaded, x, y + 1);
+  const float4 mean = mean_along_edge(pair_of(left, right), pair_of(above, below));
+  ColourRange range = {mean, mean};
+  range = widened(widened(widened(widened(range, left), right), above), below);
+  float4 rest = mean;
+  if (near.trust < 1.0f) rest = over_rest(params, previous, far, range, mean);
+  return over_rest(params, previous, near, range, rest);
+}
