@@ -252,7 +252,7 @@ PixelOf<Real> filled_colour(const CheckerboardInputs& in, const std::array<Place
   }
   const PixelOf<Real> mean =
       mean_along_edge(pair_of<Real>(samples[0], samples[1]), pair_of<Real>(samples[2], samples[3]));
-  PixelOf<Real> low = mean, high = mean;
+  PixelOf<Real> low = mean, high = mean;  // which lies between them, so that this adds nothing
   for (const auto& sample : samples) {
     for (std::size_t c = 0; sample && c < 4; ++c) {
       low[c] = min(low[c], (*sample)[c]);

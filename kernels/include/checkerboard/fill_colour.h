@@ -81,10 +81,16 @@ static inline Between between_two(float at, int size) {
   return between;
 }
 
-// The previous colour at a place over `rest`, by the trust in it.
-static inline float4 over_rest(const CheckerboardParams* params, COLOUR_TEXELS previous, PastPixel past,
-                               ColourRange range, float4 rest) {
-  if (past.trust <= 0.0f) return rest;
+// The previous colour at a place, within the range; its trust is 0 where it is not finite.
+typedef struct PastColour {
+  float4 colour;
+  float trust;
+} PastColour;
+
+static inline PastColour past_colour(const CheckerboardParams* params, COLOUR_TEXELS previous, PastPixel past,
+                                     ColourRange range) {
+  PastColour found = {(float4)(0.0f), 0.0f};
+  if (past.trust <= 0.0f) return found;
   const Between column = between_two(past.x, params->previous_width);
   const Between row = between_two(past.y, params->previous_height);
   const float4 upper_left = load_colour(previous, params->previous_colour, column.low, row.low);
@@ -92,21 +98,28 @@ static inline float4 over_rest(const CheckerboardParams* params, COLOUR_TEXELS p
   const float4 lower_left = load_colour(previous, params->previous_colour, column.low, row.high);
   const float4 lower_right = load_colour(previous, params->previous_colour, column.high, row.high);
   const int4 largest = larger_magnitude(larger_magnitude((int4)(0), upper_left), upper_right);
-  if (any_reached_infinity(larger_magnitude(larger_magnitude(largest, lower_left), lower_right))) return rest;
+  if (any_reached_infinity(larger_magnitude(larger_magnitude(largest, lower_left), lower_right))) return found;
   const float4 upper = upper_left + (upper_right - upper_left) * column.fraction;
   const float4 lower = lower_left + (lower_right - lower_left) * column.fraction;
-  const float4 history = clamp(upper + (lower - upper) * row.fraction, range.low, range.high);
-  return history * past.trust + rest * (1.0f - past.trust);
+  found.colour = clamp(upper + (lower - upper) * row.fraction, range.low, range.high);
+  found.trust = past.trust;
+  return found;
+}
+
+static inline float4 over_rest(PastColour past, float4 rest) {
+  return past.colour * past.trust + rest * (1.0f - past.trust);
 }
 
 static inline float4 filled_colour(const CheckerboardParams* params, COLOUR_TEXELS shaded, COLOUR_TEXELS previous,
                                    int x, int y, PastPixel near, PastPixel far) {
   const ShadedSample left = shaded_sample(params, shaded, x - 1, y), right = shaded_sample(params, shaded, x + 1, y);
   const ShadedSample above = shaded_sample(params, shaded, x, y - 1), below = shaded_sample(params, shaded, x, y + 1);
-  const float4 mean = mean_along_edge(pair_of(left, right), pair_of(above, below));
-  ColourRange range = {mean, mean};
+  ColourRange range = {(float4)(INFINITY), (float4)(-INFINITY)};
   range = widened(widened(widened(widened(range, left), right), above), below);
-  float4 rest = mean;
-  if (near.trust < 1.0f) rest = over_rest(params, previous, far, range, mean);
-  return over_rest(params, previous, near, range, rest);
+  if (left.weight + right.weight + above.weight + below.weight == 0.0f) range.low = range.high = (float4)(0.0f);
+  const PastColour nearest = past_colour(params, previous, near, range);
+  if (nearest.trust >= 1.0f) return nearest.colour;
+  float4 rest = mean_along_edge(pair_of(left, right), pair_of(above, below));
+  if (near.trust < 1.0f) rest = over_rest(past_colour(params, previous, far, range), rest);
+  return over_rest(nearest, rest);
 }
