@@ -10,13 +10,13 @@
 //   the rest  depth, velocity and reactive value of the neighbour whose surface it shows: the nearest where t0 is at
 //             least 1/2, the farthest where (1 - t0) t1 is, else the nearer one of the pair whose depths are closer
 // Reversed depth is linear over a plane's picture, so that its previous value may be taken between samples. It is the
-// surface's within 2 % + half the difference of the nearest and the farthest neighbour, and not from half as much again.
+// surface's within 2 % + half the difference of nearest and farthest neighbour, and not from half as much again.
 //
 //   params                in   extents, layouts, parity, scales
 //   shaded_colour         in   RGBA16F or RGBA32F, viewport, linear, premultiplied; pixels that are not shaded are not
 //                              read, in any of these
 //   shaded_velocity       in   MOTION TARGET: RG16F or RG32F, viewport
-//   shaded_depth          in   R32F, viewport, reversed and infinite; a neighbour whose depth is not finite is no surface
+//   shaded_depth          in   R32F, viewport, reversed and infinite; what is not finite is no surface
 //   shaded_reactive       in   REACTIVE 1: R8, viewport
 //   previous_colour       in   what this kernel wrote for frame n-1, its viewport
 //   previous_depth        in   the same of depth

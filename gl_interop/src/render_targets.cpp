@@ -91,9 +91,10 @@ RenderTargets::RenderTargets(const TargetNeeds& needs)
   draw_buffers(name, {GL_COLOR_ATTACHMENT0, second, third});
   const GLenum complete = framebuffer_status(name);
   if (complete != GL_FRAMEBUFFER_COMPLETE) {
-    throw std::runtime_error(fmt::format(
-        "a {}x{} framebuffer of {}, depth 32F{}{}{} is not complete (0x{:04x})", extent_.width, extent_.height,
-        name_of(colour_format_), has_checkerboard_ ? " with stencil" : "", velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
+    throw std::runtime_error(
+        fmt::format("a {}x{} framebuffer of {}, depth 32F{}{}{} is not complete (0x{:04x})", extent_.width,
+                    extent_.height, name_of(colour_format_), has_checkerboard_ ? " with stencil" : "",
+                    velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
   }
 }
 

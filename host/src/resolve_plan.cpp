@@ -51,7 +51,8 @@ Status check(const ResolveSettings& settings) {
         fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
   }
   if (settings.shading == Shading::kCheckerboard && settings.colour == PixelFormat::kRGBA8)
-    complaints.add("settings.colour is RGBA8; of a checkerboard it must be RGBA16F or RGBA32F, which are linear");
+    complaints.add(
+        "settings.colour is RGBA8; of a checkerboard it must be RGBA16F or RGBA32F, which are linear");
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,

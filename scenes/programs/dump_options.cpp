@@ -83,6 +83,8 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
     if (!listing && options.out.empty() && options.sequence.empty()) {
       throw tools::UsageError{"--out", "is missing: give the folder for the stages, or --sequence PATTERN"};
     }
+    if (!options.sequence.empty() && options.resolve.shading == Shading::kCheckerboard)
+      throw tools::UsageError{"--sequence", "holds whole frames; give it without --shading checkerboard"};
   };
   if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
   if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal) options.warm_up = kWarmUpFrames;

@@ -108,7 +108,9 @@ Status DumpSession::open() {
 
 std::string DumpSession::why_missing(Stage stage) const {
   const ResolvePlan& plan = service_->plan();
-  if (stage == Stage::kHistory && !plan.keeps_previous_frame()) {
+  if (stage == Stage::kHistory && !plan.accumulates() && plan.settings.shading == Shading::kCheckerboard)
+    return "the previous frame that is read is the filled one, which only the service has";
+  if (stage == Stage::kHistory && !uses_earlier_frames(plan.settings.method)) {
     return fmt::format("the method '{}' uses one frame only", name_of(plan.settings.method));
   }
   if (stage == Stage::kHistory && (options_.frame == 0 || options_.warm_up == 0)) {

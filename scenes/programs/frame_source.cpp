@@ -1,9 +1,30 @@
 // SPDX-License-Identifier: MIT
 #include "programs/frame_source.h"
 
+#include <algorithm>
+
 #include "catalog/scene_catalog.h"
 
 namespace quincunx::scenes {
+namespace {
+
+// What pixels hold that no one has drawn is no part of the frame: zeros are read instead.
+void blank_unshaded(gl::TargetPixels& pixels, int parity) {
+  const auto width = static_cast<std::size_t>(pixels.render.width);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.render.area()); ++i) {
+    if ((i % width + i / width) % 2 == static_cast<std::size_t>(parity)) continue;
+    const auto blank = [i](auto& values, std::size_t channels) {
+      if (!values.empty())
+        std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i * channels), channels, 0);
+    };
+    blank(pixels.colour, 4);
+    blank(pixels.depth, 1);
+    blank(pixels.velocity, 2);
+    blank(pixels.reactive, 1);
+  }
+}
+
+}  // namespace
 
 Result<std::unique_ptr<FrameSource>> FrameSource::create(const FrameSourceSettings& settings) {
   auto source = std::unique_ptr<FrameSource>(new FrameSource(settings));
@@ -110,6 +131,7 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
   if (keep_targets) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
+  if (keep_targets && view.parity) blank_unshaded(frame.targets, *view.parity);
   drawn_.push_back(std::move(frame));
   return {};
 }

@@ -25,6 +25,20 @@ TEST(FrameSequence, TimeGoesByTheFrameRate) {
   EXPECT_DOUBLE_EQ(sequence.at(0).previous_seconds, -1.0 / 60);
 }
 
+TEST(FrameSequence, ACheckerboardAlternatesAndItsPairsShareALongJitter) {
+  SequenceSettings whole = settings();
+  whole.scale_path = ScalePath::fixed({1, 1}).value();
+  whole.jitter = Jitter::kHalton;
+  SequenceSettings half = whole;
+  half.shading = Shading::kCheckerboard;
+  FrameSequence frames = FrameSequence::create(whole).value(), halves = FrameSequence::create(half).value();
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_FALSE(frames.at(i).parity);
+    EXPECT_EQ(halves.at(i).parity, i % 2);
+    EXPECT_EQ(halves.at(i).jitter, frames.at(i / 2).jitter) << i;
+  }
+}
+
 TEST(FrameSequence, AViewportOfTheLadderAndTheAspectOfThePicture) {
   FrameSequence sequence = FrameSequence::create(settings()).value();
   EXPECT_EQ(sequence.at(0).render, (Extent{640, 360}));

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // resolve_checkerboard: a pixel between four shaded ones.
 //   colour   t0 h0 + (1 - t0) (t1 h1 + (1 - t1) s)
-//   t0, t1   trust in the nearest and in the farthest surface of the neighbours: clamp(3 - 2 |z' - z| / e) of its depth z
-//            and the previous depth z' at the place where it was, bilinear; e = .02 z + .5 (z_nearest - z_farthest) + 1e-9;
+//   t0, t1   trust in the nearest and in the farthest surface of the neighbours: clamp(3 - 2 |z' - z| / e) of its
+//            depth z and the previous depth z' at the place where it was, bilinear;
+//            e = .02 z + .5 (z_nearest - z_farthest) + 1e-9;
 //            1 inside the previous viewport, 0 a pixel away from it; times 1 - the neighbours' largest reactive value
 //   h0, h1   the previous colour at those places, bilinear, clamped to the range of neighbours and s
 //   s        (b a_mean + a b_mean) / (a + b): a, b the squared differences of left and right, above and below, + 1e-12;
 //            the plain mean of both where one has a neighbour only
-// It shows the nearest surface where t0 >= .5, the farthest where (1 - t0) t1 >= .5, else the nearer one of the pair whose
-// depths are closer. Of equal ones the first of left, right, above, below counts.
+// It shows the nearest surface where t0 >= .5, the farthest where (1 - t0) t1 >= .5, else the nearer one of the pair
+// whose depths are closer. Of equal ones the first of left, right, above, below counts.
 #include "resolve_checkerboard.h"
 
 #include <algorithm>

@@ -90,6 +90,36 @@ TEST_F(RenderTest, EncodedTargetsHoldTheLightOfTheScreen) {
   }
 }
 
+// Each half is that of the whole frame; the other pixels keep what a clear has left there.
+TEST_F(RenderTest, ACheckerboardDrawsHalfOfThePixels) {
+  Renderer renderer = renderer_of(rich_scene());
+  FrameView view = view_of_size(kSize, {0.25f, 0.25f}, 0.4, 0.3);
+  const Picture whole = draw(renderer, view, kSize);
+  const gl::RenderTargets targets({.target = kSize, .checkerboard = true});
+  for (const int parity : {0, 1}) {
+    targets.clear(kSize);
+    view.parity = parity;
+    ASSERT_TRUE(renderer.draw(targets, view).ok());
+    const Picture half = read_back(targets);
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        const bool shaded = (x + y) % 2 == parity;
+        const std::size_t i = half.index(x, y);
+        ASSERT_EQ(half.rgb(x, y), shaded ? whole.rgb(x, y) : glm::vec3(0)) << x << " " << y;
+        ASSERT_EQ(half.v(x, y), shaded ? whole.v(x, y) : glm::vec2(0)) << x << " " << y;
+        ASSERT_EQ(half.depth[i], shaded ? whole.depth[i] : 0) << x << " " << y;
+        ASSERT_EQ(half.reactive[i], shaded ? whole.reactive[i] : 0) << x << " " << y;
+      }
+    }
+  }
+  view.parity = 2;
+  EXPECT_EQ(renderer.draw(targets, view).message(), "FrameView::parity is 2; it must be 0 or 1");
+  view.parity = 0;
+  const gl::RenderTargets plain({.target = kSize});
+  EXPECT_EQ(renderer.draw(plain, view).message(),
+            "FrameView::parity is given, but the targets have no checkerboard");
+}
+
 TEST_F(RenderTest, ViewportLeavesTheRestOfTheTargetAlone) {
   constexpr float kPoison = 77;  // representable in every float target; R8 clamps it to 1
   constexpr Extent kTarget{2 * kSize.width, 2 * kSize.height};

@@ -53,7 +53,8 @@ HostFrame with_holes(const HostFrame& frame, float value) {
   return holed;
 }
 
-// What lies outside the viewport, or in pixels that are not shaded, changes no bit of any frame, and no frame has a value that is not finite.
+// What lies outside the viewport, or in pixels that are not shaded, changes no bit of any frame, and no frame has a
+// value that is not finite.
 TEST_P(RandomResolution, PoisonOutsideNeverShows) {
   const LongRun& run = GetParam();
   ServiceRig clean({}, run.settings, kOutput, kTarget);

@@ -12,9 +12,9 @@
 namespace quincunx::gl {
 
 struct TargetNeeds {
-  Extent target = {};    // allocated size, at least the largest viewport
-  bool velocity = true;  // RG16F, uv per frame
-  bool reactive = true;  // R8
+  Extent target = {};         // allocated size, at least the largest viewport
+  bool velocity = true;       // RG16F, uv per frame
+  bool reactive = true;       // R8
   bool checkerboard = false;  // a stencil whose lowest bit is (x + y) % 2 of each pixel
   PixelFormat colour =
       PixelFormat::kRGBA16F;  // or RGBA8, which GL encodes as sRGB where it writes and blends

@@ -39,8 +39,8 @@ struct FrameInputs {
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
   CameraMotion camera = {};
-  float exposure = 0;             // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
-  bool reset = false;             // a cut: nothing of the previous frame may be used
+  float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
+  bool reset = false;  // a cut: nothing of the previous frame may be used
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
   int parity = 0;
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report

@@ -32,13 +32,13 @@ static inline float4 load_every_other_depth(DEPTH_TEXELS texels, TexelLayout lay
 #if SOURCE_STORAGE == BUFFER
   if (x.s0 >= 0 && x.s0 + 7 < width) return vload8(0, texels + texel_index(layout, x.s0, y)).even;
 #endif
-  return load_depth4(texels, layout, clamp(x, 0, width - 1), y);
+  return load_depth4(texels, layout, clamp(x, (int4)(0), (int4)(width - 1)), y);
 }
 
 static inline FourNeighbours neighbours_at(const CheckerboardParams* params, DEPTH_TEXELS depth, int4 x, int y) {
   FourNeighbours found;
   found.is_inside = (x >= 0) & (x < params->width) & (int4)(y >= 0 && y < params->height ? -1 : 0);
-  found.x = clamp(x, 0, params->width - 1);
+  found.x = clamp(x, (int4)(0), (int4)(params->width - 1));
   const int row = clamp(y, 0, params->height - 1);
   found.y = row;
   const float4 held = load_every_other_depth(depth, params->shaded.depth, x, row, params->width);
@@ -134,8 +134,8 @@ static inline FourBetween between_samples(float4 at, int size) {
   FourBetween between;
   between.fraction = at - whole;
   const int4 low = convert_int4(whole);
-  between.low = clamp(low, 0, size - 1);
-  between.high = clamp(low - (between.fraction > 0.0f), 0, size - 1);
+  between.low = clamp(low, (int4)(0), (int4)(size - 1));
+  between.high = clamp(low - (between.fraction > 0.0f), (int4)(0), (int4)(size - 1));
   return between;
 }
 

@@ -29,9 +29,10 @@ void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--scales", options.scales, "Render scales (default: 0.35,0.5,0.71,0.85,1)")
       .delimiter(',')
       .type_name("S,...");
-  app.add_option("--methods", options.methods,
-                 "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
-                 "of frames with half of their pixels shaded")
+  app.add_option(
+         "--methods", options.methods,
+         "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
+         "of frames with half of their pixels shaded")
       .delimiter(',')
       .type_name("NAME,...");
   app.add_flag("--list-methods", options.list_methods, "List the methods");

@@ -66,12 +66,13 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
       std::string known;
       for (const BenchMethod& method : methods)
         known += (known.empty() ? "" : ", ") + method.name;
-      return Status::invalid(
-          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it or {} before it",
-                      name, known, kEncoded, kCheckerboard));
+      return Status::invalid(fmt::format(
+          "--methods: there is no method '{}'; there are {}, and each with {} behind it or {} before it",
+          name, known, kEncoded, kCheckerboard));
     }
     if (encoded && checkerboard)
-      return Status::invalid(fmt::format("--methods: '{}': a checkerboard is of linear colour, so not {}", name, kEncoded));
+      return Status::invalid(
+          fmt::format("--methods: '{}': a checkerboard is of linear colour, so not {}", name, kEncoded));
     chosen.push_back(encoded ? in_eight_bits(*found) : checkerboard ? on_checkerboard(*found) : *found);
   }
   return chosen;

@@ -55,7 +55,8 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   std::map<std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat>, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}].push_back(i);
+    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}]
+        .push_back(i);
   }
   entries_.resize(plan_.methods.size());
   for (const auto& [frames, methods] : feeds) {
