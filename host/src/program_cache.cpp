@@ -3,19 +3,15 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
-#include <xxhash.h>
 
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <vector>
 
+#include "cache_entry.h"
 #include "embedded_kernels.h"
 
 namespace quincunx {
@@ -63,67 +59,9 @@ void expand(std::string_view name, std::set<std::string>& seen, std::string& out
   }
 }
 
-}  // namespace
-
-std::optional<fs::path> cache_folder() {
-  if (const char* own = std::getenv("QUINCUNX_CACHE_DIR")) {
-    return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
-  }
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != '\0') {
-    return fs::path(xdg) / "quincunx";
-  }
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
-    return fs::path(home) / ".cache" / "quincunx";
-  }
-  return std::nullopt;
-}
-
-namespace {
-
-std::string cache_key(const Device::Impl& device, const std::string& source, const std::string& options) {
-  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", options, device.info.platform,
-                                       device.info.name, device.info.version, device.info.driver, source);
-  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
-
-// An entry is the XXH3 of the binary (16 hex digits) followed by the binary, so that a torn or damaged file
-// is noticed before the driver sees it.
-std::optional<std::vector<unsigned char>> read_entry(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return std::nullopt;
-  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  constexpr std::size_t kDigits = 16;
-  if (bytes.size() <= kDigits) return std::nullopt;
-  const std::string stated(bytes.begin(), bytes.begin() + kDigits);
-  bytes.erase(bytes.begin(), bytes.begin() + kDigits);
-  if (stated != fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))) return std::nullopt;
-  return bytes;
-}
-
-void write_entry(const fs::path& path, const std::vector<unsigned char>& binary) {
-  std::error_code error;
-  fs::create_directories(path.parent_path(), error);
-  // Several processes may build the same kernel at once: each writes its own file, the last rename wins.
-  const fs::path temporary = path.string() + fmt::format(".{}", getpid());
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << fmt::format("{:016x}", XXH3_64bits(binary.data(), binary.size()));
-    file.write(reinterpret_cast<const char*>(binary.data()), static_cast<std::streamsize>(binary.size()));
-    if (!file.flush()) {
-      spdlog::debug("program cache: cannot write {}", temporary.string());
-      file.close();
-      fs::remove(temporary, error);
-      return;
-    }
-  }
-  fs::rename(temporary, path, error);
-  if (error) fs::remove(temporary, error);
-}
-
 std::optional<cl::Kernel> load(const Device::Impl& device, const fs::path& path, const std::string& name,
                                const std::string& options) {
-  std::optional<std::vector<unsigned char>> binary = read_entry(path);
+  std::optional<std::vector<unsigned char>> binary = read_cache_entry(path);
   if (!binary) return std::nullopt;
   try {
     cl::Program program(device.context, {device.device}, cl::Program::Binaries{std::move(*binary)});
@@ -176,7 +114,7 @@ cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, con
   ++g_compiled;
   if (folder) {
     const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-    if (!binaries.empty() && !binaries.front().empty()) write_entry(path, binaries.front());
+    if (!binaries.empty() && !binaries.front().empty()) write_cache_entry(path, binaries.front());
   }
   return cl::Kernel(program, name.c_str());
 }
