@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "device_impl.h"
+#include "timer_validation.h"
 
 namespace quincunx {
 namespace {
@@ -240,6 +241,7 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     impl->queue = cl::CommandQueue(impl->context, impl->device, CL_QUEUE_PROFILING_ENABLE);
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
+    impl->timer = validated_timer(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::open", infos[*chosen].name);
@@ -261,6 +263,7 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
     impl->info = info_of(impl->device);
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
+    impl->timer = validated_timer(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::borrow", "a borrowed device");

@@ -3,6 +3,7 @@
 
 #include "opencl.h"
 #include "quincunx/device.h"
+#include "quincunx/pass_timer.h"
 
 namespace quincunx {
 
@@ -11,6 +12,7 @@ struct Device::Impl {
   cl::Device device;
   cl::Context context;
   cl::CommandQueue queue;
+  PassTimer timer = PassTimer::kNone;
 };
 
 }  // namespace quincunx

@@ -8,7 +8,7 @@
 namespace quincunx {
 namespace {
 
-// Device time of one pass; -1 where the queue does not profile.
+// Device time of one pass; -1 where its event has none.
 double milliseconds(const cl::Event& event) {
   cl_ulong start = 0;
   cl_ulong end = 0;
@@ -50,7 +50,7 @@ std::optional<FrameReport> FrameRing::next_completed() {
     report.status = Status::device(
         fmt::format("frame {} failed on the device: {} ({})", report.frame_index, error_name(state), state));
   } else {
-    for (int i = 0; i < report.pass_count; ++i)
+    for (int i = 0; events_have_times_ && i < report.pass_count; ++i)
       report.passes[i].ms = milliseconds(slot.passes[i]);
     report.non_finite_pixels = slot.non_finite;
   }

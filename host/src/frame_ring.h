@@ -24,6 +24,9 @@ class FrameRing {
     std::uint32_t non_finite = 0;  // written by a non-blocking read that `done` covers
   };
 
+  // Whether the passes' events have their times; where not, reports keep those that they have.
+  explicit FrameRing(bool events_have_times) : events_have_times_(events_have_times) {}
+
   // The slot of a new frame, empty; where the ring is full the oldest report is dropped. The frame is in the
   // ring only after commit().
   Slot& begin();
@@ -35,6 +38,7 @@ class FrameRing {
   std::optional<FrameReport> next_completed();
 
  private:
+  bool events_have_times_;
   std::array<Slot, kFrames> slots_;
   std::uint64_t next_ = 0;   // frames begun and committed
   std::uint64_t taken_ = 0;  // of those, how many were taken or dropped

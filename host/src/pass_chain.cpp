@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "queue_stopwatch.h"
+
 namespace quincunx {
 namespace {
 
@@ -197,11 +199,13 @@ void PassChain::run(const PassFrame& frame, const FrameOutputs& outputs, FrameRe
   if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render, frame.output))
     forget(frame);
   mark_needed(frame, outputs);
+  QueueStopwatch stopwatch(waits_ ? &frame.queue : nullptr);
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     if (!needed_[i]) continue;
     const PassSpec& spec = passes_[i]->spec();
     enqueue(*passes_[i], frame, events != nullptr ? events++ : nullptr);
-    report.passes[report.pass_count++] = {.kernel = spec.kernel, .bytes = bytes_of(spec, frame.extents())};
+    report.passes[report.pass_count++] = {
+        .kernel = spec.kernel, .ms = stopwatch.lap_ms(), .bytes = bytes_of(spec, frame.extents())};
   }
   next_ = 1 - next_;
 }

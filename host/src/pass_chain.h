@@ -50,6 +50,9 @@ class PassChain {
   // Afterwards the frame's resources are those of the previous frame.
   void run(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
 
+  // From now on run() waits for each pass, and its time in the report is the host clock's.
+  void wait_for_each_pass(bool wait) { waits_ = wait; }
+
   // Whether a pass reads or writes it.
   bool has(Resource resource) const;
 
@@ -85,6 +88,7 @@ class PassChain {
   std::vector<Owned> owned_;
   std::array<bool, kResources> kept_ = {};  // keeps(), of each resource
   std::vector<bool> needed_;                // of each pass in the frame that runs
+  bool waits_ = false;                      // for each pass
   std::size_t next_ = 0;                    // the image of each pair that the next frame writes
 };
 

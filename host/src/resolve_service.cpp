@@ -40,7 +40,8 @@ struct ResolveService::Impl {
       : device(on),
         plan(to_do),
         chain(on, PlanFacts(to_do.needs, to_do.settings)),
-        counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)) {}
+        counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
+        ring(pass_timer(on) == PassTimer::kEvents) {}
 
   void warm_up();
   void enqueue(const PassFrame& frame, const FrameOutputs& outputs, FrameRing::Slot& slot);
@@ -174,6 +175,10 @@ FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutpu
 
 std::optional<FrameReport> ResolveService::next_completed() {
   return impl_->ring.next_completed();
+}
+
+void ResolveService::allow_timing_waits(bool allow) {
+  impl_->chain.wait_for_each_pass(allow && pass_timer(impl_->device) == PassTimer::kHostClock);
 }
 
 Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {

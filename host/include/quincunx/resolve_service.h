@@ -20,6 +20,7 @@
 
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
+#include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 
@@ -54,6 +55,11 @@ class ResolveService {
   // The oldest finished frame whose report was not yet taken, with its times and counts; nothing when none
   // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.
   std::optional<FrameReport> next_completed();
+
+  // Where the device's events are not believed (PassTimer::kHostClock), passes have no times unless this allows
+  // dispatch() to wait for the end of each pass, which the host's clock then times. Off at first. On other devices
+  // nothing changes and nothing waits.
+  void allow_timing_waits(bool allow);
 
   // Fills the top left `render` of an image with one value (unused channels ignored; of RGBA8 the encoded one):
   // the partial clear.
