@@ -62,7 +62,8 @@ Result<Calibration> Calibration::create(const RenderOptions& options, const Reso
   auto pacing = FramePacing::create(
       {.controller = ControllerKind::kFixed, .ladder = {.output = ladder.output()}, .target_fps = kNoWait});
   if (!pacing.ok()) return pacing.status();
-  auto loop = PacedLoop::create(std::move(pacing).value(), options.pacing.cost);
+  auto loop =
+      PacedLoop::create(std::move(pacing).value(), options.pacing.cost, pass_timer(source.value()->device()));
   if (!loop.ok()) return loop.status();
   return Calibration(std::move(source).value(), std::move(service).value(), std::move(loop).value());
 }

@@ -19,8 +19,14 @@ double time_of_passes(const FrameReport& report) {
 
 }  // namespace
 
-Result<FrameMeter> FrameMeter::create(FrameCost cost) {
-  if (cost == FrameCost::kSpan) return FrameMeter(std::nullopt);
+Result<FrameMeter> FrameMeter::create(FrameCost cost, PassTimer passes) {
+  const bool events = passes == PassTimer::kEvents;
+  if (cost == FrameCost::kSpan || (cost == FrameCost::kAuto && !events)) return FrameMeter(std::nullopt);
+  if (!events) {
+    return Status::unsupported(
+        "--frame-cost device needs OpenCL events that agree with the host's clock, and this device's do not; "
+        "choose span or auto");
+  }
   std::optional<gl::TimerMethod> method;
   if (cost == FrameCost::kDevice) method = gl::TimerMethod::kQuery;
   auto timer = gl::FrameTimer::create(method);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // FrameMeter: what each frame cost, for a resolution controller.
 //
-// Where OpenGL's timers tell the truth (see FrameTimer), a frame costs what the devices worked on it:
-// OpenGL's time and the times of the OpenCL passes. Where they do not, as on software renderers, it costs
-// what it added to the run: FramePacing::busy_ms(). There OpenGL, OpenCL and this program share the same
-// cores, and frames have to be drawn one after the other for the times to belong to one frame each.
+// Where the timers of OpenGL (see FrameTimer) and of OpenCL (see pass_timer.h) tell the truth, a frame costs what
+// the devices worked on it: OpenGL's time and the times of the OpenCL passes. Where they do not, as on software
+// renderers, it costs what it added to the run: FramePacing::busy_ms(). There OpenGL, OpenCL and this program share
+// the same cores, and frames have to be drawn one after the other for the times to belong to one frame each.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,7 @@
 #include <string>
 
 #include "quincunx/frame.h"
+#include "quincunx/pass_timer.h"
 #include "quincunx_gl/frame_timer.h"
 
 namespace quincunx::scenes {
@@ -25,8 +26,9 @@ enum class FrameCost : std::uint8_t {
 
 class FrameMeter {
  public:
-  // Errors: of FrameTimer::create(). One thread, that of the GL context.
-  static Result<FrameMeter> create(FrameCost cost);
+  // `passes`: what times the OpenCL passes. Errors: kUnsupported for kDevice where that is not their events; those of
+  // FrameTimer::create(). One thread, that of the GL context.
+  static Result<FrameMeter> create(FrameCost cost, PassTimer passes);
 
   bool measures_device() const { return timer_.has_value(); }
   std::string method() const;  // one clause, for the report

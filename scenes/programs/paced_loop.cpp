@@ -17,8 +17,8 @@ double thread_cpu_ms() {
 
 }  // namespace
 
-Result<PacedLoop> PacedLoop::create(FramePacing pacing, FrameCost cost) {
-  auto meter = FrameMeter::create(cost);
+Result<PacedLoop> PacedLoop::create(FramePacing pacing, FrameCost cost, PassTimer passes) {
+  auto meter = FrameMeter::create(cost, passes);
   if (!meter.ok()) return meter.status();
   return PacedLoop(std::move(pacing), std::move(meter).value());
 }

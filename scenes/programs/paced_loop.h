@@ -23,8 +23,9 @@ namespace quincunx::scenes {
 
 class PacedLoop {
  public:
-  // `pacing` has no frames yet. Errors: of FrameMeter::create(). One thread, that of the GL context.
-  static Result<PacedLoop> create(FramePacing pacing, FrameCost cost);
+  // `pacing` has no frames yet. `passes`: of the OpenCL device. Errors: of FrameMeter::create(). One thread,
+  // that of the GL context.
+  static Result<PacedLoop> create(FramePacing pacing, FrameCost cost, PassTimer passes);
 
   bool overlaps() const { return meter_.measures_device(); }
 

@@ -99,7 +99,7 @@ void add_measuring_options(tools::CommandLine& app, PacingOptions& options) {
   tools::add_choice(
       app, "--frame-cost", options.cost, kCosts,
       "What a frame costs: device (timers of OpenGL and OpenCL), span (until its picture is complete) "
-      "or auto (default: device where OpenGL's timers can be trusted)");
+      "or auto (default: device where the timers of both can be trusted)");
   app.add_option("--calibrate", options.calibrate,
                  "Measure instead what frames cost at a few resolutions, and write it for --calibration")
       .excludes("--target-fps")

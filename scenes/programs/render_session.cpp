@@ -68,8 +68,9 @@ Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale
 Status RenderSession::open(std::unique_ptr<FrameSource> source, std::optional<FramePacing> pacing) {
   source_ = std::move(source);
   if (Status status = open_service(); !status.ok()) return status;
+  service_->allow_timing_waits(!pacing);
   if (!pacing) return {};
-  auto paced = PacedLoop::create(std::move(*pacing), options_.pacing.cost);
+  auto paced = PacedLoop::create(std::move(*pacing), options_.pacing.cost, pass_timer(source_->device()));
   if (!paced.ok()) return paced.status();
   paced_ = std::move(paced).value();
   if (!options_.pacing.detail_follows) return {};
@@ -250,6 +251,10 @@ void RenderSession::begin_contact_sheet() {
 // With overlap, GL draws the next frame while OpenCL works on this one.
 bool RenderSession::draws_ahead() const {
   return options_.overlap && (!paced_ || (paced_->overlaps() && paced_->ready()));
+}
+
+bool RenderSession::times_by_waiting() const {
+  return !paced_ && pass_timer(source_->device()) == PassTimer::kHostClock;
 }
 
 Status RenderSession::run_frame(std::int64_t index) {

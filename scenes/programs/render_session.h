@@ -49,6 +49,9 @@ class RenderSession {
   Status draw(std::int64_t index);
   FrameView begin_paced(std::int64_t index);
   bool draws_ahead() const;
+  // Each pass is waited for and timed by the host's clock: not in a paced run, whose frames that would slow.
+  bool times_by_waiting() const;
+  std::string overlap_text() const;  // for the report
   Status dispatch();
   Status deliver(std::int64_t index);
   Status write_frame(std::int64_t index);

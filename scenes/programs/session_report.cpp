@@ -27,6 +27,12 @@ std::string targets_text(Targets targets, const gl::Bridge::Memory& memory) {
 
 }  // namespace
 
+std::string RenderSession::overlap_text() const {
+  if (!options_.overlap || (paced_ && !paced_->overlaps())) return "off";
+  if (times_by_waiting()) return "off: the host's clock times each OpenCL pass";
+  return "GL draws the next frame while OpenCL works: pass times include that load";
+}
+
 tools::RunReport RenderSession::report() const {
   tools::RunReport report;
   report.program = "quincunx-render";
@@ -47,9 +53,7 @@ tools::RunReport RenderSession::report() const {
       {"targets", targets_text(plan().settings.targets, source_->bridge().memory())},
       {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
-      {"overlap", options_.overlap && (!paced_ || paced_->overlaps())
-                      ? "GL draws the next frame while OpenCL works: pass times include that load"
-                      : "off"},
+      {"overlap", overlap_text()},
   };
   const gl::EglInfo& gl = source_->context().info();
   report.gl = {gl::name_of(gl.platform), gl.vendor, gl.renderer, gl.version};
@@ -57,7 +61,7 @@ tools::RunReport RenderSession::report() const {
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
   report.interop = gl::name_of(source_->bridge().kind());
   report.interop_reason = source_->bridge().reason();
-  report.passes = tools::pass_statistics(reports_);
+  report.passes = tools::pass_statistics(reports_, pass_timer(source_->device()));
   report.steps = {
       tools::statistics_of("draw and submit", "host clock", draw_ms_),
       tools::statistics_of("wait for the frame", "host clock", acquire_ms_, bytes_in_),

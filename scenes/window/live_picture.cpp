@@ -106,6 +106,7 @@ Status LivePicture::open_services(const ResolveSettings& wanted) {
   auto service = ResolveService::create(source_->device(), plans->front());
   if (!service.ok()) return service.status();
   service_.emplace(std::move(service).value());
+  service_->allow_timing_waits(true);  // each picture is waited for anyway
   resolved_ = Image();
   return open_compared(plans->back());
 }

@@ -183,7 +183,8 @@ Status WindowSession::update_pacing() {
   if (picture_->output() != options_.output) wanted.calibration.clear();  // that is for another size
   auto pacing = frame_pacing_for(wanted, picture_->output());
   if (!pacing.ok()) return pacing.status();
-  auto paced = PacedLoop::create(*std::move(pacing).value(), options_.pacing.cost);
+  auto paced = PacedLoop::create(*std::move(pacing).value(), options_.pacing.cost,
+                                 pass_timer(picture_->source().device()));
   if (!paced.ok()) return paced.status();
   paced_ = std::move(paced).value();
   return {};

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "bench/harness/event_times.h"
 #include "bench/harness/process_clock.h"
 #include "clear_cases.h"
 #include "kernel_cases.h"
@@ -73,6 +74,7 @@ Run::Size run_size(const Device& device, bool opengl, Extent output, const Optio
 int run(const Options& options, const std::string& command) {
   const Result<Device> device = Device::open(options.device);
   if (!device.ok()) return tools::fail(device.status());
+  if (Status status = check_event_times(device.value()); !status.ok()) return tools::fail(status);
   std::optional<gl::EglContext> context;
   if (options.peers) {
     Result<gl::EglContext> created = gl::EglContext::create();

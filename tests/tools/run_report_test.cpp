@@ -8,6 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tools/program/pass_statistics.h"
 #include "tools/program/report_graph.h"
 
 namespace quincunx::tools {
@@ -72,6 +73,41 @@ TEST(PassStatistics, UnknownSamplesDoNotCount) {
   EXPECT_EQ(none.count, 0);
   EXPECT_LT(none.median_ms, 0);
   EXPECT_LT(none.bytes, 0);
+}
+
+FrameReport two_passes(std::uint64_t frame, double resolve_ms, double present_ms) {
+  FrameReport report;
+  report.frame_index = frame;
+  report.pass_count = 2;
+  report.passes[0] = {.kernel = "resolve_quincunx", .ms = resolve_ms, .bytes = 100};
+  report.passes[1] = {.kernel = "present", .ms = present_ms, .bytes = 50};
+  return report;
+}
+
+TEST(PassStatistics, NamesTheClock) {
+  const FrameReport reports[] = {two_passes(0, 2, -1), two_passes(1, 4, -1)};
+  for (const PassTimer timer : {PassTimer::kEvents, PassTimer::kHostClock}) {
+    const std::vector<PassStatistics> rows = pass_statistics(reports, timer);
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].clock, name_of(timer));
+    EXPECT_EQ(rows[0].median_ms, 3);
+    EXPECT_EQ(rows[1].clock, "not timed") << "no time of it is known";
+    EXPECT_EQ(rows[1].count, 0);
+    EXPECT_EQ(rows[1].bytes, 50);
+  }
+  EXPECT_STREQ(name_of(PassTimer::kEvents), "OpenCL event");
+  EXPECT_STREQ(name_of(PassTimer::kHostClock), "host clock");
+}
+
+TEST(PassStatistics, AFrameWithAnUnknownPassHasNoTime) {
+  const FrameReport reports[] = {two_passes(0, 2, 1), two_passes(1, 2, -1), two_passes(2, -1, -1)};
+  FrameRow rows[3];
+  for (int i = 0; i < 3; ++i)
+    rows[i].index = i;
+  add_measured(rows, reports);
+  EXPECT_EQ(rows[0].device_ms, 3);
+  EXPECT_EQ(rows[1].device_ms, -1);
+  EXPECT_EQ(rows[2].device_ms, -1);
 }
 
 TEST(RunReport, JsonHoldsEveryFrame) {

@@ -13,14 +13,16 @@ void add_report(FrameRow& row, const FrameReport& report) {
   row.ratio = report.ratio;
   row.used_previous = report.used_previous;
   row.non_finite_pixels = report.non_finite_pixels;
+  const std::span passes(report.passes.data(), static_cast<std::size_t>(report.pass_count));
+  if (std::any_of(passes.begin(), passes.end(), [](const PassReport& pass) { return pass.ms < 0; })) return;
   row.device_ms = 0;
-  for (int i = 0; i < report.pass_count; ++i)
-    row.device_ms += std::max(report.passes[i].ms, 0.0);
+  for (const PassReport& pass : passes)
+    row.device_ms += pass.ms;
 }
 
 }  // namespace
 
-std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports) {
+std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports, PassTimer timer) {
   struct Samples {
     std::vector<double> ms;
     std::vector<std::uint64_t> bytes;
@@ -37,7 +39,8 @@ std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports
   }
   std::vector<PassStatistics> statistics;
   for (const std::string& kernel : order) {
-    statistics.push_back(statistics_of(kernel, "OpenCL event", samples[kernel].ms, samples[kernel].bytes));
+    statistics.push_back(statistics_of(kernel, name_of(timer), samples[kernel].ms, samples[kernel].bytes));
+    if (statistics.back().count == 0) statistics.back().clock = name_of(PassTimer::kNone);
   }
   return statistics;
 }

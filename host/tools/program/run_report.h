@@ -22,7 +22,7 @@ namespace quincunx::tools {
 // Times of one pass or one step over a run.
 struct PassStatistics {
   std::string name;   // "resolve_quincunx", "GL draw"
-  std::string clock;  // how it was timed: "OpenCL event", "host clock", "GL fence"
+  std::string clock;  // how it was timed: "OpenCL event", "host clock", "not timed"
   int count = 0;      // samples that were known
   double median_ms = -1;
   double p95_ms = -1;

@@ -101,7 +101,7 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
   }
   const std::vector<ScoreRow> rows = scores ? scores->rows() : std::vector<ScoreRow>();
   return write_reports(options,
-                       resolve_report(options, task, device->info(), resolver.value()->outcome(), rows),
+                       resolve_report(options, task, device.value(), resolver.value()->outcome(), rows),
                        scores ? scores->pictures() : ReportPictures());
 }
 

@@ -20,7 +20,7 @@ std::int64_t peak_memory_bytes() {
 
 }  // namespace
 
-RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const DeviceInfo& device,
+RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const Device& device,
                          const SequenceOutcome& outcome, std::span<const ScoreRow> scores) {
   RunReport report;
   report.program = "quincunx-resolve";
@@ -37,8 +37,9 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
   if (!task.method_reason.empty()) report.settings.emplace_back("method chosen", task.method_reason);
   if (!task.there.empty()) report.settings.emplace_back("there", frame_numbers_text(task.there));
   if (!outcome.skipped.empty()) report.settings.emplace_back("skipped", frame_numbers_text(outcome.skipped));
-  report.cl = {device.platform, device.name, device.driver, device.version, device.compute_units};
-  report.passes = pass_statistics(outcome.reports);
+  const DeviceInfo& cl = device.info();
+  report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};
+  report.passes = pass_statistics(outcome.reports, pass_timer(device));
   report.steps = {statistics_of("upload", "host clock", outcome.upload_ms),
                   statistics_of("upload to download", "host clock", outcome.resolve_ms)};
   report.busy = outcome.busy;

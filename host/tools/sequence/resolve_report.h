@@ -11,7 +11,7 @@
 
 namespace quincunx::tools {
 
-RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const DeviceInfo& device,
+RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const Device& device,
                          const SequenceOutcome& outcome, std::span<const ScoreRow> scores);
 
 }  // namespace quincunx::tools

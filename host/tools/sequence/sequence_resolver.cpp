@@ -34,6 +34,7 @@ Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device&
                                                                    const ResolvePlan& plan, SequenceJob job) {
   auto service = ResolveService::create(device, plan);
   if (!service.ok()) return service.status();
+  service->allow_timing_waits(true);
   auto resolver = std::unique_ptr<SequenceResolver>(
       new SequenceResolver(device, std::move(service).value(), std::move(job)));
   if (Status status = resolver->allocate(); !status.ok()) return status;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/harness/event_times.h"
 #include "bench/harness/process_clock.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_statistics.h"
@@ -50,6 +51,7 @@ class Runner {
     settings.sequence = sequence_for(plan_, 1, plan_.methods.front());
     auto stage = scenes::FrameSource::create(settings);
     if (!stage.ok()) return stage.status();
+    if (Status status = check_event_times(stage.value()->device()); !status.ok()) return status;
     describe_machine(*stage.value(), result_.machine);
     const scenes::Scene& scene = stage.value()->scene();
     BenchPlan plan = plan_;
