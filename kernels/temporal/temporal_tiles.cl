@@ -132,9 +132,10 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   evidence->count += 1.0f;
   const StartlingRange range = startling_range(before);
   if (!is_startling(sample, range)) return;
-  const int startling = (is_valid(left) && is_startling(left, range)) + (is_valid(right) && is_startling(right, range)) +
-                     (is_valid(above) && is_startling(above, range)) + (is_valid(below) && is_startling(below, range));
-  evidence->startling += startling >= 2 ? 1.0f : 0.0f;
+  const int startling_too =
+      (is_valid(left) && is_startling(left, range)) + (is_valid(right) && is_startling(right, range)) +
+      (is_valid(above) && is_startling(above, range)) + (is_valid(below) && is_startling(below, range));
+  evidence->startling += startling_too >= 2 ? 1.0f : 0.0f;
 }
 
 // The first column from `first` on that is judged in row y: those where column + y * apart / 2 is a multiple of
