@@ -44,9 +44,8 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
   const PixelFormat history = settings.temporal.history;
   PassSpec spec{
       .kernel = "resolve_layers",
-      .options =
-          fmt::format("-D ALPHA={} -D TRUST={} {} -D HISTORY_FORMAT={}", facts.accumulates_alpha() ? 1 : 0,
-                      trust_option(facts), colour_options(settings), precision_of(history)),
+      .options = fmt::format("-D ALPHA={} {} -D HISTORY_FORMAT={}", facts.accumulates_alpha() ? 1 : 0,
+                             colour_options(settings), precision_of(history)),
       .reason = "the second layer: this frame added to the history of pixels that have two",
       .uses =
           {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},

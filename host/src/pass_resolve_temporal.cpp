@@ -64,10 +64,10 @@ std::string options_of(const PlanFacts& facts, bool reactive) {
   if (!facts.displays_history())
     format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
   return fmt::format(
-      "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D TRUST={} -D VIEW={} {} "
+      "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
       "-D HISTORY_FORMAT={}{}",
       facts.accumulates_alpha() ? 1 : 0, moves ? 1 : 0, reactive ? 1 : 0,
-      moves && preset == TemporalPreset::kFast ? 4 : 16, facts.has_layers() ? 1 : 0, trust_option(facts),
+      moves && preset == TemporalPreset::kFast ? 4 : 16, facts.has_layers() ? 1 : 0,
       view_option(settings.temporal.view), colour_options(settings), precision_of(settings.temporal.history),
       format);
 }

@@ -43,9 +43,4 @@ TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Devi
           .first = frame.has_history ? 0 : 1};
 }
 
-const char* trust_option(const PlanFacts& facts) {
-  return facts.reprojects() && facts.settings.temporal.preset == TemporalPreset::kQuality ? "BILINEAR"
-                                                                                          : "NEAREST";
-}
-
 }  // namespace quincunx

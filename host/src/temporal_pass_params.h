@@ -18,7 +18,4 @@ TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& devic
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,
                                               Resource picture);
 
-// The -D TRUST option.
-const char* trust_option(const PlanFacts& facts);
-
 }  // namespace quincunx

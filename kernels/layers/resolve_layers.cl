@@ -28,7 +28,7 @@
 //   non_finite         out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
 // Options: ALPHA  0 (default) | 1: alpha is accumulated, too: in the far layer as colour is, of texels that are taken
 //                 for what they are; in the near one as its coverage
-//          TRUST, SOURCE_STORAGE, SOURCE_FORMAT, HISTORY_FORMAT as of resolve_temporal
+//          SOURCE_STORAGE, SOURCE_FORMAT, HISTORY_FORMAT as of resolve_temporal
 // Reference: tests/reference/resolve_layers.cpp
 #ifndef ALPHA
 #define ALPHA 0

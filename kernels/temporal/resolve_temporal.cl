@@ -31,7 +31,6 @@
 //          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
 //          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs
 //          LAYERS    0 (default) | 1: leaves layered tiles to resolve_layers
-//          TRUST     NEAREST (default) | BILINEAR: between samples
 //          VIEW      PICTURE (default): temporal_display makes the picture | CONFIDENCE | REJECTION | PHASE, as in
 //                    temporal/debug_view.h
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT (of a view) as in texel.h

@@ -31,10 +31,9 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
     Pixel far, near, state;
   };
 
-  void compare_texel(const LayerStageInputs& in, const reference::TemporalOptions& options, int x, int y,
-                     const Texel& actual, const std::string& what) {
+  void compare_texel(const LayerStageInputs& in, int x, int y, const Texel& actual, const std::string& what) {
     const auto [value, bound, undecided] = reference::expected_of(
-        [&]<typename Real>(Real) { return reference::resolve_layers<Real>(in.reference, options, x, y); });
+        [&]<typename Real>(Real) { return reference::resolve_layers<Real>(in.reference, x, y); });
     ++compared_;
     if (undecided) return;
     ++decided_;
@@ -61,8 +60,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
     }
   }
 
-  void compare_resolve(const LayerStageInputs& in, const reference::TemporalOptions& options,
-                       const LayerStages::Resolved& made, const StageSpec& spec) {
+  void compare_resolve(const LayerStageInputs& in, const LayerStages::Resolved& made, const StageSpec& spec) {
     const PixelFormat history = GetParam().history;
     const auto far = testing::decode(history, made.far);
     const auto near = testing::decode(history, made.near);
@@ -73,7 +71,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
         const std::size_t i = past.texel(x, y);
         const std::string what = fmt::format("{}: pixel ({}, {})", testing::name_of(spec), x, y);
         if (in.reference.layers[past.tile(x, y)].is_layered)
-          compare_texel(in, options, x, y, {far[i], near[i], states[i]}, what);
+          compare_texel(in, x, y, {far[i], near[i], states[i]}, what);
         else
           expect_poison(made, i, what);
         if (HasFatalFailure()) return;
@@ -104,7 +102,7 @@ TEST_P(ResolveLayers, MatchesTheReferenceAtEverySizeScaleAndInput) {
   for (const StageSpec& spec : testing::all_stage_specs(testing::all_patterns())) {
     Rig rig;
     const LayerStageInputs in = stages.inputs(rig, spec);
-    compare_resolve(in, {}, stages.run_resolve(rig, in), spec);
+    compare_resolve(in, stages.run_resolve(rig, in), spec);
     if (HasFatalFailure()) return;
   }
   // Where a motion is whole pixels a rounding decides between which texels history is read.
@@ -112,18 +110,6 @@ TEST_P(ResolveLayers, MatchesTheReferenceAtEverySizeScaleAndInput) {
   EXPECT_GE(decided_, 100'000);
   EXPECT_GE(split_, decided_ / 5);
   EXPECT_GE(decided_ - split_, decided_ / 5);
-}
-
-TEST_P(ResolveLayers, BilinearTrustMatchesToo) {
-  LayerStages stages(GetParam(), TemporalPreset::kQuality);
-  for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
-    Rig rig;
-    const LayerStageInputs in = stages.inputs(rig, spec);
-    compare_resolve(in, {.bilinear_trust = true}, stages.run_resolve(rig, in), spec);
-    if (HasFatalFailure()) return;
-  }
-  EXPECT_GE(decided_, compared_ * 3 / 4);
-  EXPECT_GE(decided_, 10'000);
 }
 
 TEST_P(ResolveLayers, PoisonOutsideTheViewportChangesNoBit) {
@@ -163,7 +149,7 @@ TEST_P(ResolveLayers, ATightFrameIsReadWithinItsEdges) {
                          .tight = true};
     Rig rig;
     const LayerStageInputs in = stages.inputs(rig, spec);
-    compare_resolve(in, {}, stages.run_resolve(rig, in), spec);
+    compare_resolve(in, stages.run_resolve(rig, in), spec);
   }
   EXPECT_GT(decided_, 0);
 }

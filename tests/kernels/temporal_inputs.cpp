@@ -236,7 +236,7 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   in.frame = made.inputs;
   reference::TemporalInputs& out = in.reference;
   out.frame = made.reference;
-  out.judged_apart = spec.seed % 2 == 0 ? 2 : 4;
+  out.judged_apart = spec.parity >= 0 ? 2 << spec.seed % 2 : 1 << spec.seed % 3;
   out.parity = spec.parity;
   out.previous_width = spec.previous.width;
   out.previous_height = spec.previous.height;

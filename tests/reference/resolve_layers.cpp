@@ -118,7 +118,7 @@ void reseed_far(const LayeredPixel<Real>& pixel, const Frame& frame, const Neigh
 
 template <typename Real>
 PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixel,
-                         const TemporalOptions& options, const Neighbourhood<Real>& near) {
+                         const Neighbourhood<Real>& near) {
   const TemporalInputs& now = in.now;
   const TileReprojection& tile = pixel.tile->reprojection;
   const bool is_split = pixel.split.is_split();
@@ -141,8 +141,7 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
   }
 
   // Limit confidence, reject, relight. Layers answer for depth.
-  const Real trust =
-      is_split || fetched.was_split ? Real(pixel.open_trust) : trust_at<Real>(now, options, near);
+  const Real trust = is_split || fetched.was_split ? Real(pixel.open_trust) : trust_at<Real>(now, near);
   Known<Real> known{history.known.texel, 1, limit_confidence(history, trust, motion_edge),
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(now, in.tiles, pixel.x, pixel.y, known);
@@ -243,7 +242,7 @@ Real fourth_root(const Real& depth) {
 }  // namespace
 
 template <typename Real>
-LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptions& options, int x, int y) {
+LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, int x, int y) {
   const TemporalInputs& now = in.now;
   const std::size_t tile = index_of(now.tiles_x(), x / kTile, y / kTile);
   const auto& phase = in.tiles[tile].reprojection.phase;
@@ -260,7 +259,7 @@ LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptio
                                     .5 * (Real(split.near_depth) + split.far_depth)};
   LayeredTexelOf<Real> texel;
   texel.is_split = split.is_split();
-  texel.far = update_far(in, pixel, options, near);
+  texel.far = update_far(in, pixel, near);
   texel.state = {fourth_root<Real>(pixel.depth), 0, 0};
   if (!texel.is_split) return texel;
   const NearTexel<Real> updated = update_near(in, pixel);
@@ -269,7 +268,7 @@ LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptio
   return texel;
 }
 
-template LayeredTexelOf<double> resolve_layers(const ResolveInputs&, const TemporalOptions&, int, int);
-template LayeredTexelOf<Bounded> resolve_layers(const ResolveInputs&, const TemporalOptions&, int, int);
+template LayeredTexelOf<double> resolve_layers(const ResolveInputs&, int, int);
+template LayeredTexelOf<Bounded> resolve_layers(const ResolveInputs&, int, int);
 
 }  // namespace quincunx::reference

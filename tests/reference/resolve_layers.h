@@ -30,7 +30,7 @@ struct LayeredTexelOf {
 
 // resolve_layers: the texel of output pixel (x, y), of a layered tile, after this frame.
 template <typename Real>
-LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, const TemporalOptions& options, int x, int y);
+LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, int x, int y);
 
 // display_layers: output pixel (x, y) after the near layer of `history` has been laid over `picture`, what
 // temporal_display has made of the pixel.

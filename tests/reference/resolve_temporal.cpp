@@ -35,7 +35,7 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
   const Pixel& sample = texel_clamped(frame, near.x.sample, near.y.sample);
   Reprojection reprojection{.trust = 1};
   if (!in.reprojections.empty()) reprojection = in.reprojection_at(near.x.sample, near.y.sample);
-  const Real trust = trust_at(in, options, near);
+  const Real trust = trust_at(in, near);
   const double motion_edge = std::abs(reprojection.motion_edge);
 
   const auto history = fetch_history<Real>(in, tile, reprojection, options, x, y);

@@ -95,7 +95,7 @@ struct TemporalInputs {
   std::vector<double> history_alpha;  // of each output pixel; empty: the picture is opaque
   std::vector<Tile> before;           // of the previous frame
   int parity = -1;       // of a checkerboard: sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
-  int judged_apart = 2;  // one of this many samples judges history: 2 or 4
+  int judged_apart = 2;  // one of this many samples judges history: 1, 2 or 4
   // What temporal_tiles reads of the second layer; empty: there is none.
   std::vector<LayerSplit> splits;        // of each sample
   std::vector<int> split_marks;          // of each tile: not 0 if a sample in it is split
@@ -191,8 +191,7 @@ template <typename Real>
 TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y);
 
 struct TemporalOptions {
-  int taps = 16;                // texels of history that are read where it is resampled; 4: bilinear
-  bool bilinear_trust = false;  // trust between samples; else the nearest sample's
+  int taps = 16;  // texels of history that are read where it is resampled; 4: bilinear
 };
 
 template <typename Real>

@@ -1,21 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The reprojection of eight output pixels of a row: that of the sample nearest to each.
-//
-// Option: TRUST  NEAREST (default): the nearest sample's | BILINEAR: between samples
 #pragma once
 
 #include "motion/motion_options.h"
 #include "temporal/nearest_samples.h"
 #include "texel.h"
-
-#define NEAREST 1
-#define BILINEAR 2
-#ifndef TRUST
-#define TRUST NEAREST
-#endif
-#if TRUST != NEAREST && TRUST != BILINEAR
-#error "TRUST must be NEAREST or BILINEAR"
-#endif
 
 // As Reprojection, but in output pixels; trust is never NaN, and a motion edge of either frame is positive.
 typedef struct EightReprojections {
@@ -29,29 +18,6 @@ static inline EightReprojections no_motion(void) {
 }
 
 #if MOTION
-#if TRUST == BILINEAR
-// Of eight samples of row y the trust; NaN is none.
-static inline float8 trust_at(__global const float* reprojection, TexelLayout layout, int8 x, int y) {
-  __global const float* trust = reprojection + 4 * row_index(layout, y) + 2;
-  const int8 at = 4 * x;
-  return fmax((float8)(trust[at.s0], trust[at.s1], trust[at.s2], trust[at.s3], trust[at.s4], trust[at.s5],
-                       trust[at.s6], trust[at.s7]), (float8)(0.0f));
-}
-
-static inline float8 bilinear_trust(const TemporalParams* params, __global const float* reprojection,
-                                    const NearestSamples* nearest) {
-  const TexelLayout layout = params->reprojection;
-  const int8 left = nearest->between_x.texel, right = min(left + 1, (int8)(params->frame0.width - 1));
-  const int above = nearest->between_y.texel.s0, below = min(above + 1, params->frame0.height - 1);
-  const float8 x = nearest->between_x.fraction, y = nearest->between_y.fraction;
-  const float8 upper = trust_at(reprojection, layout, left, above) * (1.0f - x) +
-                       trust_at(reprojection, layout, right, above) * x;
-  const float8 lower = trust_at(reprojection, layout, left, below) * (1.0f - x) +
-                       trust_at(reprojection, layout, right, below) * x;
-  return upper * (1.0f - y) + lower * y;
-}
-#endif
-
 static inline EightReprojections load_reprojections(const TemporalParams* params, __global const float* reprojection,
                                                     const NearestSamples* nearest) {
   const int8 x = nearest->x;
@@ -62,11 +28,7 @@ static inline EightReprojections load_reprojections(const TemporalParams* params
   found.x = (float8)(r0.x, r1.x, r2.x, r3.x, r4.x, r5.x, r6.x, r7.x) * params->motion_x;
   found.y = (float8)(r0.y, r1.y, r2.y, r3.y, r4.y, r5.y, r6.y, r7.y) * params->motion_y;
   found.motion_edge = fabs((float8)(r0.w, r1.w, r2.w, r3.w, r4.w, r5.w, r6.w, r7.w));
-#if TRUST == BILINEAR
-  found.trust = bilinear_trust(params, reprojection, nearest);
-#else
   found.trust = fmax((float8)(r0.z, r1.z, r2.z, r3.z, r4.z, r5.z, r6.z, r7.z), (float8)(0.0f));  // NaN is none
-#endif
   return found;
 }
 #elif REACTIVE

@@ -31,16 +31,6 @@ inline double known_trust(const Reprojection& sample) {
   return std::isnan(sample.trust) ? 0 : std::max(sample.trust, 0.0);
 }
 
-template <typename Real>
-Real trust_between_samples(const TemporalInputs& in, const Neighbourhood<Real>& near) {
-  const auto trust = [&](int x, int y) { return Real(known_trust(in.reprojection_at(x, y))); };
-  const Real& fx = near.x.fraction;
-  const Real& fy = near.y.fraction;
-  const Real above = trust(near.x.left, near.y.left) * (1 - fx) + trust(near.x.right, near.y.left) * fx;
-  const Real below = trust(near.x.left, near.y.right) * (1 - fx) + trust(near.x.right, near.y.right) * fx;
-  return above * (1 - fy) + below * fy;
-}
-
 // Where nothing moves only reactive values of both frames take trust.
 template <typename Real>
 Real trust_of_still(const TemporalInputs& in, int x, int y) {
@@ -57,9 +47,8 @@ Real trust_of_still(const TemporalInputs& in, int x, int y) {
 }
 
 template <typename Real>
-Real trust_at(const TemporalInputs& in, const TemporalOptions& options, const Neighbourhood<Real>& near) {
+Real trust_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
   if (in.reprojections.empty()) return trust_of_still<Real>(in, near.x.sample, near.y.sample);
-  if (options.bilinear_trust) return trust_between_samples(in, near);
   return known_trust(in.reprojection_at(near.x.sample, near.y.sample));
 }
 
