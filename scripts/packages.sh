@@ -14,6 +14,7 @@ build_packages=(
 run_packages=(
   pocl-opencl-icd                        # an OpenCL device on every CPU
   libegl1 libegl-mesa0 libgl1-mesa-dri   # OpenGL without a window or a GPU
+  libgles2                               # OpenGL ES, for --gl es3
   fonts-dejavu-core                      # captions of the contact sheet
 )
 test_packages=(clang clang-format python3 chromium
