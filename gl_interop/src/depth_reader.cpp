@@ -2,44 +2,25 @@
 #include "depth_reader.h"
 
 #include <stdexcept>
-#include <utility>
 
+#include "covering_program.h"
 #include "quincunx_gl/gl_calls.h"
 
 namespace quincunx::gl {
 namespace {
 
-constexpr const char* kVertexSource = R"(#version 310 es
-void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); })";
 constexpr const char* kFragmentSource = R"(#version 310 es
 precision highp float;
 layout(binding = 0) uniform highp sampler2D depth;
 layout(location = 0) out float copy;
 void main() { copy = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r; })";
 
-Program linked_program() {
-  Program program = Program::create();
-  for (const auto& [stage, source] :
-       {std::pair{GL_VERTEX_SHADER, kVertexSource}, {GL_FRAGMENT_SHADER, kFragmentSource}}) {
-    const GLuint shader = glCreateShader(static_cast<GLenum>(stage));
-    glShaderSource(shader, 1, &source, nullptr);
-    glCompileShader(shader);
-    glAttachShader(program.get(), shader);
-    glDeleteShader(shader);
-  }
-  glLinkProgram(program.get());
-  GLint linked = GL_FALSE;
-  glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
-  if (linked == GL_FALSE) throw std::runtime_error("the program that reads depth does not link");
-  return program;
-}
-
 }  // namespace
 
 DepthReader::DepthReader(Extent target)
     : copy_(Texture::create()),
       framebuffer_(Framebuffer::create()),
-      program_(linked_program()),
+      program_(covering_program(kFragmentSource, "the program that reads depth")),
       nothing_(VertexArray::create()) {
   texture_storage(copy_.get(), 1, GL_R32F, target);
   attach(framebuffer_.get(), GL_COLOR_ATTACHMENT0, copy_.get());
