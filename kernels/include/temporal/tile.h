@@ -75,8 +75,7 @@ typedef struct TileLight {
 QUINCUNX_CHECK_SIZE(TileLight, 40);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
-//                                       many
-// that an int would overflow: whether the light has changed everywhere, or the picture is another one.
+// many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
 typedef struct TotalLight {
   int brightening;  // sum over tiles of their signed means
   int change;       // of the magnitudes of those means
