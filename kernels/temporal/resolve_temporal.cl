@@ -125,7 +125,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &known_alpha, &evidence);
 
     // Accumulate.
-    float8 weight = distance_weights(&params, tile, &nearest, evidence.confidence) * held;
+    float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * held;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
     const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 

@@ -2,7 +2,8 @@
 // temporal_display: the picture of a history: resampled at the pixels' centres where a tile has a phase, and smoothed
 // where little is known. It is not fed back.
 //   A pixel of confidence W < 1.5 becomes a weighted mean: it counts W + .02 and its eight neighbours .3 exp(-2 W)
-//   each. The picture of a first frame is not smoothed: it would lose what it has of fine texture.
+//   each, or its own texel in place of neighbours of the other kind, of one layer or of two. The picture of a first
+//   frame is not smoothed: it would lose what it has of fine texture.
 //
 //   params     in   extents, layouts
 //   tiles      in   TileReprojection of each tile, of this frame
@@ -82,18 +83,21 @@ static inline bool is_smoothed(const TemporalDisplayParams* params, float8 confi
 }
 
 #if ALPHA
-// The sum of alpha of a pixel's eight neighbours.
-static inline float alpha_around(AlphaPlane plane, int x, int y) {
+// The sum of alpha of a pixel's eight neighbours, as gather_around() has it.
+static inline float alpha_around(HistoryLayer layer, AlphaPlane plane, int x, int y) {
+  const float own = load_history(layer, y * layer.width + x).w, own_alpha = load_alpha(plane, y * plane.width + x);
   float sum = 0.0f;
   for (int j = 0; j < 9; ++j) {
     const int column = clamp(x + j % 3 - 1, 0, plane.width - 1), row = clamp(y + j / 3 - 1, 0, plane.height - 1);
-    if (j != 4) sum += load_alpha(plane, row * plane.width + column);
+    const int index = row * plane.width + column;
+    const bool is_other = is_other_kind(load_history(layer, index).w, own);
+    if (j != 4) sum += is_other ? own_alpha : load_alpha(plane, index);
   }
   return sum;
 }
 
 // What is shown of the alpha of the first `count` pixels from (x, y) on.
-static inline void show_alpha(AlphaPlane plane, const Display* display, int x, int y, int count, bool smooth,
+static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count, bool smooth,
                               float8 confidence, float* shown) {
   const SmoothParts parts = smooth_parts(confidence);
   float own[8], other[8];
@@ -103,7 +107,7 @@ static inline void show_alpha(AlphaPlane plane, const Display* display, int x, i
     shown[i] = load_alpha(plane, y * plane.width + x + i);
     if (display->has_phase)
       shown[i] = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
-    if (smooth) shown[i] = shown[i] * own[i] + alpha_around(plane, x + i, y) * other[i];
+    if (smooth) shown[i] = shown[i] * own[i] + alpha_around(layer, plane, x + i, y) * other[i];
   }
 }
 #endif
@@ -153,7 +157,7 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
     float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
 #if ALPHA
     const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-    show_alpha(plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
+    show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
 #endif
     store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
   }

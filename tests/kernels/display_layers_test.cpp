@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// display_layers against its reference, and temporal_display, over whose picture it lays the near layer.
+// display_layers against its reference.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -94,24 +94,6 @@ TEST_P(DisplayLayers, ATightFrameIsReadWithinItsEdges) {
     compare_display(in, stages.run_display(rig, in), spec);
   }
   EXPECT_GT(decided_, 0);
-}
-
-// Over which the near layer is laid.
-TEST_P(DisplayLayers, TemporalDisplayShowsTheFarLayerAsIfItWereTheOnlyOne) {
-  const TemporalStages temporal(GetParam());
-  const LayerStages stages(GetParam());
-  std::int64_t split = 0;
-  for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
-    Rig rig;
-    LayerStageInputs in = stages.inputs(rig, spec);
-    const auto alone = temporal.run_display(rig, in.stage, in.reference.past.tiles, {});
-    in.stage.reference.history = in.reference.past.far;
-    const auto far = temporal.run_display(rig, in.stage, in.reference.past.tiles, {});
-    EXPECT_EQ(alone.bytes, far.bytes) << testing::name_of(spec);
-    for (const Pixel& texel : in.reference.past.far)
-      split += std::signbit(texel[3]) ? 1 : 0;
-  }
-  EXPECT_GE(split, 4000);
 }
 
 std::vector<StageVariant> variants() {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "expected.h"
 #include "temporal_fixture.h"
@@ -178,12 +179,26 @@ TEST_P(Temporal, ATightFrameIsReadWithinItsEdges) {
   }
 }
 
+// Gives texels two layers, as the sign of their confidence tells: none, all or some in each block of 32x16.
+void give_layers(reference::TemporalInputs& in, unsigned seed) {
+  std::mt19937 random(seed);
+  for (int y = 0; y < in.output_height; ++y) {
+    for (int x = 0; x < in.output_width; ++x) {
+      std::mt19937 block(seed + static_cast<unsigned>(y / 16 * 64 + x / 32));
+      const auto share = block() % 3;
+      double& confidence = in.history[reference::index_of(in.output_width, x, y)][3];
+      if (share == 2 || (share == 1 && random() % 2 == 0)) confidence = -confidence;
+    }
+  }
+}
+
 TEST_P(Temporal, DisplayMatchesTheReference) {
   const StageVariant& v = GetParam();
   const TemporalStages stages(v);
   for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
     Rig rig;
-    const StageInputs in = stages.inputs(rig, spec);
+    StageInputs in = stages.inputs(rig, spec);
+    give_layers(in.reference, spec.seed);
     using Shown = TemporalStages::Shown;
     for (const Shown& shown : {Shown{}, {TemporalPreset::kFast}, {.first = true}}) {
       const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first};

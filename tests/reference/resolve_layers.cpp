@@ -32,6 +32,8 @@
 namespace quincunx::reference {
 namespace {
 
+// Of the distance between samples: the near layer's reach, at least kReach. +.2 dB on turning spokes.
+constexpr double kNearReach = .6;
 constexpr double kMostNear = 8;  // confidence: it is resampled more often than not; 32 gives no more
 
 // An output pixel of this frame.
@@ -163,7 +165,7 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
   Real weight = 0;
   if (is_valid(sample) && !is_held_back && (!is_split || pixel.depth < pixel.between)) {
     weight = sample_weight<Real>(sample, near.x.past * now.spacing(0), near.y.past * now.spacing(1),
-                                 stands_still(tile) && !pixel.layers->is_split, known.confidence);
+                                 reach_of(stands_still(tile) && !pixel.layers->is_split, known.confidence));
   }
   PixelOf<Real> texel = accumulate(known, sample, weight).texel;
   if (is_split) texel[3] = -texel[3];
@@ -222,8 +224,9 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   const Side side = side_of(frame, pixel.between, around.x.sample, around.y.sample);
   if (side != Side::kNeither) {
     const Pixel sample = near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side);
+    const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kReach);
     const Real weight = sample_weight<Real>(sample, around.x.past * in.now.spacing(0),
-                                            around.y.past * in.now.spacing(1), false, near.confidence);
+                                            around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;
     const Real share = weight / max(total + inertia, kLeastWeight);
     for (std::size_t c = 0; c < 4; ++c)

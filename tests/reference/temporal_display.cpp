@@ -2,7 +2,8 @@
 // temporal_display: one output pixel of the picture that a history holds.
 //   m      history at p - R: the cubic of Keys, a = -.75, p being the pixel's centre and R its tile's phase
 //   where W < 1.5, W without its sign, which tells of a second layer: (m (W + .02) + sum n e) / (W + .02 + 8 e) with
-//          the eight neighbours n, e = .3 exp(-2 W)
+//          the eight neighbours n, e = .3 exp(-2 W). In place of a neighbour of the other kind, one layer or two, it
+//          takes the pixel's own texel: one holds a blade, the other the sky behind it
 //   alpha  that of history in the same way, or 1
 // Source: found by measuring (docs/temporal.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
@@ -55,13 +56,22 @@ Real smoothed(const At& at, int x, int y, const Real& centre, const Real& confid
 
 template <typename Real>
 void smooth(const TemporalInputs& in, int x, int y, HistoryTexel<Real>& shown) {
-  const Real confidence = std::abs(in.history_clamped(x, y)[3]);
+  const double own = in.history_clamped(x, y)[3];
+  const Real confidence = std::abs(own);
+  const auto is_own_kind = [&](int i, int j) {
+    return std::signbit(in.history_clamped(i, j)[3]) == std::signbit(own);
+  };
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto channel = [&](int i, int j) { return in.history_clamped(i, j)[c]; };
+    const auto channel = [&](int i, int j) {
+      return is_own_kind(i, j) ? in.history_clamped(i, j)[c] : in.history_clamped(x, y)[c];
+    };
     shown.texel[c] = smoothed(channel, x, y, shown.texel[c], confidence);
   }
   if (in.history_alpha.empty()) return;
-  shown.alpha = smoothed([&](int i, int j) { return in.alpha_clamped(i, j); }, x, y, shown.alpha, confidence);
+  const auto alpha = [&](int i, int j) {
+    return is_own_kind(i, j) ? in.alpha_clamped(i, j) : in.alpha_clamped(x, y);
+  };
+  shown.alpha = smoothed(alpha, x, y, shown.alpha, confidence);
 }
 
 }  // namespace

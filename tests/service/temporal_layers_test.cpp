@@ -60,6 +60,46 @@ TEST(TemporalLayers, WiresAndWhatIsBehindThemGain) {
     EXPECT_LT(error_of(scene, preset(two)), .7 * one);
 }
 
+// Of whom every pixel is `colour` in the truth, and those around it.
+bool lies_within(const Pixels& truth, Extent output, float colour, int x, int y) {
+  for (int j = y - 1; j <= y + 1; ++j) {
+    for (int i = x - 1; i <= x + 1; ++i) {
+      if (i < 0 || j < 0 || i >= output.width || j >= output.height) return false;
+      if (truth[static_cast<std::size_t>(j * output.width + i)][0] != colour) return false;
+    }
+  }
+  return true;
+}
+
+// Pixels of one layer lie beside such of two, whose far layer is the sky.
+TEST(TemporalLayers, ABladeThatTurnsShowsNoSkyBehindIt) {
+  constexpr float kDark = .03125f, kSky = 16;
+  TemporalScene scene;
+  scene.surfaces.push_back({.shape = testing::Surface::Shape::kRectangle,
+                            .half_size = {60, 7},
+                            .centre = {80, 48},
+                            .turn = std::polar(1., .03),
+                            .distance = 4,
+                            .texture = testing::plain_texture(kDark, kDark, kDark)});
+  scene.surfaces.push_back({.texture = testing::plain_texture(kSky, kSky, kSky)});
+  TemporalRun run(scene, preset(TemporalPreset::kBalanced));
+  run.until(16);
+  int within = 0, lighter = 0;
+  for (int frame = 0; frame < 8; ++frame) {
+    const Pixels shown = run.next();
+    const Pixels truth = run.truth();
+    for (int y = 0; y < scene.output.height; ++y) {
+      for (int x = 0; x < scene.output.width; ++x) {
+        if (!lies_within(truth, scene.output, kDark, x, y)) continue;
+        ++within;
+        lighter += shown[static_cast<std::size_t>(y * scene.output.width + x)][0] > 2 * kDark ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(within, 8'000);
+  EXPECT_LT(lighter, within / 200);
+}
+
 TEST(TemporalLayers, WhereNothingMovesApartThereIsOneLayer) {
   TemporalScene scene = wires_before_a_wall();
   for (testing::Surface& surface : scene.surfaces)

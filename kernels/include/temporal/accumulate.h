@@ -13,13 +13,15 @@
 
 #define LEAST_WEIGHT 1e-30f  // of all samples: keeps 0 / 0 from becoming NaN
 
+static inline float8 reach_of(TileReprojection tile, float8 confidence) {
+  const float8 narrowed = max(REACH - NARROWING * confidence, LEAST_REACH);
+  return stands_still(tile) ? narrowed : (float8)(REACH);
+}
+
 // (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.
-static inline float8 distance_weights(const TemporalParams* params, TileReprojection tile,
-                                      const NearestSamples* nearest, float8 confidence) {
+static inline float8 distance_weights(const TemporalParams* params, const NearestSamples* nearest, float8 reach) {
   const float8 away_x = nearest->from_x * params->spacing_x;
   const float away_y = nearest->from_y * params->spacing_y;
-  const float8 narrowed = max(REACH - NARROWING * confidence, LEAST_REACH);
-  const float8 reach = stands_still(tile) ? narrowed : (float8)(REACH);
   const float8 near = max(1.0f - (away_x * away_x + away_y * away_y) / (reach * reach), 0.0f);
   return near * near;
 }

@@ -19,19 +19,36 @@
 #define NEIGHBOUR_WEIGHT 0.3f   // of each neighbour, beside a pixel of no confidence
 #define CENTRE_WEIGHT 0.02f     // of the pixel itself, beside its confidence
 
-// The sums of each pixel's eight neighbours, anywhere, clamped to the edge. The slow path.
+// The sign of a confidence tells whether a texel has one layer or two. Where both kinds meet, one may hold a blade and
+// the other the sky behind it: they are not mixed.
+static inline bool is_other_kind(float confidence, float own) {
+  return (as_int(confidence) ^ as_int(own)) < 0;
+}
+
+// The sums of each pixel's eight neighbours, anywhere, clamped to the edge; in place of those of the other kind it is
+// itself counted. The slow path.
 static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
   float4 sums[8];
   for (int i = 0; i < 8; ++i) {
+    const float4 own = load_history(layer, y * layer.width + min(x + i, layer.width - 1));
     sums[i] = (float4)(0.0f);
     for (int j = 0; j < 9; ++j) {
       const int column = clamp(x + i + j % 3 - 1, 0, layer.width - 1);
       const int row = clamp(y + j / 3 - 1, 0, layer.height - 1);
-      if (j != 4) sums[i] += load_history(layer, row * layer.width + column);
+      const float4 texel = load_history(layer, row * layer.width + column);
+      if (j != 4) sums[i] += is_other_kind(texel.w, own.w) ? own : texel;
     }
   }
   const EightTexels around = {vload16(0, (const float*)sums), vload16(1, (const float*)sums)};
   return around;
+}
+
+static inline int4 signs_of(TwelveTexels row) {
+  return as_int4(row.first.s37bf) | as_int4(row.second.s37bf) | as_int4(row.third.s37bf);
+}
+
+static inline int4 common_signs_of(TwelveTexels row) {
+  return as_int4(row.first.s37bf) & as_int4(row.second.s37bf) & as_int4(row.third.s37bf);
 }
 
 // The same where all of them are inside.
@@ -39,6 +56,9 @@ static inline EightTexels load_around(HistoryLayer layer, int x, int y) {
   const int index = y * layer.width + x - 1;
   const TwelveTexels above = load_history12(layer, index - layer.width), same = load_history12(layer, index);
   const TwelveTexels below = load_history12(layer, index + layer.width);
+  const bool kinds_meet = any(signs_of(above) | signs_of(same) | signs_of(below)) &&
+                          !all(common_signs_of(above) & common_signs_of(same) & common_signs_of(below));
+  if (kinds_meet) return gather_around(layer, x, y);
   const TwelveTexels both = {above.first + below.first, above.second + below.second, above.third + below.third};
   const EightTexels middle = next_texels(both), right = second_texels(both), beside = second_texels(same);
   const EightTexels around = {both.first + right.left + middle.left + (same.first + beside.left),

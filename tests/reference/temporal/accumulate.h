@@ -18,11 +18,14 @@ constexpr double kLeastReach = .85;
 constexpr double kNarrowing = .1;       // for each unit of confidence
 constexpr double kLeastWeight = 1e-30;  // against a division by 0
 
+template <typename Real>
+Real reach_of(bool is_still, const Real& confidence) {
+  return is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
+}
+
 // Of a sample `dx` and `dy` output pixels away.
 template <typename Real>
-Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, bool is_still,
-                   const Real& confidence) {
-  const Real reach = is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
+Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, const Real& reach) {
   const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
   return luma_weighted<Real>(near * near, sample);
 }
