@@ -19,21 +19,6 @@ using testing::TemporalScene;
 
 using Pixels = std::vector<Pixel>;
 
-// Wires of less than two output pixels, which slide over a wall that drifts the other way.
-TemporalScene wires_before_a_wall() {
-  TemporalScene scene;
-  for (int i = 0; i < 6; ++i) {
-    scene.surfaces.push_back({.shape = testing::Surface::Shape::kRectangle,
-                              .half_size = {.5 + .1 * (i % 4), 200},
-                              .centre = {12. + 23.3 * i, 48},
-                              .velocity = {.83, 0},
-                              .distance = 4,
-                              .texture = testing::plain_texture(.02f, .02f, .03f)});
-  }
-  scene.surfaces.push_back({.velocity = {-.31, 0}, .texture = testing::noise_texture(12)});
-  return scene;
-}
-
 ResolveSettings preset(TemporalPreset preset, TemporalView view = TemporalView::kPicture) {
   ResolveSettings settings{.method = Method::kTemporal};
   settings.temporal.preset = preset;
@@ -54,7 +39,7 @@ double error_of(const TemporalScene& scene, const ResolveSettings& settings) {
 }
 
 TEST(TemporalLayers, WiresAndWhatIsBehindThemGain) {
-  const TemporalScene scene = wires_before_a_wall();
+  const TemporalScene scene = testing::wires_before_a_wall();
   const double one = error_of(scene, preset(TemporalPreset::kFast));
   for (const TemporalPreset two : {TemporalPreset::kBalanced, TemporalPreset::kQuality})
     EXPECT_LT(error_of(scene, preset(two)), .7 * one);
@@ -101,7 +86,7 @@ TEST(TemporalLayers, ABladeThatTurnsShowsNoSkyBehindIt) {
 }
 
 TEST(TemporalLayers, WhereNothingMovesApartThereIsOneLayer) {
-  TemporalScene scene = wires_before_a_wall();
+  TemporalScene scene = testing::wires_before_a_wall();
   for (testing::Surface& surface : scene.surfaces)
     surface.velocity = {.4, 0};
   TemporalRun run(scene, preset(TemporalPreset::kBalanced, TemporalView::kLayers));
@@ -110,7 +95,7 @@ TEST(TemporalLayers, WhereNothingMovesApartThereIsOneLayer) {
 }
 
 TEST(TemporalLayers, ViewsShowThem) {
-  const TemporalScene scene = wires_before_a_wall();
+  const TemporalScene scene = testing::wires_before_a_wall();
   const auto show = [&scene](TemporalView view) {
     return TemporalRun(scene, preset(TemporalPreset::kBalanced, view)).until(12);
   };
@@ -139,7 +124,7 @@ TEST(TemporalLayers, ViewsShowThem) {
 }
 
 TEST(TemporalLayers, AlphaOfOpaqueSamplesIsOneAndChangesNoColour) {
-  const TemporalScene scene = wires_before_a_wall();
+  const TemporalScene scene = testing::wires_before_a_wall();
   TemporalRun opaque(scene, preset(TemporalPreset::kBalanced), {.background = true});
   TemporalRun alpha(scene, preset(TemporalPreset::kBalanced), {.background = false});
   for (int frame = 0; frame < 12; ++frame) {
@@ -154,7 +139,7 @@ TEST(TemporalLayers, AlphaOfOpaqueSamplesIsOneAndChangesNoColour) {
 
 // A wire before nothing: its coverage is the picture's alpha.
 TEST(TemporalLayers, AlphaOfAWireBeforeNothingIsItsCoverage) {
-  TemporalScene scene = wires_before_a_wall();
+  TemporalScene scene = testing::wires_before_a_wall();
   scene.surfaces.back().texture = [](Place) { return Pixel{0, 0, 0, 0}; };
   TemporalRun run(scene, preset(TemporalPreset::kBalanced), {.background = false});
   const Pixels shown = run.until(24), truth = run.truth();
@@ -183,7 +168,7 @@ TEST(TemporalLayers, AViewOfThemIsRefusedWhereThereIsOne) {
 }
 
 TEST(TemporalLayers, ChangingSizesAndResetsAreSurvived) {
-  const TemporalScene scene = wires_before_a_wall();
+  const TemporalScene scene = testing::wires_before_a_wall();
   TemporalRun run(scene, preset(TemporalPreset::kBalanced));
   ResolveSettings one_frame{.method = Method::kBilinear};
   TemporalRun single(scene, one_frame);

@@ -171,6 +171,20 @@ Texture plain_texture(float red, float green, float blue) {
   return [=](Place) { return Pixel{red, green, blue, 1}; };
 }
 
+TemporalScene wires_before_a_wall() {
+  TemporalScene scene;
+  for (int i = 0; i < 6; ++i) {
+    scene.surfaces.push_back({.shape = Surface::Shape::kRectangle,
+                              .half_size = {.5 + .1 * (i % 4), 200},
+                              .centre = {12. + 23.3 * i, 48},
+                              .velocity = {.83, 0},
+                              .distance = 4,
+                              .texture = plain_texture(.02f, .02f, .03f)});
+  }
+  scene.surfaces.push_back({.velocity = {-.31, 0}, .texture = noise_texture(12)});
+  return scene;
+}
+
 Vec2 halton_jitter(int frame, int phases) {
   const int index = frame % phases + 1;
   return {static_cast<float>(radical_inverse(index, 2) - .5),

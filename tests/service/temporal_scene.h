@@ -48,6 +48,9 @@ struct TemporalScene {
 Texture noise_texture(double cell, unsigned salt = 0);
 Texture plain_texture(float red, float green, float blue);
 
+// Wires of less than two output pixels, which slide over a wall that drifts the other way.
+TemporalScene wires_before_a_wall();
+
 // Place number `frame` of the Halton sequence of bases 2 and 3, from -.5 to .5; it repeats after `phases`.
 Vec2 halton_jitter(int frame, int phases);
 int halton_phases(Extent output, Extent render);  // 8 samples to each output pixel
