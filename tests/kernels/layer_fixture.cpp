@@ -83,6 +83,9 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
   const std::size_t bytes = texels * bytes_per_pixel(variant_.history);
   const std::size_t state_bytes = texels * bytes_per_pixel(PixelFormat::kRGBA16F);
   const cl::Buffer updated = to_device(std::vector<unsigned char>(bytes, 0x7f));
+  const std::size_t alpha_size = variant_.alpha ? encode_plane(variant_.history, past.alpha).size() : 1;
+  const cl::Buffer alpha = variant_.alpha ? to_device(encode_plane(variant_.history, past.alpha)) : far;
+  const cl::Buffer updated_alpha = to_device(std::vector<unsigned char>(alpha_size, 0x7f));
   const cl::Buffer updated_near = to_device(std::vector<unsigned char>(bytes, 0x7f));
   const cl::Buffer updated_states = to_device(std::vector<unsigned char>(state_bytes, 0x7f));
   const Counter counter = rig.counter();
@@ -91,6 +94,7 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
                 {Resource::kOpenTrust, view_of(open_trust)},
                 {Resource::kSplits, view_of(splits)},
                 {Resource::kPreviousHistory, view_of(far)},
+                {Resource::kPreviousHistoryAlpha, view_of(alpha)},
                 {Resource::kPreviousNearHistory, view_of(near)},
                 {Resource::kPreviousLayerStates, view_of(states)},
                 {Resource::kPreviousTileReprojection, view_of(tiles_before)},
@@ -99,10 +103,12 @@ LayerStages::Resolved LayerStages::run_resolve(Rig& rig, const LayerStageInputs&
                 {Resource::kLayerTiles, view_of(layers)},
                 {Resource::kTileLight, view_of(light)},
                 {Resource::kHistory, view_of(updated)},
+                {Resource::kHistoryAlpha, view_of(updated_alpha)},
                 {Resource::kNearHistory, view_of(updated_near)},
                 {Resource::kLayerStates, view_of(updated_states)}});
   return {from_device<unsigned char>(updated, bytes), from_device<unsigned char>(updated_near, bytes),
-          from_device<unsigned char>(updated_states, state_bytes), rig.count(counter)};
+          from_device<unsigned char>(updated_states, state_bytes),
+          from_device<unsigned char>(updated_alpha, alpha_size), rig.count(counter)};
 }
 
 std::vector<Pixel> LayerStages::run_display(Rig& rig, const LayerStageInputs& in) {

@@ -30,6 +30,7 @@ class LayerStages {
   // Bytes were 0x7f before.
   struct Resolved {
     std::vector<unsigned char> far, near, states;
+    std::vector<unsigned char> alpha;  // of variants that have it
     std::int64_t non_finite = 0;
   };
   Resolved run_resolve(Rig& rig, const LayerStageInputs& in);

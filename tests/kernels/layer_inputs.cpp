@@ -239,6 +239,7 @@ std::vector<reference::LayerTile> make_layers(const reference::ResolveInputs& in
 LayerStageInputs LayerStages::inputs(Rig& rig, const StageSpec& spec) const {
   LayerStageInputs in;
   in.stage = stages_.inputs(rig, spec);
+  in.stage.frame.parity = std::max(spec.parity, 0);
   reference::ResolveInputs& out = in.reference;
   out.now = in.stage.reference;
   out.tiles = stages_.tiles(in.stage, spec.seed);
@@ -251,6 +252,7 @@ LayerStageInputs LayerStages::inputs(Rig& rig, const StageSpec& spec) const {
   past.width = spec.output.width;
   past.height = spec.output.height;
   past.far = out.now.history;
+  past.alpha = out.now.history_alpha;
   past.tiles = out.now.before;
   past.frame.width = spec.previous.width;
   past.frame.height = spec.previous.height;

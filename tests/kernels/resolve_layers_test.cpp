@@ -29,6 +29,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
   // One texel of each of the three that the kernel writes.
   struct Texel {
     Pixel far, near, state;
+    double alpha = 1;  // of variants that have it
   };
 
   void compare_texel(const LayerStageInputs& in, int x, int y, const Texel& actual, const std::string& what) {
@@ -42,6 +43,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
       expect_near(value.far[c], bound.far[c], actual.far[c], fmt::format("{} far {}", what, c), history);
       if (HasFatalFailure()) return;
     }
+    if (GetParam().alpha) expect_near(value.alpha, bound.alpha, actual.alpha, what + " alpha", history);
     for (std::size_t c = 0; c < 3; ++c) {
       if (std::isnan(value.state[c])) {  // depth that is not finite
         ASSERT_TRUE(std::isnan(actual.state[c])) << what << " state " << c;
@@ -66,17 +68,25 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
     const auto near = testing::decode(history, made.near);
     const auto states = testing::decode(PixelFormat::kRGBA16F, made.states);
     const reference::LayerHistory& past = in.reference.past;
+    std::vector<double> alpha(past.far.size(), 1);
+    if (GetParam().alpha) alpha = testing::decode_plane(history, made.alpha, past.far.size());
     for (int y = 0; y < past.height; ++y) {
       for (int x = 0; x < past.width; ++x) {
         const std::size_t i = past.texel(x, y);
         const std::string what = fmt::format("{}: pixel ({}, {})", testing::name_of(spec), x, y);
         if (in.reference.layers[past.tile(x, y)].is_layered)
-          compare_texel(in, x, y, {far[i], near[i], states[i]}, what);
+          compare_texel(in, x, y, {far[i], near[i], states[i], alpha[i]}, what);
         else
           expect_poison(made, i, what);
         if (HasFatalFailure()) return;
       }
     }
+  }
+
+  // Of a checkerboard where the variant has one.
+  static LayerStageInputs inputs(const LayerStages& stages, Rig& rig, StageSpec spec) {
+    if (GetParam().checkerboard) spec.parity = static_cast<int>(spec.seed % 2);
+    return stages.inputs(rig, spec);
   }
 
   static void expect_poison(const LayerStages::Resolved& made, std::size_t texel, const std::string& what) {
@@ -101,7 +111,7 @@ TEST_P(ResolveLayers, MatchesTheReferenceAtEverySizeScaleAndInput) {
   LayerStages stages(GetParam());
   for (const StageSpec& spec : testing::all_stage_specs(testing::all_patterns())) {
     Rig rig;
-    const LayerStageInputs in = stages.inputs(rig, spec);
+    const LayerStageInputs in = inputs(stages, rig, spec);
     compare_resolve(in, stages.run_resolve(rig, in), spec);
     if (HasFatalFailure()) return;
   }
@@ -119,11 +129,12 @@ TEST_P(ResolveLayers, PoisonOutsideTheViewportChangesNoBit) {
         .output = {64, 33}, .render = render, .previous = {render.height, render.width}, .seed = 5};
     Rig rig;
     const auto bytes = [&] {
-      const LayerStageInputs in = stages.inputs(rig, spec);
+      const LayerStageInputs in = inputs(stages, rig, spec);
       const LayerStages::Resolved made = stages.run_resolve(rig, in);
       std::vector<unsigned char> all = made.far;
       all.insert(all.end(), made.near.begin(), made.near.end());
       all.insert(all.end(), made.states.begin(), made.states.end());
+      all.insert(all.end(), made.alpha.begin(), made.alpha.end());
       return all;
     };
     const auto clean = bytes();
@@ -148,7 +159,7 @@ TEST_P(ResolveLayers, ATightFrameIsReadWithinItsEdges) {
                          .seed = 8,
                          .tight = true};
     Rig rig;
-    const LayerStageInputs in = stages.inputs(rig, spec);
+    const LayerStageInputs in = inputs(stages, rig, spec);
     compare_resolve(in, stages.run_resolve(rig, in), spec);
   }
   EXPECT_GT(decided_, 0);
@@ -162,7 +173,7 @@ TEST_P(ResolveLayers, ResolveTemporalMakesTheOtherTiles) {
   std::int64_t non_finite = 0;
   for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNonFinite})) {
     Rig rig;
-    const LayerStageInputs in = stages.inputs(rig, spec);
+    const LayerStageInputs in = inputs(stages, rig, spec);
     const reference::ResolveInputs& r = in.reference;
     const auto without = temporal.run_resolve(rig, in.stage, r.tiles);
     const auto with = temporal.run_resolve(rig, in.stage, r.tiles, {.layers = testing::to_kernel(r.layers)});
@@ -195,8 +206,9 @@ TEST_P(ResolveLayers, ResolveTemporalMakesTheOtherTiles) {
 std::vector<StageVariant> variants() {
   using enum PixelFormat;
   return {{},
-          {.colour = kRGBA32F},
+          {.alpha = true},
           {.colour = kRGBA8},
+          {.checkerboard = true},
           {.history = kRGBA16F, .resolved = kRGBA16F},
           {.storage = Storage::kImage}};
 }

@@ -14,9 +14,10 @@ namespace quincunx::testing {
 std::string name_of(const StageVariant& v) {
   return fmt::format("{}{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
                      v.reactive ? "_reactive" : "",
-                     v.alpha    ? "_alpha"
-                     : v.layers ? "_layered"
-                                : "",
+                     v.alpha          ? "_alpha"
+                     : v.layers       ? "_layered"
+                     : v.checkerboard ? "_checkerboard"
+                                      : "",
                      v.storage == Storage::kImage ? "image" : "buffer", quincunx::name_of(v.colour),
                      quincunx::name_of(v.history), quincunx::name_of(v.resolved));
 }
@@ -97,9 +98,6 @@ reference::Tile to_reference(const KernelTile& tile) {
                     .holds_back = tile.holds_back != 0}};
 }
 
-namespace {
-
-// A plane of single values, in fours as if they were texels; the last four may be padded.
 std::vector<unsigned char> encode_plane(PixelFormat texels, const std::vector<double>& values) {
   std::vector<Pixel> fours((values.size() + 3) / 4);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -116,13 +114,14 @@ std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned 
   return values;
 }
 
-}  // namespace
+namespace {}  // namespace
 
 PlanFacts TemporalStages::facts(TemporalPreset preset) const {
   ResolveSettings settings{.method = Method::kTemporal,
                            .colour = variant_.colour,
                            .resolved = variant_.resolved,
                            .storage = variant_.storage};
+  if (variant_.checkerboard) settings.shading = Shading::kCheckerboard;
   settings.temporal = {.preset = preset, .history = variant_.history};
   return {{.moving_objects = variant_.moves,
            .camera_motion = variant_.moves,

@@ -24,6 +24,7 @@ struct StageVariant {
   bool reactive = false;  // only where nothing moves
   bool layers = false;    // only where something moves
   bool alpha = false;     // no background covers every pixel
+  bool checkerboard = false;
 };
 std::string name_of(const StageVariant& variant);
 
@@ -66,6 +67,11 @@ std::vector<Element> from_device(const cl::Buffer& buffer, std::size_t count) {
   impl().queue.enqueueReadBuffer(buffer, CL_TRUE, 0, count * sizeof(Element), elements.data());
   return elements;
 }
+
+// A plane of single values in the format of one channel of `texels`, which are in fours; the last may be padded.
+std::vector<unsigned char> encode_plane(PixelFormat texels, const std::vector<double>& values);
+std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned char>& bytes,
+                                 std::size_t count);
 
 // All that the kernels keep of a tile.
 struct KernelTile : TileReprojection, TileEvidence, TileLight {};

@@ -26,7 +26,8 @@ bool are_alike(const Real& a, const Real& b, double tolerance) {
 template <typename Real>
 LayerTap<Real> far_of(const LayerHistory& history, int x, int y) {
   const Pixel& texel = history.far[history.texel(x, y)];
-  return {{texel[0], texel[1], texel[2], 1}, std::clamp(std::abs(texel[3]), 0.0, kMostConfidence)};
+  const double alpha = history.alpha.empty() ? 1 : history.alpha[history.texel(x, y)];
+  return {{texel[0], texel[1], texel[2], 1}, std::clamp(std::abs(texel[3]), 0.0, kMostConfidence), alpha};
 }
 
 // A surface that stands alone now: of two layers of a texel the one that has its depth.
@@ -41,6 +42,7 @@ LayerTap<Real> only_tap(const LayerHistory& history, const LayerWish& wish, int 
   if (wish.near_depth > state.between()) {
     tap.value = as<Real>(history.near[history.texel(x, y)]);
     tap.confidence = state.near_confidence * tap.value[3];
+    tap.alpha = 1;
     tap.is_valid = are_alike<Real>(state.near_depth, wish.near_depth, kNearDepths);
   } else {
     tap.is_valid = tap.confidence > 0 && are_alike<Real>(state.far_depth, wish.near_depth, kFarDepths);
@@ -60,6 +62,7 @@ LayerTap<Real> far_tap(const LayerHistory& history, const LayerWish& wish, int x
     const Real divisor = max(coverage, kSolid);
     return {{near[0] / divisor, near[1] / divisor, near[2] / divisor, 1},
             state.near_confidence * coverage,
+            1,
             coverage >= kSolid && state.near_depth >= least && state.near_depth <= most};
   }
   LayerTap<Real> tap = far_of<Real>(history, x, y);
@@ -187,6 +190,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
           tap_of<Real>(history, wish, std::min(nearest[0], size[0] - 1), std::min(nearest[1], size[1] - 1));
       if (tap.is_valid) fetched.value = tap.value;
       if (tap.is_valid) fetched.confidence = tap.confidence;
+      if (tap.is_valid) fetched.alpha = tap.alpha;
       return fetched;
     }
   }
@@ -199,9 +203,10 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
   if (wish.layer == Layer::kOnly && !is_any_split(history, texel[0], texel[1])) {
     // As in resolve_temporal: confidence is resampled like colours.
     const auto blended = blend_taps(history, texel, fraction, kHistorySharpness, [&](int x, int y) {
-      return LayerTap<Real>{as<Real>(history.far[history.texel(x, y)])};
+      return LayerTap<Real>{as<Real>(history.far[history.texel(x, y)]), 0, far_of<Real>(history, x, y).alpha};
     });
     fetched.value = blended.value;
+    fetched.alpha = blended.alpha;
     fetched.confidence = clamp(blended.value[3], 0, kMostConfidence);
     fetched.value[3] = 1;
   } else {
@@ -209,6 +214,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
                                     [&](int x, int y) { return tap_of<Real>(history, wish, x, y); });
     fetched.value = blended.value;
     fetched.confidence = blended.confidence;
+    fetched.alpha = blended.alpha;
   }
   fetched.between = between_texels(fraction);
   return fetched;

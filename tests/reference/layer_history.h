@@ -32,8 +32,9 @@ struct LayerStateOf {
 struct LayerHistory {
   int width = 0;  // of the output
   int height = 0;
-  std::vector<Pixel> far;   // colour and confidence W of the far, or only, layer; -W where there are two
-  std::vector<Pixel> near;  // premultiplied colour and coverage, where there are two
+  std::vector<Pixel> far;     // colour and confidence W of the far, or only, layer; -W where there are two
+  std::vector<double> alpha;  // of the far, or only, layer; empty: 1
+  std::vector<Pixel> near;    // premultiplied colour and coverage, where there are two
   std::vector<StoredState> states;  // in layered tiles
   std::vector<Tile> tiles;
   std::vector<LayerTile> layers;
@@ -59,6 +60,7 @@ template <typename Real>
 struct LayerTap {
   PixelOf<Real> value = {};
   Real confidence = 0;
+  Real alpha = 1;        // of the far layer; a near one is opaque where it covers
   bool is_valid = true;  // false: the texel shows another surface
 };
 
@@ -66,6 +68,7 @@ template <typename Real>
 struct BlendedTaps {
   PixelOf<Real> value = {};
   Real confidence = 0;
+  Real alpha = 1;
   bool is_known = false;
 };
 
@@ -81,7 +84,8 @@ BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 
                              const std::array<Real, 2>& fraction, double a, Taps tap) {
   const std::array<Real, 4> wx = cubic_weights(fraction[0], a);
   const std::array<Real, 4> wy = cubic_weights(fraction[1], a);
-  PixelOf<Real> sum = {}, middle = {}, low = {}, high = {};
+  using Channels = std::array<Real, 5>;  // those of a pixel, and alpha
+  Channels sum = {}, middle = {}, low = {}, high = {};
   Real weights = 0, middle_weights = 0;
   BlendedTaps<Real> blended;
   bool is_first = true;
@@ -92,17 +96,18 @@ BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 
       if (!at.is_valid) continue;
       const Real weight = wx[static_cast<std::size_t>(column)] * wy[static_cast<std::size_t>(row)];
       weights += weight;
-      for (std::size_t c = 0; c < 4; ++c)
-        sum[c] += at.value[c] * weight;
+      const Channels value = {at.value[0], at.value[1], at.value[2], at.value[3], at.alpha};
+      for (std::size_t c = 0; c < 5; ++c)
+        sum[c] += value[c] * weight;
       if (row % 3 == 0 || column % 3 == 0) continue;
       const Real share =
           (column == 1 ? 1 - fraction[0] : fraction[0]) * (row == 1 ? 1 - fraction[1] : fraction[1]);
       middle_weights += share;
       blended.confidence += at.confidence * share;
-      for (std::size_t c = 0; c < 4; ++c) {
-        middle[c] += at.value[c] * share;
-        low[c] = is_first ? at.value[c] : min(low[c], at.value[c]);
-        high[c] = is_first ? at.value[c] : max(high[c], at.value[c]);
+      for (std::size_t c = 0; c < 5; ++c) {
+        middle[c] += value[c] * share;
+        low[c] = is_first ? value[c] : min(low[c], value[c]);
+        high[c] = is_first ? value[c] : max(high[c], value[c]);
       }
       is_first = false;
     }
@@ -110,8 +115,10 @@ BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 
   if (is_first || middle_weights < kNoTaps) return {};
   blended.is_known = true;
   const bool is_cubic = weights >= kLeastTaps;
-  for (std::size_t c = 0; c < 4; ++c)
-    blended.value[c] = is_cubic ? clamp(sum[c] / weights, low[c], high[c]) : middle[c] / middle_weights;
+  for (std::size_t c = 0; c < 5; ++c) {
+    Real& channel = c < 4 ? blended.value[c] : blended.alpha;
+    channel = is_cubic ? clamp(sum[c] / weights, low[c], high[c]) : middle[c] / middle_weights;
+  }
   return blended;
 }
 
@@ -133,6 +140,7 @@ template <typename Real>
 struct FetchedLayer {
   PixelOf<Real> value = {};  // premultiplied colour and coverage
   Real confidence = 0;       // 0: nothing is known
+  Real alpha = 1;            // of the far layer
   Real between = 0;          // as of FetchedHistory
   bool was_split = false;    // the texel at that place has two layers
 };

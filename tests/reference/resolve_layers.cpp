@@ -64,8 +64,8 @@ Side side_of(const Frame& frame, const Real& between, int x, int y) {
 }
 
 // What the near layer has of a sample on either side.
-Pixel near_sample(const Pixel& sample, Side side) {
-  return side == Side::kNear ? Pixel{sample[0], sample[1], sample[2], 1} : Pixel{};
+Pixel near_sample(const Pixel& sample, Side side, bool has_alpha) {
+  return side == Side::kNear ? Pixel{sample[0], sample[1], sample[2], has_alpha ? sample[3] : 1} : Pixel{};
 }
 
 template <typename Real>
@@ -77,7 +77,7 @@ struct LayerSeed {
 // The Gaussian of those of the 3 x 3 samples that the layer has.
 template <typename Real>
 LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& near, const Real& between,
-                              Layer layer) {
+                              Layer layer, bool has_alpha) {
   PixelOf<Real> sum = {};
   Real weights = 0;
   for (int dy = -1; dy <= 1; ++dy) {
@@ -87,7 +87,7 @@ LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& nea
       const Side side = side_of(frame, between, x, y);
       if (side == Side::kNeither || (layer == Layer::kFar && side == Side::kNear)) continue;
       const Pixel& own = texel_clamped(frame, x, y);
-      const Pixel sample = layer == Layer::kFar ? own : near_sample(own, side);
+      const Pixel sample = layer == Layer::kFar ? own : near_sample(own, side, has_alpha);
       const Real across = dx - near.x.past;
       const Real down = dy - near.y.past;
       const Real weight = luma_weighted(bell((across * across + down * down) * kSeedFalloff), sample);
@@ -109,18 +109,19 @@ template <typename Real>
 void reseed_far(const LayeredPixel<Real>& pixel, const Frame& frame, const Neighbourhood<Real>& near,
                 Known<Real>& known) {
   if (!seamless(known.confidence < kReseedBelow)) return;
-  const auto seed = seed_of_layer(frame, near, pixel.between, Layer::kFar);
+  const auto seed = seed_of_layer(frame, near, pixel.between, Layer::kFar, true);
   if (!seed.is_known) return;
   const Real share = max(1 - known.confidence / kReseedBelow, 0);
   for (std::size_t c = 0; c < 3; ++c)
     known.colour[c] += (seed.value[c] - known.colour[c]) * share;
+  known.alpha += (seed.value[3] - known.alpha) * share;
   known.inertia = kSeedInertia * share;
   known.confidence = max(known.confidence, kReseedBelow);
 }
 
 template <typename Real>
-PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixel,
-                         const Neighbourhood<Real>& near) {
+HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixel,
+                              const Neighbourhood<Real>& near) {
   const TemporalInputs& now = in.now;
   const TileReprojection& tile = pixel.tile->reprojection;
   const bool is_split = pixel.split.is_split();
@@ -144,7 +145,7 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
 
   // Limit confidence, reject, relight. Layers answer for depth.
   const Real trust = is_split || fetched.was_split ? Real(pixel.open_trust) : trust_at<Real>(now, near);
-  Known<Real> known{history.known.texel, 1, limit_confidence(history, trust, motion_edge),
+  Known<Real> known{history.known.texel, fetched.alpha, limit_confidence(history, trust, motion_edge),
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(now, in.tiles, pixel.x, pixel.y, known);
   relight(now, in.tiles, pixel.x, pixel.y, known);
@@ -156,8 +157,10 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
   if (is_split) {
     reseed_far(pixel, now.frame, near, known);
   } else {
-    if (seamless(known.rejection > 0))
+    if (seamless(known.rejection > 0)) {
       rectify(box_around<Real>(now.frame, near.x.sample, near.y.sample), known);
+      rectify_alpha(now.frame, near.x.sample, near.y.sample, known);
+    }
     reseed(now, near, known);
   }
 
@@ -167,9 +170,9 @@ PixelOf<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>& pixe
     weight = sample_weight<Real>(sample, near.x.past * now.spacing(0), near.y.past * now.spacing(1),
                                  reach_of(stands_still(tile) && !pixel.layers->is_split, known.confidence));
   }
-  PixelOf<Real> texel = accumulate(known, sample, weight).texel;
-  if (is_split) texel[3] = -texel[3];
-  return texel;
+  HistoryTexel<Real> updated = accumulate(known, sample, weight);
+  if (is_split) updated.texel[3] = -updated.texel[3];
+  return updated;
 }
 
 // ---- The near layer.
@@ -209,7 +212,7 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   // Reseed.
   Real inertia = 0;
   if (seamless(near.confidence < kReseedBelow)) {
-    const auto seed = seed_of_layer(frame, around, pixel.between, Layer::kNear);
+    const auto seed = seed_of_layer(frame, around, pixel.between, Layer::kNear, in.has_alpha());
     const Real share = max(1 - near.confidence / kReseedBelow, 0);
     for (std::size_t c = 0; c < 4; ++c)
       near.value[c] += (seed.value[c] - near.value[c]) * share;
@@ -223,7 +226,8 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   // Accumulate.
   const Side side = side_of(frame, pixel.between, around.x.sample, around.y.sample);
   if (side != Side::kNeither) {
-    const Pixel sample = near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side);
+    const Pixel sample =
+        near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
     const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kReach);
     const Real weight = sample_weight<Real>(sample, around.x.past * in.now.spacing(0),
                                             around.y.past * in.now.spacing(1), Real(reach));
@@ -262,7 +266,9 @@ LayeredTexelOf<Real> resolve_layers(const ResolveInputs& in, int x, int y) {
                                     .5 * (Real(split.near_depth) + split.far_depth)};
   LayeredTexelOf<Real> texel;
   texel.is_split = split.is_split();
-  texel.far = update_far(in, pixel, near);
+  const HistoryTexel<Real> far = update_far(in, pixel, near);
+  texel.far = far.texel;
+  texel.alpha = far.alpha;
   texel.state = {fourth_root<Real>(pixel.depth), 0, 0};
   if (!texel.is_split) return texel;
   const NearTexel<Real> updated = update_near(in, pixel);

@@ -17,12 +17,15 @@ struct ResolveInputs {
   std::vector<double> open_trust;  // of each sample: trust without a comparison of depths
   std::vector<LayerSplit> splits;  // of each sample
   LayerHistory past;
+
+  bool has_alpha() const { return !past.alpha.empty(); }
 };
 
 // A texel of a layered tile.
 template <typename Real>
 struct LayeredTexelOf {
   PixelOf<Real> far = {};  // colour and W of the far, or only, layer; -W where there are two
+  Real alpha = 1;          // of the far, or only, layer
   PixelOf<Real> near = {};
   std::array<Real, 3> state = {};  // as StoredState
   bool is_split = false;           // else there is no near layer
