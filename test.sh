@@ -37,6 +37,10 @@ if [[ ! -x /usr/sbin/slurmd || ! -x /usr/sbin/munged ]]; then
   say "Slurm is not installed, so farm_tests (the script for render farms) is left out."
   left_out+=(farm_tests)
 fi
+if ! command -v blender >/dev/null; then
+  say "Blender is not installed, so blender_tests (the add-on in Blender itself) is left out."
+  left_out+=(blender_tests)
+fi
 excluded=()
 if ((${#left_out[@]})); then
   excluded=(-E "^($(IFS='|'; printf '%s' "${left_out[*]}"))\$")
