@@ -42,13 +42,14 @@ void put(std::string& page, std::string_view mark, std::string_view text) {
 
 }  // namespace
 
-std::string page_from_template(std::span<const EmbeddedFile> own, const char* html,
-                               std::initializer_list<const char*> scripts, const Json& figures) {
-  std::string page{file(own, html)};
+std::string page_from_template(const PageParts& parts, const Json& figures) {
+  std::string page{file(parts.files, "page.html")};
   std::string script;
-  for (const char* name : scripts)
-    script += file(own, name);
-  put(page, "/*style*/", file(own, "page.css"));
+  for (const char* name : parts.scripts)
+    script += file(parts.files, name);
+  put(page, "/*title*/", parts.title);
+  put(page, "/*style*/", file(parts.files, "page.css"));
+  put(page, "/*body*/", file(parts.files, parts.body));
   put(page, "/*script*/", script);
   put(page, "/*data*/", safe_in_script(figures.dump(-1, ' ', false, Json::error_handler_t::replace)));
   return page;

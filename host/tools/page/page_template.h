@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // page_from_template: an HTML file that needs nothing else, no network either, from embedded files and a document of
-// figures.
+// figures. Every page has the same head and tail.
 #pragma once
 
 #include <initializer_list>
@@ -15,11 +15,16 @@ namespace quincunx::tools {
 // The files of this folder, which every page may use.
 std::span<const EmbeddedFile> embedded_page_files();
 
-// `html` with page.css for its mark /*style*/, the scripts one after the other for /*script*/, and the
-// figures, whatever names they hold, for /*data*/. Files are looked for in `own`, then among those of this folder.
-// Throws std::out_of_range for a file or a mark that is not there.
-std::string page_from_template(std::span<const EmbeddedFile> own, const char* html,
-                               std::initializer_list<const char*> scripts,
-                               const nlohmann::ordered_json& figures);
+// What a page has of its own. Files are looked for among its own, then among those of this folder.
+struct PageParts {
+  std::span<const EmbeddedFile> files;
+  const char* title = nullptr;  // text without "<" and "&"
+  const char* body = nullptr;   // file with a header, sections, and a noscript that says what else to read
+  std::initializer_list<const char*> scripts;  // files, in their order; elements.js first
+};
+
+// page.html with page.css and the parts; and the figures, whatever names they hold. Throws std::out_of_range for a
+// file that is not there.
+std::string page_from_template(const PageParts& parts, const nlohmann::ordered_json& figures);
 
 }  // namespace quincunx::tools

@@ -32,7 +32,10 @@ Json pictures_json(const ReportPictures& pictures) {
 }  // namespace
 
 std::string report_page(const RunReport& report, const ReportPictures& pictures) {
-  return page_from_template({}, "report.html", {"elements.js", "viewer.js", "report.js"},
+  return page_from_template({.files = {},
+                             .title = "run report",
+                             .body = "report.html",
+                             .scripts = {"elements.js", "viewer.js", "report.js"}},
                             {{"run", Json::parse(to_json(report))}, {"pictures", pictures_json(pictures)}});
 }
 

@@ -52,10 +52,13 @@ Json page_json(const BenchResult& result, const Gallery& gallery) {
 }  // namespace
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
-  return tools::page_from_template(embedded_bench_files(), "bench.html",
-                                   {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js",
-                                    "tables.js", "viewer.js", "gallery.js", "page.js"},
-                                   page_json(result, gallery));
+  return tools::page_from_template(
+      {.files = embedded_bench_files(),
+       .title = "speed against error",
+       .body = "bench.html",
+       .scripts = {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js", "tables.js",
+                   "viewer.js", "gallery.js", "page.js"}},
+      page_json(result, gallery));
 }
 
 }  // namespace quincunx::bench

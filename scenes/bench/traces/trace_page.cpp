@@ -71,8 +71,10 @@ std::string page_of(const TraceRun& run, const std::string& command) {
       traces.push_back(trace_json(list.name, trace, settings));
     }
   }
-  return tools::page_from_template(bench::embedded_bench_files(), "traces.html",
-                                   {"elements.js", "sorted_table.js", "traces.js"},
+  return tools::page_from_template({.files = bench::embedded_bench_files(),
+                                    .title = "resolution controllers",
+                                    .body = "traces.html",
+                                    .scripts = {"elements.js", "sorted_table.js", "traces.js"}},
                                    {{"command", command},
                                     {"frames", longest},
                                     {"refresh_hz", settings.displays.front().refresh_hz},
