@@ -70,7 +70,8 @@ int render(const RenderOptions& options) {
     fmt::print("{}", tools::to_text(report));
   }
   if (!options.report.empty()) {
-    if (Status status = tools::write_report(options.report, report); !status.ok()) return tools::fail(status);
+    const Status status = tools::write_report(options.report, report, session.value()->pictures());
+    if (!status.ok()) return tools::fail(status);
   }
   return tools::kDone;
 }

@@ -13,6 +13,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-render --out courtyard.png                               one frame of the default scene at 1280x720
   quincunx-render --scale-path sweep --frames 240 --out "out/frame.%04d.png" --report out/report
   quincunx-render --scene model.glb --scale 0.5 --method bilinear --frames 60 --out "orbit.%04d.exr"
+  quincunx-render --scale 0.5 --frames 60 --score 4 --report out/report   pictures and scores against truth
   quincunx-render --scene wheel --truth 8 --shutter 0.5 --out truth.exr   supersampled, half a frame's shutter
   quincunx-render --target-fps 30 --frames 300 --report pace        a controller holds the rate; the report has how
   quincunx-render --scene chart --scale 0.71 --explain                what this scene needs and what is left out
@@ -31,6 +32,13 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
                  "With --truth: part of the frame's time that the shutter is open")
       .in_range(0.0, 1.0)
       .needs("--truth");
+  app.add_option("--score", options.score,
+                 "Score each frame against a truth of N x N samples a pixel; --report shows some beside it")
+      .in_range(1, 64)
+      .excludes("--truth")
+      .excludes("--target-fps")
+      .excludes("--calibrate")
+      .type_name("N");
   app.add_option("--out", options.out,
                  "Frames to write: .png (presented) or .exr (linear); #, @ or %04d is the number")
       .type_name("PATTERN");
@@ -41,7 +49,7 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
       .non_negative()
       .type_name("N");
   app.add_option("--report", options.report,
-                 "Write BASE.html, .txt and .json: passes, bytes, viewports, devices")
+                 "Write BASE.html, .txt and .json: passes, bytes, viewports, devices, scores")
       .type_name("BASE");
   app.add_flag("!--no-overlap", options.overlap,
                "Finish each frame before the next: slower, cleaner pass times");
@@ -53,8 +61,8 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
 void add_window_options(tools::CommandLine& app, RenderOptions& options) {
   const auto window = app.add_flag("--window", options.window,
                                    "Show the frames in a window, until it is closed or --frames are shown");
-  for (const char* other : {"--truth", "--out", "--contact-sheet", "--exr-frame", "--report", "--json",
-                            "--calibrate", "--compare-fixed"}) {
+  for (const char* other : {"--truth", "--score", "--out", "--contact-sheet", "--exr-frame", "--report",
+                            "--json", "--calibrate", "--compare-fixed"}) {
     window.excludes(app.option(other));
   }
   app.add_option("--script", options.script, "Keys and sizes for the window, by frame; docs/window.md")

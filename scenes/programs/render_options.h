@@ -17,6 +17,8 @@ struct RenderOptions : PictureOptions {
   int truth = 0;       // 0: off; N: N x N samples a pixel
   double shutter = 0;  // of truth: part of a frame's time that the shutter is open
 
+  int score = 0;  // 0: off; N: frames are measured against N x N samples a pixel
+
   std::string out;              // pattern; empty: no frames are written
   std::string contact_sheet;    // empty: none
   std::int64_t exr_frame = -1;  // this frame's targets are written beside `out`; -1: none

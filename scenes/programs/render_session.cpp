@@ -52,6 +52,7 @@ Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale
   options.out.clear();
   options.contact_sheet.clear();
   options.exr_frame = -1;
+  options.score = 0;
   auto settings = source_settings_for(options);
   if (!settings.ok()) return settings.status();
   auto pacing = frame_pacing_for(options.pacing, options.output);
@@ -95,6 +96,10 @@ Status RenderSession::check_outputs() {
   if (options_.exr_frame >= 0 && !pattern_) {
     return Status::invalid("--exr-frame needs --out, beside which its files are written");
   }
+  if (options_.score > 0) {
+    if (Status status = tools::ScoredFrames::check(options_.output, "--score"); !status.ok()) return status;
+    scores_.emplace(options_);
+  }
   return {};
 }
 
@@ -113,7 +118,7 @@ Status RenderSession::open_service() {
 }
 
 bool RenderSession::wants_resolved() const {
-  return options_.exr_frame >= 0 || (pattern_ && pattern_->format() == tools::FileFormat::kExr);
+  return options_.exr_frame >= 0 || scores_ || (pattern_ && pattern_->format() == tools::FileFormat::kExr);
 }
 
 // The view as the controller wants it.
@@ -172,9 +177,18 @@ Status RenderSession::deliver(std::int64_t index) {
                    .render = frame.view.render,
                    .jitter = frame.view.jitter,
                    .frame_ms = tools::ms_since(last_delivery_)});
+  if (scores_) {
+    if (Status status = score_frame(); !status.ok()) return status;
+  }
   last_delivery_ = Clock::now();
   source_->release();
   return {};
+}
+
+Status RenderSession::score_frame() {
+  auto resolved = download_resolved();
+  if (!resolved.ok()) return resolved.status();
+  return scores_->add(*source_, source_->oldest().index, source_->oldest().view, std::move(resolved).value());
 }
 
 Status RenderSession::write_frame(std::int64_t index) {
@@ -288,6 +302,9 @@ Status RenderSession::run() {
   if (Status status = service_->finish(); !status.ok()) return status;
   collect_reports();
   if (Status status = writer_.finish(); !status.ok()) return status;
+  if (scores_) {
+    if (Status status = scores_->finish(); !status.ok()) return status;
+  }
   if (sheet_) {
     if (Status status = sheet_->write(options_.contact_sheet); !status.ok()) return status;
     files_.push_back(options_.contact_sheet);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "programs/frame_detail.h"
+#include "programs/frame_scores.h"
 #include "programs/frame_source.h"
 #include "programs/paced_loop.h"
 #include "programs/render_options.h"
@@ -36,7 +37,8 @@ class RenderSession {
 
   Status run();  // draws, resolves and writes every frame
 
-  tools::RunReport report() const;  // complete after run()
+  tools::RunReport report() const;         // complete after run()
+  tools::ReportPictures pictures() const;  // with --score and --report; after run()
 
  private:
   explicit RenderSession(const RenderOptions& options);
@@ -56,6 +58,7 @@ class RenderSession {
   Status deliver(std::int64_t index);
   Status write_frame(std::int64_t index);
   Status write_exr_frame(std::int64_t index);
+  Status score_frame();
   Result<std::vector<float>> download_resolved() const;
   void collect_reports();
   bool wants_resolved() const;
@@ -65,7 +68,8 @@ class RenderSession {
   std::optional<ResolveService> service_;
   std::optional<PacedLoop> paced_;
   std::optional<FrameDetail> detail_;
-  Image resolved_;  // only where an EXR is wanted
+  std::optional<FrameScores> scores_;
+  Image resolved_;  // only where an EXR or a score is wanted
   std::optional<tools::FramePattern> pattern_;
   std::optional<tools::ContactSheet> sheet_;
   std::vector<int> sheet_frames_;

@@ -74,10 +74,22 @@ tools::RunReport RenderSession::report() const {
     report.pacing = {paced_->run()};
     if (!options_.pacing.controls()) report.pacing.front().controller += " " + scale_text(options_);
   }
+  if (scores_) {
+    report.scores = scores_->rows();
+    report.settings.push_back(
+        {"scores",
+         fmt::format("against {0}x{0} samples a pixel, drawn between the frames; what measures them "
+                     "makes the passes slower",
+                     options_.score)});
+  }
   report.left_out = plan().left_out;
   report.files = files_;
   report.wall_seconds = wall_seconds_;
   return report;
+}
+
+tools::ReportPictures RenderSession::pictures() const {
+  return scores_ ? scores_->pictures() : tools::ReportPictures();
 }
 
 }  // namespace quincunx::scenes

@@ -71,14 +71,19 @@ std::vector<float> depth_of(const TargetFile& file) {
   return z;
 }
 
+std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels) {
+  std::vector<Vec2> velocity;
+  velocity.reserve(pixels.velocity.size() / 2);
+  for (std::size_t i = 0; i + 1 < pixels.velocity.size(); i += 2)
+    velocity.push_back(
+        {glm::unpackHalf1x16(pixels.velocity[i]), glm::unpackHalf1x16(pixels.velocity[i + 1])});
+  return velocity;
+}
+
 std::vector<Vec2> backward_motion(const TargetFile& file) {
-  std::vector<Vec2> motion;
-  motion.reserve(file.pixels.velocity.size() / 2);
-  for (std::size_t i = 0; i + 1 < file.pixels.velocity.size(); i += 2) {
-    const Vec2 velocity = {glm::unpackHalf1x16(file.pixels.velocity[i]),
-                           glm::unpackHalf1x16(file.pixels.velocity[i + 1])};
-    motion.push_back(tools::backward_from_velocity(velocity, file.pixels.render));
-  }
+  std::vector<Vec2> motion = velocity_of(file.pixels);
+  for (Vec2& vector : motion)
+    vector = tools::backward_from_velocity(vector, file.pixels.render);
   return motion;
 }
 

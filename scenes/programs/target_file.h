@@ -23,8 +23,9 @@ struct TargetFile {
 };
 
 // One value a pixel of the viewport, as the file has them; empty for targets that were not drawn.
-std::vector<float> colour_of(const gl::TargetPixels& pixels);  // RGBA, linear
-std::vector<float> depth_of(const TargetFile& file);           // Z
+std::vector<float> colour_of(const gl::TargetPixels& pixels);   // RGBA, linear
+std::vector<float> depth_of(const TargetFile& file);            // Z
+std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels);  // uv, as drawn
 std::vector<Vec2> backward_motion(const TargetFile& file);
 std::vector<float> reactive_mask(const TargetFile& file);
 

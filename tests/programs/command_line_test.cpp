@@ -86,6 +86,11 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");
+  expect_refused("--score 0", 2, "--score");
+  expect_refused("--score 2 --target-fps 30", 2, "--target-fps");
+  expect_refused("--score 2 --truth 2 --out x.png", 2, "--truth");
+  expect_refused("--score 2 --output 640x10", 2,
+                 "--score needs an output of at least 11x11 pixels; this is 640x10");
   expect_refused("--frames 2 --out '{}/same.png'", 2, "same.png");
   expect_refused("--out '{}/frame.jpg'", 2, ".jpg");
   expect_refused("--scene nowhere", 2, "nowhere");

@@ -148,6 +148,31 @@ TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
 }
 
 // What a run must say of its pacing, whatever this machine makes of the rate.
+TEST_F(EndToEnd, ScoresAreOfThisRunAndChangeNoPixel) {
+  const std::string run = "--scene pan --frames 8 --method temporal --scale-path random:0.4,0.8 ";
+  render(run + "--out '{}/without.%04d.exr'");
+  render(run + "--out '{}/with.%04d.exr' --exposure 1 --score 2 --report '{}/r'");
+  for (int index = 0; index < 8; ++index) {
+    const std::string name = fmt::format(".{:04}.exr", index);
+    EXPECT_EQ(image("with" + name).pixels, image("without" + name).pixels) << index;
+  }
+  render("--scene pan --scale 0.5 --frames 8 --truth 2 --out '{}/truth.%04d.exr'");
+  const auto report = nlohmann::json::parse(read_file(path("r.json")));
+  const auto& frames = report["scores"]["frames"];
+  ASSERT_EQ(frames.size(), 8u);
+  const auto drawn = image("with.0005.exr").pixels, truth = image("truth.0005.exr").pixels;
+  double squares = 0;
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    squares += i % 4 < 3 ? std::pow(std::clamp(drawn[i], 0.f, 1.f) - std::clamp(truth[i], 0.f, 1.f), 2) : 0;
+  // The files are stored as half, which moves no value by more than 2^-11 of it.
+  EXPECT_NEAR(frames[5]["psnr_linear"], -10 * std::log10(squares / (static_cast<double>(drawn.size()) * .75)),
+              .01);
+  EXPECT_TRUE(frames[0]["flicker"].is_null());
+  EXPECT_GT(frames[1]["flicker"], 0);
+  const std::string page = read_file(path("r.html"));
+  EXPECT_NE(page.find("{\"name\":\"ghosts\",\"map\":true}"), std::string::npos);
+}
+
 TEST_F(EndToEnd, APacedRunReportsEveryFrame) {
   const std::string common = "--scene pan --target-fps 50 --frames 12 --report '{}/r' ";
   for (const std::string more :

@@ -12,17 +12,6 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr int kSmallestSide = 11;  // of SSIM's window
-
-// Up to so many of them, at even distances, the last one included.
-std::vector<std::int64_t> spread(const std::vector<std::int64_t>& frames, std::size_t most) {
-  std::vector<std::int64_t> chosen;
-  const std::size_t count = std::min(frames.size(), most);
-  for (std::size_t i = 1; i <= count; ++i)
-    chosen.push_back(frames[i * frames.size() / count - 1]);
-  return chosen;
-}
-
 Status check_size(const std::string& path, Extent found, Extent wanted) {
   if (found == wanted) return {};
   return Status::io(fmt::format("truth '{}' is {}x{} pixels; the output is {}x{}", path, found.width,
@@ -52,10 +41,7 @@ Result<std::vector<float>> read_truth(const std::string& path, const std::string
 Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles& truth, Extent extent,
                                                                std::span<const std::int64_t> frames,
                                                                bool keep_pictures) {
-  if (extent.width < kSmallestSide || extent.height < kSmallestSide) {
-    return Status::invalid(fmt::format("--truth needs an output of at least {0}x{0} pixels; this is {1}x{2}",
-                                       kSmallestSide, extent.width, extent.height));
-  }
+  if (Status status = ScoredFrames::check(extent, "--truth"); !status.ok()) return status;
   auto scores = std::unique_ptr<SequenceScores>(new SequenceScores(truth, extent));
   for (const std::int64_t frame : frames) {
     std::error_code error;
@@ -64,7 +50,7 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles&
     scores->known_.push_back(frame);
     scores->files_.push_back(path);
   }
-  if (keep_pictures) scores->kept_ = spread(scores->known_, kMostPictures);
+  scores->scored_.emplace(scores->known_, keep_pictures);
   if (!scores->known_.empty()) return scores;
   return Status::io(
       fmt::format("no file of truth pattern '{}' belongs to a frame of this run", truth.pattern.text()));
@@ -73,8 +59,7 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles&
 Status SequenceScores::add(std::int64_t frame, SharedPixels pixels, const MotionField& motion) {
   if (!std::binary_search(known_.begin(), known_.end(), frame)) return {};
   std::vector<Vec2> velocity;
-  if (std::binary_search(kept_.begin(), kept_.end(), frame))
-    velocity.assign(motion.velocity.begin(), motion.velocity.end());
+  if (scored_->keeps(frame)) velocity.assign(motion.velocity.begin(), motion.velocity.end());
   return queue_.push(
       [this, frame, pixels = std::move(pixels), extent = motion.extent, velocity = std::move(velocity)] {
         return measure_frame(frame, *pixels, {extent, velocity});
@@ -89,27 +74,7 @@ Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float
                                      const MotionField& motion) {
   const auto truth = read_truth(truth_.pattern.expand(frame), truth_.colour_layer, extent_);
   if (!truth.ok()) return truth.status();
-  Measured now = {frame, MeasuredPicture(extent_, pixels), MeasuredPicture(extent_, truth.value())};
-  const PictureScores scores = measure(now.picture, now.truth);
-  ScoreRow row = {.index = frame,
-                  .psnr_linear = scores.psnr_linear,
-                  .psnr_tone_mapped = scores.psnr_tone_mapped,
-                  .ssim = scores.ssim,
-                  .flip = scores.flip,
-                  .error_p99 = scores.error_p99};
-  const bool follows = before_ && before_->frame + 1 == frame;
-  if (follows) row.flicker = flicker(now.picture, before_->picture, now.truth, before_->truth);
-  rows_.push_back(row);
-  if (std::binary_search(kept_.begin(), kept_.end(), frame)) {
-    const JudgedFrame judged = {.picture = now.picture,
-                                .truth = now.truth,
-                                .previous = follows ? &before_->picture : nullptr,
-                                .previous_truth = follows ? &before_->truth : nullptr,
-                                .motion = motion};
-    if (Status status = add_frame(pictures_, frame, judged); !status.ok()) return status;
-  }
-  before_ = std::move(now);
-  return {};
+  return scored_->add(frame, {extent_, pixels}, {extent_, truth.value()}, motion);
 }
 
 }  // namespace quincunx::tools

@@ -9,9 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/image/image_metrics.h"
-#include "tools/page/report_pictures.h"
-#include "tools/program/run_report.h"
+#include "tools/page/scored_frames.h"
 #include "tools/program/work_queue.h"
 #include "tools/sequence/frame_pattern.h"
 
@@ -29,8 +27,7 @@ struct TruthFiles {
 class SequenceScores {
  public:
   // `frames`: those that will be added, ascending. Errors: kIoFailure where none of them has a true picture,
-  // or one is damaged or has another size than `extent`. `keep_pictures`: of up to kMostPictures frames.
-  static constexpr std::size_t kMostPictures = 6;
+  // or one is damaged or has another size than `extent`. `keep_pictures`: as ScoredFrames has it.
   static Result<std::unique_ptr<SequenceScores>> create(const TruthFiles& truth, Extent extent,
                                                         std::span<const std::int64_t> frames,
                                                         bool keep_pictures);
@@ -40,8 +37,8 @@ class SequenceScores {
   Status add(std::int64_t frame, SharedPixels pixels, const MotionField& motion);
   Status finish();
 
-  const std::vector<ScoreRow>& rows() const { return rows_; }   // after finish()
-  const ReportPictures& pictures() const { return pictures_; }  // after finish()
+  const std::vector<ScoreRow>& rows() const { return scored_->rows(); }   // after finish()
+  const ReportPictures& pictures() const { return scored_->pictures(); }  // after finish()
   const std::vector<std::string>& files() const { return files_; }
   double busy_seconds() const { return queue_.busy_seconds(); }
 
@@ -49,20 +46,11 @@ class SequenceScores {
   SequenceScores(const TruthFiles& truth, Extent extent) : truth_(truth), extent_(extent) {}
   Status measure_frame(std::int64_t frame, const std::vector<float>& pixels, const MotionField& motion);
 
-  struct Measured {
-    std::int64_t frame = 0;
-    MeasuredPicture picture;
-    MeasuredPicture truth;
-  };
-
   TruthFiles truth_;
   Extent extent_;
   std::vector<std::int64_t> known_;  // frames that have a truth
   std::vector<std::string> files_;   // theirs
-  std::vector<std::int64_t> kept_;   // those whose pictures are kept
-  std::optional<Measured> before_;
-  ReportPictures pictures_;
-  std::vector<ScoreRow> rows_;
+  std::optional<ScoredFrames> scored_;
   WorkQueue queue_{1, 1};  // last: its thread uses the rest
 };
 
