@@ -46,6 +46,13 @@
 #error "OUTPUT_FORMAT must be HALF or FLOAT"
 #endif
 
+// Mesa 25.0 (rusticl) loses an image that is the argument of a function that branches: reads crash its compiler, writes
+// vanish. OpenCL C allows such functions (1.2, 6.9 b). With this attribute clang, which runs first, inlines them. PoCL
+// has a macro of its own.
+#if (SOURCE_STORAGE == IMAGE || (defined(OUTPUT_STORAGE) && OUTPUT_STORAGE == IMAGE)) && !defined(inline)
+#define inline inline __attribute__((always_inline))
+#endif
+
 #if SOURCE_STORAGE == IMAGE
 #define COLOUR_TEXELS read_only image2d_t
 #define VELOCITY_TEXELS read_only image2d_t
