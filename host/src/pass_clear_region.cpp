@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "pass_list.h"
 #include "pass_options.h"
@@ -27,6 +28,16 @@ unsigned half_bits(float value) {
   }
   const std::uint32_t rounded = magnitude + 0xfffu + ((magnitude >> 13) & 1u);
   return sign | ((rounded - 0x38000000u) >> 13);
+}
+
+// Of a half that is a number or infinite.
+float half_value(unsigned bits) {
+  const bool infinite = (bits & 0x7fffu) == 0x7c00u;
+  const float magnitude = infinite ? std::numeric_limits<float>::infinity()
+                          : (bits & 0x7c00u) == 0
+                              ? static_cast<float>(bits & 0x3ffu) * 0x1p-24f
+                              : std::bit_cast<float>(((bits & 0x7fffu) << 13) + 0x38000000u);
+  return (bits & 0x8000u) != 0 ? -magnitude : magnitude;
 }
 
 unsigned unorm8(float value) {
@@ -67,6 +78,14 @@ void encode_texel(PixelFormat format, const float value[4], unsigned bits[4]) {
   }
 }
 
+void stored_value(PixelFormat format, const float value[4], float stored[4]) {
+  std::copy_n(value, 4, stored);
+  if (format != PixelFormat::kRG16F && format != PixelFormat::kRGBA16F) return;
+  for (int c = 0; c < 4; ++c) {
+    if (!std::isnan(value[c])) stored[c] = half_value(half_bits(value[c]));
+  }
+}
+
 void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Extent render,
                             const float value[4], cl::Event* event) {
   ClearParams params{};
@@ -75,7 +94,7 @@ void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Exte
   params.columns_per_item = columns_per_item(device(), render.width);
   params.output = layout_of(image);
   encode_texel(image.format, value, params.bits);
-  std::copy_n(value, 4, params.value);
+  stored_value(image.format, value, params.value);
   bind(params, image);
   launch(frame, render, params.columns_per_item, event);
 }

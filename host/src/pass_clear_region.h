@@ -10,6 +10,10 @@ namespace quincunx {
 // to nearest even, unorm clamped to [0, 1] and rounded to nearest. Pure.
 void encode_texel(PixelFormat format, const float value[4], unsigned bits[4]);
 
+// What is written to an image so that it holds the nearest value: OpenCL lets write_imagef round halves towards zero.
+// Pure.
+void stored_value(PixelFormat format, const float value[4], float stored[4]);
+
 // The pass for images of this storage, and for buffers of this format's texel size.
 PassSpec clear_region_spec(Storage storage, Resource resource, PixelFormat format);
 

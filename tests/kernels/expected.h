@@ -15,10 +15,11 @@ namespace quincunx::testing {
 
 // A fatal failure unless `actual`, which a kernel stored, is as far from the value as its bound allows at most.
 inline void expect_near(double expected, const reference::Bounded& bound, double actual,
-                        const std::string& what, PixelFormat stored = PixelFormat::kRGBA32F) {
+                        const std::string& what, PixelFormat stored = PixelFormat::kRGBA32F,
+                        Storage storage = Storage::kBuffer) {
   // The bound is that of the same value: what it is taken through differs by roundings of doubles.
   ASSERT_NEAR(expected, bound.value, 1e-12 * std::max(1.0, std::abs(expected))) << what;
-  const double allowed = bound.error + output_rounding(stored, std::abs(expected) + bound.error);
+  const double allowed = bound.error + output_rounding(stored, std::abs(expected) + bound.error, storage);
   ASSERT_TRUE(std::isfinite(actual)) << what;
   ASSERT_NEAR(expected, actual, allowed) << what;
   record_error({.error = std::abs(expected - actual),

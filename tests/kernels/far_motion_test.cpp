@@ -324,10 +324,9 @@ TEST_P(FarMotionPasses, TheVelocityIsThatOfTheModel) {
           ASSERT_TRUE(actual[i][c] == drawn[c] || (std::isnan(actual[i][c]) && std::isnan(drawn[c]))) << i;
           continue;
         }
-        const double stored = settings_.velocity == PixelFormat::kRG16F ? 0x1p-11 : 0x1p-24;
-        ASSERT_NEAR(actual[i][c], expected.value[c],
-                    expected.bound[c].error + std::abs(expected.value[c]) * stored + 0x1p-25)
-            << i;
+        const double rounding =
+            testing::velocity_rounding(settings_.velocity, settings_.storage, std::abs(expected.value[c]));
+        ASSERT_NEAR(actual[i][c], expected.value[c], expected.bound[c].error + rounding) << i;
       }
     }
   }

@@ -109,8 +109,7 @@ class FarVelocityPass : public ::testing::TestWithParam<Variant> {
         }
         const double units = 1 / std::abs(made.reference.velocity_scale[c]);
         const double magnitude = std::abs(wanted.velocity[c]);
-        const double rounding =
-            settings_.velocity == PixelFormat::kRG16F ? magnitude * 0x1p-11 + 0x1p-25 : magnitude * 0x1p-24;
+        const double rounding = testing::velocity_rounding(settings_.velocity, settings_.storage, magnitude);
         const double bound = kError * wanted.condition * units + rounding;
         testing::record_error({.error = std::abs(actual[i][c] - wanted.velocity[c]),
                                .bound = bound,

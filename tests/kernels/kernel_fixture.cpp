@@ -354,8 +354,14 @@ double input_rounding(PixelFormat format, double magnitude) {
   return reference::linear_of_srgb(1) - reference::linear_of_srgb(1 - 0.5 / 255);
 }
 
-double output_rounding(PixelFormat format, double magnitude) {
-  return format == PixelFormat::kRGBA16F ? magnitude * 0x1p-11 + 0x1p-25 : 0;
+double output_rounding(PixelFormat format, double magnitude, Storage storage) {
+  if (!is_half(format)) return 0;
+  const double steps = storage == Storage::kImage ? 1 : 0.5;
+  return steps * (magnitude * 0x1p-10 + 0x1p-24);
+}
+
+double velocity_rounding(PixelFormat format, Storage storage, double magnitude) {
+  return is_half(format) ? output_rounding(format, magnitude, storage) : magnitude * 0x1p-24;
 }
 
 }  // namespace quincunx::testing

@@ -104,7 +104,11 @@ bool holds_non_finite(PixelFormat format);
 // the bright end, where sRGB is steepest.
 double input_rounding(PixelFormat format, double magnitude);
 
-// What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal.
-double output_rounding(PixelFormat format, double magnitude);
+// What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal. In an image it is a
+// whole step, because OpenCL lets a device round towards zero there (1.2, 8.3.2).
+double output_rounding(PixelFormat format, double magnitude, Storage storage = Storage::kBuffer);
+
+// The same of a velocity, which is rounded to a float where it is no half.
+double velocity_rounding(PixelFormat format, Storage storage, double magnitude);
 
 }  // namespace quincunx::testing

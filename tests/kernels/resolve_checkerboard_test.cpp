@@ -202,7 +202,7 @@ void Checkerboard::compare(const FrameSpec& spec, const FrameSpec& spec_before, 
         hidden_ += value.near_trust < .5 && value.far_trust > .5 ? 1 : 0;
         unknown_ += value.near_trust == 0 && value.far_trust == 0 ? 1 : 0;
         for (std::size_t c = 0; c < 4; ++c) {
-          testing::expect_near(value.colour[c], bound.colour[c], colour[i][c], what, v.colour);
+          testing::expect_near(value.colour[c], bound.colour[c], colour[i][c], what, v.colour, v.storage);
           if (HasFatalFailure()) return;
         }
         from = reference::index_of(spec.render.width, value.x, value.y);

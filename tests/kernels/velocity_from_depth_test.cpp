@@ -89,8 +89,7 @@ class Velocity : public ::testing::TestWithParam<Variant> {
           continue;
         }
         const double magnitude = std::abs(wanted.velocity[c]);
-        const double rounding =
-            settings_.velocity == PixelFormat::kRG16F ? magnitude * 0x1p-11 + 0x1p-25 : magnitude * 0x1p-24;
+        const double rounding = testing::velocity_rounding(settings_.velocity, settings_.storage, magnitude);
         const double bound = kVelocityError * wanted.condition + rounding;
         testing::record_error({.error = std::abs(actual[i][c] - wanted.velocity[c]),
                                .bound = bound,
