@@ -18,6 +18,7 @@ run_packages=(
   fonts-dejavu-core                      # captions of the contact sheet
 )
 test_packages=(clang clang-format python3 chromium
+  mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
 )
 optional_test_packages=(
