@@ -21,13 +21,21 @@ double milliseconds(const cl::Event& event) {
   return static_cast<double>(end - start) * 1e-6;
 }
 
+// Negative where the command failed, and where a lost device does not even tell.
+cl_int execution_status(const cl::Event& event) {
+  cl_int state = CL_COMPLETE;
+  const cl_int code =
+      clGetEventInfo(event(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(state), &state, nullptr);
+  return code == CL_SUCCESS ? state : code;
+}
+
 }  // namespace
 
 FrameRing::Slot& FrameRing::begin() {
   if (next_ - taken_ == kFrames) {
     Slot& oldest = slots_[taken_ % kFrames];
     // The device may still write its counter.
-    if (oldest.done() != nullptr && oldest.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE) {
+    if (oldest.done() != nullptr && execution_status(oldest.done) > CL_COMPLETE) {
       oldest.done.wait();
     }
     ++taken_;
@@ -43,7 +51,7 @@ FrameRing::Slot& FrameRing::begin() {
 std::optional<FrameReport> FrameRing::next_completed() {
   if (taken_ == next_) return std::nullopt;
   Slot& slot = slots_[taken_ % kFrames];
-  const auto state = slot.done.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+  const cl_int state = execution_status(slot.done);
   if (state > CL_COMPLETE) return std::nullopt;
   FrameReport report = slot.report;
   if (state < 0) {

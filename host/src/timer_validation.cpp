@@ -77,7 +77,7 @@ std::string doubt_about_one_growth(KnownLoad& load) {
   return doubt_about(light, heavy);
 }
 
-std::string doubt_about_events(const Device::Impl& device) try {
+std::string doubt_about_events(const Device::Impl& device) {
   constexpr int kAttempts = 5;  // a busy machine may make one seem wrong
   KnownLoad load(device);
   std::string doubt;
@@ -86,12 +86,9 @@ std::string doubt_about_events(const Device::Impl& device) try {
     if (doubt.empty()) break;
   }
   return doubt;
-} catch (const cl::Error& error) {
-  return fmt::format("{} failed: {} ({})", error.what(), error_name(error.err()), error.err());
 }
 
-PassTimer measured_timer(const Device::Impl& device) {
-  const std::string doubt = doubt_about_events(device);
+PassTimer believed(const Device::Impl& device, const std::string& doubt) {
   if (doubt.empty()) {
     spdlog::debug("pass times of '{}': OpenCL events agree with the host's clock", device.info.name);
     return PassTimer::kEvents;
@@ -116,13 +113,19 @@ std::optional<PassTimer> kept_timer(const fs::path& path) {
 PassTimer validated_timer(const Device::Impl& device) {
   if ((device.queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_PROFILING_ENABLE) == 0) return PassTimer::kNone;
   const std::optional<fs::path> folder = cache_folder();
-  if (!folder) return measured_timer(device);
-  const fs::path path = *folder / fmt::format("pass_timer-{}.txt", cache_key(device, kSource, kOptions));
+  const fs::path path =
+      folder ? *folder / fmt::format("pass_timer-{}.txt", cache_key(device, kSource, kOptions)) : fs::path();
   if (const auto kept = kept_timer(path)) return *kept;
-  const PassTimer timer = measured_timer(device);
-  const std::string text = name_of(timer);
-  write_cache_entry(path, {text.begin(), text.end()});
-  return timer;
+  try {
+    const PassTimer timer = believed(device, doubt_about_events(device));
+    const std::string text = name_of(timer);
+    if (folder) write_cache_entry(path, {text.begin(), text.end()});
+    return timer;
+  } catch (const cl::Error& error) {
+    // Perhaps it would work the next time, so that nothing is kept.
+    return believed(device,
+                    fmt::format("{} failed: {} ({})", error.what(), error_name(error.err()), error.err()));
+  }
 }
 
 PassTimer pass_timer(const Device& device) {

@@ -14,8 +14,17 @@
 #include <string>
 #include <vector>
 
+#include "cl_faults.h"
+
 namespace quincunx::gl::testing {
 namespace {
+
+// Whether an object is not to be made; its error is then in *code.
+bool refuses(cl_int* code) {
+  const cl_int fault = injected_fault();
+  if (fault != CL_SUCCESS && code != nullptr) *code = fault;
+  return fault != CL_SUCCESS;
+}
 
 constexpr std::uint8_t kJunk = 0xcd;
 
@@ -269,6 +278,7 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std
 cl_context CL_API_CALL clCreateContext(
     const cl_context_properties* properties, cl_uint count, const cl_device_id* devices,
     void(CL_CALLBACK* notify)(const char*, const void*, std::size_t, void*), void* user, cl_int* code) {
+  if (refuses(code)) return nullptr;
   std::vector<cl_context_properties> plain;
   std::vector<cl_context_properties> all;
   for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
@@ -350,12 +360,14 @@ cl_int CL_API_CALL clReleaseMemObject(cl_mem memory) {
 
 cl_mem CL_API_CALL clCreateBuffer(cl_context context, cl_mem_flags flags, std::size_t bytes, void* host,
                                   cl_int* code) {
+  if (refuses(code)) return nullptr;
   ++state().counts.creations;
   return next<decltype(clCreateBuffer)>("clCreateBuffer")(context, flags, bytes, host, code);
 }
 
 cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const cl_image_format* format,
                                  const cl_image_desc* desc, void* host, cl_int* code) {
+  if (refuses(code)) return nullptr;
   ++state().counts.creations;
   if (desc->buffer != nullptr && state().images_on_buffers)
     return create_on_buffer(context, flags, *format, *desc, code);
@@ -364,12 +376,14 @@ cl_mem CL_API_CALL clCreateImage(cl_context context, cl_mem_flags flags, const c
 
 cl_mem CL_API_CALL clCreateSubBuffer(cl_mem buffer, cl_mem_flags flags, cl_buffer_create_type type,
                                      const void* info, cl_int* code) {
+  if (refuses(code)) return nullptr;
   ++state().counts.creations;
   return next<decltype(clCreateSubBuffer)>("clCreateSubBuffer")(buffer, flags, type, info, code);
 }
 
 cl_int CL_API_CALL clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void* mapped, cl_uint count,
                                            const cl_event* wait, cl_event* event) {
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
   const cl_int code = next<decltype(clEnqueueUnmapMemObject)>("clEnqueueUnmapMemObject")(
       queue, memory, mapped, count, wait, event);
   update_images_on_buffers(queue);
@@ -381,6 +395,7 @@ cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffe
                                             const std::size_t* region, std::size_t row, std::size_t slice,
                                             std::size_t host_row, std::size_t host_slice, const void* host,
                                             cl_uint count, const cl_event* wait, cl_event* event) {
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
   const cl_int code = next<decltype(clEnqueueWriteBufferRect)>("clEnqueueWriteBufferRect")(
       queue, buffer, blocking, to, from, region, row, slice, host_row, host_slice, host, count, wait, event);
   update_images_on_buffers(queue);
@@ -388,6 +403,7 @@ cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffe
 }
 
 cl_int CL_API_CALL clFinish(cl_command_queue queue) {
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
   ++state().counts.blocking_waits;
   return next<decltype(clFinish)>("clFinish")(queue);
 }
@@ -395,6 +411,7 @@ cl_int CL_API_CALL clFinish(cl_command_queue queue) {
 void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
                                      cl_map_flags flags, std::size_t offset, std::size_t bytes, cl_uint count,
                                      const cl_event* wait, cl_event* event, cl_int* code) {
+  if (refuses(code)) return nullptr;
   if (blocking != CL_FALSE) ++state().counts.blocking_waits;
   return next<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer")(queue, buffer, blocking, flags, offset,
                                                                   bytes, count, wait, event, code);

@@ -66,7 +66,7 @@ struct PassReport {
 struct FrameReport {
   static constexpr int kMaxPasses = 20;
 
-  Status status;  // not ok: nothing was enqueued and no output was touched
+  Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
   Extent render = {};
   Vec2 ratio = {};             // render / output, recomputed from the integer viewport

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The calls that cl_interposer.cpp replaces ask injected_fault() there.
+#include "cl_faults.h"
+
+#include <dlfcn.h>
+
+#include <atomic>
+
+namespace quincunx::gl::testing {
+namespace {
+
+std::atomic<bool> g_active = false;
+std::atomic<bool> g_for_good = false;
+std::atomic<int> g_left = 0;  // calls before the one that fails
+std::atomic<cl_int> g_code = CL_SUCCESS;
+
+}  // namespace
+
+PretendFault::PretendFault(int at, cl_int code, Lasts lasts) {
+  g_left = at;
+  g_code = code;
+  g_for_good = lasts == Lasts::kForGood;
+  g_active = true;
+}
+
+PretendFault::~PretendFault() {
+  g_active = false;
+}
+
+bool PretendFault::struck() const {
+  return g_left < 0;
+}
+
+cl_int injected_fault() {
+  if (!g_active) return CL_SUCCESS;
+  const int left = g_left--;
+  return left == 0 || (left < 0 && g_for_good) ? g_code.load() : CL_SUCCESS;
+}
+
+}  // namespace quincunx::gl::testing
+
+using quincunx::gl::testing::injected_fault;
+
+namespace {
+
+template <auto function>
+auto next(const char* name) {
+  return reinterpret_cast<decltype(function)>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+// A function that returns its error, and one that returns an object and hands its error out through `code`.
+#define FAILS(name, ...)                                                        \
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault; \
+  static const auto real = next<&name>(#name);                                  \
+  return real(__VA_ARGS__)
+#define FAILS_TO_MAKE(name, ...)                                    \
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) { \
+    if (code != nullptr) *code = fault;                             \
+    return nullptr;                                                 \
+  }                                                                 \
+  static const auto real = next<&name>(#name);                      \
+  return real(__VA_ARGS__)
+
+extern "C" {
+
+cl_command_queue CL_API_CALL clCreateCommandQueue(cl_context context, cl_device_id device,
+                                                  cl_command_queue_properties properties, cl_int* code) {
+  FAILS_TO_MAKE(clCreateCommandQueue, context, device, properties, code);
+}
+
+cl_program CL_API_CALL clCreateProgramWithSource(cl_context context, cl_uint count, const char** texts,
+                                                 const size_t* lengths, cl_int* code) {
+  FAILS_TO_MAKE(clCreateProgramWithSource, context, count, texts, lengths, code);
+}
+
+cl_program CL_API_CALL clCreateProgramWithBinary(cl_context context, cl_uint count,
+                                                 const cl_device_id* devices, const size_t* lengths,
+                                                 const unsigned char** binaries, cl_int* states,
+                                                 cl_int* code) {
+  FAILS_TO_MAKE(clCreateProgramWithBinary, context, count, devices, lengths, binaries, states, code);
+}
+
+cl_int CL_API_CALL clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices,
+                                  const char* options, void(CL_CALLBACK* notify)(cl_program, void*),
+                                  void* user) {
+  FAILS(clBuildProgram, program, count, devices, options, notify, user);
+}
+
+cl_kernel CL_API_CALL clCreateKernel(cl_program program, const char* name, cl_int* code) {
+  FAILS_TO_MAKE(clCreateKernel, program, name, code);
+}
+
+cl_int CL_API_CALL clSetKernelArg(cl_kernel kernel, cl_uint index, size_t size, const void* value) {
+  FAILS(clSetKernelArg, kernel, index, size, value);
+}
+
+cl_int CL_API_CALL clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                                          const size_t* offset, const size_t* global, const size_t* local,
+                                          cl_uint count, const cl_event* wait, cl_event* event) {
+  FAILS(clEnqueueNDRangeKernel, queue, kernel, dimensions, offset, global, local, count, wait, event);
+}
+
+cl_int CL_API_CALL clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern,
+                                       size_t pattern_size, size_t offset, size_t size, cl_uint count,
+                                       const cl_event* wait, cl_event* event) {
+  FAILS(clEnqueueFillBuffer, queue, buffer, pattern, pattern_size, offset, size, count, wait, event);
+}
+
+cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                                       size_t size, void* to, cl_uint count, const cl_event* wait,
+                                       cl_event* event) {
+  FAILS(clEnqueueReadBuffer, queue, buffer, blocking, offset, size, to, count, wait, event);
+}
+
+cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+                                        size_t offset, size_t size, const void* from, cl_uint count,
+                                        const cl_event* wait, cl_event* event) {
+  FAILS(clEnqueueWriteBuffer, queue, buffer, blocking, offset, size, from, count, wait, event);
+}
+
+cl_int CL_API_CALL clFlush(cl_command_queue queue) {
+  FAILS(clFlush, queue);
+}
+
+cl_int CL_API_CALL clWaitForEvents(cl_uint count, const cl_event* events) {
+  FAILS(clWaitForEvents, count, events);
+}
+
+cl_int CL_API_CALL clGetEventInfo(cl_event event, cl_event_info name, size_t room, void* value,
+                                  size_t* bytes_ret) {
+  FAILS(clGetEventInfo, event, name, room, value, bytes_ret);
+}
+
+}  // extern "C"

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// A device that fails under the service: a Status in words, no exception, and later frames are right.
+#include <array>
+#include <vector>
+
+#include "fault_fixture.h"
+#include "interop_fixture.h"
+#include "quincunx/resolve_service.h"
+
+namespace quincunx::gl::testing {
+namespace {
+
+constexpr cl_int kLost = CL_DEVICE_NOT_AVAILABLE;
+constexpr auto kForGood = PretendFault::Lasts::kForGood;
+
+// A service with two frames of its own and somewhere to put the picture.
+class FaultyService : public DeviceFault {
+ protected:
+  FaultyService() : device_(Device::open().value()) {
+    ResolveSettings settings{.method = Method::kQuincunx, .output = kOutput, .target = kRender};
+    settings.quincunx.form = TwoFrameForm::kReprojected;
+    settings.blur.shutter = 0.5f;
+    settings.sharpness = 0.5f;
+    plan_ = plan_for({.moving_objects = true, .transparents = false}, settings).value();
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      frames_[i].colour = filled(settings.colour, static_cast<std::uint32_t>(i + 1));
+      frames_[i].velocity = filled(settings.velocity, static_cast<std::uint32_t>(i + 3));
+      frames_[i].depth = filled(PixelFormat::kR32F, static_cast<std::uint32_t>(i + 5));
+    }
+    resolved_ = device_.allocate(kOutput, settings.resolved).value();
+    blurred_ = device_.allocate(kOutput, settings.resolved).value();
+    presented_ = device_.allocate(kOutput, PixelFormat::kRGBA8).value();
+  }
+
+  ResolveService service() const { return ResolveService::create(device_, plan_).value(); }
+
+  FrameReport dispatch(ResolveService& service, std::size_t frame) const {
+    const Frame& images = frames_[frame];
+    return service.dispatch({.colour = images.colour.view(),
+                             .depth = images.depth.view(),
+                             .velocity = images.velocity.view(),
+                             .render = kRender},
+                            {resolved_.view(), presented_.view(), blurred_.view()});
+  }
+
+  Bytes picture() const {
+    Bytes bytes(static_cast<std::size_t>(kOutput.area()) * bytes_per_pixel(PixelFormat::kRGBA8));
+    EXPECT_TRUE(device_.download(presented_.view(), kOutput, bytes.data()).ok());
+    return bytes;
+  }
+
+  const Device& device() const { return device_; }
+  const ResolvePlan& plan() const { return plan_; }
+
+ private:
+  struct Frame {
+    Image colour, velocity, depth;
+  };
+
+  Image filled(PixelFormat format, std::uint32_t seed) const {
+    Image image = device_.allocate(kRender, format).value();
+    EXPECT_TRUE(device_.upload(image.view(), kRender, finite_texels(format, kRender, seed).data()).ok());
+    return image;
+  }
+
+  Device device_;
+  ResolvePlan plan_;
+  std::array<Frame, 2> frames_;
+  Image resolved_, blurred_, presented_;
+};
+
+TEST_F(FaultyService, CreationFailsInWordsOrFindsAnotherWay) {
+  (void)service();  // kernels are in the cache from here on
+  for (int at = 0; at < kMoreThanAnyCalls; ++at) {
+    const PretendFault fault(at, CL_MEM_OBJECT_ALLOCATION_FAILURE);
+    const auto created = ResolveService::create(device(), plan());
+    if (!created.ok()) expect_told(created.status(), "CL_MEM_OBJECT_ALLOCATION_FAILURE");
+    if (fault.struck()) continue;
+    EXPECT_TRUE(created.ok()) << created.status().message();
+    EXPECT_GT(at, 50) << "the calls of a creation are seen";
+    return;
+  }
+  FAIL() << "every creation met the fault";
+}
+
+TEST_F(FaultyService, AFrameThatFailsLeavesNothingToTheNext) {
+  ResolveService good = service();
+  const FrameReport first = dispatch(good, 1);
+  ASSERT_TRUE(first.ok()) << first.status.message();
+  const Bytes expected = picture();
+
+  ResolveService service = this->service();
+  for (int at = 0; at < kMoreThanAnyCalls; ++at) {
+    ASSERT_TRUE(dispatch(service, 0).ok()) << at;
+    bool struck = false;
+    {
+      const PretendFault fault(at, CL_OUT_OF_RESOURCES);
+      const FrameReport report = dispatch(service, 1);
+      struck = fault.struck();
+      if (struck) expect_told(report.status, "CL_OUT_OF_RESOURCES");
+    }
+    if (!struck) {
+      EXPECT_GT(at, 20) << "the calls of a frame are seen";
+      return;
+    }
+    const FrameReport next = dispatch(service, 1);
+    ASSERT_TRUE(next.ok()) << next.status.message();
+    EXPECT_FALSE(next.used_previous);
+    ASSERT_EQ(picture(), expected) << "after call " << at;
+    while (service.next_completed()) {
+    }
+  }
+  FAIL() << "every frame met the fault";
+}
+
+TEST_F(FaultyService, ReportsThatCannotBeAskedForSayWhy) {
+  ResolveService service = this->service();
+  for (const std::size_t frame : {0, 1, 0})
+    ASSERT_TRUE(dispatch(service, frame).ok());
+  const PretendFault fault(0, kLost, kForGood);
+  for (int i = 0; i < 3; ++i) {
+    const auto report = service.next_completed();
+    ASSERT_TRUE(report.has_value());
+    expect_told(report->status, "CL_DEVICE_NOT_AVAILABLE");
+  }
+  EXPECT_FALSE(service.next_completed().has_value());
+}
+
+TEST_F(FaultyService, ALostDeviceIsToldByEveryCall) {
+  ResolveService service = this->service();
+  ASSERT_TRUE(dispatch(service, 0).ok());
+  const PretendFault fault(0, kLost, kForGood);
+  for (std::size_t frame = 0; frame < 100; ++frame)  // more than the service keeps reports of
+    expect_told(dispatch(service, (frame + 1) % 2).status, "CL_DEVICE_NOT_AVAILABLE");
+  expect_told(service.finish(), "CL_DEVICE_NOT_AVAILABLE");
+  expect_told(ResolveService::create(device(), plan()).status(), "CL_DEVICE_NOT_AVAILABLE");
+  expect_told(device().allocate(kOutput, PixelFormat::kRGBA16F).status(), "CL_DEVICE_NOT_AVAILABLE");
+}  // the service is destroyed while the device is gone
+
+TEST_F(DeviceFault, OpeningFailsInWordsAndKeepsNoAnswerOfAFailure) {
+  for (int at = 0; at < kMoreThanAnyCalls; ++at) {
+    const PretendFault fault(at, CL_OUT_OF_HOST_MEMORY);
+    const auto opened = Device::open();
+    if (!opened.ok()) expect_told(opened.status(), "CL_OUT_OF_HOST_MEMORY");
+    if (!fault.struck()) {
+      EXPECT_GT(at, 8) << "the calls of an opening are seen";
+      EXPECT_FALSE(cache_is_empty()) << "which clock to use is kept";
+      return;
+    }
+    ASSERT_TRUE(cache_is_empty()) << "what the device answered after call " << at << " failed was kept";
+  }
+  FAIL() << "every device met the fault";
+}
+
+}  // namespace
+}  // namespace quincunx::gl::testing
