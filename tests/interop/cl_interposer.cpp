@@ -53,6 +53,7 @@ struct State {
   bool gl_event = false;
   PretendSharing::Flaw flaw = PretendSharing::Flaw::kNone;
   bool images_on_buffers = false;
+  bool separate_memory = false;
   std::map<cl_mem, ImageOnBuffer> on_buffers;
   std::map<cl_mem, SharedTexture> textures;
   std::map<cl_context, std::vector<cl_context_properties>> properties;
@@ -244,6 +245,14 @@ PretendImagesOnBuffers::~PretendImagesOnBuffers() {
   state().on_buffers.clear();
 }
 
+PretendSeparateMemory::PretendSeparateMemory() {
+  state().separate_memory = true;
+}
+
+PretendSeparateMemory::~PretendSeparateMemory() {
+  state().separate_memory = false;
+}
+
 int acquired_textures() {
   return static_cast<int>(std::count_if(state().textures.begin(), state().textures.end(),
                                         [](const auto& entry) { return entry.second.acquired; }));
@@ -258,6 +267,10 @@ extern "C" {
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std::size_t room, void* value,
                                    std::size_t* bytes_ret) {
   const auto real = next<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+  if (name == CL_DEVICE_HOST_UNIFIED_MEMORY && state().separate_memory) {
+    const cl_bool unified = CL_FALSE;
+    return copy_out(&unified, sizeof(unified), room, value, bytes_ret);
+  }
   if (name == CL_DEVICE_IMAGE_PITCH_ALIGNMENT_KHR && state().images_on_buffers) {
     const cl_uint texels = kImagePitchTexels;
     return copy_out(&texels, sizeof(texels), room, value, bytes_ret);
@@ -412,6 +425,7 @@ void* CL_API_CALL clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_b
                                      cl_map_flags flags, std::size_t offset, std::size_t bytes, cl_uint count,
                                      const cl_event* wait, cl_event* event, cl_int* code) {
   if (refuses(code)) return nullptr;
+  ++state().counts.maps;
   if (blocking != CL_FALSE) ++state().counts.blocking_waits;
   return next<decltype(clEnqueueMapBuffer)>("clEnqueueMapBuffer")(queue, buffer, blocking, flags, offset,
                                                                   bytes, count, wait, event, code);

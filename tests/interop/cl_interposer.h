@@ -16,6 +16,7 @@ struct ClCounts {
   int blocking_waits = 0;  // clFinish, and transfers and maps that block
   int acquires = 0;        // calls of clEnqueueAcquireGLObjects, and of its counterpart
   int releases = 0;
+  int maps = 0;  // of buffers into the host's memory
 };
 
 ClCounts& cl_counts();
@@ -39,6 +40,15 @@ class PretendImagesOnBuffers {
   ~PretendImagesOnBuffers();
   PretendImagesOnBuffers(const PretendImagesOnBuffers&) = delete;
   PretendImagesOnBuffers& operator=(const PretendImagesOnBuffers&) = delete;
+};
+
+// While it lives, every device says that its memory is not the host's (CL_DEVICE_HOST_UNIFIED_MEMORY).
+class PretendSeparateMemory {
+ public:
+  PretendSeparateMemory();
+  ~PretendSeparateMemory();
+  PretendSeparateMemory(const PretendSeparateMemory&) = delete;
+  PretendSeparateMemory& operator=(const PretendSeparateMemory&) = delete;
 };
 
 constexpr int kImagePitchTexels = 16;
