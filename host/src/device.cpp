@@ -242,6 +242,7 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
     impl->timer = validated_timer(*impl);
+    impl->profile = default_profile(impl->info.kind);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::open", infos[*chosen].name);
@@ -264,6 +265,7 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
     impl->timer = validated_timer(*impl);
+    impl->profile = default_profile(impl->info.kind);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::borrow", "a borrowed device");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "device_profile.h"
 #include "opencl.h"
 #include "quincunx/device.h"
 #include "quincunx/pass_timer.h"
@@ -13,6 +14,7 @@ struct Device::Impl {
   cl::Context context;
   cl::CommandQueue queue;
   PassTimer timer = PassTimer::kNone;
+  DeviceProfile profile;
 };
 
 }  // namespace quincunx

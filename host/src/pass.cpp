@@ -74,10 +74,8 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
 
 void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   Extent extent, int columns, cl::Event* event) {
-  // A CPU runs a group in one thread, a GPU wants a compact tile.
-  const bool cpu = device.info.kind == DeviceKind::kCpu;
-  const int group_x = cpu ? 1 : 16;
-  const int group_y = cpu ? 4 : 8;
+  const int group_x = device.profile.group_width;
+  const int group_y = device.profile.group_height;
   const int items_x = (extent.width + columns - 1) / columns;
   queue.enqueueNDRangeKernel(
       kernel, cl::NullRange,
@@ -103,7 +101,8 @@ Ratio ratio_of(Extent to, Extent from) {
 }
 
 int columns_per_item(const Device::Impl& device, int width, int block) {
-  return device.info.kind == DeviceKind::kCpu ? round_up(width, block) : block;
+  const int pixels = device.profile.pixels_per_item;
+  return round_up(pixels == 0 ? width : std::min(pixels, width), block);
 }
 
 }  // namespace quincunx

@@ -156,8 +156,7 @@ struct Ratio {
 };
 Ratio ratio_of(Extent to, Extent from);
 
-// Pixels of a row that one work-item makes: a whole row on a CPU, where the row's own values are then loaded
-// once, and one block elsewhere. A multiple of `block`.
+// Pixels of a row that one work-item makes, by the device's profile: a multiple of `block`.
 int columns_per_item(const Device::Impl& device, int width, int block = kBlock);
 
 }  // namespace quincunx

@@ -55,6 +55,17 @@ Pixel decoded(const Pixel& codes) {
   return light;
 }
 
+DeviceProfile profile_of(const char* text) {
+  DeviceProfile profile;
+  char end = 0;
+  const int read = std::sscanf(text, "%dx%dx%d%c", &profile.group_width, &profile.group_height,
+                               &profile.pixels_per_item, &end);
+  if (read == 3 && profile.group_width > 0 && profile.group_height > 0 && profile.pixels_per_item >= 0)
+    return profile;
+  std::fprintf(stderr, "QUINCUNX_TEST_PROFILE is '%s' and must be like 16x8x4\n", text);
+  std::exit(1);
+}
+
 // Frames lie in targets that are this much larger, at this offset.
 constexpr int kMarginX = 3;
 constexpr int kMarginY = 2;
@@ -70,6 +81,7 @@ const Device& device() {
       std::fprintf(stderr, "%s\n", result.status().message().c_str());
       std::exit(1);
     }
+    if (const char* text = std::getenv("QUINCUNX_TEST_PROFILE")) result->impl()->profile = profile_of(text);
     return new Device(result.value());
   }();
   return *opened;

@@ -20,7 +20,9 @@ namespace quincunx::testing {
 
 using reference::Pixel;
 
-const Device& device();  // the first one; opened once. Ends the program where there is none.
+// The first one, opened once; with the profile that QUINCUNX_TEST_PROFILE names ("16x8x4": group width and height,
+// pixels of an item). Ends the program where there is none, or no such profile.
+const Device& device();
 const Device::Impl& impl();
 
 // The value that `format` holds for `value`.
