@@ -98,6 +98,9 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   auto bridge = gl::Bridge::create(context(), device(), bridging);
   if (!bridge.ok()) return bridge.status();
   bridge_ = std::move(bridge).value();
+  auto parts = PartScales::create(settings_.parts);
+  if (!parts.ok()) return parts.status();
+  parts_ = std::move(parts).value();
 
   std::vector<ResolvePlan> plans;
   for (ResolveSettings& resolve : resolves) {
@@ -127,9 +130,12 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   DrawnFrame frame = {.index = index, .view = view, .reset = cut || index == 0};
   if (cut) frame.view.previous_seconds = view.seconds;
   frame.view.display = display_;
+  parts_->choose(frame.view);
   auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()), frame.view.render);
   if (!targets.ok()) return targets.status();
-  if (Status status = renderer().draw(*targets.value(), frame.view); !status.ok()) return status;
+  const Status drawn = renderer().draw(*targets.value(), frame.view, parts_->timers(index));
+  if (!drawn.ok()) return drawn;
+  parts_->learn();
   if (keep_targets) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
   if (keep_targets && view.parity) blank_unshaded(frame.targets, *view.parity);
   drawn_.push_back(std::move(frame));

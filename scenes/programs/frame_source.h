@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "programs/frame_sequence.h"
+#include "programs/part_scales.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
@@ -26,6 +27,7 @@ struct FrameSourceSettings {
   std::string scene;  // name or file; empty: the default scene
   std::uint64_t seed = 0;
   SequenceSettings sequence;
+  PartsSettings parts;
   float exposure = 0;  // 0: the scene's own
   std::string device;  // see Device::open
   gl::Interop interop = gl::Interop::kAuto;
@@ -74,6 +76,7 @@ class FrameSource {
   const FrameSequence& sequence() const { return *sequence_; }
   Renderer& renderer() { return *stage_->renderer; }
   gl::Bridge& bridge() { return *bridge_; }
+  const PartScales& parts() const { return *parts_; }  // once connected
   const gl::Bridge& bridge() const { return *bridge_; }
 
   Status draw(std::int64_t index, bool keep_targets = false);
@@ -108,6 +111,7 @@ class FrameSource {
   std::shared_ptr<Stage> stage_;  // outlives what was made in its context
   std::optional<FrameSequence> sequence_;
   std::unique_ptr<gl::Bridge> bridge_;
+  std::optional<PartScales> parts_;
   Display display_;  // of targets with encoded colour
   std::deque<DrawnFrame> drawn_;
 };

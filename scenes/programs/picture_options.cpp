@@ -75,6 +75,7 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
       {name_of(Shading::kFull), Shading::kFull}, {name_of(Shading::kCheckerboard), Shading::kCheckerboard}};
   tools::add_choice(app, "--shading", options.resolve.shading, kShadings,
                     "Pixels that a frame shades: full or checkerboard, every other one (default: full)");
+  add_part_options(app, options.parts);
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       .positive();
   app.add_option("--frames", options.frames, "Number of frames").positive().show_default();
@@ -153,6 +154,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   source.interop = options.interop;
   source.platform = options.platform;
   source.api = options.api;
+  source.parts = parts_for(options.parts, options.fps);
   SequenceSettings& settings = source.sequence;
   settings.output = options.output;
   settings.scale_path = path.value();

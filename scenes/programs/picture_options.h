@@ -8,6 +8,7 @@
 #include <string>
 
 #include "programs/frame_source.h"
+#include "programs/part_options.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"
@@ -22,8 +23,9 @@ struct PictureOptions {
   std::string scene;  // name or file; empty: the default scene
   std::uint64_t seed = 0;
   Extent output = {1280, 720};
-  std::string scale = "1";       // "S" or "SX,SY"
-  std::string scale_path;        // empty: `scale` in every frame
+  std::string scale = "1";  // "S" or "SX,SY"
+  std::string scale_path;   // empty: `scale` in every frame
+  PartOptions parts;
   ResolveSettings resolve;       // sizes and storage are left to FrameSource::connect()
   std::optional<Jitter> jitter;  // absent: quincunx for that method, else none
   std::int64_t frames = 1;

@@ -29,7 +29,8 @@ int explain(const RenderOptions& options) {
   settings.target = sequence->target();
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  fmt::print("Scene          {}: {}\n{}", scene->name, scene->summary, plan->explain());
+  fmt::print("Scene          {}: {}\n{}{}", scene->name, scene->summary, explain(source->parts),
+             plan->explain());
   return tools::kDone;
 }
 

@@ -46,6 +46,7 @@ tools::RunReport RenderSession::report() const {
   report.method = tools::method_name(options_.resolve);
   report.settings = {
       {"scale", scale_text(options_)},
+      {"parts", source_->parts().summary()},
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"colour", name_of(options_.resolve.colour)},

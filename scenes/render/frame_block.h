@@ -30,8 +30,9 @@ struct FrameBlock {
   glm::vec4 horizon{0};
   glm::vec4 ground{0};
   glm::vec4 display{0};
+  glm::vec4 shadow{0};
 };
-static_assert(sizeof(FrameBlock) == 4 * 64 + 15 * 16);
+static_assert(sizeof(FrameBlock) == 4 * 64 + 16 * 16);
 
 struct MaterialBlock {
   glm::vec4 base_colour{1};

@@ -38,6 +38,10 @@ Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
         "FrameView::jitter, seconds, previous_seconds, lod_bias, aspect, least_size, shadow_age and "
         "display.exposure must be finite, the last four not negative, and the exposure not 0");
   }
+  if (!(view.shadow_scale >= kLeastPartScale && view.shadow_scale <= 1)) {
+    return Status::invalid(fmt::format("FrameView::shadow_scale is {}; it must lie within [{}, 1]",
+                                       view.shadow_scale, kLeastPartScale));
+  }
   if (view.parity && !targets.has_checkerboard())
     return Status::invalid("FrameView::parity is given, but the targets have no checkerboard");
   if (view.parity && *view.parity != 0 && *view.parity != 1)
@@ -66,7 +70,7 @@ Result<Renderer> Renderer::create(const Scene& scene) {
   return Renderer(std::move(impl));
 }
 
-Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
+Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view, const PartTimers& timers) {
   if (Status status = check_view(targets, view); !status.ok()) return status;
   const bool velocity = targets.velocity() != 0;
   const Impl::View matrices = impl_->view_at(view);
@@ -77,7 +81,7 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view) {
 
   const DrawState state;
   glBindVertexArray(impl_->surface_array.get());
-  impl_->shadows.update(impl_->layout, impl_->gpu, impl_->placed, view.seconds, view.shadow_age);
+  impl_->draw_shadows(view, timers);
   clear_for_frame(targets, view.render);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
   glViewport(0, 0, view.render.width, view.render.height);
@@ -105,6 +109,15 @@ void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) {
   bound = wanted;
   set_winding(batch.mirrored);
   draw_mesh(part, instance_stream.get(), instance_offset, batch.first, batch.count);
+}
+
+void Renderer::Impl::draw_shadows(const FrameView& view, const PartTimers& timers) {
+  const int side = shadow_side(view.shadow_scale);
+  const ShadowMap::Work work = shadows.work_for(layout, view.seconds, view.shadow_age, side);
+  gl::PartTimer* const timer = work == ShadowMap::Work::kMoving ? timers.shadow : nullptr;
+  if (timer != nullptr) timer->begin(timers.frame, {side, side});
+  shadows.update(work, layout, gpu, placed, view.seconds, side);
+  if (timer != nullptr) timer->end();
 }
 
 void Renderer::Impl::draw_opaque(bool velocity) {

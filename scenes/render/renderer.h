@@ -14,6 +14,7 @@
 #include "quincunx/method.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/render_targets.h"
+#include "render/part_timers.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
@@ -38,6 +39,8 @@ struct FrameView {
   // Less work where detail may go; both 0: all of it.
   float least_size = 0;   // surfaces that span less than this part of the picture's height are left out
   double shadow_age = 0;  // seconds for which the drawn shadows of what moves may stay
+  // Side of the part of the shadow map that is drawn and read, of the whole: in [kLeastPartScale, 1].
+  float shadow_scale = 1;
   Display display = {};
 };
 
@@ -55,7 +58,7 @@ class Renderer {
 
   // Draws one frame; clears what it must first. Velocity and reactive values are written where the targets
   // have them.
-  Status draw(const gl::RenderTargets& targets, const FrameView& view);
+  Status draw(const gl::RenderTargets& targets, const FrameView& view, const PartTimers& timers = {});
 
   // For velocity from depth: from this frame's clip space to the previous frame's, jitter excluded.
   CameraMotion camera_motion(const FrameView& view) const;

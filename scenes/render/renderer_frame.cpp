@@ -145,8 +145,11 @@ FrameBlock Renderer::Impl::frame_block(const View& view, const FrameView& frame,
   block.ray_y = glm::vec4(glm::vec3(camera[1] * view.now.camera_from_clip[1][1]), 0);
   const bool has_sun = scene.sun.direction != glm::vec3(0);
   block.to_sun = glm::vec4(has_sun ? -glm::normalize(scene.sun.direction) : glm::vec3(0, 1, 0), 0);
+  const int side = shadow_side(frame.shadow_scale);
+  const float part = static_cast<float>(side) / kShadowTexels;
+  block.shadow = {part, (static_cast<float>(side) + 0.5f) / kShadowTexels, 0, 0};
   block.sun_irradiance = glm::vec4(has_sun ? scene.sun.irradiance : glm::vec3(0),
-                                   layout.shadow.enabled ? layout.shadow.texel_metres : 0);
+                                   layout.shadow.enabled ? layout.shadow.texel_metres / part : 0);
   const double radius = scene.sky.sun_radius;
   block.sun_radiance = glm::vec4(scene.sky.sun_radiance, 2 * std::pow(std::sin(radius / 2), 2));
   block.zenith = glm::vec4(scene.sky.zenith, 0);

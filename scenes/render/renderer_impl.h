@@ -40,6 +40,7 @@ struct Renderer::Impl {
   void make_lists(const View& view, const FrameView& frame);
   void upload_frame(const FrameBlock& block);
 
+  void draw_shadows(const FrameView& view, const PartTimers& timers);
   void draw_opaque(bool velocity);
   void draw_sky(bool velocity) const;
   void draw_blended();

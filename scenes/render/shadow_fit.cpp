@@ -53,6 +53,10 @@ glm::vec3 centre_of(const Bounds& box) {
 
 }  // namespace
 
+int shadow_side(float scale) {
+  return 2 * static_cast<int>(std::lround(scale * kShadowTexels / 2));
+}
+
 ShadowFit fit_shadow(const Scene& scene, const std::vector<ShadowCaster>& casters) {
   ShadowFit fit;
   const bool sun = scene.sun.irradiance != glm::vec3(0) && scene.sun.direction != glm::vec3(0);

@@ -10,12 +10,15 @@ namespace quincunx::scenes {
 
 inline constexpr int kShadowTexels = 2048;  // side of the shadow map
 
+// The side in texels of the map's part that a frame with this scale, in [kLeastPartScale, 1], draws and reads: even.
+int shadow_side(float scale);
+
 // The sun's orthographic view of what casts shadows, fixed for the scene so that shadows never crawl.
 struct ShadowFit {
   bool enabled = false;
   bool moves = false;              // some caster moves
   glm::mat4 shadow_from_world{1};  // to (u, v, depth), each within [0, 1] for the casters that were fitted
-  float texel_metres = 0;          // world size of a texel, the larger side
+  float texel_metres = 0;          // world size of a texel of the whole map, the larger side
 };
 
 struct ShadowCaster {

@@ -3,6 +3,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "quincunx_gl/capabilities.h"
@@ -44,9 +45,17 @@ Result<gl::Framebuffer> depth_framebuffer(GLuint texture) {
   return framebuffer;
 }
 
-void clear_depth(GLuint framebuffer) {
+// The part that is used and what is next to it.
+int kept_side(int side) {
+  return std::min(side + 1, kShadowTexels);
+}
+
+void clear_depth(GLuint framebuffer, int side) {
   const float infinity = 1;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, side, side);
   gl::clear(framebuffer, GL_DEPTH, 0, &infinity);
+  glDisable(GL_SCISSOR_TEST);
 }
 
 }  // namespace
@@ -80,26 +89,33 @@ Result<ShadowMap> ShadowMap::create(const Scene& scene, const SceneLayout& layou
   return map;
 }
 
-void ShadowMap::update(const SceneLayout& layout, const GpuScene& gpu,
-                       const std::vector<InstanceData>& placed, double seconds, double most_age) {
-  if (!texture_) return;
-  const bool first = drawn_seconds_ != drawn_seconds_;
-  if (!first && (!layout.shadow.moves || std::abs(seconds - drawn_seconds_) <= most_age)) return;
+ShadowMap::Work ShadowMap::work_for(const SceneLayout& layout, double seconds, double most_age,
+                                    int side) const {
+  if (!texture_) return Work::kNothing;
+  if (side != side_) return Work::kEverything;
+  const bool stays = !layout.shadow.moves || std::abs(seconds - drawn_seconds_) <= most_age;
+  return stays ? Work::kNothing : Work::kMoving;
+}
+
+void ShadowMap::update(Work work, const SceneLayout& layout, const GpuScene& gpu,
+                       const std::vector<InstanceData>& placed, double seconds, int side) {
+  if (work == Work::kNothing) return;
+  side_ = side;
   drawn_seconds_ = seconds;
+  const int kept = kept_side(side);
   glDisable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
-  if (first) {
+  if (work == Work::kEverything) {
     const GLuint framebuffer = layout.shadow.moves ? still_framebuffer_.get() : framebuffer_.get();
-    clear_depth(framebuffer);
+    clear_depth(framebuffer, kept);
     list_.build_casters(layout, placed, false);
     draw(layout, gpu, framebuffer, still_instances_);
   }
   if (!layout.shadow.moves) return;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, still_framebuffer_.get());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
-  glBlitFramebuffer(0, 0, kShadowTexels, kShadowTexels, 0, 0, kShadowTexels, kShadowTexels,
-                    GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, kept, kept, 0, 0, kept, kept, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
   list_.build_casters(layout, placed, true);
   draw(layout, gpu, framebuffer_.get(), moving_instances_);
@@ -110,7 +126,7 @@ void ShadowMap::draw(const SceneLayout& layout, const GpuScene& gpu, GLuint fram
   const std::vector<InstanceData>& data = list_.instances();
   const GLintptr offset = instances.write(data.data(), data.size() * sizeof(InstanceData));
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer);
-  glViewport(0, 0, kShadowTexels, kShadowTexels);
+  glViewport(0, 0, side_, side_);
   const bool clamps = gl::capabilities().depth_clamp;
   if (clamps) glEnable(GL_DEPTH_CLAMP);
   glEnable(GL_POLYGON_OFFSET_FILL);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // ShadowMap: the sun's depth map. What stands still is drawn once; what moves is drawn over a copy of that.
+//
+// A frame uses the top left part of the map, `side` texels wide and high. The row and the column of texels next to it
+// are kept lit, as the border of the whole map is: look-ups are clamped to their centres, so that they find beyond a
+// part what they find beyond the whole, and no texel that an earlier, larger part has left is ever read.
 #pragma once
 
-#include <limits>
+#include <cstdint>
 
 #include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
@@ -17,11 +21,17 @@ class ShadowMap {
   // A map that is not enabled (ShadowFit::enabled) owns nothing.
   static Result<ShadowMap> create(const Scene& scene, const SceneLayout& layout);
 
-  // `placed`: the instances at `seconds`. What was drawn at a time no further away than `most_age` stays. The
-  // frame block, mesh buffers and vertex array are bound. Leaves viewport, framebuffer and depth state
-  // changed.
-  void update(const SceneLayout& layout, const GpuScene& gpu, const std::vector<InstanceData>& placed,
-              double seconds, double most_age);
+  // What of it a frame draws.
+  enum class Work : std::uint8_t { kNothing, kMoving, kEverything };
+
+  // Of a frame at `seconds`: what was drawn at a time no further away than `most_age` stays, and all of it goes where
+  // the side is another.
+  Work work_for(const SceneLayout& layout, double seconds, double most_age, int side) const;
+
+  // Does it. `placed`: the instances at `seconds`. The frame block, mesh buffers and vertex array are bound. Leaves
+  // viewport, scissor, framebuffer and depth state changed.
+  void update(Work work, const SceneLayout& layout, const GpuScene& gpu,
+              const std::vector<InstanceData>& placed, double seconds, int side);
 
   GLuint texture() const { return texture_.get(); }  // compares; 0: none
 
@@ -38,7 +48,8 @@ class ShadowMap {
   StreamBuffer still_instances_;
   StreamBuffer moving_instances_;
   DrawList list_;
-  double drawn_seconds_ = std::numeric_limits<double>::quiet_NaN();
+  int side_ = 0;  // 0: nothing is drawn yet
+  double drawn_seconds_ = 0;
 };
 
 }  // namespace quincunx::scenes

@@ -61,6 +61,8 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_NE(still.out.find("WEIGHT=0"), std::string::npos) << still.out;
   const ProgramResult mean = run("--explain --scene wheel --method quincunx:mean");
   EXPECT_NE(mean.out.find("WEIGHT=0"), std::string::npos) << mean.out;
+  const ProgramResult coarse = run("--explain --scene wheel --shadow-scale 0.25");
+  EXPECT_NE(coarse.out.find("Shadow map     512x512 of 2048x2048"), std::string::npos) << coarse.out;
   const ProgramResult placed = run("--explain --scene wheel --targets placed");
   EXPECT_NE(placed.out.find("Targets        placed"), std::string::npos) << placed.out;
 }
@@ -83,6 +85,11 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--velocity-weight -1", 2, "--velocity-weight");
   expect_refused("--targets large", 2, "'large' is none of placed, viewport");
   expect_refused("--scene chart --targets placed --interop gl", 2, "exclude each other");
+  for (const char* scale : {"0", "0.06", "1.5", "nan", "automatic"})
+    expect_refused(std::string("--shadow-scale ") + scale, 2, "--shadow-scale");
+  expect_refused("--shadow-budget 2", 2, "--shadow-scale");
+  expect_refused("--shadow-scale 0.5 --shadow-budget 2", 2, "nothing holds it");
+  expect_refused("--shadow-scale auto --shadow-budget 0", 2, "--shadow-budget");
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");

@@ -126,7 +126,11 @@ bool CommandLine::has(const std::string& name) const {
   return app_->count(name) > 0;
 }
 void CommandLine::when_read(std::function<void()> check) {
-  app_->parse_complete_callback([check = std::move(check)] { report_usage_errors(check); });
+  checks_.push_back(std::move(check));
+  app_->parse_complete_callback([this] {
+    for (const auto& read : checks_)
+      report_usage_errors(read);
+  });
 }
 
 std::optional<int> CommandLine::parse(int argc, const char* const* argv, const std::function<void()>& check) {

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -80,7 +81,7 @@ class CommandLine {
 
   Option option(const std::string& name) const;  // that was added before
   bool has(const std::string& name) const;       // the user gave it
-  void when_read(std::function<void()> check);   // after the last option; `check` may throw UsageError
+  void when_read(std::function<void()> check);   // after the last option, in turn; may throw UsageError
 
   // On --help, --version or a usage error, prints and gives the program's exit code. `check` comes after all
   // else and may throw UsageError.
@@ -88,6 +89,7 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::vector<std::function<void()>> checks_;  // of when_read()
 };
 
 // The text as a number, as options read them; nothing where it is none.

@@ -3,7 +3,7 @@ layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;           // jitter excluded
   mat4 previous_clip_from_world;  // jitter excluded
   mat4 clip_to_previous_clip;     // (ndc, depth, 1) of this frame to clip of the previous one
-  mat4 shadow_from_world;         // to (u, v, depth) of the shadow map
+  mat4 shadow_from_world;         // to (u, v, depth) of the part of the shadow map in use
   vec4 jitter;                    // xy: render pixels, zw: 1 / render extent
   vec4 jitter_clip;               // xy: what to add to clip.xy per w so that pixel centre + jitter is sampled
   vec4 camera_position;           // w: texture LOD bias
@@ -19,6 +19,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 horizon;
   vec4 ground;
   vec4 display;                   // x: exposure, y: curve of encoded targets: 1 clamp, 2 Reinhard, 3 ACES; 0: no such
+  vec4 shadow;                    // x: side of the map's part in use, part of the whole; y: the largest coordinate read
 } frame;
 
 const float kLargestHalf = 65504.0;

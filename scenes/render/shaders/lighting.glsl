@@ -3,7 +3,7 @@
 
 #ifdef SHADOWS
 layout(binding = 4) uniform sampler2DShadow shadow_map;
-in vec3 v_shadow;  // place in the map
+in vec3 v_shadow;  // place in the whole map
 #endif
 
 #if POINT_LIGHTS > 0
@@ -37,12 +37,14 @@ vec3 reflected(Surface s, vec3 to_light, float cosine) {
   return (s.diffuse + s.specular * specular) * (cosine / kPi);
 }
 
-// Two bilinear comparisons across a diagonal: a soft edge of two texels.
+// Two bilinear comparisons across a diagonal: a soft edge of two texels. What lies beyond the part of the map in use is
+// read as the lit texels next to it: shadow_map.h.
 float sunlight() {
 #ifdef SHADOWS
-  const vec3 kAside = vec3(0.5, -0.25, 0.0) / float(SHADOWS);
-  vec3 p = vec3(v_shadow.xy, min(v_shadow.z, 1.0));
-  return 0.5 * (texture(shadow_map, p + kAside) + texture(shadow_map, p - kAside));
+  const vec2 kAside = vec2(0.5, -0.25) / float(SHADOWS);
+  float depth = min(v_shadow.z, 1.0);
+  vec2 one = min(v_shadow.xy + kAside, frame.shadow.y), other = min(v_shadow.xy - kAside, frame.shadow.y);
+  return 0.5 * (texture(shadow_map, vec3(one, depth)) + texture(shadow_map, vec3(other, depth)));
 #else
   return 1.0;
 #endif

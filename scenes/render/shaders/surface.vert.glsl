@@ -46,7 +46,7 @@ void main() {
 #endif
 #ifdef SHADOWS
   vec3 lifted = world + v_normal * (1.5 * frame.sun_irradiance.w);  // off its own shadow texels
-  v_shadow = (frame.shadow_from_world * vec4(lifted, 1.0)).xyz;
+  v_shadow = (frame.shadow_from_world * vec4(lifted, 1.0)).xyz * vec3(frame.shadow.xx, 1.0);
 #endif
 #ifdef TEXTURED
   v_uv = uv;

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#include "programs/part_scales.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/shadow_fit.h"
+
+namespace quincunx::scenes {
+namespace {
+
+// Each change of the map's side draws again what stands still, so that there are few of them.
+constexpr int kShadowStep = kShadowTexels / 16;
+
+// Where times need a wait, one frame of so many is timed.
+constexpr int kTimedFrames = 4;
+
+// "0.5" or "held at 1.67 ms".
+std::string text_of(const PartSettings& settings) {
+  return settings.is_controlled() ? fmt::format("held at {:.3g} ms", settings.budget_ms)
+                                  : fmt::format("{:.3g}", settings.scale);
+}
+
+Result<gl::PartTimer> part_timer() {
+  const auto frames = gl::FrameTimer::create();
+  if (!frames.ok()) return frames.status();
+  return gl::PartTimer::create(frames->method(), kTimedFrames);
+}
+
+}  // namespace
+
+std::string explain(const PartsSettings& settings) {
+  const int side = shadow_side(settings.shadow.scale);
+  return settings.shadow.is_controlled()
+             ? fmt::format("Shadow map     up to {0}x{0} texels, {1} by a controller of its own\n",
+                           kShadowTexels, text_of(settings.shadow))
+             : fmt::format("Shadow map     {0}x{0} of {1}x{1} texels\n", side, kShadowTexels);
+}
+
+void PartScales::Controlled::note(float scale) {
+  least = std::min(least, scale);
+  largest = std::max(largest, scale);
+  sum += scale;
+  ++count;
+}
+
+void PartScales::Controlled::learn() {
+  while (const auto part = timer.poll())
+    controller.learn(part->frame, part->render, part->gpu_ms);
+}
+
+std::string PartScales::Controlled::range() const {
+  if (count == 0) return "";
+  return fmt::format("{:.3g} to {:.3g}, mean {:.3g}, ", least, largest, sum / static_cast<double>(count));
+}
+
+Result<PartScales> PartScales::create(const PartsSettings& settings) {
+  PartScales scales(settings);
+  const auto control = [](std::optional<Controlled>& part, Extent whole, int step, double budget_ms) {
+    auto controller = PartController::create(whole, step, budget_ms);
+    if (!controller.ok()) return controller.status();
+    auto timer = part_timer();
+    if (!timer.ok()) return timer.status();
+    part.emplace(Controlled{.controller = std::move(controller).value(), .timer = std::move(timer).value()});
+    return Status();
+  };
+  if (settings.shadow.is_controlled()) {
+    const Status status =
+        control(scales.shadow_, {kShadowTexels, kShadowTexels}, kShadowStep, settings.shadow.budget_ms);
+    if (!status.ok()) return status;
+  }
+  return scales;
+}
+
+void PartScales::choose(FrameView& view) {
+  view.shadow_scale = settings_.shadow.scale;
+  if (shadow_) {
+    // The map is square: rungs between squares count as the smaller one.
+    const Extent rung = shadow_->controller.next();
+    view.shadow_scale = static_cast<float>(std::min(rung.width, rung.height)) / kShadowTexels;
+    shadow_->note(view.shadow_scale);
+  }
+}
+
+PartTimers PartScales::timers(std::int64_t index) {
+  return {.frame = static_cast<std::uint64_t>(index), .shadow = shadow_ ? &shadow_->timer : nullptr};
+}
+
+void PartScales::learn() {
+  if (shadow_) shadow_->learn();
+}
+
+std::string PartScales::summary() const {
+  return fmt::format("shadow map {}{}", shadow_ ? shadow_->range() : "", text_of(settings_.shadow));
+}
+
+}  // namespace quincunx::scenes
