@@ -68,7 +68,7 @@ struct PassFrame {
 
   ImageView& operator[](Resource resource) { return views[static_cast<std::size_t>(resource)]; }
   const ImageView& operator[](Resource resource) const { return views[static_cast<std::size_t>(resource)]; }
-  FrameExtents extents() const { return {current.render, previous.render, output}; }
+  FrameExtents extents() const { return {current.render, previous.render, output, current.particle_render}; }
 };
 
 // CLHPP takes no raw handle as an argument.

@@ -88,8 +88,7 @@ bool PassChain::has(Resource resource) const {
 }
 
 void PassChain::allocate(const ResourceUse& use) {
-  const ResolveSettings& settings = facts_.settings;
-  const Extent extent = extent_of(use.largest.area, {settings.target, settings.target, settings.output});
+  const Extent extent = extent_of(use.largest.area, largest_extents(facts_.settings));
   Owned& owned = owned_.emplace_back(Owned{use.resource, use.largest.area, {}});
   for (std::size_t i = 0; i < (keeps(use.resource) ? 2 : 1); ++i) {
     if (use.largest.format != PixelFormat::kNone) {
@@ -127,6 +126,11 @@ void bind_inputs(PassFrame& frame) {
   frame[Resource::kShadedVelocity] = frame.current.velocity;
   frame[Resource::kShadedDepth] = frame.current.depth;
   frame[Resource::kShadedReactive] = frame.current.reactive;
+  frame[Resource::kBareColour] = frame.current.colour;
+  frame[Resource::kBareReactive] = frame.current.reactive;
+  frame[Resource::kParticleColour] = frame.current.particle_colour;
+  frame[Resource::kParticleDepth] = frame.current.particle_depth;
+  frame[Resource::kParticleReactive] = frame.current.particle_reactive;
   frame[Resource::kPreviousColour] = frame.previous.colour;
   frame[Resource::kPreviousVelocity] = frame.previous.velocity;
   frame[Resource::kPreviousDepth] = frame.previous.depth;
@@ -165,8 +169,7 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
 void PassChain::forget(const PassFrame& frame) {
   for (const ResourceUse& use : resources_) {
     if (!is_previous(use.resource) || !use.written) continue;
-    const Extent extent =
-        extent_of(use.largest.area, {facts_.settings.target, facts_.settings.target, frame.output});
+    const Extent extent = extent_of(use.largest.area, largest_extents(facts_.settings));
     fill_zero(frame.queue, frame[use.resource].memory,
               static_cast<std::size_t>(extent.area()) * use.largest.element_bytes());
   }
@@ -218,6 +221,7 @@ void PassChain::warm_up() {
   const cl::Buffer counter(device.context, CL_MEM_READ_WRITE, sizeof(cl_uint));
   PassFrame frame{.queue = device.queue, .tables = tables, .output = kPixel, .counter = {counter(), 0}};
   frame.current.render = kPixel;
+  frame.current.particle_render = kPixel;
   frame.previous.render = kPixel;
   for (const auto& pass : passes_) {
     for (const Use& use : pass->spec().uses) {

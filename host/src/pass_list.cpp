@@ -6,6 +6,7 @@ namespace {
 
 // In the order in which they run.
 constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
+    plan_overlay_particles,
     plan_resolve_checkerboard,
     plan_velocity_from_depth,
     plan_far_motion,

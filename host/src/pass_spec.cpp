@@ -61,6 +61,16 @@ const char* name_of(Resource resource) {
       return "shaded depth";
     case Resource::kShadedReactive:
       return "shaded reactive";
+    case Resource::kBareColour:
+      return "bare colour";
+    case Resource::kBareReactive:
+      return "bare reactive";
+    case Resource::kParticleColour:
+      return "particle colour";
+    case Resource::kParticleDepth:
+      return "particle depth";
+    case Resource::kParticleReactive:
+      return "particle reactive";
     case Resource::kPreviousColour:
       return "colour of the previous frame";
     case Resource::kPreviousVelocity:
@@ -162,12 +172,18 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
   uses.push_back({previous_of(resource), Access::kRead, Area::kPreviousViewport, format});
 }
 
+FrameExtents largest_extents(const ResolveSettings& settings) {
+  return {settings.target, settings.target, settings.output, settings.particle_target};
+}
+
 Extent extent_of(Area area, const FrameExtents& extents) {
   switch (area) {
     case Area::kViewport:
       return extents.render;
     case Area::kPreviousViewport:
       return extents.previous_render;
+    case Area::kParticles:
+      return extents.particles;
     case Area::kOutput:
       return extents.output;
     case Area::kFarCells:

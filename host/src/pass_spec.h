@@ -35,6 +35,12 @@ enum class Resource : std::uint8_t {
   kShadedVelocity,
   kShadedDepth,
   kShadedReactive,
+  // The caller's where particles are drawn into a viewport of their own: what they are laid over, and they.
+  kBareColour,
+  kBareReactive,
+  kParticleColour,
+  kParticleDepth,
+  kParticleReactive,
   kPreviousColour,
   kPreviousVelocity,
   kPreviousDepth,
@@ -99,6 +105,7 @@ enum class Access : std::uint8_t {
 enum class Area : std::uint8_t {
   kViewport,          // of this frame, within the target
   kPreviousViewport,  // of the previous frame, within the target
+  kParticles,         // the particles' viewport of this frame, within their target
   kOutput,
   kFarCells,   // one element for each cell of kFarCell^2 samples of the viewport
   kTiles,      // one element for each tile of kTemporalTile^2 output pixels
@@ -147,7 +154,11 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 // The extents that uses follow.
 struct FrameExtents {
   Extent render, previous_render, output;
+  Extent particles = {};
 };
+
+// Those of a plan's largest frame.
+FrameExtents largest_extents(const ResolveSettings& settings);
 
 Extent extent_of(Area area, const FrameExtents& extents);
 

@@ -18,6 +18,7 @@ struct PlanFacts {
   // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.
   bool is_display_referred() const { return settings.colour == PixelFormat::kRGBA8; }
   bool reads_velocity() const;  // some pass after those that complete the frame
+  bool overlays_particles() const { return settings.particle_target != Extent(); }
   bool fills() const { return settings.shading == Shading::kCheckerboard; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }

@@ -53,6 +53,19 @@ Status check(const ResolveSettings& settings) {
   if (settings.shading == Shading::kCheckerboard && settings.colour == PixelFormat::kRGBA8)
     complaints.add(
         "settings.colour is RGBA8; of a checkerboard it must be RGBA16F or RGBA32F, which are linear");
+  if (settings.particle_target != Extent()) {
+    const Extent particles = settings.particle_target;
+    if (particles.width < 1 || particles.height < 1 || particles.width > settings.target.width ||
+        particles.height > settings.target.height) {
+      complaints.add(fmt::format(
+          "settings.particle_target is {}x{}; it must lie within 1x1 and the target's {}x{}, or be 0x0",
+          particles.width, particles.height, settings.target.width, settings.target.height));
+    }
+    if (settings.colour == PixelFormat::kRGBA8)
+      complaints.add(
+          "settings.colour is RGBA8; with particles of their own it must be RGBA16F or RGBA32F, which are "
+          "linear");
+  }
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
   check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
@@ -82,6 +95,7 @@ Status check(const ResolveSettings& settings) {
 
 Scaling scaling_of(Area area) {
   if (area == Area::kViewport) return Scaling::kScales;
+  if (area == Area::kParticles) return Scaling::kOwn;
   return area == Area::kPreviousViewport ? Scaling::kHistory : Scaling::kFixed;
 }
 
@@ -107,7 +121,7 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
         name_of(settings.temporal.view)));
   }
   PassList list = list_passes(facts);
-  const FrameExtents largest = {settings.target, settings.target, settings.output};
+  const FrameExtents largest = largest_extents(settings);
   ResolvePlan plan;
   plan.needs = needs;
   plan.settings = settings;
@@ -151,7 +165,8 @@ Storage ResolvePlan::presented_storage() const {
 std::uint64_t ResolvePlan::frame_bytes() const {
   std::uint64_t bytes = 0;
   for (const PlannedBuffer& buffer : buffers) {
-    if (!buffer.owned && buffer.scaling == Scaling::kScales) bytes += buffer.bytes;
+    if (!buffer.owned && (buffer.scaling == Scaling::kScales || buffer.scaling == Scaling::kOwn))
+      bytes += buffer.bytes;
   }
   return bytes;
 }

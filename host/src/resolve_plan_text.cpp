@@ -65,6 +65,8 @@ const char* name_of(Scaling scaling) {
       return "scales";
     case Scaling::kHistory:
       return "last frame's";
+    case Scaling::kOwn:
+      return "its own";
     case Scaling::kFixed:
       return "fixed";
   }

@@ -26,6 +26,15 @@ class FrameCheck {
     }
   }
 
+  void viewport(const char* field, Extent viewport, Extent target) {
+    if (viewport.width >= 1 && viewport.height >= 1 && viewport.width <= target.width &&
+        viewport.height <= target.height) {
+      return;
+    }
+    complain(fmt::format("{} is {}x{}; it must lie within 1x1 and the target's {}x{}", field, viewport.width,
+                         viewport.height, target.width, target.height));
+  }
+
   void output(const char* field, const ImageView& image, PixelFormat format, Storage storage) {
     image_in(field, image, format, storage);
     if (image && image.extent != plan_.settings.output) {
@@ -89,20 +98,28 @@ void check_camera(FrameCheck& check, const CameraMotion& camera) {
   }
 }
 
-// The caller's images: the plan's buffers of this name, and the fields that hold them.
+// The caller's images: the plan's buffers of this name, the fields that hold them, and their viewports.
 constexpr struct {
   const char* name;
   const char* field;
   ImageView FrameInputs::*image;
-} kInputs[] = {{"colour", "colour", &FrameInputs::colour},
-               {"velocity", "velocity", &FrameInputs::velocity},
-               {"drawn velocity", "velocity", &FrameInputs::velocity},
-               {"depth", "depth", &FrameInputs::depth},
-               {"reactive", "reactive", &FrameInputs::reactive},
-               {"shaded colour", "colour", &FrameInputs::colour},
-               {"shaded velocity", "velocity", &FrameInputs::velocity},
-               {"shaded depth", "depth", &FrameInputs::depth},
-               {"shaded reactive", "reactive", &FrameInputs::reactive}};
+  Extent FrameInputs::*viewport = &FrameInputs::render;
+} kInputs[] = {
+    {"colour", "colour", &FrameInputs::colour},
+    {"velocity", "velocity", &FrameInputs::velocity},
+    {"drawn velocity", "velocity", &FrameInputs::velocity},
+    {"depth", "depth", &FrameInputs::depth},
+    {"reactive", "reactive", &FrameInputs::reactive},
+    {"shaded colour", "colour", &FrameInputs::colour},
+    {"shaded velocity", "velocity", &FrameInputs::velocity},
+    {"shaded depth", "depth", &FrameInputs::depth},
+    {"shaded reactive", "reactive", &FrameInputs::reactive},
+    {"bare colour", "colour", &FrameInputs::colour},
+    {"bare reactive", "reactive", &FrameInputs::reactive},
+    {"particle colour", "particle_colour", &FrameInputs::particle_colour, &FrameInputs::particle_render},
+    {"particle depth", "particle_depth", &FrameInputs::particle_depth, &FrameInputs::particle_render},
+    {"particle reactive", "particle_reactive", &FrameInputs::particle_reactive,
+     &FrameInputs::particle_render}};
 
 constexpr struct {
   const char* name;
@@ -128,16 +145,13 @@ void check_parity(FrameCheck& check, const FrameInputs& inputs) {
 
 void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   constexpr float kLargest = 1e6f;
-  const Extent target = plan.settings.target;
-  if (inputs.render.width < 1 || inputs.render.height < 1 || inputs.render.width > target.width ||
-      inputs.render.height > target.height) {
-    check.complain(fmt::format("render is {}x{}; it must lie within 1x1 and the target's {}x{}",
-                               inputs.render.width, inputs.render.height, target.width, target.height));
-  }
+  check.viewport("render", inputs.render, plan.settings.target);
+  if (plan.settings.particle_target != Extent())
+    check.viewport("particle_render", inputs.particle_render, plan.settings.particle_target);
   for (const auto& input : kInputs) {
     const PlannedBuffer* buffer = find(plan, input.name);
     if (buffer == nullptr || buffer->owned) continue;
-    check.input(input.field, inputs.*input.image, buffer->format, inputs.render);
+    check.input(input.field, inputs.*input.image, buffer->format, inputs.*input.viewport);
   }
   if (plan.velocity == VelocitySource::kTarget) {
     check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);

@@ -39,6 +39,7 @@ check("" "AxisTables.*" "Clear*"
 # These run without optimisation. Optimised, the first stops oclgrind at hints about memory that its compiler puts in
 # where it inlines, and of the other it computes the minimum of int8 wrongly.
 check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
+  "*Overlay.ATight*/reactive_*" "*Overlay.Poison*/reactive_buffer_RGBA16F"
   "*Checkerboard.ATight*/camera_buffer_*" "*Checkerboard.ATight*/moving_velocity_reactive_buffer_*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"

@@ -59,8 +59,8 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                                            "temporal_light", "resolve_temporal", "resolve_layers",
                                            "temporal_display", "display_layers", "motion_tiles",
                                            "motion_neighbours", "motion_blur", "sharpen", "present",
-                                           "resolve_checkerboard", "velocity_from_depth", "far_velocity",
-                                           "far_surroundings", "far_fit", "far_match"),
+                                           "resolve_checkerboard", "overlay_particles", "velocity_from_depth",
+                                           "far_velocity", "far_surroundings", "far_fit", "far_match"),
                          [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -161,6 +161,18 @@ std::vector<PlanFacts> all_facts() {
             add_needs(settings);
           }
           settings.shading = Shading::kFull;
+          if (colour != kRGBA8) {
+            settings.particle_target = output;
+            for (const Method method : {Method::kBilinear, Method::kQuincunx, Method::kTemporal}) {
+              settings.method = method;
+              for (const Shading shading : {Shading::kFull, Shading::kCheckerboard}) {
+                settings.shading = shading;
+                add_needs(settings);
+              }
+            }
+            settings.shading = Shading::kFull;
+            settings.particle_target = {};
+          }
           for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
             for (const bool dither : {false, true}) {
               settings.tone_map = tone_map;

@@ -39,6 +39,12 @@ struct FrameInputs {
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
   CameraMotion camera = {};
+  // Where ResolveSettings::particle_target says so, particles that were drawn apart, with the frame's camera and
+  // jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
+  ImageView particle_colour = {};    // as colour; alpha: coverage
+  ImageView particle_depth = {};     // R32F: the frame's depth resampled, of a surface that the pixel shows
+  ImageView particle_reactive = {};  // R8
+  Extent particle_render = {};       // the particles' viewport, as `render`; any size from 1x1
   float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
   bool reset = false;  // a cut: nothing of the previous frame may be used
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
@@ -64,7 +70,7 @@ struct PassReport {
 };
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 20;
+  static constexpr int kMaxPasses = 24;
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;

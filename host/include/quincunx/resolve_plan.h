@@ -67,8 +67,11 @@ const char* name_of(Targets targets);  // "placed"
 
 struct ResolveSettings {
   Method method = Method::kQuincunx;
-  Extent output = {};                            // the picture's size
-  Extent target = {};                            // the inputs' allocated size: at least the largest viewport
+  Extent output = {};  // the picture's size
+  Extent target = {};  // the inputs' allocated size: at least the largest viewport
+  // 0x0: the inputs' colour holds everything. Else particles are drawn apart, into a viewport of their own within
+  // images of this size, at most the target's: see FrameInputs::particle_colour.
+  Extent particle_target = {};
   PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA8, RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
   PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
@@ -113,6 +116,7 @@ struct PlannedPass {
 // How the part of a buffer that is in use follows the resolution.
 enum class Scaling : std::uint8_t {
   kScales,   // this frame's viewport, within `extent`
+  kOwn,      // a viewport of their own, within `extent`, which may be another in each frame
   kHistory,  // the viewport of the previous frame, which may be another
   kFixed,    // always the whole extent
 };

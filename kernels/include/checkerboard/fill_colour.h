@@ -3,7 +3,7 @@
 #pragma once
 
 #include "checkerboard/checkerboard_params.h"
-#include "checkerboard/stored_frame.h"
+#include "stored_frame.h"
 #include "checkerboard/surfaces.h"
 
 #define LEAST_DIFFERENCE 1e-12f    // squared: two pairs that are equal count alike

@@ -19,10 +19,10 @@
 #define STORED_REACTIVE __global uchar*
 #endif
 
-// Finite values only; half saturates instead of becoming infinite.
+// Finite values only; half saturates instead of becoming infinite, and so does an image, whose format is unknown here.
 static inline void store_colour(STORED_COLOUR texels, TexelLayout layout, int x, int y, float4 value) {
 #if SOURCE_STORAGE == IMAGE
-  write_imagef(texels, (int2)(x, y), value);
+  write_imagef(texels, (int2)(x, y), clamp(value, -INFINITY_STAND_IN, INFINITY_STAND_IN));
 #elif SOURCE_FORMAT == HALF
   vstore_half4(clamp(value, -INFINITY_STAND_IN, INFINITY_STAND_IN), texel_index(layout, x, y), texels);
 #else
@@ -71,5 +71,22 @@ static inline void copy_reactive(REACTIVE_TEXELS from, TexelLayout source, int x
   write_imagef(to, (int2)(to_x, to_y), read_imagef(from, (int2)(x, y)));
 #else
   to[texel_index(layout, to_x, to_y)] = from[texel_index(source, x, y)];
+#endif
+}
+
+static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_STORAGE == IMAGE
+  return read_imagef(texels, (int2)(x, y)).x;
+#else
+  return convert_float(texels[texel_index(layout, x, y)]) * (1.0f / 255.0f);
+#endif
+}
+
+// A value in [0, 1], rounded to the nearest code.
+static inline void store_reactive(STORED_REACTIVE texels, TexelLayout layout, int x, int y, float value) {
+#if SOURCE_STORAGE == IMAGE
+  write_imagef(texels, (int2)(x, y), (float4)(value, 0.0f, 0.0f, 1.0f));
+#else
+  texels[texel_index(layout, x, y)] = convert_uchar_sat_rte(value * 255.0f);
 #endif
 }
