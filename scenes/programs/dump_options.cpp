@@ -14,7 +14,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-dump --scene wheel --scale 0.5 --frame 12 --stages velocity,resolved,flip --out dump
   quincunx-dump --scene pan --scale 0.71 --frames 40 --sequence "pan/pan.%04d.exr" --truth 8
 Files of a frame, in the folder of --out: frame.0012.render.exr (colour, Z, motion, reactive values, as a sequence
-has them), .history.exr, .target.exr, .tiles.exr, .output.exr (resolved, blurred, presented, truth, errors), and
+has them), .particles.exr, .history.exr, .target.exr, .tiles.exr, .output.exr (resolved, blurred, presented, truth, errors), and
 one frame.0012.STAGE.png a stage.
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
@@ -85,6 +85,8 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
     }
     if (!options.sequence.empty() && options.resolve.shading == Shading::kCheckerboard)
       throw tools::UsageError{"--sequence", "holds whole frames; give it without --shading checkerboard"};
+    if (!options.sequence.empty() && options.parts.particles)
+      throw tools::UsageError{"--sequence", "holds whole frames; give it without --particle-scale"};
   };
   if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
   if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal) options.warm_up = kWarmUpFrames;

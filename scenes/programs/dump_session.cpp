@@ -36,6 +36,7 @@ std::vector<tools::Channel> channels_of(const StagePlanes& planes, const std::st
 bool is_colour(Stage stage) {
   switch (stage) {
     case Stage::kColour:
+    case Stage::kParticles:
     case Stage::kHistory:
     case Stage::kResolved:
     case Stage::kBlurred:
@@ -44,6 +45,11 @@ bool is_colour(Stage stage) {
     default:
       return false;
   }
+}
+
+// Of its file: what a viewer shows first.
+bool is_only_colour(Stage stage) {
+  return stage == Stage::kResolved || stage == Stage::kHistory || stage == Stage::kParticles;
 }
 
 // Opaque where the fourth plane is no alpha.
@@ -108,6 +114,9 @@ Status DumpSession::open() {
 
 std::string DumpSession::why_missing(Stage stage) const {
   const ResolvePlan& plan = service_->plan();
+  if (stage == Stage::kParticles && plan.settings.particle_target == Extent())
+    return source_->scene().particles ? "they are drawn with everything else; give --particle-scale"
+                                      : "the scene has none";
   if (stage == Stage::kHistory && !plan.accumulates() && plan.settings.shading == Shading::kCheckerboard)
     return "the previous frame that is read is the filled one, which only the service has";
   if (stage == Stage::kHistory && !uses_earlier_frames(plan.settings.method)) {
@@ -237,6 +246,10 @@ Status DumpSession::collect_targets() {
     motion.planes[1].push_back(vector.y);
   }
   planes_[Stage::kVelocity] = std::move(motion);
+  if (!current_->particles.colour.empty()) {
+    planes_[Stage::kParticles] =
+        colour_planes(current_->view.particles, colour_of(current_->particles), tools::ChannelType::kHalf);
+  }
   planes_[Stage::kReactive] = {render, {"mask"}, {reactive_mask(file)}, tools::ChannelType::kHalf};
 
   const bool placed = service_->plan().settings.targets == Targets::kPlaced;
@@ -298,6 +311,7 @@ std::string DumpSession::path_of(const std::string& ending) const {
 // One file for each extent: EXR has one size a part.
 Status DumpSession::write_exr_files() {
   const std::vector<std::pair<std::string, std::vector<Stage>>> groups = {
+      {"particles.exr", {Stage::kParticles}},
       {"history.exr", {Stage::kHistory}},
       {"target.exr", {Stage::kClear}},
       {"tiles.exr", {Stage::kTiles}},
@@ -311,7 +325,7 @@ Status DumpSession::write_exr_files() {
       if (!wants(stage)) continue;
       extent = planes_[stage].extent;
       // The resolved picture is what a viewer shows first.
-      const std::string layer = stage == Stage::kResolved || stage == Stage::kHistory ? "" : name_of(stage);
+      const std::string layer = is_only_colour(stage) ? "" : name_of(stage);
       for (tools::Channel& channel : channels_of(planes_[stage], layer))
         channels.push_back(std::move(channel));
     }

@@ -15,8 +15,8 @@ using tools::Canvas;
 using tools::ColourMap;
 
 constexpr std::array<const char*, kStageCount> kNames = {
-    "colour",   "depth",   "velocity",  "reactive", "clear", "history", "tiles",
-    "resolved", "blurred", "presented", "truth",    "error", "flip"};
+    "colour", "depth",    "velocity", "reactive",  "particles", "clear", "history",
+    "tiles",  "resolved", "blurred",  "presented", "truth",     "error", "flip"};
 
 Canvas depth_picture(const StagePlanes& planes) {
   // Nearer than a millimetre or farther than a thousand kilometres is not a surface.

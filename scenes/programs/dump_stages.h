@@ -20,9 +20,10 @@ enum class Stage : std::uint8_t {
   kDepth,
   kVelocity,
   kReactive,
-  kClear,    // what a partial clear touches of the target
-  kHistory,  // what the resolve reads of the past
-  kTiles,    // classes of the motion blur's tiles
+  kParticles,  // in a viewport of their own
+  kClear,      // what a partial clear touches of the target
+  kHistory,    // what the resolve reads of the past
+  kTiles,      // classes of the motion blur's tiles
   kResolved,
   kBlurred,
   kPresented,
@@ -31,7 +32,7 @@ enum class Stage : std::uint8_t {
   kFlip,   // as the FLIP paper maps it
 };
 
-constexpr int kStageCount = 13;
+constexpr int kStageCount = 14;
 
 const char* name_of(Stage stage);  // "colour"
 std::optional<Stage> stage_named(const std::string& name);

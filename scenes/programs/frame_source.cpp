@@ -33,9 +33,11 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(const FrameSourceSettin
   return source;
 }
 
-Result<std::unique_ptr<FrameSource>> FrameSource::another(const SequenceSettings& sequence) const {
+Result<std::unique_ptr<FrameSource>> FrameSource::another(const SequenceSettings& sequence,
+                                                          const std::optional<PartsSettings>& parts) const {
   auto source = std::unique_ptr<FrameSource>(new FrameSource(settings_));
   source->settings_.sequence = sequence;
+  if (parts) source->settings_.parts = *parts;
   if (Status status = source->open_sequence(); !status.ok()) return status;
   source->stage_ = stage_;
   return source;
@@ -87,6 +89,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   for (ResolveSettings& resolve : resolves) {
     resolve.output = bridging.output;
     resolve.target = bridging.target;
+    resolve.particle_target = particle_target();
     resolve.targets = bridging.targets;
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
@@ -98,9 +101,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   auto bridge = gl::Bridge::create(context(), device(), bridging);
   if (!bridge.ok()) return bridge.status();
   bridge_ = std::move(bridge).value();
-  auto parts = PartScales::create(settings_.parts);
-  if (!parts.ok()) return parts.status();
-  parts_ = std::move(parts).value();
+  if (Status status = open_parts(bridging); !status.ok()) return status;
 
   std::vector<ResolvePlan> plans;
   for (ResolveSettings& resolve : resolves) {
@@ -110,6 +111,43 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
     plans.push_back(plan.value());
   }
   return plans;
+}
+
+Extent FrameSource::particle_target() const {
+  return scene().particles ? scenes::particle_target(settings_.parts, sequence_->target()) : Extent();
+}
+
+// Particles pass as frames do, by a bridge of the same kind, whose own picture nobody makes.
+Status FrameSource::open_parts(const gl::BridgeSettings& bridging) {
+  PartsSettings settings = settings_.parts;
+  if (!scene().particles) settings.particles.reset();
+  auto parts = PartScales::create(settings, sequence_->target());
+  if (!parts.ok()) return parts.status();
+  parts_ = std::move(parts).value();
+  particle_bridge_.reset();
+  if (!settings.particles) return {};
+  gl::BridgeSettings own = bridging;
+  own.target = particle_target();
+  own.output = {1, 1};
+  own.depth = true;
+  own.velocity = own.checkerboard = false;
+  auto bridge = gl::Bridge::create(context(), device(), own);
+  if (!bridge.ok()) return bridge.status();
+  particle_bridge_ = std::move(bridge).value();
+  return {};
+}
+
+gl::Bridge::Memory FrameSource::memory() const {
+  gl::Bridge::Memory memory = bridge_->memory();
+  if (!particle_bridge_) return memory;
+  const gl::Bridge::Memory particles = particle_bridge_->memory();
+  memory.gl_bytes += particles.gl_bytes;
+  memory.opencl_bytes += particles.opencl_bytes;
+  return memory;
+}
+
+std::uint64_t FrameSource::bytes_in() const {
+  return bridge_->traffic().bytes_in + (particle_bridge_ ? particle_bridge_->traffic().bytes_in : 0);
 }
 
 Status FrameSource::draw(std::int64_t index, bool keep_targets) {
@@ -131,19 +169,31 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   if (cut) frame.view.previous_seconds = view.seconds;
   frame.view.display = display_;
   parts_->choose(frame.view);
-  auto targets = bridge_->begin_draw(static_cast<int>(index % bridge_->slots()), frame.view.render);
+  const int slot = static_cast<int>(index % bridge_->slots());
+  auto targets = bridge_->begin_draw(slot, frame.view.render);
   if (!targets.ok()) return targets.status();
-  const Status drawn = renderer().draw(*targets.value(), frame.view, parts_->timers(index));
+  auto particles = begin_particles(slot, frame.view);
+  if (!particles.ok()) return particles.status();
+  const Status drawn = renderer().draw(*targets.value(), frame.view, parts_->parts(index, particles.value()));
   if (!drawn.ok()) return drawn;
   parts_->learn();
   if (keep_targets) frame.targets = gl::read_targets(*targets.value(), frame.view.render);
   if (keep_targets && view.parity) blank_unshaded(frame.targets, *view.parity);
+  if (keep_targets && particle_bridge_)
+    frame.particles = gl::read_targets(*particles.value(), frame.view.particles);
   drawn_.push_back(std::move(frame));
   return {};
 }
 
+Result<const gl::RenderTargets*> FrameSource::begin_particles(int slot, const FrameView& view) {
+  if (!particle_bridge_) return static_cast<const gl::RenderTargets*>(nullptr);
+  return particle_bridge_->begin_draw(slot, view.particles);
+}
+
 Status FrameSource::submit() {
-  return bridge_->submit(static_cast<int>(drawn_.back().index % bridge_->slots()));
+  const int slot = static_cast<int>(drawn_.back().index % bridge_->slots());
+  if (Status status = bridge_->submit(slot); !status.ok()) return status;
+  return particle_bridge_ ? particle_bridge_->submit(slot) : Status();
 }
 
 Result<FrameInputs> FrameSource::acquire() {
@@ -162,6 +212,13 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.exposure = exposure();
   inputs.frame_index = static_cast<std::uint64_t>(frame.index);
   inputs.reset = frame.reset;
+  if (!particle_bridge_) return inputs;
+  auto particles = particle_bridge_->acquire(static_cast<int>(frame.index % bridge_->slots()));
+  if (!particles.ok()) return particles.status();
+  inputs.particle_colour = particles->colour;
+  inputs.particle_depth = particles->depth;
+  inputs.particle_reactive = particles->reactive;
+  inputs.particle_render = frame.view.particles;
   return inputs;
 }
 

@@ -45,7 +45,8 @@ struct DrawnFrame {
   std::int64_t index = 0;
   FrameView view;      // at a cut of the scene with its own time as the previous one: nothing has moved
   bool reset = false;  // the first frame, or the first of a shot
-  gl::TargetPixels targets = {};  // only where draw() was asked for them
+  gl::TargetPixels targets = {};    // only where draw() was asked for them
+  gl::TargetPixels particles = {};  // the same, where they have targets of their own
 };
 
 // One thread, that of the GL context. Frames are drawn, acquired and released in order; of those not released
@@ -55,8 +56,10 @@ class FrameSource {
   // Errors: of any part, as that part words them.
   static Result<std::unique_ptr<FrameSource>> create(const FrameSourceSettings& settings);
 
-  // Another sequence of frames from the same scene, context, device and renderer.
-  Result<std::unique_ptr<FrameSource>> another(const SequenceSettings& sequence) const;
+  // Another sequence of frames from the same scene, context, device and renderer; its parts are as this one's where
+  // none are given.
+  Result<std::unique_ptr<FrameSource>> another(const SequenceSettings& sequence,
+                                               const std::optional<PartsSettings>& parts = {}) const;
 
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
   // have. Before the first draw(). `resolve.output` and `target` are taken from the sequence.
@@ -77,6 +80,8 @@ class FrameSource {
   Renderer& renderer() { return *stage_->renderer; }
   gl::Bridge& bridge() { return *bridge_; }
   const PartScales& parts() const { return *parts_; }  // once connected
+  gl::Bridge::Memory memory() const;                   // of all frames; once connected
+  std::uint64_t bytes_in() const;                      // that the last submit() and acquire() moved
   const gl::Bridge& bridge() const { return *bridge_; }
 
   Status draw(std::int64_t index, bool keep_targets = false);
@@ -106,13 +111,17 @@ class FrameSource {
   explicit FrameSource(const FrameSourceSettings& settings) : settings_(settings) {}
   Status open_sequence();
   Status open_stage();
+  Status open_parts(const gl::BridgeSettings& bridging);
+  Extent particle_target() const;
+  Result<const gl::RenderTargets*> begin_particles(int slot, const FrameView& view);
 
   FrameSourceSettings settings_;
   std::shared_ptr<Stage> stage_;  // outlives what was made in its context
   std::optional<FrameSequence> sequence_;
   std::unique_ptr<gl::Bridge> bridge_;
   std::optional<PartScales> parts_;
-  Display display_;  // of targets with encoded colour
+  std::unique_ptr<gl::Bridge> particle_bridge_;  // null where particles are drawn with everything else
+  Display display_;                              // of targets with encoded colour
   std::deque<DrawnFrame> drawn_;
 };
 

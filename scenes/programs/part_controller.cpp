@@ -2,7 +2,7 @@
 #include "programs/part_controller.h"
 
 #include "quincunx/predictive_controller.h"
-#include "render/part_timers.h"
+#include "render/frame_parts.h"
 
 namespace quincunx::scenes {
 

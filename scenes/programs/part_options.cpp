@@ -10,6 +10,7 @@
 namespace quincunx::scenes {
 namespace {
 
+constexpr const char* kAutomatic = "auto";
 constexpr double kDefaultBudget = 0.1;  // of a frame's time
 constexpr double kLongestBudget = 1000;
 
@@ -21,7 +22,7 @@ struct PartNames {
 };
 
 void read_scale(const std::string& option, const std::string& text, PartOption& part) {
-  part.automatic = text == "auto";
+  part.automatic = text == kAutomatic;
   if (part.automatic) return;
   const auto scale = tools::number_in(text);
   if (!scale || !(*scale >= kLeastPartScale && *scale <= 1)) {
@@ -32,20 +33,23 @@ void read_scale(const std::string& option, const std::string& text, PartOption& 
   part.scale = static_cast<float>(*scale);
 }
 
-void add_part(tools::CommandLine& app, const PartNames& names, PartOption& part) {
+// part(): where the option is, made by the first of the two that is given.
+template <typename Part>
+void add_part(tools::CommandLine& app, const PartNames& names, Part part) {
   const auto scale =
       app.add_option_function<std::string>(
              names.scale,
-             [&part, option = names.scale](const std::string& text) { read_scale(option, text, part); },
+             [part, option = names.scale](const std::string& text) { read_scale(option, text, part()); },
              names.what)
           .type_name("S|auto");
-  app.add_option(names.budget, part.budget_ms,
-                 "With auto: milliseconds of OpenGL's work a frame (default: a tenth of a frame of --fps)")
+  app.add_option_function<float>(
+         names.budget, [part](const float& budget) { part().budget_ms = static_cast<double>(budget); },
+         "With auto: milliseconds of OpenGL's work a frame (default: a tenth of a frame of --fps)")
       .in_range(0.001, kLongestBudget)
       .needs(scale)
       .type_name("MS");
-  app.when_read([&app, &part, names] {
-    if (app.has(names.budget) && !part.automatic)
+  app.when_read([&app, part, names] {
+    if (app.has(names.budget) && !part().automatic)
       throw tools::UsageError{names.budget, "nothing holds it; give " + names.scale + " auto"};
   });
 }
@@ -57,15 +61,34 @@ PartSettings settings_for(const PartOption& part, double fps) {
 
 }  // namespace
 
+std::string text_of(const PartOption& part) {
+  return part.automatic ? kAutomatic : fmt::format("{:g}", part.scale);
+}
+
+PartOption part_option(const std::string& text, double budget_ms) {
+  if (text == kAutomatic) return {.automatic = true, .budget_ms = budget_ms};
+  return {.scale = static_cast<float>(tools::number_in(text).value_or(1))};
+}
+
 void add_part_options(tools::CommandLine& app, PartOptions& options) {
   add_part(app,
            {"--shadow-scale", "--shadow-budget",
             "Side of the shadow map's part in use, of the whole (default: 1); auto: held by a controller"},
-           options.shadow);
+           [&options]() -> PartOption& { return options.shadow; });
+  add_part(app,
+           {"--particle-scale", "--particle-budget",
+            "Particles in a viewport of their own: its scale, of the frame's (default: drawn with everything "
+            "else); auto: held by a controller"},
+           [&options]() -> PartOption& {
+             if (!options.particles) options.particles.emplace();
+             return *options.particles;
+           });
 }
 
 PartsSettings parts_for(const PartOptions& options, double fps) {
-  return {.shadow = settings_for(options.shadow, fps)};
+  PartsSettings settings{.shadow = settings_for(options.shadow, fps)};
+  if (options.particles) settings.particles = settings_for(*options.particles, fps);
+  return settings;
 }
 
 }  // namespace quincunx::scenes

@@ -2,6 +2,9 @@
 // PartOptions: what a command line says of the parts of a frame that have a resolution of their own.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "programs/part_scales.h"
 
 namespace quincunx::tools {
@@ -18,7 +21,12 @@ struct PartOption {
 
 struct PartOptions {
   PartOption shadow;
+  std::optional<PartOption> particles;  // absent: drawn with everything else
 };
+
+// "0.5" or "auto", as --shadow-scale takes it. From such a text; one that is neither gives the whole.
+std::string text_of(const PartOption& part);
+PartOption part_option(const std::string& text, double budget_ms);
 
 void add_part_options(tools::CommandLine& app, PartOptions& options);
 

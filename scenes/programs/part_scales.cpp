@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/shadow_fit.h"
 
@@ -12,6 +13,15 @@ namespace {
 
 // Each change of the map's side draws again what stands still, so that there are few of them.
 constexpr int kShadowStep = kShadowTexels / 16;
+
+constexpr int kParticleStep = 2;  // pixels
+
+Extent scaled(Extent extent, float scale) {
+  const auto side = [scale](int whole) {
+    return std::max(1, static_cast<int>(std::lround(static_cast<float>(whole) * scale)));
+  };
+  return {side(extent.width), side(extent.height)};
+}
 
 // Where times need a wait, one frame of so many is timed.
 constexpr int kTimedFrames = 4;
@@ -30,12 +40,27 @@ Result<gl::PartTimer> part_timer() {
 
 }  // namespace
 
-std::string explain(const PartsSettings& settings) {
-  const int side = shadow_side(settings.shadow.scale);
-  return settings.shadow.is_controlled()
-             ? fmt::format("Shadow map     up to {0}x{0} texels, {1} by a controller of its own\n",
-                           kShadowTexels, text_of(settings.shadow))
-             : fmt::format("Shadow map     {0}x{0} of {1}x{1} texels\n", side, kShadowTexels);
+std::string explain(const PartsSettings& settings, bool has_particles) {
+  const PartSettings& shadow = settings.shadow;
+  const int side = shadow_side(shadow.scale);
+  std::string text =
+      shadow.is_controlled()
+          ? fmt::format("Shadow map     up to {0}x{0} texels, {1} by a controller of its own\n",
+                        kShadowTexels, text_of(shadow))
+          : fmt::format("Shadow map     {0}x{0} of {1}x{1} texels\n", side, kShadowTexels);
+  if (!settings.particles) return text;
+  if (!has_particles) return text + "Particles      none in this scene\n";
+  return text +
+         (settings.particles->is_controlled()
+              ? fmt::format("Particles      up to the frame's viewport, {} by a controller of their own\n",
+                            text_of(*settings.particles))
+              : fmt::format("Particles      {} of the frame's viewport on each axis\n",
+                            text_of(*settings.particles)));
+}
+
+Extent particle_target(const PartsSettings& settings, Extent target) {
+  if (!settings.particles) return {};
+  return settings.particles->is_controlled() ? target : scaled(target, settings.particles->scale);
 }
 
 void PartScales::Controlled::note(float scale) {
@@ -55,7 +80,7 @@ std::string PartScales::Controlled::range() const {
   return fmt::format("{:.3g} to {:.3g}, mean {:.3g}, ", least, largest, sum / static_cast<double>(count));
 }
 
-Result<PartScales> PartScales::create(const PartsSettings& settings) {
+Result<PartScales> PartScales::create(const PartsSettings& settings, Extent target) {
   PartScales scales(settings);
   const auto control = [](std::optional<Controlled>& part, Extent whole, int step, double budget_ms) {
     auto controller = PartController::create(whole, step, budget_ms);
@@ -70,6 +95,10 @@ Result<PartScales> PartScales::create(const PartsSettings& settings) {
         control(scales.shadow_, {kShadowTexels, kShadowTexels}, kShadowStep, settings.shadow.budget_ms);
     if (!status.ok()) return status;
   }
+  if (settings.particles && settings.particles->is_controlled()) {
+    const Status status = control(scales.particles_, target, kParticleStep, settings.particles->budget_ms);
+    if (!status.ok()) return status;
+  }
   return scales;
 }
 
@@ -81,18 +110,34 @@ void PartScales::choose(FrameView& view) {
     view.shadow_scale = static_cast<float>(std::min(rung.width, rung.height)) / kShadowTexels;
     shadow_->note(view.shadow_scale);
   }
+  if (!settings_.particles) return;
+  view.particles = scaled(view.render, settings_.particles->scale);
+  if (particles_) {
+    const Extent rung = particles_->controller.next();
+    view.particles = {std::min(rung.width, view.render.width), std::min(rung.height, view.render.height)};
+    particles_->note(static_cast<float>(view.particles.width) / static_cast<float>(view.render.width));
+  }
 }
 
-PartTimers PartScales::timers(std::int64_t index) {
-  return {.frame = static_cast<std::uint64_t>(index), .shadow = shadow_ ? &shadow_->timer : nullptr};
+FrameParts PartScales::parts(std::int64_t index, const gl::RenderTargets* particle_targets) {
+  return {.frame = static_cast<std::uint64_t>(index),
+          .shadow_timer = shadow_ ? &shadow_->timer : nullptr,
+          .particles = particle_targets,
+          .particle_timer = particles_ ? &particles_->timer : nullptr};
 }
 
 void PartScales::learn() {
   if (shadow_) shadow_->learn();
+  if (particles_) particles_->learn();
 }
 
 std::string PartScales::summary() const {
-  return fmt::format("shadow map {}{}", shadow_ ? shadow_->range() : "", text_of(settings_.shadow));
+  const auto used = [](const char* part, const std::optional<Controlled>& controlled,
+                       const PartSettings& settings) {
+    return fmt::format("{} {}{}", part, controlled ? controlled->range() : "", text_of(settings));
+  };
+  const std::string text = used("shadow map", shadow_, settings_.shadow);
+  return settings_.particles ? text + "; " + used("particles", particles_, *settings_.particles) : text;
 }
 
 }  // namespace quincunx::scenes

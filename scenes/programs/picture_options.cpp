@@ -146,6 +146,12 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
         "that OpenCL "
         "reads; leave one of them out");
   }
+  if (options.parts.particles && options.resolve.colour == PixelFormat::kRGBA8) {
+    return Status::invalid(
+        "--particle-scale and --colour rgba8 exclude each other: particles are laid over linear colour; "
+        "leave "
+        "one of them out");
+  }
   FrameSourceSettings source;
   source.scene = options.scene;
   source.seed = options.seed;

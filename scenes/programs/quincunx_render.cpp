@@ -24,13 +24,15 @@ int explain(const RenderOptions& options) {
   if (!sequence.ok()) return tools::fail(sequence.status());
   auto scene = open_scene(options.scene, options.seed);
   if (!scene.ok()) return tools::fail(scene.status());
+  const bool has_particles = static_cast<bool>(scene->particles);
   ResolveSettings settings = options.resolve;
   settings.output = sequence->output();
   settings.target = sequence->target();
+  if (has_particles) settings.particle_target = particle_target(source->parts, settings.target);
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  fmt::print("Scene          {}: {}\n{}{}", scene->name, scene->summary, explain(source->parts),
-             plan->explain());
+  fmt::print("Scene          {}: {}\n{}{}", scene->name, scene->summary,
+             explain(source->parts, has_particles), plan->explain());
   return tools::kDone;
 }
 

@@ -156,7 +156,7 @@ Status RenderSession::dispatch() {
   const FrameReport report =
       service_->dispatch(inputs.value(), outputs_for(plan(), resolved_.view(), presented.value()));
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
-  bytes_in_.push_back(source_->bridge().traffic().bytes_in);
+  bytes_in_.push_back(source_->bytes_in());
   return report.status;
 }
 

@@ -51,7 +51,7 @@ tools::RunReport RenderSession::report() const {
       {"velocity", name_of(plan().velocity)},
       {"colour", name_of(options_.resolve.colour)},
       {"tone map", name_of(options_.resolve.tone_map)},
-      {"targets", targets_text(plan().settings.targets, source_->bridge().memory())},
+      {"targets", targets_text(plan().settings.targets, source_->memory())},
       {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap", overlap_text()},

@@ -67,6 +67,16 @@ void clear_for_frame(const gl::RenderTargets& targets, Extent render) {
   if (targets.reactive() != 0) gl::clear(targets.framebuffer(), GL_COLOR, kReactive, zero);
 }
 
+void clear_particles(const gl::RenderTargets& targets, Extent viewport) {
+  const float zero[] = {0, 0, 0, 0};
+  glDisable(GL_STENCIL_TEST);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, viewport.width, viewport.height);
+  gl::clear(targets.framebuffer(), GL_COLOR, kColour, zero);
+  if (targets.reactive() != 0) gl::clear(targets.framebuffer(), GL_COLOR, kReactive, zero);
+}
+
 void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value) {
   const float colour[] = {value, value, value, 1};
   glEnable(GL_SCISSOR_TEST);
@@ -93,7 +103,15 @@ void set_sky_state() {
   write_to(true, false);
 }
 
+void set_depth_only_state() {
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_ALWAYS);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+}
+
 void set_blended_state() {
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_FALSE);
   glDepthFunc(GL_GREATER);
   write_to(false, true);

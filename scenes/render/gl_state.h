@@ -26,6 +26,9 @@ void set_winding(bool mirrored);
 // clear: surfaces and sky cover every pixel. Leaves the scissor on the viewport.
 void clear_for_frame(const gl::RenderTargets& targets, Extent render);
 
+// Makes the viewport of particles transparent black and unmarked. Leaves the scissor on it, and the stencil test off.
+void clear_particles(const gl::RenderTargets& targets, Extent viewport);
+
 // Gives a block of the colour target, `corner` its upper left pixel, one value in R, G and B, and alpha 1.
 void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2 size, float value);
 
@@ -33,8 +36,9 @@ void fill_colour(const gl::RenderTargets& targets, glm::ivec2 corner, glm::ivec2
 // the stencil, so a driver may test it before it shades.
 void draw_checkerboard(int parity);
 
-void set_opaque_state();   // writes colour, velocity, depth
-void set_sky_state();      // colour and velocity where nothing was drawn
-void set_blended_state();  // blends premultiplied colour, accumulates reactive values
+void set_opaque_state();      // writes colour, velocity, depth
+void set_sky_state();         // colour and velocity where nothing was drawn
+void set_depth_only_state();  // writes depth, whatever was there
+void set_blended_state();     // blends premultiplied colour, accumulates reactive values
 
 }  // namespace quincunx::scenes

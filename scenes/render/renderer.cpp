@@ -18,6 +18,23 @@
 namespace quincunx::scenes {
 namespace {
 
+Status check_particles(const Scene& scene, const FrameView& view, const FrameParts& parts) {
+  if (view.particles == Extent()) return {};
+  if (!scene.particles) return Status::invalid("FrameView::particles is given, but the scene has none");
+  if (parts.particles == nullptr)
+    return Status::invalid("FrameView::particles is given, but FrameParts::particles is missing");
+  const Extent own = view.particles, extent = parts.particles->extent();
+  const bool fits = own.width >= 1 && own.height >= 1 &&
+                    own.width <= std::min(view.render.width, extent.width) &&
+                    own.height <= std::min(view.render.height, extent.height);
+  if (fits) return {};
+  return Status::invalid(
+      fmt::format("FrameView::particles is {} x {}; it must lie between 1 x 1 and both the frame's {} x {} "
+                  "and the particle "
+                  "targets' {} x {}",
+                  own.width, own.height, view.render.width, view.render.height, extent.width, extent.height));
+}
+
 Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
   const Extent extent = targets.extent();
   const bool fits = view.render.width >= 1 && view.render.height >= 1 && view.render.width <= extent.width &&
@@ -70,9 +87,11 @@ Result<Renderer> Renderer::create(const Scene& scene) {
   return Renderer(std::move(impl));
 }
 
-Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view, const PartTimers& timers) {
+Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view, const FrameParts& parts) {
   if (Status status = check_view(targets, view); !status.ok()) return status;
+  if (Status status = check_particles(impl_->scene, view, parts); !status.ok()) return status;
   const bool velocity = targets.velocity() != 0;
+  const bool apart = view.particles != Extent();
   const Impl::View matrices = impl_->view_at(view);
   impl_->place_instances(view, velocity);
   impl_->make_lists(matrices, view);
@@ -81,15 +100,16 @@ Status Renderer::draw(const gl::RenderTargets& targets, const FrameView& view, c
 
   const DrawState state;
   glBindVertexArray(impl_->surface_array.get());
-  impl_->draw_shadows(view, timers);
+  impl_->draw_shadows(view, parts);
   clear_for_frame(targets, view.render);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, targets.framebuffer());
   glViewport(0, 0, view.render.width, view.render.height);
   if (view.parity) draw_checkerboard(*view.parity);
   impl_->draw_opaque(velocity);
   impl_->draw_sky(velocity);
-  impl_->draw_blended();
+  impl_->draw_blended(!apart);
   impl_->draw_faults(targets, view);
+  if (apart) impl_->draw_particles_apart(targets, view, parts);
   return {};
 }
 
@@ -111,11 +131,11 @@ void Renderer::Impl::draw_batch(const Batch& batch, bool velocity) {
   draw_mesh(part, instance_stream.get(), instance_offset, batch.first, batch.count);
 }
 
-void Renderer::Impl::draw_shadows(const FrameView& view, const PartTimers& timers) {
+void Renderer::Impl::draw_shadows(const FrameView& view, const FrameParts& parts) {
   const int side = shadow_side(view.shadow_scale);
   const ShadowMap::Work work = shadows.work_for(layout, view.seconds, view.shadow_age, side);
-  gl::PartTimer* const timer = work == ShadowMap::Work::kMoving ? timers.shadow : nullptr;
-  if (timer != nullptr) timer->begin(timers.frame, {side, side});
+  gl::PartTimer* const timer = work == ShadowMap::Work::kMoving ? parts.shadow_timer : nullptr;
+  if (timer != nullptr) timer->begin(parts.frame, {side, side});
   shadows.update(work, layout, gpu, placed, view.seconds, side);
   if (timer != nullptr) timer->end();
 }
@@ -134,12 +154,13 @@ void Renderer::Impl::draw_sky(bool velocity) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
-void Renderer::Impl::draw_blended() {
+void Renderer::Impl::draw_blended(bool with_particles) {
   if (list.blended().empty()) return;
   set_blended_state();
   bound = {};
   bool particles_bound = false;
   for (const Batch& batch : list.blended()) {
+    if (batch.particles && !with_particles) continue;
     if (batch.particles != particles_bound) {
       glBindVertexArray(batch.particles ? particle_array.get() : surface_array.get());
       particles_bound = batch.particles;
@@ -148,13 +169,30 @@ void Renderer::Impl::draw_blended() {
       draw_batch(batch, false);
       continue;
     }
-    const auto first = static_cast<GLintptr>(batch.first * sizeof(Particle));
-    glBindVertexBuffer(kInstanceSlot, particle_stream.get(), particle_offset + first, sizeof(Particle));
-    glUseProgram(particle_program.get());
-    glDisable(GL_CULL_FACE);
+    draw_particles(batch.first, batch.count);
     bound = {};
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.count));
   }
+}
+
+void Renderer::Impl::draw_particles(std::size_t first, std::size_t count) const {
+  const auto offset = particle_offset + static_cast<GLintptr>(first * sizeof(Particle));
+  glBindVertexBuffer(kInstanceSlot, particle_stream.get(), offset, sizeof(Particle));
+  glUseProgram(particle_program.get());
+  glDisable(GL_CULL_FACE);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
+}
+
+// All of them, farthest first, as make_lists() has sorted them.
+void Renderer::Impl::draw_particles_apart(const gl::RenderTargets& frame, const FrameView& view,
+                                          const FrameParts& parts) const {
+  if (parts.particle_timer != nullptr) parts.particle_timer->begin(parts.frame, view.particles);
+  particle_layer.begin(frame, view, *parts.particles);
+  set_blended_state();
+  if (!particles.empty()) {
+    glBindVertexArray(particle_array.get());
+    draw_particles(0, particles.size());
+  }
+  if (parts.particle_timer != nullptr) parts.particle_timer->end();
 }
 
 void Renderer::Impl::draw_faults(const gl::RenderTargets& targets, const FrameView& view) const {

@@ -14,7 +14,7 @@
 #include "quincunx/method.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/render_targets.h"
-#include "render/part_timers.h"
+#include "render/frame_parts.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
@@ -41,6 +41,8 @@ struct FrameView {
   double shadow_age = 0;  // seconds for which the drawn shadows of what moves may stay
   // Side of the part of the shadow map that is drawn and read, of the whole: in [kLeastPartScale, 1].
   float shadow_scale = 1;
+  // The viewport that particles are drawn into, at most `render`; 0x0: they are drawn with everything else.
+  Extent particles = {};
   Display display = {};
 };
 
@@ -57,8 +59,9 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   // Draws one frame; clears what it must first. Velocity and reactive values are written where the targets
-  // have them.
-  Status draw(const gl::RenderTargets& targets, const FrameView& view, const PartTimers& timers = {});
+  // have them. Particles that have a viewport of their own are drawn last, hidden by the frame's depth, over
+  // transparent black; FrameParts::particles is needed then. Their order among transparent surfaces is lost.
+  Status draw(const gl::RenderTargets& targets, const FrameView& view, const FrameParts& parts = {});
 
   // For velocity from depth: from this frame's clip space to the previous frame's, jitter excluded.
   CameraMotion camera_motion(const FrameView& view) const;

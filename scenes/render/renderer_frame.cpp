@@ -84,6 +84,9 @@ Status Renderer::Impl::create_programs() {
     return status;
   }
   if (!scene.particles) return {};
+  Result<ParticleLayer> layer = ParticleLayer::create();
+  if (!layer.ok()) return layer.status();
+  particle_layer = std::move(layer).value();
   return link(particle_program, "particle.vert.glsl", "particle.frag.glsl", {});
 }
 

@@ -7,6 +7,7 @@
 
 #include "render/draw_list.h"
 #include "render/gpu_scene.h"
+#include "render/particle_layer.h"
 #include "render/renderer.h"
 #include "render/scene_layout.h"
 #include "render/shadow_map.h"
@@ -40,10 +41,13 @@ struct Renderer::Impl {
   void make_lists(const View& view, const FrameView& frame);
   void upload_frame(const FrameBlock& block);
 
-  void draw_shadows(const FrameView& view, const PartTimers& timers);
+  void draw_shadows(const FrameView& view, const FrameParts& parts);
   void draw_opaque(bool velocity);
   void draw_sky(bool velocity) const;
-  void draw_blended();
+  void draw_blended(bool with_particles);
+  void draw_particles(std::size_t first, std::size_t count) const;
+  void draw_particles_apart(const gl::RenderTargets& frame, const FrameView& view,
+                            const FrameParts& parts) const;
   void draw_faults(const gl::RenderTargets& targets, const FrameView& view) const;
   void draw_batch(const Batch& batch, bool velocity);
 
@@ -54,6 +58,7 @@ struct Renderer::Impl {
   std::vector<SurfacePrograms> surface_programs;
   SurfacePrograms sky_programs;
   gl::Program particle_program;
+  ParticleLayer particle_layer;
   gl::VertexArray surface_array;
   gl::VertexArray particle_array;
   StreamBuffer frame_stream;

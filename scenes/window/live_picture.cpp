@@ -54,6 +54,11 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   wanted.resolve.dither = look.dither;
   wanted.resolve.targets = look.targets;
   wanted.resolve.shading = look.shading;
+  wanted.parts.shadow = part_option(look.shadow_scale, options_.parts.shadow.budget_ms);
+  const double budget_ms = options_.parts.particles ? options_.parts.particles->budget_ms : 0;
+  wanted.parts.particles.reset();
+  if (look.particle_scale != kParticlesInFrame)
+    wanted.parts.particles = part_option(look.particle_scale, budget_ms);
   choose_method(wanted.resolve, look.method);
   return wanted;
 }
@@ -89,7 +94,7 @@ Status LivePicture::configure(const LookSettings& look, const ResolutionSettings
 }
 
 Status LivePicture::open_source(const FrameSourceSettings& settings) {
-  auto source = source_ ? source_->another(settings.sequence) : FrameSource::create(settings);
+  auto source = source_ ? source_->another(settings.sequence, settings.parts) : FrameSource::create(settings);
   if (!source.ok()) return source.status();
   source_ = std::move(source).value();
   return {};

@@ -89,6 +89,8 @@ void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
   choose_value("targets", kTargetKinds, look.targets);
+  choose_text("shadow map", kShadowScales, look.shadow_scale);
+  choose_text("particles", kParticleScales, look.particle_scale, "in the frame");
   choose_value("resolution", kResolutionModes, settings.resolution.mode);
   label("scale");
   float scale = settings.resolution.scale;

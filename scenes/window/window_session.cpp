@@ -53,6 +53,8 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.dither = options.resolve.dither;
   settings.look.targets = options.resolve.targets;
   settings.look.shading = options.resolve.shading;
+  settings.look.shadow_scale = text_of(options.parts.shadow);
+  if (options.parts.particles) settings.look.particle_scale = text_of(*options.parts.particles);
   settings.look.jitter = options.jitter;
   settings.resolution.scale = scale.x;
   settings.show_ui = options.show_ui;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "programs/frame_pacing.h"
 #include "quincunx/resolve_plan.h"
@@ -53,6 +54,12 @@ inline const std::string kCompareTruth = "truth";
 
 constexpr int kTargetKinds = 2;
 
+// Scales of parts that keys and panel offer, as --shadow-scale and --particle-scale take them.
+inline const std::vector<std::string> kShadowScales = {"1", "0.5", "0.25", "0.125", "auto"};
+inline const std::string kParticlesInFrame = "";  // drawn with everything else
+inline const std::vector<std::string> kParticleScales = {kParticlesInFrame, "1",   "0.5", "0.25",
+                                                         "0.125",           "auto"};
+
 // How the picture is made; a change of these makes passes and buffers anew.
 struct LookSettings {
   std::string scene;                       // as open_scene() takes it
@@ -64,6 +71,8 @@ struct LookSettings {
   bool dither = true;
   Targets targets = Targets::kViewport;
   Shading shading = Shading::kFull;
+  std::string shadow_scale = "1";
+  std::string particle_scale = kParticlesInFrame;
   std::optional<tools::Jitter> jitter;  // absent: the one that suits the method
 
   bool compares_methods() const { return compared != kCompareNothing && compared != kCompareTruth; }

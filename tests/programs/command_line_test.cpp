@@ -63,6 +63,12 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_NE(mean.out.find("WEIGHT=0"), std::string::npos) << mean.out;
   const ProgramResult coarse = run("--explain --scene wheel --shadow-scale 0.25");
   EXPECT_NE(coarse.out.find("Shadow map     512x512 of 2048x2048"), std::string::npos) << coarse.out;
+  const ProgramResult apart = run("--explain --scene particles --particle-scale 0.5");
+  EXPECT_NE(apart.out.find("overlay_particles"), std::string::npos) << apart.out;
+  EXPECT_NE(apart.out.find("its own"), std::string::npos) << apart.out;
+  const ProgramResult none = run("--explain --scene wheel --particle-scale 0.5");
+  EXPECT_NE(none.out.find("Particles      none in this scene"), std::string::npos) << none.out;
+  EXPECT_EQ(none.out.find("overlay_particles"), std::string::npos) << none.out;
   const ProgramResult placed = run("--explain --scene wheel --targets placed");
   EXPECT_NE(placed.out.find("Targets        placed"), std::string::npos) << placed.out;
 }
@@ -87,6 +93,11 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--scene chart --targets placed --interop gl", 2, "exclude each other");
   for (const char* scale : {"0", "0.06", "1.5", "nan", "automatic"})
     expect_refused(std::string("--shadow-scale ") + scale, 2, "--shadow-scale");
+  for (const char* scale : {"0", "0.06", "1.5", "nan", "automatic"})
+    expect_refused(std::string("--particle-scale ") + scale, 2, "--particle-scale");
+  expect_refused("--particle-budget 2", 2, "--particle-scale");
+  expect_refused("--particle-scale 0.5 --particle-budget 2", 2, "nothing holds it");
+  expect_refused("--scene particles --particle-scale 0.5 --colour rgba8", 2, "exclude each other");
   expect_refused("--shadow-budget 2", 2, "--shadow-scale");
   expect_refused("--shadow-scale 0.5 --shadow-budget 2", 2, "nothing holds it");
   expect_refused("--shadow-scale auto --shadow-budget 0", 2, "--shadow-budget");

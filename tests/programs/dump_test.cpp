@@ -87,6 +87,24 @@ TEST_F(Dump, EveryStageHasAPictureAndTheFilesAreNamed) {
   EXPECT_GE(image("d/frame.0003.output.exr").channel("truth.G"), 0);
 }
 
+TEST_F(Dump, ParticlesOfTheirOwnHaveAViewportOfTheirOwn) {
+  expect_done(
+      dump("-q --scene particles --output 96x54 --scale 0.5 --particle-scale 0.5 --frame 1 --out '{}/d'"));
+  const auto particles = image("d/frame.0001.particles.exr");
+  const Extent frame = image("d/frame.0001.render.exr").extent;
+  EXPECT_EQ(particles.extent, (Extent{(frame.width + 1) / 2, (frame.height + 1) / 2}));
+  const int alpha = particles.channel("A");
+  ASSERT_GE(alpha, 0);
+  int covered = 0;
+  for (int y = 0; y < particles.extent.height; ++y) {
+    for (int x = 0; x < particles.extent.width; ++x)
+      covered += particles.at(x, y, alpha) > 0.01f ? 1 : 0;
+  }
+  EXPECT_GT(covered, particles.extent.area() / 50);
+  EXPECT_LT(covered, particles.extent.area()) << "the rest is transparent";
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("d/frame.0001.particles.png")));
+}
+
 TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
   const std::string run =
       "-q --scene wheel --output 96x54 --scale 0.5,0.6 --method temporal --frame 3 --out ";
@@ -189,6 +207,11 @@ TEST_F(Dump, MistakesAreAnswered) {
   expect_refused("-q --scene chart --method bilinear --frame 2 --stages history --out '{}/d'",
                  "there is no stage 'history': the method 'bilinear' uses one frame only");
   expect_refused("-q --scene chart --stages history --out '{}/d'", "no frame comes before");
+  expect_refused("-q --scene particles --stages particles --out '{}/d'", "give --particle-scale");
+  expect_refused("-q --scene chart --particle-scale 0.5 --stages particles --out '{}/d'",
+                 "the scene has none");
+  expect_refused("-q --scene particles --particle-scale 0.5 --frames 2 --sequence '{}/f.%04d.exr'",
+                 "without --particle-scale");
   expect_refused("-q --scene chart --frames 2 --sequence '{}/f.%04d.png'", "must end in .exr");
   expect_refused("-q --scene chart --frames 2 --sequence '{}/f.exr'", "f.exr");
   expect_refused("-q --scene nowhere --out '{}/d'", "there is no scene 'nowhere'");

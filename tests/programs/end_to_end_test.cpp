@@ -79,6 +79,35 @@ TEST_F(EndToEnd, TwoRunsAgreeBitForBit) {
   }
 }
 
+// With parts at a scale of their own nothing of another frame's is seen, either, and targets of any kind give the same.
+TEST_F(EndToEnd, PartsAtTheirOwnScaleAgreeBitForBitToo) {
+  for (const std::string method : {"bilinear", "temporal", "temporal --shading checkerboard"}) {
+    const std::string arguments =
+        "--scene particles --scale-path random:0.2,1.2 --seed 7 --frames 5 "
+        "--shadow-scale 0.3 --particle-scale 0.37 --method " +
+        method + " --out ";
+    render(arguments + "'{}/a.%04d.png'");
+    render(arguments + "'{}/b.%04d.png' --no-overlap");
+    render(arguments + "'{}/c.%04d.png' --targets placed");
+    for (int index = 0; index < 5; ++index) {
+      const std::string number = ".000" + std::to_string(index) + ".png";
+      EXPECT_EQ(image("a" + number).pixels, image("b" + number).pixels) << method << index;
+      EXPECT_EQ(image("a" + number).pixels, image("c" + number).pixels) << method << index;
+    }
+  }
+}
+
+TEST_F(EndToEnd, PartsUnderControllersAreReported) {
+  render(
+      "--scene particles --frames 12 --shadow-scale auto --shadow-budget 0.05 --particle-scale auto "
+      "--particle-budget 0.05 --report '{}/run'");
+  const auto report = nlohmann::json::parse(read_file(path("run.json")));
+  const std::string parts = report["settings"]["parts"];
+  EXPECT_NE(parts.find("particles "), std::string::npos) << parts;
+  EXPECT_NE(parts.find("held at 0.05 ms"), std::string::npos) << parts;
+  EXPECT_NE(parts.find(" to 1, mean 0."), std::string::npos) << parts << ": a budget that nothing fits in";
+}
+
 // Placed targets change no bit of any picture, whatever the resolution does, for frames of their own and for history.
 TEST_F(EndToEnd, PlacedTargetsGiveTheSamePictures) {
   for (const std::string method :

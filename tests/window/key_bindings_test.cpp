@@ -42,6 +42,26 @@ TEST(KeyBindings, NamesAndKeysAreDifferent) {
   EXPECT_FALSE(key_named("nothing"));
 }
 
+TEST(KeyBindings, PartsGoThroughTheirScalesAndBack) {
+  WindowSettings settings = usual();
+  const LookSettings before = settings.look;
+  std::set<std::string> shadows, particles;
+  for (std::size_t i = 0; i < kShadowScales.size(); ++i) {
+    press(settings, "l");
+    shadows.insert(settings.look.shadow_scale);
+  }
+  for (std::size_t i = 0; i < kParticleScales.size(); ++i) {
+    press(settings, "q");
+    particles.insert(settings.look.particle_scale);
+  }
+  EXPECT_EQ(shadows.size(), kShadowScales.size());
+  EXPECT_EQ(particles.size(), kParticleScales.size());
+  EXPECT_EQ(settings.look, before);
+  press(settings, "q");
+  press(settings, "shift+q");
+  EXPECT_EQ(settings.look, before);
+}
+
 // Every method of the table, once around, and back again by Shift.
 TEST(KeyBindings, FilterAndResolveReachEveryMethod) {
   std::set<std::string> reached;
