@@ -19,6 +19,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --from new/bench.json --compare old/bench.json       the same of two files, nothing is measured
   quincunx-bench --traces --out report               resolution controllers over load traces; open report/traces.html
   quincunx-bench --resize --scenes pan               another resolution: its cost, viewport and placed targets
+  quincunx-bench --parts --scenes courtyard           scales of the picture, the shadow map and particles
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
 void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
@@ -76,7 +77,7 @@ void add_measuring_options(tools::CommandLine& app, BenchOptions& options) {
 void add_result_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--out", options.out,
                  "Write bench.json, .csv, .svg and .html (with --traces: traces.json, .csv and .html; with "
-                 "--resize: resize.json and .csv) into this folder")
+                 "--resize: resize.json and .csv; with --parts: parts.json and .csv) into this folder")
       .type_name("FOLDER");
   const auto compare =
       app.add_option("--compare", options.compare, "Say what got better or worse since this bench.json")
@@ -112,11 +113,13 @@ std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& optio
   add_result_options(app, options);
   traces::add_trace_options(app, options.traces);
   add_resize_options(app, options.resize);
+  add_parts_options(app, options.parts_bench);
   scenes::add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-bench", argc, argv);
   if (const std::optional<int> code = app.parse(argc, argv)) return code;
   apply_quick(app, options);
   if (options.resize.wanted && !app.has("--scales")) options.scales = {0.5, 0.7, 1};
+  if (options.parts_bench.wanted && !app.has("--scales")) options.scales = {0.35, 0.5, 0.6, 0.85, 1};
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/parts/parts_command.h"
 #include "bench/resize/resize_command.h"
 #include "bench/traces/trace_command.h"
 #include "programs/picture_options.h"
@@ -32,6 +33,7 @@ struct BenchOptions : scenes::PictureOptions {
   bool list_methods = false;
   traces::TraceOptions traces;
   ResizeOptions resize;
+  PartsOptions parts_bench;
   bool json = false;
 
   std::string command_line;

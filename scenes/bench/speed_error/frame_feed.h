@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "programs/frame_source.h"
@@ -32,9 +33,11 @@ class StepClock {
 // One thread, that of the GL context.
 class FrameFeed {
  public:
-  // From the scene, context and device of `stage`, for these resolves of each frame.
+  // From the scene, context and device of `stage`, for these resolves of each frame; the parts are the stage's where
+  // none are given.
   static Result<FrameFeed> create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
-                                  const std::vector<ResolveSettings>& resolves);
+                                  const std::vector<ResolveSettings>& resolves,
+                                  const std::optional<scenes::PartsSettings>& parts = {});
 
   const std::vector<ResolvePlan>& plans() const { return plans_; }
 

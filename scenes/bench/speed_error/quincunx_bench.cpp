@@ -102,6 +102,20 @@ int measure_resizing(const BenchOptions& options) {
   return tools::kDone;
 }
 
+int measure_parts(const BenchOptions& options) {
+  const auto result = run_parts(options);
+  if (!result.ok()) return tools::fail(result.status());
+  if (!options.out.empty()) {
+    if (Status status = write_files(result.value(), options.out); !status.ok()) return tools::fail(status);
+  }
+  if (options.json) {
+    fmt::print("{}", json_of(result.value()));
+  } else if (!options.quiet) {
+    fmt::print("{}", text_of(result.value()));
+  }
+  return tools::kDone;
+}
+
 int run(int argc, char** argv) {
   BenchOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
@@ -118,6 +132,8 @@ int run(int argc, char** argv) {
     return replay_traces(options);
   } else if (options.resize.wanted) {
     return measure_resizing(options);
+  } else if (options.parts_bench.wanted) {
+    return measure_parts(options);
   } else {
     return measure(options);
   }
