@@ -175,7 +175,8 @@ void Overlay::compare(const FrameSpec& spec, const FrameSpec& spec_over) {
       } else {
         for (std::size_t c = 0; c < 4; ++c) {
           const double expected = std::clamp(value.colour[c], -most, most);
-          testing::expect_near(expected, {expected, bound.colour[c].error}, colour[i][c], what, v.colour);
+          testing::expect_near(expected, {expected, bound.colour[c].error}, colour[i][c], what, v.colour,
+                               v.storage);
           if (HasFatalFailure()) return;
         }
       }
