@@ -4,7 +4,8 @@
 #   quincunx_precompile(TARGET tests)      that and GoogleTest
 #
 # Each is compiled once, by an object library that all users share. The compiler takes it only for files with the same
-# options; elsewhere, and where QUINCUNX_PRECOMPILE is off, it reads the headers as text or not at all.
+# options, of which libraries have some of their own; elsewhere, and where QUINCUNX_PRECOMPILE is off, it reads the
+# headers as text or not at all.
 set(QUINCUNX_PRECOMPILED_FOLDER ${CMAKE_CURRENT_LIST_DIR}/precompiled)
 
 function(quincunx_precompile target set)
@@ -15,10 +16,17 @@ function(quincunx_precompile target set)
   find_package(fmt REQUIRED QUIET)
   find_package(spdlog REQUIRED QUIET)
   set(owner quincunx_precompiled_${set})
+  get_target_property(for_library ${target} POSITION_INDEPENDENT_CODE)
+  if(for_library)
+    string(APPEND owner _for_libraries)
+  endif()
   if(NOT TARGET ${owner})
-    set(source ${PROJECT_BINARY_DIR}/precompiled/${set}.cpp)
+    set(source ${PROJECT_BINARY_DIR}/precompiled/${owner}.cpp)
     file(GENERATE OUTPUT ${source} CONTENT "// Holds the precompiled header.\n")
     add_library(${owner} OBJECT ${source})
+    if(for_library)
+      quincunx_library(${owner})
+    endif()
     target_link_libraries(${owner} PRIVATE quincunx_options spdlog::spdlog fmt::fmt)
     if(set STREQUAL "tests")
       find_package(GTest REQUIRED)

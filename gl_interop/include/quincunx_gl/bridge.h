@@ -18,6 +18,7 @@
 #include <string>
 
 #include "quincunx/device.h"
+#include "quincunx/export.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx_gl/egl_context.h"
 #include "quincunx_gl/render_targets.h"
@@ -26,7 +27,7 @@ namespace quincunx::gl {
 
 enum class Interop { kAuto, kGl, kCopy };
 
-const char* name_of(Interop interop);  // "gl", "copy", "auto"
+QUINCUNX_API const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
   Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
@@ -53,9 +54,10 @@ struct SharedFrame {
 
 // Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and there is
 // one, else the one `selector` names (see Device::open).
-Result<Device> open_device(const EglContext& context, const std::string& selector, Interop interop);
+QUINCUNX_API Result<Device> open_device(const EglContext& context, const std::string& selector,
+                                        Interop interop);
 
-class Bridge {
+class QUINCUNX_API Bridge {
  public:
   static Result<std::unique_ptr<Bridge>> create(const EglContext& context, const Device& device,
                                                 const BridgeSettings& settings);

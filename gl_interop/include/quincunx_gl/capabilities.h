@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "quincunx/export.h"
+
 namespace quincunx::gl {
 
 enum class Api {
@@ -11,7 +13,7 @@ enum class Api {
   kEs3,   // OpenGL ES 3.1 or later
 };
 
-const char* name_of(Api api);  // "4.5", "es3"
+QUINCUNX_API const char* name_of(Api api);  // "4.5", "es3"
 
 struct Capabilities {
   Api api = Api::kGl45;
@@ -26,9 +28,9 @@ struct Capabilities {
 };
 
 // Of the context that is current on this thread; found once for each context.
-const Capabilities& capabilities();
+QUINCUNX_API const Capabilities& capabilities();
 
 // Finds them anew. EglContext does, whose context may lie where one that is gone has lain.
-const Capabilities& renewed_capabilities();
+QUINCUNX_API const Capabilities& renewed_capabilities();
 
 }  // namespace quincunx::gl

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "quincunx/export.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/capabilities.h"
 
@@ -18,7 +19,7 @@ enum class Platform {
   kCurrent,  // no new context: the one that is current on this thread, for example a window's
 };
 
-const char* name_of(Platform platform);  // "surfaceless"
+QUINCUNX_API const char* name_of(Platform platform);  // "surfaceless"
 
 struct EglInfo {
   Platform platform = Platform::kAuto;  // the one in use
@@ -33,7 +34,7 @@ struct EglInfo {
 // alive and current longer than this object. Move-only. The context is current on the thread that made it, and
 // every GL call of this library happens on the thread where it is current. The caller destroys it after all GL
 // objects. Debug output of the driver (errors, not chatter) goes to the log.
-class EglContext {
+class QUINCUNX_API EglContext {
  public:
   // `api`: for kCurrent that of the context that is current, whatever is given. Errors: kUnsupported with what was
   // tried and what each said; for kCurrent also where no EGL context is current.
@@ -49,7 +50,7 @@ class EglContext {
   Status make_current();
 
  private:
-  struct Impl;
+  struct QUINCUNX_HIDDEN Impl;
   explicit EglContext(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

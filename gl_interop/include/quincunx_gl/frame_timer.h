@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 
+#include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 
@@ -25,7 +26,7 @@ struct TimedFrame {
   double gpu_ms = 0;  // above 0
 };
 
-class FrameTimer {
+class QUINCUNX_API FrameTimer {
  public:
   static constexpr int kRing = 8;  // frames that may be under way
 
@@ -50,7 +51,7 @@ class FrameTimer {
   std::optional<TimedFrame> poll();
 
  private:
-  struct Impl;
+  struct QUINCUNX_HIDDEN Impl;
   explicit FrameTimer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

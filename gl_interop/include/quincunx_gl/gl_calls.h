@@ -8,30 +8,31 @@
 
 #include <initializer_list>
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 
 namespace quincunx::gl {
 
 // Textures are of two dimensions and immutable.
-void texture_storage(GLuint texture, GLsizei levels, GLenum format, Extent extent);
-void texture_parameter(GLuint texture, GLenum name, GLint value);
-void texture_parameter(GLuint texture, GLenum name, GLfloat value);
-void texture_border(GLuint texture, const GLfloat colour[4]);
-void texture_write(GLuint texture, GLint level, Extent extent, GLenum format, GLenum type,
-                   const void* texels);
-void texture_mipmaps(GLuint texture);
+QUINCUNX_API void texture_storage(GLuint texture, GLsizei levels, GLenum format, Extent extent);
+QUINCUNX_API void texture_parameter(GLuint texture, GLenum name, GLint value);
+QUINCUNX_API void texture_parameter(GLuint texture, GLenum name, GLfloat value);
+QUINCUNX_API void texture_border(GLuint texture, const GLfloat colour[4]);
+QUINCUNX_API void texture_write(GLuint texture, GLint level, Extent extent, GLenum format, GLenum type,
+                                const void* texels);
+QUINCUNX_API void texture_mipmaps(GLuint texture);
 // Stays bound. Leaves unit 0 active.
-void bind_texture(GLuint unit, GLuint texture);
+QUINCUNX_API void bind_texture(GLuint unit, GLuint texture);
 
-void buffer_storage(GLuint buffer, GLsizeiptr bytes);  // for buffer_write()
-void buffer_write(GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data);
+QUINCUNX_API void buffer_storage(GLuint buffer, GLsizeiptr bytes);  // for buffer_write()
+QUINCUNX_API void buffer_write(GLuint buffer, GLintptr offset, GLsizeiptr bytes, const void* data);
 
-void attach(GLuint framebuffer, GLenum attachment, GLuint texture);
-void draw_buffers(GLuint framebuffer, std::initializer_list<GLenum> buffers);
-GLenum framebuffer_status(GLuint framebuffer);
-void clear(GLuint framebuffer, GLenum buffer, GLint index, const GLfloat* value);
+QUINCUNX_API void attach(GLuint framebuffer, GLenum attachment, GLuint texture);
+QUINCUNX_API void draw_buffers(GLuint framebuffer, std::initializer_list<GLenum> buffers);
+QUINCUNX_API GLenum framebuffer_status(GLuint framebuffer);
+QUINCUNX_API void clear(GLuint framebuffer, GLenum buffer, GLint index, const GLfloat* value);
 // The top left `extent` of a colour attachment, with the pack state that is set.
-void read_attachment(GLuint framebuffer, GLenum attachment, Extent extent, GLenum format, GLenum type,
-                     void* pixels);
+QUINCUNX_API void read_attachment(GLuint framebuffer, GLenum attachment, Extent extent, GLenum format,
+                                  GLenum type, void* pixels);
 
 }  // namespace quincunx::gl

@@ -10,11 +10,12 @@
 #include <memory>
 #include <optional>
 
+#include "quincunx/export.h"
 #include "quincunx_gl/frame_timer.h"
 
 namespace quincunx::gl {
 
-class PartTimer {
+class QUINCUNX_API PartTimer {
  public:
   static constexpr int kRing = 8;  // parts that may be under way
 
@@ -36,7 +37,7 @@ class PartTimer {
   std::optional<TimedFrame> poll();
 
  private:
-  struct Impl;
+  struct QUINCUNX_HIDDEN Impl;
   explicit PartTimer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

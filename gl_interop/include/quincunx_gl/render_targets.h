@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx_gl/handle.h"
 
@@ -24,7 +25,7 @@ struct TargetNeeds {
 // with glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE) is the top left; texture row 0 is the top row. Move-only.
 // Fragment outputs: location 0 colour (linear, premultiplied), 1 velocity, 2 reactive; the draw buffers of
 // what was not asked for are GL_NONE. Draw into RGBA8 with GL_FRAMEBUFFER_SRGB enabled.
-class RenderTargets {
+class QUINCUNX_API RenderTargets {
  public:
   // Throws std::runtime_error when the framebuffer is incomplete.
   explicit RenderTargets(const TargetNeeds& needs);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "quincunx/export.h"
 #include "quincunx_gl/render_targets.h"
 
 namespace quincunx::gl {
@@ -21,6 +22,6 @@ struct TargetPixels {
 };
 
 // `render` must lie within the targets' extent.
-TargetPixels read_targets(const RenderTargets& targets, Extent render);
+QUINCUNX_API TargetPixels read_targets(const RenderTargets& targets, Extent render);
 
 }  // namespace quincunx::gl

@@ -13,11 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/export.h"
 #include "quincunx/status.h"
 
 namespace quincunx {
 
-class CostTable {
+class QUINCUNX_API CostTable {
  public:
   static constexpr double kLargestArea = 4;  // scale 2 on both axes
   static constexpr int kBinsPerArea = 64;    // resolutions of one 64th of the output's area count as the same

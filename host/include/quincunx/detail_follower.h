@@ -8,6 +8,7 @@
 // resolution scaling).
 #pragma once
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 #include "quincunx/resolution_ladder.h"
 #include "quincunx/status.h"
@@ -22,7 +23,7 @@ struct DetailSettings {
   int rest_frames = 30;      // at least, between two changes; at least 0
 };
 
-class DetailFollower {
+class QUINCUNX_API DetailFollower {
  public:
   // Errors: kInvalidArgument for a field outside its range.
   static Result<DetailFollower> create(const DetailSettings& settings = {});
@@ -48,6 +49,7 @@ class DetailFollower {
 // passes after upscaling run at the lowest output until the render extent reaches .8 of it on each axis, and
 // at larger ones from there on. Errors: kInvalidArgument for an empty render extent or a most_filled outside
 // its range.
-Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double most_filled = 0.64);
+QUINCUNX_API Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render,
+                                        double most_filled = 0.64);
 
 }  // namespace quincunx

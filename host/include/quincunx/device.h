@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 
@@ -37,7 +38,7 @@ struct DeviceInfo {
   bool gl_sharing = false;  // cl_khr_gl_sharing is advertised (the bridge still probes it)
 };
 
-class Device {
+class QUINCUNX_API Device {
  public:
   // All devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Empty when there are
   // none.
@@ -72,7 +73,7 @@ class Device {
 
   Status finish() const;  // waits for all queued work
 
-  struct Impl;
+  struct QUINCUNX_HIDDEN Impl;
   const std::shared_ptr<Impl>& impl() const { return impl_; }
 
  private:

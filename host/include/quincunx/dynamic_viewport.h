@@ -6,12 +6,13 @@
 // viewport, never the one asked for.
 #pragma once
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx {
 
-class DynamicViewport {
+class QUINCUNX_API DynamicViewport {
  public:
   // Target extent = ceil(output * max_scale). Viewports of set_scale() are the output extent plus a multiple
   // of `step` pixels on each axis, so that scale 1 is exactly the output, whatever its parity; no side falls

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 
@@ -61,7 +62,8 @@ struct FrameOutputs {
 
 // Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and
 // the resolved one where it does not. An empty view leaves its picture out.
-FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented);
+QUINCUNX_API FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear,
+                                      const ImageView& presented);
 
 struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"

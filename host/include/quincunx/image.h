@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 
 namespace quincunx {
@@ -28,8 +29,8 @@ enum class PixelFormat : std::uint8_t {
   kRGBA32F,  // colour
 };
 
-std::size_t bytes_per_pixel(PixelFormat format);  // 0 for kNone
-const char* name_of(PixelFormat format);          // "RGBA16F"
+QUINCUNX_API std::size_t bytes_per_pixel(PixelFormat format);  // 0 for kNone
+QUINCUNX_API const char* name_of(PixelFormat format);          // "RGBA16F"
 
 enum class Storage : std::uint8_t {
   kBuffer,  // cl_mem is a buffer; rows are `pitch` bytes apart
@@ -54,7 +55,7 @@ struct ImageView {
 // Owns one OpenCL memory object and the view of the whole of it. Move-only. Releasing it while a kernel that
 // uses it is queued is safe: OpenCL keeps the memory until the kernel has run. Not safe to share between
 // threads without a lock.
-class Image {
+class QUINCUNX_API Image {
  public:
   Image() = default;
   ~Image();

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "quincunx/export.h"
+
 namespace quincunx {
 
 // How the picture is made from the frames. All are aware of the jitter. Above scale 1 (more samples than
@@ -44,10 +46,10 @@ struct MethodInfo {
 };
 
 // Every method once, in the order of Method, which is that of growing effort.
-std::span<const MethodInfo> methods();
+QUINCUNX_API std::span<const MethodInfo> methods();
 
 // Whether the picture depends on earlier frames too: kQuincunx, kTemporal.
-bool uses_earlier_frames(Method method);
+QUINCUNX_API bool uses_earlier_frames(Method method);
 
 // How kQuincunx weighs the previous frame.
 enum class TwoFrameForm : std::uint8_t {
@@ -95,13 +97,13 @@ enum class Shading : std::uint8_t {
   kCheckerboard,  // every other one: FrameInputs::parity says which
 };
 
-const char* name_of(Method method);          // "quincunx"
-const char* name_of(TwoFrameForm form);      // "velocity"
-const char* name_of(Sampling sampling);      // "point"
-const char* name_of(TemporalPreset preset);  // "balanced"
-const char* name_of(TemporalView view);      // "confidence"
-const char* name_of(FarMotion motion);       // "camera"
-const char* name_of(ToneMap tone_map);       // "aces"
-const char* name_of(Shading shading);        // "checkerboard"
+QUINCUNX_API const char* name_of(Method method);          // "quincunx"
+QUINCUNX_API const char* name_of(TwoFrameForm form);      // "velocity"
+QUINCUNX_API const char* name_of(Sampling sampling);      // "point"
+QUINCUNX_API const char* name_of(TemporalPreset preset);  // "balanced"
+QUINCUNX_API const char* name_of(TemporalView view);      // "confidence"
+QUINCUNX_API const char* name_of(FarMotion motion);       // "camera"
+QUINCUNX_API const char* name_of(ToneMap tone_map);       // "aces"
+QUINCUNX_API const char* name_of(Shading shading);        // "checkerboard"
 
 }  // namespace quincunx

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "quincunx/device.h"
+#include "quincunx/export.h"
 
 namespace quincunx {
 
@@ -20,8 +21,8 @@ enum class PassTimer : std::uint8_t {
 };
 
 // Settled when the device was opened or borrowed. Thread-safe.
-PassTimer pass_timer(const Device& device);
+QUINCUNX_API PassTimer pass_timer(const Device& device);
 
-const char* name_of(PassTimer timer);  // static: "OpenCL event", "host clock", "not timed"
+QUINCUNX_API const char* name_of(PassTimer timer);  // static: "OpenCL event", "host clock", "not timed"
 
 }  // namespace quincunx

@@ -22,6 +22,7 @@
 #include <optional>
 
 #include "quincunx/cost_table.h"
+#include "quincunx/export.h"
 #include "quincunx/resolution_controller.h"
 
 namespace quincunx {
@@ -52,6 +53,7 @@ struct PredictiveSettings {
 };
 
 // Errors: kInvalidArgument for a field outside its range.
-Result<std::unique_ptr<ResolutionController>> make_predictive_controller(const PredictiveSettings& settings);
+QUINCUNX_API Result<std::unique_ptr<ResolutionController>> make_predictive_controller(
+    const PredictiveSettings& settings);
 
 }  // namespace quincunx

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 #include "quincunx/resolution_ladder.h"
 #include "quincunx/status.h"
@@ -37,7 +38,7 @@ struct FrameTiming {
   double blur_px = 0;          // mean length of its motion blur streaks in output pixels; 0 means none
 };
 
-class ResolutionController {
+class QUINCUNX_API ResolutionController {
  public:
   static constexpr double kLongestMs = 60000;  // no time and no target is longer
 
@@ -93,7 +94,7 @@ struct ProportionalSettings {
   double rate = 0.05;        // k, in (0, 1]; the paper gives none
   double spike_ratio = 1.5;  // an interval longer than this times gpu_ms is ignored; at least 1
 };
-Result<std::unique_ptr<ResolutionController>> make_proportional_controller(
+QUINCUNX_API Result<std::unique_ptr<ResolutionController>> make_proportional_controller(
     const ProportionalSettings& settings);
 
 // The minimum-of-N controller (the draw-time tutorial for MonoGame): with m the shortest of the last N times
@@ -108,7 +109,7 @@ struct MinimumOfNSettings {
   double factor = 0.2;   // ResolutionChangeFactor, in (0, 1]
   double margin = 0.87;  // 29 ms of 33.3, in (0, 1]
 };
-Result<std::unique_ptr<ResolutionController>> make_minimum_of_n_controller(
+QUINCUNX_API Result<std::unique_ptr<ResolutionController>> make_minimum_of_n_controller(
     const MinimumOfNSettings& settings);
 
 }  // namespace quincunx

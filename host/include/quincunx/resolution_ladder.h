@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "quincunx/export.h"
 #include "quincunx/extent.h"
 #include "quincunx/status.h"
 
@@ -31,7 +32,7 @@ struct LadderSettings {
   Extent floor = {8, 8};  // no side is smaller (or than the output, where that is smaller)
 };
 
-class ResolutionLadder {
+class QUINCUNX_API ResolutionLadder {
  public:
   // The output is a rung whenever [min_scale, max_scale] holds 1; a range narrower than a step holds one rung
   // on that axis. Errors: kInvalidArgument for a field outside the bounds above or min_scale > max_scale.

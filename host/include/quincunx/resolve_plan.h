@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/method.h"
 #include "quincunx/status.h"
@@ -63,7 +64,7 @@ enum class Targets : std::uint8_t {
   kPlaced,
 };
 
-const char* name_of(Targets targets);  // "placed"
+QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 
 struct ResolveSettings {
   Method method = Method::kQuincunx;
@@ -102,7 +103,7 @@ enum class VelocitySource {
   kCamera,  // a target that the service makes from depth and the camera's motion: only the camera moves
 };
 
-const char* name_of(VelocitySource source);
+QUINCUNX_API const char* name_of(VelocitySource source);
 
 struct PlannedPass {
   std::string kernel;       // "resolve_quincunx"
@@ -121,7 +122,7 @@ enum class Scaling : std::uint8_t {
   kFixed,    // always the whole extent
 };
 
-const char* name_of(Scaling scaling);
+QUINCUNX_API const char* name_of(Scaling scaling);
 
 struct PlannedBuffer {
   std::string name;
@@ -143,7 +144,7 @@ struct LeftOut {
 
 // What plan_for() made. To change a plan, change the settings and plan again: ResolveService::create() refuses one
 // that differs from what plan_for() makes of its needs and settings.
-struct ResolvePlan {
+struct QUINCUNX_API ResolvePlan {
   SceneNeeds needs;
   ResolveSettings settings;
   VelocitySource velocity = VelocitySource::kNone;
@@ -172,6 +173,6 @@ struct ResolvePlan {
 };
 
 // Errors: kInvalidArgument; the message names every bad field.
-Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings);
+QUINCUNX_API Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings);
 
 }  // namespace quincunx

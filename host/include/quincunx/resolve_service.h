@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "quincunx/device.h"
+#include "quincunx/export.h"
 #include "quincunx/frame.h"
 #include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
@@ -28,7 +29,7 @@ namespace quincunx {
 
 // Checks every field of a frame against a plan without a device. The message names every bad field, what it
 // holds and what would be right. Pure; thread-safe.
-Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs);
+QUINCUNX_API Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs);
 
 // How each tile of the output, of 32 x 32 pixels, was blurred: 0 copied (nothing moves there), 1 colour alone
 // (everything moves alike), 2 with depth and velocity of each sample.
@@ -37,7 +38,7 @@ struct TileKinds {
   std::vector<std::uint8_t> kinds;  // row by row
 };
 
-class ResolveService {
+class QUINCUNX_API ResolveService {
  public:
   // Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with the build's options
   // and log when a kernel does not compile.
@@ -80,7 +81,7 @@ class ResolveService {
   const ResolvePlan& plan() const;
 
  private:
-  struct Impl;
+  struct QUINCUNX_HIDDEN Impl;
   explicit ResolveService(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

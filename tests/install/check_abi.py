@@ -1,0 +1,98 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Checks what a shared library of Quincunx shows, and what its installed headers ask for.
+
+    check_abi.py --library libquincunx.so --soname libquincunx.so.1 --headers PREFIX/include
+                 [--archive libquincunx.a --user libtools.a ...]
+
+Fails, with one line for each finding, on
+- a SONAME other than the one given
+- an exported symbol that is not the project's, or whose type names a library that only the inside uses
+- a header that includes such a library
+- with --archive, the same code as a static library: a symbol of it that a --user needs and the shared one hides
+"""
+import argparse
+import os
+import re
+import subprocess
+import sys
+
+OURS = re.compile(r"(?:(?:typeinfo|typeinfo name|vtable) for )?quincunx::|quincunx_\w+$")
+INSIDE = re.compile(r"\b(?:fmt|spdlog|nlohmann|CLI)::|\bXXH\d*_|^[^(]*::Impl::")
+INSIDE_HEADER = re.compile(r"#\s*include\s*[<\"](?:fmt|spdlog|nlohmann|CLI|xxhash)[/.]")
+
+
+def output_of(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def symbols_of(file, *options):
+    """{mangled: demangled} of what nm lists; versions (name@@NODE) cut off, the nodes themselves left out."""
+    def names(*more):
+        lines = output_of("nm", "--portability", *options, *more, file).splitlines()
+        return [line for line in lines if re.search(r" [A-Za-z](?: |$)", line) and " A " not in line]
+
+    mangled = [line.split(" ")[0].split("@")[0] for line in names()]
+    demangled = [re.sub(r"@@?QUINCUNX_\d+$", "", re.sub(r" [A-Za-z](?: [0-9a-f]*)*$", "", line).rstrip())
+                 for line in names("--demangle")]
+    return dict(zip(mangled, demangled))
+
+
+def foreign(symbols):
+    """The findings about exported symbols, given as {mangled: demangled}."""
+    found = []
+    for name in sorted(symbols.values()):
+        if not OURS.match(name):
+            found.append(f"exports '{name}', which is not the project's")
+        elif INSIDE.search(name):
+            found.append(f"exports '{name}', whose type belongs to the inside")
+    return found
+
+
+def hidden_but_needed(defined, exported, needed):
+    return [f"hides '{defined[name]}', which a program needs; it wants QUINCUNX_API in its header"
+            for name in sorted(set(needed) & set(defined) - set(exported))]
+
+
+def soname_of(library):
+    found = re.search(r"\(SONAME\).*\[(.+)\]", output_of("readelf", "--dynamic", library))
+    return found.group(1) if found else "none"
+
+
+def headers_that_leak(folder):
+    found = []
+    for path, _, names in os.walk(folder):
+        for name in names:
+            with open(os.path.join(path, name), encoding="utf-8") as header:
+                found += [f"{os.path.join(path, name)}:{number} has '{line.strip()}'"
+                          for number, line in enumerate(header, 1) if INSIDE_HEADER.search(line)]
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--library", required=True)
+    parser.add_argument("--soname", required=True)
+    parser.add_argument("--headers", required=True)
+    parser.add_argument("--archive")
+    parser.add_argument("--user", nargs="*", default=[])
+    arguments = parser.parse_args()
+    exported = symbols_of(arguments.library, "--dynamic", "--defined-only")
+    if not exported:
+        sys.exit(f"{arguments.library} exports nothing")
+    findings = foreign(exported) + headers_that_leak(arguments.headers)
+    soname = soname_of(arguments.library)
+    if soname != arguments.soname:
+        findings.append(f"{arguments.library} has the SONAME {soname}; it must be {arguments.soname}")
+    if arguments.archive:
+        defined = symbols_of(arguments.archive, "--defined-only", "--extern-only")
+        needed = [name for user in arguments.user for name in symbols_of(user, "--undefined-only")]
+        findings += hidden_but_needed(defined, exported, needed)
+    for finding in findings:
+        print(finding)
+    print(f"{os.path.basename(arguments.library)}: {len(exported)} symbols exported, {len(findings)} findings")
+    sys.exit(1 if findings else 0)
+
+
+if __name__ == "__main__":
+    main()
