@@ -11,6 +11,11 @@ install(TARGETS quincunx EXPORT quincunxTargets ARCHIVE DESTINATION ${CMAKE_INST
 install(DIRECTORY host/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT quincunxTargets NAMESPACE quincunx:: DESTINATION ${quincunx_package_dir})
 
+if(BUILD_SHARED_LIBS)  # which the Python module loads
+  set(QUINCUNX_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/quincunx/python CACHE STRING "Where quincunx.py is installed")
+  install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR})
+endif()
+
 # An export set of its own: who does not ask for the bridge needs neither EGL nor epoxy.
 if(TARGET quincunx_gl)
   install(TARGETS quincunx_gl EXPORT quincunx_gl_interopTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}

@@ -8,7 +8,7 @@
 Fails, with one line for each finding, on
 - a SONAME other than the one given
 - an exported symbol that is not the project's, or whose type names a library that only the inside uses
-- a header that includes such a library
+- a header that includes such a library, or a function of the C interface that a header has and the library has not
 - with --archive, the same code as a static library: a symbol of it that a --user needs and the shared one hides
 """
 import argparse
@@ -69,6 +69,16 @@ def headers_that_leak(folder):
     return found
 
 
+def functions_of_c(folder):
+    """The functions that headers below a folder declare for C."""
+    found = set()
+    for path, _, names in os.walk(folder):
+        for name in names:
+            with open(os.path.join(path, name), encoding="utf-8") as header:
+                found |= set(re.findall(r"^QUINCUNX_API [\w* ]*\b(quincunx_\w+)\(", header.read(), re.M))
+    return found
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--library", required=True)
@@ -81,6 +91,9 @@ def main():
     if not exported:
         sys.exit(f"{arguments.library} exports nothing")
     findings = foreign(exported) + headers_that_leak(arguments.headers)
+    if any(name.startswith("quincunx_") for name in exported):  # the library that has the C interface
+        findings += [f"lacks '{name}', which a header declares"
+                     for name in sorted(functions_of_c(arguments.headers) - set(exported))]
     soname = soname_of(arguments.library)
     if soname != arguments.soname:
         findings.append(f"{arguments.library} has the SONAME {soname}; it must be {arguments.soname}")

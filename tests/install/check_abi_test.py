@@ -23,6 +23,13 @@ class CheckAbi(unittest.TestCase):
         self.assertEqual(len(check_abi.hidden_but_needed(defined, {"a": ""}, ["a", "b", "puts"])), 1)
         self.assertEqual(check_abi.hidden_but_needed(defined, {"a": ""}, ["a", "puts"]), [])
 
+    def test_functions_of_the_c_interface_are_known(self):
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "a.h"), "w", encoding="utf-8") as header:
+                header.write("QUINCUNX_API const char* quincunx_a(void); /* x */\nQUINCUNX_API quincunx_status "
+                             "quincunx_b(quincunx_plan* plan,\n    int c);\nQUINCUNX_API Result<Device> open();\n")
+            self.assertEqual(check_abi.functions_of_c(folder), {"quincunx_a", "quincunx_b"})
+
     def test_a_header_that_leaks_is_found(self):
         with tempfile.TemporaryDirectory() as folder:
             for name, text in (("bad.h", "#include <fmt/format.h>\n"), ("good.h", "#include <cstdint>  // fmt\n")):

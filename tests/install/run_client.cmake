@@ -11,9 +11,10 @@ file(REMOVE_RECURSE ${WORK})
 step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step("configure" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
-     -D GL_INTEROP=${GL_INTEROP})
+     -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_C_FLAGS=${FLAGS} -D GL_INTEROP=${GL_INTEROP})
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
 step("run" ${WORK}/build/client)
+step("run in C" ${WORK}/build/c_client)
 if(GL_INTEROP)
   step("run with OpenGL" ${WORK}/build/gl_client)
 endif()

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// The functions of quincunx.h. Each checks its pointers, calls the library and lets no exception out.
+#include "quincunx/quincunx.h"
+
+#include <memory>
+
+#include "c_interface/c_objects.h"
+#include "c_interface/c_settings.h"
+#include "c_interface/sized_struct.h"
+
+using quincunx::Status;
+using quincunx::c::guarded;
+using quincunx::c::null;
+
+namespace {
+
+// What a *_create hands out: NULL unless `make` gives an object.
+template <typename Object, typename Make>
+quincunx_status create(const char* name, Object** to, const Make& make) noexcept {
+  if (to != nullptr) *to = nullptr;
+  return guarded([&]() -> Status {
+    if (to == nullptr) return null(name);
+    auto made = make();
+    if (!made.ok()) return made.status();
+    *to = std::move(made).value().release();
+    return {};
+  });
+}
+
+template <typename Object>
+using Made = quincunx::Result<std::unique_ptr<Object>>;
+
+Made<quincunx_device> device_of(quincunx::Result<quincunx::Device> opened) {
+  if (!opened.ok()) return opened.status();
+  return std::make_unique<quincunx_device>(quincunx_device{std::move(opened).value()});
+}
+
+}  // namespace
+
+int32_t quincunx_api_version(void) {
+  return QUINCUNX_API_VERSION;
+}
+
+const char* quincunx_version(void) {
+  return QUINCUNX_VERSION;
+}
+
+const char* quincunx_last_error(void) {
+  return quincunx::c::last_error();
+}
+
+quincunx_status quincunx_settings_init(quincunx_settings* settings) {
+  return guarded([&]() -> Status {
+    if (Status status = quincunx::c::check_size(settings, "settings"); !status.ok()) return status;
+    quincunx::c::write_sized(quincunx::c::to_c({}), settings);
+    return {};
+  });
+}
+
+const char* quincunx_method_name(int32_t method) {
+  const auto methods = quincunx::methods();
+  if (method < 0 || method >= static_cast<int32_t>(methods.size())) return nullptr;
+  return methods[static_cast<std::size_t>(method)].name;
+}
+
+quincunx_status quincunx_plan_create(const quincunx_settings* settings, quincunx_plan** plan) {
+  return create("plan", plan, [&]() -> Made<quincunx_plan> {
+    const auto scene = quincunx::c::from_c(settings);
+    if (!scene.ok()) return scene.status();
+    auto made = quincunx::plan_for(scene->needs, scene->resolve);
+    if (!made.ok()) return made.status();
+    std::string text = made->explain();
+    return std::make_unique<quincunx_plan>(quincunx_plan{std::move(made).value(), std::move(text)});
+  });
+}
+
+void quincunx_plan_destroy(quincunx_plan* plan) {
+  delete plan;
+}
+
+quincunx_status quincunx_plan_needs(const quincunx_plan* plan, quincunx_needs* needs) {
+  return guarded([&]() -> Status {
+    if (plan == nullptr) return null("plan");
+    if (Status status = quincunx::c::check_size(needs, "needs"); !status.ok()) return status;
+    quincunx::c::write_sized(quincunx::c::needs_of(plan->plan), needs);
+    return {};
+  });
+}
+
+const char* quincunx_plan_text(const quincunx_plan* plan) {
+  return plan != nullptr ? plan->text.c_str() : nullptr;
+}
+
+quincunx_status quincunx_device_open(const char* selector, quincunx_device** device) {
+  return create("device", device,
+                [&] { return device_of(quincunx::Device::open(selector != nullptr ? selector : "")); });
+}
+
+quincunx_status quincunx_device_borrow(void* context, void* id, void* queue, quincunx_device** device) {
+  return create("device", device, [&] {
+    return device_of(quincunx::Device::borrow(static_cast<cl_context>(context), static_cast<cl_device_id>(id),
+                                              static_cast<cl_command_queue>(queue)));
+  });
+}
+
+void quincunx_device_destroy(quincunx_device* device) {
+  delete device;
+}
+
+const char* quincunx_device_name(const quincunx_device* device) {
+  return device != nullptr ? device->device.info().name.c_str() : nullptr;
+}
+
+void* quincunx_device_context(const quincunx_device* device) {
+  return device != nullptr ? device->device.context() : nullptr;
+}
+
+void* quincunx_device_id(const quincunx_device* device) {
+  return device != nullptr ? device->device.id() : nullptr;
+}
+
+void* quincunx_device_queue(const quincunx_device* device) {
+  return device != nullptr ? device->device.queue() : nullptr;
+}
+
+quincunx_status quincunx_service_create(const quincunx_device* device, const quincunx_plan* plan,
+                                        quincunx_service** service) {
+  return create("service", service, [&]() -> Made<quincunx_service> {
+    if (device == nullptr) return null("device");
+    if (plan == nullptr) return null("plan");
+    auto made = quincunx::ResolveService::create(device->device, plan->plan);
+    if (!made.ok()) return made.status();
+    return std::unique_ptr<quincunx_service>(
+        new quincunx_service{{device->device, plan->plan}, std::move(made).value()});
+  });
+}
+
+void quincunx_service_destroy(quincunx_service* service) {
+  delete service;
+}
+
+quincunx_status quincunx_validate(const quincunx_plan* plan, const quincunx_inputs* inputs,
+                                  const quincunx_outputs* outputs) {
+  return guarded([&]() -> Status {
+    if (plan == nullptr) return null("plan");
+    return quincunx::c::checked_frame(plan->plan, inputs, outputs).status();
+  });
+}
+
+quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inputs* inputs,
+                                  const quincunx_outputs* outputs, quincunx_report* report) {
+  return guarded([&]() -> Status {
+    if (service == nullptr) return null("service");
+    if (report != nullptr) {
+      if (Status status = quincunx::c::check_report(report); !status.ok()) return status;
+    }
+    auto frame = quincunx::c::checked_frame(service->service.plan(), inputs, outputs);
+    if (!frame.ok()) return frame.status();
+    if (Status status = service->host.bring(frame.value()); !status.ok()) return status;
+    const quincunx::FrameReport made = service->service.dispatch(frame->inputs, frame->outputs);
+    if (!made.ok()) return made.status;
+    if (report != nullptr) quincunx::c::write_report(made, report);
+    return service->host.fetch(frame.value());
+  });
+}
+
+quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report* report) {
+  bool ready = true;
+  const quincunx_status status = guarded([&]() -> Status {
+    if (service == nullptr) return null("service");
+    if (Status good = quincunx::c::check_report(report); !good.ok()) return good;
+    const auto completed = service->service.next_completed();
+    ready = completed.has_value();
+    if (ready) quincunx::c::write_report(*completed, report);
+    return {};
+  });
+  return ready ? status : QUINCUNX_NOT_READY;
+}
+
+quincunx_status quincunx_clear(quincunx_service* service, const quincunx_image* image, int32_t width,
+                               int32_t height, const float value[4]) {
+  return guarded([&]() -> Status {
+    if (service == nullptr) return null("service");
+    if (value == nullptr) return null("value");
+    const auto view = quincunx::c::memory_object("image", image);
+    return view.ok() ? service->service.clear(view.value(), {width, height}, value) : view.status();
+  });
+}
+
+quincunx_status quincunx_finish(quincunx_service* service) {
+  return guarded([&]() -> Status {
+    if (service == nullptr) return null("service");
+    return service->service.finish();
+  });
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "c_interface/c_settings.h"
+
+#include <fmt/format.h>
+
+#include "c_interface/sized_struct.h"
+
+namespace quincunx::c {
+
+namespace {
+
+static_assert(static_cast<int>(Method::kTemporal) == QUINCUNX_TEMPORAL);
+static_assert(static_cast<int>(TemporalView::kFar) == QUINCUNX_VIEW_FAR);
+static_assert(static_cast<int>(PixelFormat::kRGBA32F) == QUINCUNX_RGBA32F);
+static_assert(static_cast<int>(ToneMap::kAces) == QUINCUNX_ACES);
+
+// Reads numbers that name values; keeps what is wrong with the first that is none.
+class Reader {
+ public:
+  template <typename Value>
+  void value(const char* field, std::int32_t number, Value last, Value& to, int first = 0) {
+    const int highest = static_cast<int>(last);
+    if (number >= first && number <= highest) {
+      to = static_cast<Value>(number);
+    } else if (status_.ok()) {
+      status_ = Status::invalid(
+          fmt::format("settings.{} is {}; it must lie in [{}, {}]", field, number, first, highest));
+    }
+  }
+  void format(const char* field, std::int32_t number, PixelFormat& to) {
+    value(field, number, PixelFormat::kRGBA32F, to, QUINCUNX_R8);
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  Status status_;
+};
+
+}  // namespace
+
+quincunx_settings to_c(const SceneSettings& settings) {
+  const ResolveSettings& resolve = settings.resolve;
+  quincunx_settings to = {};
+  to.moving_objects = settings.needs.moving_objects;
+  to.camera_motion = settings.needs.camera_motion;
+  to.transparents = settings.needs.transparents;
+  to.background = settings.needs.background;
+  to.method = static_cast<int>(resolve.method);
+  to.output_width = resolve.output.width;
+  to.output_height = resolve.output.height;
+  to.target_width = resolve.target.width;
+  to.target_height = resolve.target.height;
+  to.colour_format = static_cast<int>(resolve.colour);
+  to.velocity_format = static_cast<int>(resolve.velocity);
+  to.resolved_format = static_cast<int>(resolve.resolved);
+  to.storage = static_cast<int>(resolve.storage);
+  to.targets = static_cast<int>(resolve.targets);
+  to.shading = static_cast<int>(resolve.shading);
+  to.present = resolve.present;
+  to.clear = resolve.clear;
+  to.tone_map = static_cast<int>(resolve.tone_map);
+  to.dither = resolve.dither;
+  to.clamp_ringing = resolve.clamp_ringing;
+  to.noise_moves = resolve.noise_moves;
+  to.far_motion = static_cast<int>(resolve.far);
+  to.two_frame_form = static_cast<int>(resolve.quincunx.form);
+  to.sampling = static_cast<int>(resolve.quincunx.sampling);
+  to.temporal_preset = static_cast<int>(resolve.temporal.preset);
+  to.temporal_view = static_cast<int>(resolve.temporal.view);
+  to.history_format = static_cast<int>(resolve.temporal.history);
+  to.blur_samples = resolve.blur.samples;
+  to.shutter = resolve.blur.shutter;
+  to.sharpness = resolve.sharpness;
+  to.grain = resolve.grain;
+  to.velocity_weight = resolve.quincunx.velocity_weight;
+  to.residual_weight = resolve.quincunx.residual_weight;
+  return to;
+}
+
+Result<SceneSettings> from_c(const quincunx_settings* settings) {
+  SceneSettings to;
+  quincunx_settings from = to_c(to);
+  if (Status status = read_sized(settings, "settings", from); !status.ok()) return status;
+  to.needs = {.moving_objects = from.moving_objects != 0,
+              .camera_motion = from.camera_motion != 0,
+              .transparents = from.transparents != 0,
+              .background = from.background != 0};
+  ResolveSettings& resolve = to.resolve;
+  Reader read;
+  read.value("method", from.method, Method::kTemporal, resolve.method);
+  resolve.output = {from.output_width, from.output_height};
+  resolve.target = {from.target_width, from.target_height};
+  read.format("colour_format", from.colour_format, resolve.colour);
+  read.format("velocity_format", from.velocity_format, resolve.velocity);
+  read.format("resolved_format", from.resolved_format, resolve.resolved);
+  read.value("storage", from.storage, Storage::kImage, resolve.storage);
+  read.value("targets", from.targets, Targets::kPlaced, resolve.targets);
+  read.value("shading", from.shading, Shading::kCheckerboard, resolve.shading);
+  resolve.present = from.present != 0;
+  resolve.clear = from.clear != 0;
+  read.value("tone_map", from.tone_map, ToneMap::kAces, resolve.tone_map);
+  resolve.dither = from.dither != 0;
+  resolve.clamp_ringing = from.clamp_ringing != 0;
+  resolve.noise_moves = from.noise_moves != 0;
+  read.value("far_motion", from.far_motion, FarMotion::kEvidence, resolve.far);
+  read.value("two_frame_form", from.two_frame_form, TwoFrameForm::kReprojected, resolve.quincunx.form);
+  read.value("sampling", from.sampling, Sampling::kBilinear, resolve.quincunx.sampling);
+  read.value("temporal_preset", from.temporal_preset, TemporalPreset::kQuality, resolve.temporal.preset);
+  read.value("temporal_view", from.temporal_view, TemporalView::kFar, resolve.temporal.view);
+  read.format("history_format", from.history_format, resolve.temporal.history);
+  resolve.blur = {.shutter = from.shutter, .samples = from.blur_samples};
+  resolve.sharpness = from.sharpness;
+  resolve.grain = from.grain;
+  resolve.quincunx.velocity_weight = from.velocity_weight;
+  resolve.quincunx.residual_weight = from.residual_weight;
+  if (!read.status().ok()) return read.status();
+  return to;
+}
+
+quincunx_needs needs_of(const ResolvePlan& plan) {
+  quincunx_needs needs = {};
+  needs.reads_depth = plan.reads_depth;
+  needs.reads_velocity = plan.velocity == VelocitySource::kTarget;
+  needs.reads_reactive = plan.reads_reactive;
+  needs.reads_camera = plan.reads_camera();
+  needs.keeps_previous_frame = plan.keeps_previous_frame();
+  needs.blurs = plan.blurs();
+  needs.presented_storage = static_cast<int>(plan.presented_storage());
+  needs.accumulates = plan.accumulates();
+  needs.frame_bytes = plan.frame_bytes();
+  return needs;
+}
+
+}  // namespace quincunx::c

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// Settings of the C interface as the library's own, and back.
+#pragma once
+
+#include "quincunx/c_settings.h"
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx::c {
+
+struct SceneSettings {
+  SceneNeeds needs;
+  ResolveSettings resolve;
+};
+
+// struct_size is 0.
+quincunx_settings to_c(const SceneSettings& settings);
+
+// Errors: kInvalidArgument for a struct_size that is none, and for a number that is no value of its field; the
+// message names the field. What plan_for() checks is left to it.
+Result<SceneSettings> from_c(const quincunx_settings* settings);
+
+// struct_size is 0.
+quincunx_needs needs_of(const ResolvePlan& plan);
+
+}  // namespace quincunx::c

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Structs of the C interface that know their size, so that programs and libraries of different age go together.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "quincunx/c_frame.h"
+#include "quincunx/c_settings.h"
+#include "quincunx/status.h"
+
+namespace quincunx::c {
+
+// Sizes in the first version of the interface, which never change. A struct that is smaller is none.
+template <typename Struct>
+inline constexpr std::size_t kFirstSize = 0;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_settings> = 144;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_needs> = 48;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_image> = 48;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_inputs> = 152;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_outputs> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_report> = 64;
+// Version 1; a field that is appended raises the left side alone.
+static_assert(sizeof(void*) != 8 || (sizeof(quincunx_settings) == 144 && sizeof(quincunx_needs) == 48 &&
+                                     sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 152 &&
+                                     sizeof(quincunx_outputs) == 32 && sizeof(quincunx_report) == 64));
+
+template <typename Struct>
+Status check_size(const Struct* given, const char* name) {
+  if (given == nullptr) return Status::invalid(fmt::format("{} is NULL; it must point to one", name));
+  if (given->struct_size >= kFirstSize<Struct>) return {};
+  return Status::invalid(fmt::format("{}.struct_size is {}; it must be the sizeof of the struct, at least {}",
+                                     name, given->struct_size, kFirstSize<Struct>));
+}
+
+// Reads the fields that the caller has; those that only this library has keep their value in `own`. Errors:
+// kInvalidArgument where a newer caller has set a field that this library does not know.
+template <typename Struct>
+Status read_sized(const Struct* given, const char* name, Struct& own) {
+  if (Status status = check_size(given, name); !status.ok()) return status;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(given);
+  const bool unknown =
+      given->struct_size > sizeof(Struct) && std::any_of(bytes + sizeof(Struct), bytes + given->struct_size,
+                                                         [](unsigned char byte) { return byte != 0; });
+  if (unknown) {
+    return Status::invalid(
+        fmt::format("{}.struct_size is {}, and a field beyond the {} bytes that this library knows is set; "
+                    "leave it 0, or use a library that is as new as the header",
+                    name, given->struct_size, sizeof(Struct)));
+  }
+  std::memcpy(&own, given, std::min(given->struct_size, sizeof(Struct)));
+  return {};
+}
+
+// Writes the fields that the caller has; its size stays.
+template <typename Struct>
+void write_sized(Struct own, Struct* to) {
+  own.struct_size = to->struct_size;
+  std::memcpy(to, &own, std::min(to->struct_size, sizeof(Struct)));
+}
+
+}  // namespace quincunx::c

@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""quincunx.py: its structs are those of the headers, its pictures those of a reference, its errors sentences."""
+import os
+import re
+import tempfile
+import unittest
+
+import numpy as np
+
+import quincunx
+
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+HEADERS = os.path.join(ROOT, "host", "include", "quincunx")
+
+
+def read(*path):
+    with open(os.path.join(*path), encoding="utf-8") as text:
+        return text.read()
+
+
+def fields_of_c(struct, text):
+    """The names of a struct's fields, in their order."""
+    body = re.search(r"typedef struct %s \{(.*?)\} %s;" % (struct, struct), text, re.S).group(1)
+    body = re.sub(r"/\*.*?\*/", "", body, flags=re.S)
+    return [re.search(r"(\w+)(?:\[\d+\])?$", name.strip()).group(1)
+            for line in body.split(";") if line.strip() for name in line.split(",")]
+
+
+def halton(index, base):
+    value, part = 0.0, 1.0
+    while index > 0:
+        part /= base
+        value += part * (index % base)
+        index //= base
+    return value
+
+
+def waves(u, v):
+    """A picture without an edge: three waves that a frame of 64x36 resolves barely."""
+    return 0.5 + 0.15 * (np.sin(2 * np.pi * 27 * u) + np.sin(2 * np.pi * 13 * v) + np.sin(2 * np.pi * (19 * u + 9 * v)))
+
+
+def sampled(width, height, jitter=(0, 0)):
+    x, y = np.meshgrid(np.arange(width), np.arange(height))
+    grey = waves((x + 0.5 + jitter[0]) / width, (y + 0.5 + jitter[1]) / height)
+    return np.dstack([grey] * 3 + [np.ones_like(grey)]).astype(np.float32)
+
+
+def bilinear(frame, width, height):
+    """In double precision, clamped to the edge."""
+    def taps(size, to):
+        at = np.clip((np.arange(to) + 0.5) * size / to - 0.5, 0, size - 1)
+        low = np.minimum(at.astype(int), max(size - 2, 0))
+        return low, np.minimum(low + 1, size - 1), at - low
+
+    frame = frame.astype(np.float64)
+    x0, x1, fx = taps(frame.shape[1], width)
+    y0, y1, fy = taps(frame.shape[0], height)
+    fx, fy = fx[:, np.newaxis], fy[:, np.newaxis, np.newaxis]
+    rows = [frame[y][:, x0] * (1 - fx) + frame[y][:, x1] * fx for y in (y0, y1)]
+    return rows[0] * (1 - fy) + rows[1] * fy
+
+
+def rms(a, b):
+    return float(np.sqrt(np.mean((a.astype(np.float64) - b) ** 2)))
+
+
+# Weights of both axes and their product are rounded to float, and so are three sums: 8 roundings of values up to 1.
+FLOAT_BOUND = 8 * 2.0 ** -24
+
+
+class Structs(unittest.TestCase):
+    def test_fields_are_those_of_the_headers(self):
+        text = read(HEADERS, "c_settings.h") + read(HEADERS, "c_frame.h")
+        for name in ("Settings", "Needs", "Image", "Inputs", "Outputs", "Report", "PassReport"):
+            struct = "quincunx_pass_report" if name == "PassReport" else "quincunx_" + name.lower()
+            fields = [field for field, _ in getattr(quincunx, name)._fields_]
+            self.assertEqual(fields, fields_of_c(struct, text), name)
+
+    def test_names_are_numbers_of_the_header(self):
+        text = read(HEADERS, "c_settings.h")
+        for name, number in {"QUINCUNX_TEMPORAL": quincunx.METHODS["temporal"], "QUINCUNX_HOST": quincunx.HOST,
+                             "QUINCUNX_REPROJECTED": quincunx.number_of("two_frame_form", "reprojected"),
+                             "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],
+                             "QUINCUNX_BY_EVIDENCE": quincunx.number_of("far_motion", "evidence"),
+                             "QUINCUNX_QUALITY": quincunx.number_of("temporal_preset", "quality"),
+                             "QUINCUNX_ACES": quincunx.number_of("tone_map", "aces")}.items():
+            self.assertRegex(text, r"\b%s = %d\b" % (name, number))
+
+
+class Pictures(unittest.TestCase):
+    def test_bilinear_is_the_reference(self):
+        resolver = quincunx.Resolver((129, 71), method="bilinear", present=0)
+        random = np.random.default_rng(1)
+        for width, height in ((64, 36), (57, 33), (129, 71), (5, 9)):
+            frame = random.random((height, width, 4), dtype=np.float32)
+            picture = resolver.resolve(frame)
+            self.assertEqual((picture.shape, picture.dtype.name), ((71, 129, 4), "float32"))
+            self.assertLessEqual(np.abs(picture - bilinear(frame, 129, 71)).max(), FLOAT_BOUND)
+
+    def test_any_layout_of_an_array_gives_the_same(self):
+        resolver = quincunx.Resolver((80, 60), method="catmull-rom", present=0)
+        large = np.random.default_rng(2).random((50, 90, 4), dtype=np.float32)
+        large[:, :, 3] = 1
+        part = large[7:37, 20:60]
+        expected = resolver.resolve(part.copy())
+        for name, same in {"rows apart": part, "upside down": part[::-1].copy()[::-1], "double": part.astype(float),
+                           "no alpha": part[:, :, :3], "columns first": np.asfortranarray(part)}.items():
+            before = same.copy()
+            np.testing.assert_array_equal(resolver.resolve(same), expected, name)
+            np.testing.assert_array_equal(same, before, name)
+
+    def test_half_and_presented(self):
+        resolver = quincunx.Resolver((40, 30), method="point", colour="float16", tone_map="clamp", dither=0)
+        picture = resolver.resolve(np.full((20, 20, 4), [1, 0, 0.5, 1], np.float16), presented=True)
+        self.assertEqual(picture.dtype.name, "uint8")
+        np.testing.assert_array_equal(picture, np.broadcast_to([255, 0, 188, 255], (30, 40, 4)))
+
+    def test_reports_tell_each_frame_once(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0)
+        for index in range(3):
+            resolver.resolve(np.zeros((20, 30, 4)), frame_index=index)
+        reports = resolver.reports()
+        self.assertEqual([(r["frame"], r["render"]) for r in reports], [(i, (30, 20)) for i in range(3)])
+        self.assertEqual([p[0] for p in reports[0]["passes"]], ["scale_bilinear"])
+        self.assertEqual(resolver.reports(), [])
+
+
+class Example(unittest.TestCase):
+    """The example of docs/c_interface.md, with smaller pictures."""
+
+    def test_it_resolves_a_sequence(self):
+        code = re.search(r"```python\n(.*?)```", read(ROOT, "docs", "c_interface.md"), re.S).group(1)
+        self.assertIn("(1280, 720)", code)
+        self.assertLessEqual(len([line for line in code.splitlines() if line.strip()]), 10)
+        size, count, back = (128, 72), 24, os.getcwd()
+        with tempfile.TemporaryDirectory() as folder:
+            os.chdir(folder)
+            try:
+                os.mkdir("frames")
+                for i in range(count):
+                    jitter = (halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5)
+                    np.savez("frames/%04d.npz" % i, colour=sampled(64, 36, jitter), depth=np.full((36, 64), 0.5),
+                             velocity=np.zeros((36, 64, 2)), jitter=jitter)
+                exec(code.replace("(1280, 720)", str(size)), {})  # pylint: disable=exec-used
+                pictures = [np.load("picture.%04d.npy" % i) for i in range(count)]
+            finally:
+                os.chdir(back)
+        truth = sampled(*size)
+        self.assertLess(rms(pictures[-1], truth), rms(bilinear(sampled(64, 36), *size), truth) / 4)
+        self.assertLess(rms(pictures[-1], truth), rms(pictures[0], truth) / 2)
+
+
+class Errors(unittest.TestCase):
+    def test_what_the_library_refuses_is_its_sentence(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0)
+        with self.assertRaisesRegex(quincunx.Error, "render is 50x20; it must lie within 1x1 and the target's 40x30"):
+            resolver.resolve(np.zeros((20, 50, 4)))
+        with self.assertRaisesRegex(quincunx.Error, "velocity is missing; the plan needs it as RG32F"):
+            quincunx.Resolver((40, 30), transparents=False).resolve(np.zeros((20, 30, 4)))
+        with self.assertRaises(quincunx.Error) as refused:
+            quincunx.Resolver((0, 30))
+        self.assertEqual(refused.exception.code, 1)
+        with self.assertRaisesRegex(quincunx.Error, "no OpenCL device matches 'none such'"):
+            quincunx.Resolver((40, 30), device="none such")
+
+    def test_what_python_refuses_says_what_would_be_right(self):
+        with self.assertRaisesRegex(ValueError, "method is 'best'; it must be one of point, bilinear"):
+            quincunx.Resolver((40, 30), method="best")
+        with self.assertRaisesRegex(TypeError, "'sharp' is no setting; there are: .*sharpness"):
+            quincunx.Resolver((40, 30), sharp=1)
+        with self.assertRaisesRegex(ValueError, r"colour has the shape \(20, 30, 2\); it must be \(height, width, 4\)"):
+            quincunx.Resolver((40, 30), method="point").resolve(np.zeros((20, 30, 2)))
+
+
+if __name__ == "__main__":
+    unittest.main()
