@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The only file that includes CLI11.
+// This file and command_line_text.cpp are the only ones that include CLI11.
 #include "tools/program/command_line.h"
 
 #include <fmt/format.h>
@@ -86,13 +86,25 @@ Option Option::excludes(const std::string& other) const {
 
 CommandLine::CommandLine(const std::string& description, const std::string& program,
                          const std::string& version, const std::string& examples)
-    : app_(std::make_unique<CLI::App>(description, program)) {
+    : app_(std::make_unique<CLI::App>(description, program)), version_(version) {
   app_->footer(examples);
-  if (!version.empty()) app_->set_version_flag("--version", program + " " + version);
+  if (!version.empty()) {
+    app_->set_version_flag("--version", program + " " + version);
+    app_->add_option_function<std::string>("--manual",
+                                           [this](const std::string& form) { print_manual(form); })
+        ->group("");
+  }
   app_->get_formatter()->column_width(30);
 }
 
 CommandLine::~CommandLine() = default;
+
+void CommandLine::print_manual(const std::string& form) const {
+  const std::optional<std::string> printed = manual(text(), form);
+  if (!printed) throw CLI::ValidationError("--manual", "'" + form + "' is none of man, bash, zsh, fish");
+  fmt::print("{}", *printed);
+  throw CLI::Success();
+}
 
 template <typename Target>
 Option CommandLine::add_option(const std::string& names, Target& target, const std::string& description) {

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/program/manual.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -57,7 +59,8 @@ class Option {
 
 class CommandLine {
  public:
-  // `examples` end the help. An empty `version` leaves --version out.
+  // `examples` end the help. An empty `version` leaves --version out, and --manual, which help does not list: it
+  // prints the manual page or a shell's completion.
   CommandLine(const std::string& description, const std::string& program, const std::string& version,
               const std::string& examples);
   ~CommandLine();
@@ -79,6 +82,9 @@ class CommandLine {
   Option add_flag_callback(const std::string& names, std::function<void()> set,
                            const std::string& description);
 
+  // Words that shells offer for an option's value; `name` is its first long one.
+  void offer(const std::string& name, std::vector<std::string> words) { words_[name] = std::move(words); }
+
   Option option(const std::string& name) const;  // that was added before
   bool has(const std::string& name) const;       // the user gave it
   void when_read(std::function<void()> check);   // after the last option, in turn; may throw UsageError
@@ -87,9 +93,15 @@ class CommandLine {
   // else and may throw UsageError.
   std::optional<int> parse(int argc, const char* const* argv, const std::function<void()>& check = {});
 
+  ProgramText text() const;  // what --help lists
+
  private:
+  void print_manual(const std::string& form) const;
+
   std::unique_ptr<CLI::App> app_;
   std::vector<std::function<void()>> checks_;  // of when_read()
+  std::string version_;
+  std::map<std::string, std::vector<std::string>> words_;
 };
 
 // The text as a number, as options read them; nothing where it is none.
@@ -114,6 +126,10 @@ void add_choice(CommandLine& line, const std::string& option, const std::map<std
     set(found->second);
   };
   line.add_option_function<std::string>(option, choose, description).type_name("NAME");
+  std::vector<std::string> words;
+  for (const auto& [choice, value] : names)
+    words.push_back(choice);
+  line.offer(option, std::move(words));
 }
 
 template <typename Target, typename Value>

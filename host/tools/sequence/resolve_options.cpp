@@ -169,9 +169,9 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
   app.add_flag("-n,--dry-run", options.dry_run, "Only list what would be read and made, and what is missing");
   app.add_flag("--explain", options.explain, "Only print the plan: passes, buffers, what is left out");
-  app.add_option("--threads", options.threads, "Threads that read and write files")
-      .in_range(1, 256)
-      .show_default();
+  app.add_option("--threads", options.threads,
+                 "Threads that read and write files (default: as many as there are processors)")
+      .in_range(1, 256);
   app.add_option("--device", options.device,
                  "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices");
