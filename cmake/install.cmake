@@ -1,33 +1,59 @@
-# cmake --install: library, headers, package config and programs.
+# cmake --install: libraries, headers, package configs, programs with their manuals, texts. The components are those of
+# the packages (cmake/package.cmake).
 #
 #   find_package(quincunx REQUIRED)                          -> quincunx::quincunx
 #   find_package(quincunx REQUIRED COMPONENTS gl_interop)    -> quincunx::gl_interop, too
+#   pkg-config quincunx, quincunx-gl
 include(CMakePackageConfigHelpers)
 
 set(quincunx_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/quincunx)
+set(quincunx_pc_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(TARGETS quincunx EXPORT quincunxTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY host/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT quincunxTargets NAMESPACE quincunx:: DESTINATION ${quincunx_package_dir})
+# quincunx_install_library(TARGET COMPONENT EXPORT): what programs load, in its own package; what links them, in dev.
+function(quincunx_install_library target component export)
+  install(TARGETS ${target} EXPORT ${export}
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${component} NAMELINK_COMPONENT dev)
+  install(EXPORT ${export} NAMESPACE quincunx:: DESTINATION ${quincunx_package_dir} COMPONENT dev)
+endfunction()
 
+# quincunx_install_pc(NAME): NAME.pc for pkg-config.
+function(quincunx_install_pc name)
+  file(RELATIVE_PATH QUINCUNX_PC_TO_PREFIX /${quincunx_pc_dir} /)
+  string(REGEX REPLACE "/$" "" QUINCUNX_PC_TO_PREFIX "${QUINCUNX_PC_TO_PREFIX}")
+  if(NOT BUILD_SHARED_LIBS)  # what a static library leaves to its user to link
+    set(QUINCUNX_PC_REQUIRES " fmt spdlog libxxhash")
+    set(QUINCUNX_PC_LIBS " -lstdc++ -lm -pthread")
+    set(QUINCUNX_PC_GL_REQUIRES " egl")
+  endif()
+  configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${quincunx_pc_dir} COMPONENT dev)
+endfunction()
+
+quincunx_install_library(quincunx lib quincunxTargets)
+quincunx_install_pc(quincunx)
+install(DIRECTORY host/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 if(BUILD_SHARED_LIBS)  # which the Python module loads
   set(QUINCUNX_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/quincunx/python CACHE STRING "Where quincunx.py is installed")
-  install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR})
+  install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR} COMPONENT python)
 endif()
 
 # An export set of its own: who does not ask for the bridge needs neither EGL nor epoxy.
 if(TARGET quincunx_gl)
-  install(TARGETS quincunx_gl EXPORT quincunx_gl_interopTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(DIRECTORY gl_interop/include/quincunx_gl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-  install(EXPORT quincunx_gl_interopTargets NAMESPACE quincunx:: DESTINATION ${quincunx_package_dir})
+  quincunx_install_library(quincunx_gl lib_gl quincunx_gl_interopTargets)
+  quincunx_install_pc(quincunx-gl)
+  install(DIRECTORY gl_interop/include/quincunx_gl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 endif()
-if(TARGET quincunx-resolve)
-  install(TARGETS quincunx-resolve RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
-if(TARGET quincunx-render)
-  install(TARGETS quincunx-render quincunx-dump quincunx-bench RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+
+set(programs "")
+foreach(program quincunx-resolve quincunx-render quincunx-dump quincunx-bench)
+  if(TARGET ${program})
+    list(APPEND programs ${program})
+  endif()
+endforeach()
+if(programs)
+  install(TARGETS ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+  quincunx_manuals(${programs})
 endif()
 
 configure_package_config_file(cmake/quincunxConfig.cmake.in quincunxConfig.cmake
@@ -35,5 +61,7 @@ configure_package_config_file(cmake/quincunxConfig.cmake.in quincunxConfig.cmake
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(quincunxConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/quincunxConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/quincunxConfigVersion.cmake
-        DESTINATION ${quincunx_package_dir})
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+        DESTINATION ${quincunx_package_dir} COMPONENT dev)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)

@@ -15,6 +15,17 @@ step("configure" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build 
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
 step("run" ${WORK}/build/client)
 step("run in C" ${WORK}/build/c_client)
+
+# The same by pkg-config.
+find_program(PKG_CONFIG pkg-config REQUIRED)
+file(GLOB_RECURSE pc ${WORK}/prefix/*/quincunx.pc)
+get_filename_component(pc_folder "${pc}" DIRECTORY)
+set(ENV{PKG_CONFIG_PATH} ${pc_folder})
+execute_process(COMMAND ${PKG_CONFIG} --cflags --libs quincunx OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE
+                COMMAND_ERROR_IS_FATAL ANY)
+separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")
+step("build by pkg-config" ${C_COMPILER} -std=c99 ${SOURCE}/c_client.c -o ${WORK}/by_pkg_config ${flags} -lm)
+step("run what pkg-config built" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/.. ${WORK}/by_pkg_config)
 if(GL_INTEROP)
   step("run with OpenGL" ${WORK}/build/gl_client)
 endif()
