@@ -50,6 +50,8 @@ bool Pass::takes_part(const PassFrame& frame) const {
         return !is_dense(frame.current.render, frame.output);
       case Frames::kDense:
         return is_dense(frame.current.render, frame.output);
+      case Frames::kWithFocus:
+        return frame.focus != nullptr;
       case Frames::kOnRequest:
         return false;
     }

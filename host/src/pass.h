@@ -17,6 +17,7 @@
 #include "params.h"
 #include "pass_spec.h"
 #include "position_table.h"
+#include "quincunx/focus.h"
 #include "quincunx/frame.h"
 #include "quincunx/image.h"
 
@@ -62,13 +63,17 @@ struct PassFrame {
       {};  // `views` may hold another velocity: the one that the service makes from the camera
   FrameInputs previous = {};  // the current one where there is no history
   bool has_history = false;
+  const FocusInputs* focus = nullptr;  // null: the frame has none
+  Extent focus_extent = {};            // of the plan
   Extent output = {};
   Counter counter = {};
   std::array<ImageView, kResources> views = {};  // of the resources that the plan has
 
   ImageView& operator[](Resource resource) { return views[static_cast<std::size_t>(resource)]; }
   const ImageView& operator[](Resource resource) const { return views[static_cast<std::size_t>(resource)]; }
-  FrameExtents extents() const { return {current.render, previous.render, output, current.particle_render}; }
+  FrameExtents extents() const {
+    return {current.render, previous.render, output, current.particle_render, focus_extent};
+  }
 };
 
 // CLHPP takes no raw handle as an argument.

@@ -29,12 +29,6 @@ void clear_sums(const PassFrame& frame, const PassSpec& spec) {
   }
 }
 
-Image allocate_image(const Device& device, Extent extent, PixelFormat format, Storage storage) {
-  Result<Image> made = device.allocate(extent, format, storage);
-  if (!made.ok()) throw AllocationError(made.status());
-  return std::move(made).value();
-}
-
 // Memory for warm-up: four elements of any kind, all zero in a buffer, since a kernel follows what tiles say.
 ImageView scratch_view(const Device::Impl& device, const Use& use, Storage storage,
                        std::vector<cl::Memory>& kept) {
@@ -67,6 +61,12 @@ void place(ImageView& view, Area area, Extent render) {
 }
 
 }  // namespace
+
+Image allocate_image(const Device& device, Extent extent, PixelFormat format, Storage storage) {
+  Result<Image> made = device.allocate(extent, format, storage);
+  if (!made.ok()) throw AllocationError(made.status());
+  return std::move(made).value();
+}
 
 PassChain::PassChain(const Device& device, const PlanFacts& facts)
     : device_(device), facts_(facts), tables_(*device_.impl(), facts.settings.target, facts.settings.output) {
@@ -144,6 +144,7 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
                   .current = current,
                   .previous = previous != nullptr ? *previous : current,
                   .has_history = previous != nullptr,
+                  .focus_extent = facts_.settings.focus.extent,
                   .output = facts_.settings.output,
                   .counter = counter};
   if (facts_.velocity == VelocitySource::kCamera) {  // the service's own target, in uv
@@ -219,7 +220,13 @@ void PassChain::warm_up() {
   std::vector<cl::Memory> kept;
   PassTables tables(device, kPixel, kPixel);
   const cl::Buffer counter(device.context, CL_MEM_READ_WRITE, sizeof(cl_uint));
-  PassFrame frame{.queue = device.queue, .tables = tables, .output = kPixel, .counter = {counter(), 0}};
+  const FocusInputs focus = {.rectangles = {{{0, 0, 1, 1}}}, .rectangle_count = 1};
+  PassFrame frame{.queue = device.queue,
+                  .tables = tables,
+                  .focus = &focus,
+                  .focus_extent = kPixel,
+                  .output = kPixel,
+                  .counter = {counter(), 0}};
   frame.current.render = kPixel;
   frame.current.particle_render = kPixel;
   frame.previous.render = kPixel;

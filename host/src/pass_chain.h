@@ -30,6 +30,10 @@ class AllocationError : public std::runtime_error {
   Status status_;
 };
 
+// Throws AllocationError.
+Image allocate_image(const Device& device, Extent extent, PixelFormat format,
+                     Storage storage = Storage::kBuffer);
+
 class PassChain {
  public:
   PassChain(const Device& device, const PlanFacts& facts);

@@ -31,6 +31,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_motion_tiles,
     plan_motion_neighbours,
     plan_motion_blur,
+    plan_lay_focus,
     plan_present,
     plan_clear_region,
 };

@@ -29,6 +29,7 @@ void plan_sharpen(const PlanFacts& facts, PassList& list);
 void plan_motion_tiles(const PlanFacts& facts, PassList& list);
 void plan_motion_neighbours(const PlanFacts& facts, PassList& list);
 void plan_motion_blur(const PlanFacts& facts, PassList& list);
+void plan_lay_focus(const PlanFacts& facts, PassList& list);
 void plan_present(const PlanFacts& facts, PassList& list);
 void plan_clear_region(const PlanFacts& facts, PassList& list);
 

@@ -14,7 +14,7 @@ class PresentPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const ImageView& source = frame[facts().blurs() ? Resource::kBlurred : Resource::kResolved];
+    const ImageView& source = frame[finished_picture(facts())];
     const ImageView& presented = frame[Resource::kPresented];
     const float exposure = facts().is_display_referred() ? 1 : frame.current.exposure;
     const PresentParams params{
@@ -59,8 +59,7 @@ void plan_present(const PlanFacts& facts, PassList& list) {
                               curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
                               precision_of(settings.resolved), storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
-       .uses = {{facts.blurs() ? Resource::kBlurred : Resource::kResolved, Access::kRead, Area::kOutput,
-                 settings.resolved},
+       .uses = {{finished_picture(facts), Access::kRead, Area::kOutput, settings.resolved},
                 {Resource::kPresented, Access::kWrite, Area::kOutput, PixelFormat::kRGBA8}},
        .make = make_pass<PresentPass>});
 }

@@ -149,6 +149,10 @@ const char* name_of(Resource resource) {
       return "blur tiles";
     case Resource::kBlurred:
       return "blurred";
+    case Resource::kFocus:
+      return "focus";
+    case Resource::kFocusMask:
+      return "focus mask";
     case Resource::kPresented:
       return "presented";
   }
@@ -173,7 +177,8 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 }
 
 FrameExtents largest_extents(const ResolveSettings& settings) {
-  return {settings.target, settings.target, settings.output, settings.particle_target};
+  return {settings.target, settings.target, settings.output, settings.particle_target,
+          settings.focus.extent};
 }
 
 Extent extent_of(Area area, const FrameExtents& extents) {
@@ -186,6 +191,8 @@ Extent extent_of(Area area, const FrameExtents& extents) {
       return extents.particles;
     case Area::kOutput:
       return extents.output;
+    case Area::kFocus:
+      return extents.focus;
     case Area::kFarCells:
       return tiles_of(extents.render, kFarCell);
     case Area::kTiles:
@@ -201,7 +208,8 @@ Extent extent_of(Area area, const FrameExtents& extents) {
 std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents) {
   std::uint64_t bytes = 0;
   for (const Use& use : spec.uses) {
-    const std::uint64_t times = use.access == Access::kAccumulate ? 2 : 1;
+    const bool both = use.access == Access::kAccumulate || use.access == Access::kUpdate;
+    const std::uint64_t times = both ? 2 : 1;
     bytes += times * static_cast<std::uint64_t>(extent_of(use.area, extents).area()) * use.element_bytes();
   }
   return bytes;

@@ -81,6 +81,8 @@ enum class Resource : std::uint8_t {
   kLongestStreak,
   kTileBlurs,
   kBlurred,
+  kFocus,
+  kFocusMask,
   kPresented,
 };
 constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
@@ -88,6 +90,11 @@ constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
 // The picture that the method makes, before sharpening.
 inline Resource picture_of(const PlanFacts& facts) {
   return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+}
+
+// The picture that is shown.
+inline Resource finished_picture(const PlanFacts& facts) {
+  return facts.blurs() ? Resource::kBlurred : Resource::kResolved;
 }
 
 const char* name_of(Resource resource);  // "colour of the previous frame"
@@ -99,6 +106,7 @@ enum class Access : std::uint8_t {
   kRead,
   kWrite,
   kAccumulate,  // set to zero before the pass, which adds to it
+  kUpdate,      // some elements are read and written
 };
 
 // Which part of a resource a pass touches.
@@ -107,6 +115,7 @@ enum class Area : std::uint8_t {
   kPreviousViewport,  // of the previous frame, within the target
   kParticles,         // the particles' viewport of this frame, within their target
   kOutput,
+  kFocus,      // the focus's region
   kFarCells,   // one element for each cell of kFarCell^2 samples of the viewport
   kTiles,      // one element for each tile of kTemporalTile^2 output pixels
   kBlurTiles,  // one element for each tile of kTileSide^2 output pixels
@@ -130,6 +139,7 @@ enum class Frames : std::uint8_t {
   kWithoutHistory,  // the first frame and those after a reset
   kSparse,          // is_dense() does not hold
   kDense,
+  kWithFocus,  // a focus is given
   kOnRequest,  // none: a call of its own runs it
 };
 
@@ -155,6 +165,7 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 struct FrameExtents {
   Extent render, previous_render, output;
   Extent particles = {};
+  Extent focus = {};
 };
 
 // Those of a plan's largest frame.
@@ -162,7 +173,7 @@ FrameExtents largest_extents(const ResolveSettings& settings);
 
 Extent extent_of(Area area, const FrameExtents& extents);
 
-// Bytes read and written in a frame: each element counts once, or twice where the pass adds to it.
+// Bytes read and written in a frame: each element counts once, or twice where it is both.
 std::uint64_t bytes_of(const PassSpec& spec, const FrameExtents& extents);
 
 // The passes of a plan in the order in which they run, and why the others are not in it. Pure.

@@ -52,6 +52,7 @@ struct PlanFacts {
   }
   bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
+  bool has_focus() const { return settings.focus.extent != Extent{} && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
   bool places_targets() const { return settings.targets == Targets::kPlaced; }
   Storage presented_storage() const { return places_targets() ? Storage::kBuffer : settings.storage; }

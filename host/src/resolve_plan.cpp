@@ -41,6 +41,19 @@ void check_format(Complaints& complaints, const char* field, PixelFormat format,
                              name_of(full)));
 }
 
+void check_focus(Complaints& complaints, const ResolveSettings& settings) {
+  const FocusSettings& focus = settings.focus;
+  if (focus.extent == Extent{}) return;
+  if (focus.extent.width < 1 || focus.extent.height < 1 || focus.extent.width > settings.output.width ||
+      focus.extent.height > settings.output.height) {
+    complaints.add(
+        fmt::format("settings.focus.extent is {}x{}; it must lie within 1x1 and the output's {}x{}, or be "
+                    "0x0 for no focus",
+                    focus.extent.width, focus.extent.height, settings.output.width, settings.output.height));
+  }
+  if (focus.target != Extent{}) check_extent(complaints, "focus.target", focus.target);
+}
+
 Status check(const ResolveSettings& settings) {
   Complaints complaints;
   check_extent(complaints, "output", settings.output);
@@ -86,6 +99,7 @@ Status check(const ResolveSettings& settings) {
   if (!(settings.sharpness >= 0 && settings.sharpness <= 1)) {
     complaints.add(fmt::format("settings.sharpness is {}; it must lie in [0, 1]", settings.sharpness));
   }
+  check_focus(complaints, settings);
   const int samples = settings.blur.samples;
   if (samples < 4 || samples > 64 || !std::has_single_bit(static_cast<unsigned>(samples))) {
     complaints.add(fmt::format("settings.blur.samples is {}; it must be 4, 8, 16, 32 or 64", samples));
@@ -106,7 +120,7 @@ PlannedBuffer planned(const ResourceUse& use, const FrameExtents& largest) {
           .format = use.largest.format,
           .scaling = scaling_of(use.largest.area),
           .bytes = static_cast<std::uint64_t>(extent.area()) * use.largest.element_bytes(),
-          .owned = use.written && use.resource != Resource::kPresented};
+          .owned = (use.written && use.resource != Resource::kPresented) || use.resource == Resource::kFocus};
 }
 
 }  // namespace
@@ -148,6 +162,23 @@ bool ResolvePlan::keeps_previous_frame() const {
 bool ResolvePlan::reads_history(Extent render) const {
   if (accumulates()) return !is_dense(render, settings.output);
   return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
+}
+
+bool ResolvePlan::has_focus() const {
+  return PlanFacts(needs, settings).has_focus();
+}
+
+std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
+  if (!has_focus()) return std::nullopt;
+  ResolveSettings region = settings;
+  region.output = settings.focus.extent;
+  region.target = settings.focus.target != Extent{} ? settings.focus.target : settings.focus.extent;
+  region.shading = Shading::kFull;
+  region.present = false;
+  region.clear = false;
+  region.particle_target = {};  // those of the region are drawn with the rest of it
+  region.focus = {};
+  return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
 }
 
 bool ResolvePlan::moves_far() const {

@@ -35,6 +35,11 @@ std::string targets_text(const ResolvePlan& plan) {
       largest.width, largest.height, size_text(plan.frame_bytes()));
 }
 
+std::string focus_text(const FocusSettings& focus) {
+  return fmt::format("{}x{} pixels of the picture, drawn again and resolved on their own{}",
+                     focus.extent.width, focus.extent.height, focus.mask ? "; a mask is given" : "");
+}
+
 }  // namespace
 
 const char* name_of(Targets targets) {
@@ -90,6 +95,8 @@ std::string ResolvePlan::explain() const {
       yes(settings.dither));
   fmt::format_to(out, "Colour         {}\n", colour_text(settings));
   fmt::format_to(out, "Targets        {}\n", targets_text(*this));
+  const std::optional<ResolvePlan> region = focus_plan();
+  if (region) fmt::format_to(out, "Focus          {}\n", focus_text(settings.focus));
   fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
                  name_of(velocity));
   for (const PlannedPass& pass : passes) {
@@ -105,6 +112,7 @@ std::string ResolvePlan::explain() const {
   text += "\nLeft out\n";
   for (const LeftOut& left : left_out)
     fmt::format_to(out, "  {:<40} {}\n", left.what, left.why);
+  if (region) fmt::format_to(out, "\nThe focus's region\n{}", region->explain());
   return text;
 }
 

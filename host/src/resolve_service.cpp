@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "focus_stream.h"
+#include "frame_check.h"
 #include "frame_ring.h"
-#include "pass_chain.h"
+#include "frame_stream.h"
 #include "pass_clear_region.h"
 #include "program_cache.h"
 
@@ -38,31 +40,30 @@ Status check_unedited(const ResolvePlan& plan) {
 struct ResolveService::Impl {
   Impl(const Device& on, const ResolvePlan& to_do)
       : device(on),
-        plan(to_do),
-        chain(on, PlanFacts(to_do.needs, to_do.settings)),
+        picture(on, to_do),
         counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
-        ring(pass_timer(on) == PassTimer::kEvents) {}
-
-  void warm_up();
-  void enqueue(const PassFrame& frame, const FrameOutputs& outputs, FrameRing::Slot& slot);
-  Status check_history(const FrameInputs& inputs) const;
-  ClearRegionPass* clear_pass(const ImageView& image) const;
-  // A dense frame has left no history.
-  bool has_history(const FrameInputs& inputs) const {
-    return has_previous && !inputs.reset && plan.reads_history(previous.render);
+        ring(pass_timer(on) == PassTimer::kEvents) {
+    if (const auto of_focus = to_do.focus_plan()) focus.emplace(on, *of_focus);
   }
 
+  void warm_up();
+  Status check(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs) const;
+  void enqueue(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
+               FrameRing::Slot& slot);
+  void forget();
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs);
+  ClearRegionPass* clear_pass(const ImageView& image) const;
+
   Device device;
-  ResolvePlan plan;
-  PassChain chain;
-  cl::Buffer counter;  // of non-finite pixels, one uint a slot of the ring
-  FrameInputs previous;
-  bool has_previous = false;
+  FrameStream picture;
+  std::optional<FocusStream> focus;  // where the plan has one
+  cl::Buffer counter;                // of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
 };
 
 void ResolveService::Impl::warm_up() {
-  chain.warm_up();
+  picture.chain().warm_up();
+  if (focus) focus->chain().warm_up();
   // The commands around the kernels have a first time too.
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
@@ -72,40 +73,68 @@ void ResolveService::Impl::warm_up() {
   queue.finish();
 }
 
-// What validate() cannot see: the previous frame must still be where it was. Of the images that change with every
-// frame, one that is read again tells.
-Status ResolveService::Impl::check_history(const FrameInputs& inputs) const {
-  if (!has_history(inputs) || !plan.keeps_previous_frame()) return {};
-  const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
-    return chain.has(previous_of(resource)) && now.memory == before.memory && now.offset == before.offset;
-  };
-  const char* shared = nullptr;
-  if (is_shared(Resource::kColour, inputs.colour, previous.colour)) {
-    shared = name_of(Resource::kColour);
-  } else if (plan.accumulates() && is_shared(Resource::kDepth, inputs.depth, previous.depth)) {
-    shared = name_of(Resource::kDepth);
-  }
-  if (shared == nullptr) return {};
-  return Status::invalid(
-      fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
-                  "consecutive frames different memory, or set reset",
-                  shared));
+Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* given,
+                                   const FrameOutputs& outputs) const {
+  if (Status status = validate(picture.plan(), inputs, outputs); !status.ok()) return status;
+  if (Status status = picture.check_history(inputs); !status.ok()) return status;
+  if (given == nullptr) return {};
+  const Status status = validate_focus(picture.plan(), focus ? &focus->plan() : nullptr, *given);
+  return status.ok() ? focus->check_history(*given) : status;
 }
 
-void ResolveService::Impl::enqueue(const PassFrame& frame, const FrameOutputs& outputs,
-                                   FrameRing::Slot& slot) {
+void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* given,
+                                   const FrameOutputs& outputs, FrameRing::Slot& slot) {
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
-  const std::size_t at = static_cast<std::size_t>(frame.counter.index) * sizeof(zero);
+  const Counter counted = {counter(), ring.index_of(slot)};
+  const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
   queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
-  chain.run(frame, outputs, slot.report, slot.passes.data());
+  PassFrame frame = picture.frame(inputs, outputs, counted);
+  if (given != nullptr) {
+    focus->run(*given, counted, slot.report, slot.passes.data());
+    focus->lay_over(frame, *given);
+  } else if (focus) {
+    focus->forget();
+  }
+  picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.pass_count);
   queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
                           &slot.done);
   queue.flush();
 }
 
+void ResolveService::Impl::forget() {
+  picture.forget();
+  if (focus) focus->forget();
+}
+
+FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const FocusInputs* given,
+                                           const FrameOutputs& outputs) {
+  FrameReport refused;
+  refused.frame_index = inputs.frame_index;
+  refused.render = inputs.render;
+  refused.status = check(inputs, given, outputs);
+  if (!refused.ok()) return refused;
+  try {
+    FrameRing::Slot& slot = ring.begin();
+    slot.report.frame_index = inputs.frame_index;
+    slot.report.render = inputs.render;
+    const Extent output = picture.plan().settings.output;
+    slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
+                         static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
+    slot.report.used_previous = picture.has_history(inputs) && picture.plan().reads_history(inputs.render);
+    enqueue(inputs, given, outputs, slot);
+    ring.commit();
+    picture.keep(inputs);
+    return slot.report;
+  } catch (const cl::Error& error) {
+    forget();  // part of the frame may be queued; what it left behind is not to be trusted as history
+    refused.status = describe(error, "dispatch", device.info().name);
+    return refused;
+  }
+}
+
 ClearRegionPass* ResolveService::Impl::clear_pass(const ImageView& image) const {
-  for (const auto& pass : chain.passes()) {
+  for (const auto& pass : picture.chain().passes()) {
     auto* clear = dynamic_cast<ClearRegionPass*>(pass.get());
     if (clear != nullptr && clear->serves(image)) return clear;
   }
@@ -143,34 +172,14 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
 }
 
 FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs) {
-  FrameReport refused;
-  refused.frame_index = inputs.frame_index;
-  refused.render = inputs.render;
-  refused.status = validate(impl_->plan, inputs, outputs);
-  if (refused.ok()) refused.status = impl_->check_history(inputs);
-  if (!refused.ok()) return refused;
-  try {
-    FrameRing::Slot& slot = impl_->ring.begin();
-    slot.report.frame_index = inputs.frame_index;
-    slot.report.render = inputs.render;
-    const Extent output = impl_->plan.settings.output;
-    slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
-                         static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
-    const bool has_history = impl_->has_history(inputs);
-    const PassFrame frame = impl_->chain.frame(inputs, has_history ? &impl_->previous : nullptr, outputs,
-                                               {impl_->counter(), impl_->ring.index_of(slot)});
-    slot.report.used_previous = has_history && impl_->plan.reads_history(inputs.render);
-    impl_->enqueue(frame, outputs, slot);
-    impl_->ring.commit();
-    impl_->previous = inputs;
-    impl_->has_previous = true;
-    return slot.report;
-  } catch (const cl::Error& error) {
-    // Part of the frame may be queued; what it left behind is not to be trusted as history.
-    impl_->has_previous = false;
-    refused.status = describe(error, "dispatch", impl_->device.info().name);
-    return refused;
-  }
+  return impl_->dispatch(inputs, nullptr, outputs);
+}
+
+FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FocusInputs& focus,
+                                     const FrameOutputs& outputs) {
+  FocusInputs given = focus;
+  given.frame.reset |= inputs.reset;
+  return impl_->dispatch(inputs, &given, outputs);
 }
 
 std::optional<FrameReport> ResolveService::next_completed() {
@@ -178,12 +187,14 @@ std::optional<FrameReport> ResolveService::next_completed() {
 }
 
 void ResolveService::allow_timing_waits(bool allow) {
-  impl_->chain.wait_for_each_pass(allow && pass_timer(impl_->device) == PassTimer::kHostClock);
+  const bool wait = allow && pass_timer(impl_->device) == PassTimer::kHostClock;
+  impl_->picture.chain().wait_for_each_pass(wait);
+  if (impl_->focus) impl_->focus->chain().wait_for_each_pass(wait);
 }
 
 Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {
   if (!image) return Status::invalid("the image to clear is empty; it needs an allocation");
-  if (image.storage != impl_->plan.settings.storage) {
+  if (image.storage != plan().settings.storage) {
     return Status::invalid("the image to clear has another storage than the plan; they must agree");
   }
   if (render.width < 1 || render.height < 1 || render.width > image.extent.width ||
@@ -200,7 +211,7 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
                     name_of(image.format)));
   }
   try {
-    const PassFrame frame = impl_->chain.frame({}, nullptr, {}, {});
+    const PassFrame frame = impl_->picture.chain().frame({}, nullptr, {}, {});
     pass->clear(frame, image, render, value, nullptr);
     frame.queue.flush();
     return {};
@@ -214,7 +225,7 @@ Status ResolveService::finish() {
 }
 
 Result<TileKinds> ResolveService::tile_kinds() const {
-  const ImageView tiles = impl_->chain.newest(Resource::kTileBlurs);
+  const ImageView tiles = impl_->picture.chain().newest(Resource::kTileBlurs);
   if (!tiles)
     return Status::invalid("the plan has no motion blur and so no tiles; set settings.blur.shutter");
   try {
@@ -231,15 +242,14 @@ Result<TileKinds> ResolveService::tile_kinds() const {
 }
 
 Result<ImageView> ResolveService::history() const {
-  const ResolvePlan& plan = impl_->plan;
-  if (!plan.accumulates())
+  if (!plan().accumulates())
     return Status::invalid("the plan accumulates no history; choose the method temporal");
-  if (!impl_->has_previous || !plan.reads_history(impl_->previous.render)) return ImageView();
-  return impl_->chain.newest(Resource::kHistory);
+  if (!impl_->picture.leaves_history()) return ImageView();
+  return impl_->picture.chain().newest(Resource::kHistory);
 }
 
 const ResolvePlan& ResolveService::plan() const {
-  return impl_->plan;
+  return impl_->picture.plan();
 }
 
 }  // namespace quincunx

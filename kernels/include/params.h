@@ -307,6 +307,27 @@ typedef struct SharpenParams {
 } SharpenParams;
 QUINCUNX_CHECK_SIZE(SharpenParams, 32);
 
+// A rectangle of a focus, in pixels of its region, whose weight rises from 0 at an edge to 1 within 1 / rate pixels.
+typedef struct FocusRectangle {
+  float left, top, right, bottom;
+  float rate;
+} FocusRectangle;
+QUINCUNX_CHECK_SIZE(FocusRectangle, 20);
+
+enum { kMostFocusRectangles = 4 };
+
+typedef struct FocusParams {
+  int left, top;         // of the part that is laid over, in pixels of the region
+  int width, height;     // of that part
+  TexelLayout focus;     // of the region
+  TexelLayout mask;      // of the region
+  TexelLayout output;    // of the picture, from the region's first pixel on
+  int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
+  int rectangle_count;   // at least 1
+  FocusRectangle rectangles[kMostFocusRectangles];
+} FocusParams;
+QUINCUNX_CHECK_SIZE(FocusParams, 128);
+
 typedef struct PresentParams {
   int width;
   int height;

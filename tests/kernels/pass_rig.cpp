@@ -30,6 +30,8 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .current = current,
                   .previous = previous,
                   .has_history = true,
+                  .focus = focus_,
+                  .focus_extent = facts_.settings.focus.extent,
                   .output = output,
                   .counter = counter};
   bind_inputs(frame);

@@ -24,12 +24,16 @@ class PassRig {
 
   const PlanFacts& facts() const { return facts_; }
 
+  // Of the next run(), until which it stays; null: none.
+  void set_focus(const FocusInputs* focus) { focus_ = focus; }
+
   // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.
   void run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
            Bound bound);
 
  private:
   PlanFacts facts_;
+  const FocusInputs* focus_ = nullptr;
   std::unique_ptr<Pass> pass_;
 };
 

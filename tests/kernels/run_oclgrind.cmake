@@ -40,6 +40,7 @@ check("" "AxisTables.*" "Clear*"
 # where it inlines, and of the other it computes the minimum of int8 wrongly.
 check("--build-options;-cl-opt-disable" "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
   "*Overlay.ATight*/reactive_*" "*Overlay.Poison*/reactive_buffer_RGBA16F"
+  "*LayFocus.TightImages*" "*LayFocus.ANonFinite*"
   "*Checkerboard.ATight*/camera_buffer_*" "*Checkerboard.ATight*/moving_velocity_reactive_buffer_*"
   "*Reprojected.ATight*/still_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Reprojected.ATight*/moving_residual_reactive_buffer_RGBA16F_RG16F*"

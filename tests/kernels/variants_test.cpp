@@ -58,8 +58,9 @@ INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
                                            "advect_records", "layer_split", "temporal_tiles",
                                            "temporal_light", "resolve_temporal", "resolve_layers",
                                            "temporal_display", "display_layers", "motion_tiles",
-                                           "motion_neighbours", "motion_blur", "sharpen", "present",
-                                           "resolve_checkerboard", "overlay_particles", "velocity_from_depth",
+                                           "motion_neighbours", "motion_blur", "sharpen", "lay_focus",
+                                           "present", "resolve_checkerboard", "overlay_particles",
+                                           "velocity_from_depth",
                                            "far_velocity", "far_surroundings", "far_fit", "far_match"),
                          [](const auto& instance) { return instance.param; });
 
@@ -173,6 +174,12 @@ std::vector<PlanFacts> all_facts() {
             settings.shading = Shading::kFull;
             settings.particle_target = {};
           }
+          settings.focus.extent = {32, 32};
+          for (const bool mask : {false, true}) {
+            settings.focus.mask = mask;
+            all.push_back({{}, settings});
+          }
+          settings.focus = {};
           for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
             for (const bool dither : {false, true}) {
               settings.tone_map = tone_map;
@@ -206,7 +213,8 @@ TEST(Variants, NoPlanHasMorePassesThanAReport) {
   std::size_t most = 0;
   for (const PlanFacts& facts : all_facts())
     most = std::max(most, list_passes(facts).passes.size());
-  EXPECT_LE(most, static_cast<std::size_t>(FrameReport::kMaxPasses));
+  // And as many of the focus's region.
+  EXPECT_LE(2 * most, static_cast<std::size_t>(FrameReport::kMaxPasses));
   EXPECT_GE(most, 11u) << "the temporal upscaler with all that goes with it";
 }
 

@@ -53,7 +53,12 @@ class ServiceRig {
 
   // Sets the extents and formats of `settings` itself.
   ServiceRig(const SceneNeeds& needs, ResolveSettings settings, Extent output, Extent target)
-      : device_(Device::open().value()) {
+      : ServiceRig(Device::open().value(), needs, settings, output, target) {}
+
+  // On the device of another rig.
+  ServiceRig(const Device& device, const SceneNeeds& needs, ResolveSettings settings, Extent output,
+             Extent target)
+      : device_(device) {
     settings.output = output;
     settings.target = target;
     if (settings.colour != PixelFormat::kRGBA8) settings.colour = PixelFormat::kRGBA32F;

@@ -133,6 +133,14 @@ void place(FrameInputs& inputs, Extent render) {
   }
 }
 
+// With a focus where the plan has one, from the upper left part of the frame's own images.
+FrameReport dispatch(ServiceRig& rig, const FrameInputs& inputs) {
+  if (!rig.service().plan().has_focus()) return rig.dispatch(inputs);
+  FocusInputs focus{.frame = inputs, .x = inputs.render.width % 30, .y = 4};
+  focus.frame.render = {1 + inputs.render.width % 48, 1 + inputs.render.height % 36};
+  return rig.service().dispatch(inputs, focus, {rig.resolved_view(), rig.presented_view()});
+}
+
 void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings) {
   constexpr int kFrames = 200;
   ServiceRig rig(needs, settings, {64, 48}, {96, 72});
@@ -144,7 +152,7 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
   for (int i = 0; i < slots; ++i)
     frames.push_back(rig.upload({.render = {48, 36}}));
   for (int i = 0; i < 6; ++i)
-    ASSERT_TRUE(rig.dispatch(frames[i % slots]).ok());
+    ASSERT_TRUE(dispatch(rig, frames[i % slots]).ok());
   ASSERT_TRUE(rig.service().finish().ok());
   while (rig.service().next_completed()) {
   }
@@ -158,7 +166,7 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
     if (placed) place(inputs, inputs.render);
     inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
     inputs.reset = i % 50 == 49;
-    refused += rig.dispatch(inputs).ok() ? 0 : 1;
+    refused += dispatch(rig, inputs).ok() ? 0 : 1;
     while (rig.service().next_completed())
       ++taken;
     if (i % 4 == 3) {
@@ -213,6 +221,10 @@ TEST(SteadyFrame, PlacedTargetsOfAnotherSizeEveryFrame) {
 }
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});
+}
+
+TEST(SteadyFrame, AFocusThatWanders) {
+  run_steady_frames({}, {.method = Method::kTemporal, .focus = {.extent = {32, 24}, .target = {48, 36}}});
 }
 
 TEST(SteadyFrame, TheCountersCount) {

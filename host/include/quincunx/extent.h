@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Extent, Vec2: sizes and positions. No OpenCL here, so that whoever only chooses resolutions needs none.
+// Extent, Vec2, Rectangle: sizes and positions. No OpenCL here, so that whoever only chooses resolutions needs none.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +20,16 @@ struct Vec2 {
   float y = 0;
 
   friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+// Whole pixels of a picture: x to x + width - 1, y to y + height - 1.
+struct Rectangle {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+
+  friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
 }  // namespace quincunx

@@ -69,10 +69,11 @@ struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"
   double ms = -1;           // device time; -1: not known (yet)
   std::uint64_t bytes = 0;  // read and written in this frame, each texel counted once
+  bool in_focus = false;    // of the focus's region, which has passes of its own
 };
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 24;
+  static constexpr int kMaxPasses = 48;  // 24 of the picture and 24 of its focus
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
@@ -81,7 +82,8 @@ struct FrameReport {
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
   int pass_count = 0;
   std::array<PassReport, kMaxPasses> passes;
-  // Output pixels that met NaN or Inf in their footprint; -1: not known yet.
+  bool focused = false;  // a focus was laid over the picture
+  // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;
 
   bool ok() const { return status.ok(); }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,16 @@ struct MotionBlurSettings {
   friend bool operator==(const MotionBlurSettings&, const MotionBlurSettings&) = default;
 };
 
+// A part of the picture that is drawn a second time, at a larger scale, and resolved with a history of its own: see
+// FocusInputs.
+struct FocusSettings {
+  Extent extent = {};  // of the region in output pixels; 0x0: there is none
+  Extent target = {};  // the allocated size of its inputs, at least its largest viewport; 0x0: as extent
+  bool mask = false;   // FocusInputs::mask is given
+
+  friend bool operator==(const FocusSettings&, const FocusSettings&) = default;
+};
+
 // How the memory of a frame's images follows the resolution.
 enum class Targets : std::uint8_t {
   kViewport,  // images of the largest viewport's size; a frame uses the top left part of each
@@ -92,6 +103,7 @@ struct ResolveSettings {
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
   float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
+  FocusSettings focus = {};
 
   friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };
@@ -157,11 +169,15 @@ struct QUINCUNX_API ResolvePlan {
   bool keeps_previous_frame() const;  // some images of a frame are read by the next dispatch, too
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
+  bool has_focus() const;             // dispatch() takes FocusInputs
   bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
   // Of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an image of that
   // size is not made again and so needs no such memory.
   Storage presented_storage() const;
+  // Of the focus's region: the same settings for a picture of its extent, with all pixels shaded. FocusInputs::frame is
+  // a frame of this plan. Nothing where there is no focus.
+  std::optional<ResolvePlan> focus_plan() const;
   // Of the caller's images of one frame, which are at most this large: both kinds of targets need as much for it.
   std::uint64_t frame_bytes() const;
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so

@@ -20,6 +20,7 @@
 
 #include "quincunx/device.h"
 #include "quincunx/export.h"
+#include "quincunx/focus.h"
 #include "quincunx/frame.h"
 #include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
@@ -30,6 +31,8 @@ namespace quincunx {
 // Checks every field of a frame against a plan without a device. The message names every bad field, what it
 // holds and what would be right. Pure; thread-safe.
 QUINCUNX_API Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs);
+QUINCUNX_API Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FocusInputs& focus,
+                             const FrameOutputs& outputs);
 
 // How each tile of the output, of 32 x 32 pixels, was blurred: 0 copied (nothing moves there), 1 colour alone
 // (everything moves alike), 2 with depth and velocity of each sample.
@@ -52,6 +55,11 @@ class QUINCUNX_API ResolveService {
   // report's status says why, nothing is enqueued, and the history is as it was. The report's times are not
   // known yet.
   FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs);
+
+  // The same with a focus laid over the finished picture (FrameOutputs::blurred where the plan blurs, else resolved)
+  // and over what is presented of it. Nothing outside of its rectangles changes by one bit. A frame without a focus
+  // ends the focus's history.
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs& focus, const FrameOutputs& outputs);
 
   // The oldest finished frame whose report was not yet taken, with its times and counts; nothing when none
   // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.
