@@ -75,6 +75,7 @@ struct Instance {
   int mesh = 0;
   glm::mat4 transform{1};  // world from mesh, when there is no motion
   Motion motion;           // world from mesh at a time; empty: it stands still
+  std::string name = {};   // of the object that it belongs to; several may share it
 };
 
 // A camera-facing, additively or alpha blended quad; no velocity, reactive.

@@ -11,4 +11,8 @@ FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const
   return outputs;
 }
 
+std::string name_of(const PassReport& pass) {
+  return (pass.in_focus ? "focus: " : "") + std::string(pass.kernel);
+}
+
 }  // namespace quincunx

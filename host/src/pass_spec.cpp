@@ -177,8 +177,7 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 }
 
 FrameExtents largest_extents(const ResolveSettings& settings) {
-  return {settings.target, settings.target, settings.output, settings.particle_target,
-          settings.focus.extent};
+  return {settings.target, settings.target, settings.output, settings.particle_target, settings.focus.extent};
 }
 
 Extent extent_of(Area area, const FrameExtents& extents) {

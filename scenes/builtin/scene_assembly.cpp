@@ -38,12 +38,18 @@ MeshBuilder& SceneAssembly::still(int material, int part) {
   return still_.try_emplace({part, material}, material).first->second;
 }
 
+// What has no name of its own has that of its material.
+std::string SceneAssembly::name_of(int mesh) const {
+  const int material = scene.meshes[static_cast<std::size_t>(mesh)].material;
+  return scene.materials[static_cast<std::size_t>(material)].name;
+}
+
 void SceneAssembly::place(int mesh, const glm::mat4& transform) {
-  scene.instances.push_back({mesh, transform, {}});
+  scene.instances.push_back({mesh, transform, {}, name_of(mesh)});
 }
 
 void SceneAssembly::move(int mesh, Motion motion) {
-  scene.instances.push_back({mesh, motion(0), std::move(motion)});
+  scene.instances.push_back({mesh, motion(0), std::move(motion), name_of(mesh)});
 }
 
 Scene SceneAssembly::finish() {

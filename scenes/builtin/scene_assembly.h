@@ -37,6 +37,8 @@ class SceneAssembly {
   Scene finish();
 
  private:
+  std::string name_of(int mesh) const;
+
   std::map<std::pair<int, int>, MeshBuilder> still_;
 };
 

@@ -145,6 +145,8 @@ class SceneReader {
       }
       Instance instance;
       instance.mesh = mesh;
+      instance.name =
+          !source.name.empty() ? source.name : model_.meshes[static_cast<std::size_t>(source.mesh)].name;
       instance.transform = tree_->world(node, 0);
       if (!is_sane(instance.transform)) {
         throw GltfError(fmt::format("{} has a transform with values beyond {:g}, which cannot be drawn", who,

@@ -78,7 +78,7 @@ Status Calibration::draw(std::int64_t index, Extent render) {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report = service_.dispatch(inputs.value(), {.presented = presented.value()});
+  const FrameReport report = source_->dispatch(service_, inputs.value(), {.presented = presented.value()});
   if (!report.ok()) return report.status;
   if (Status status = source_->bridge().present(); !status.ok()) return status;
   loop_.finish_frame();

@@ -87,6 +87,10 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
       throw tools::UsageError{"--sequence", "holds whole frames; give it without --shading checkerboard"};
     if (!options.sequence.empty() && options.parts.particles)
       throw tools::UsageError{"--sequence", "holds whole frames; give it without --particle-scale"};
+    if (!options.sequence.empty() && !options.focus.empty())
+      throw tools::UsageError{"--sequence", "holds one view of each frame; give it without --focus"};
+    if (options.focus == kFocusPointer)
+      throw tools::UsageError{"--focus", "pointer is for a window; give an object or a rectangle"};
   };
   if (const std::optional<int> code = app.parse(argc, argv, check_needs)) return code;
   if (!app.has("--warm-up") && options.resolve.method == Method::kTemporal) options.warm_up = kWarmUpFrames;

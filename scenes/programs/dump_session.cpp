@@ -2,6 +2,7 @@
 #include "programs/dump_session.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,6 +38,7 @@ bool is_colour(Stage stage) {
   switch (stage) {
     case Stage::kColour:
     case Stage::kParticles:
+    case Stage::kFocus:
     case Stage::kHistory:
     case Stage::kResolved:
     case Stage::kBlurred:
@@ -125,6 +127,7 @@ std::string DumpSession::why_missing(Stage stage) const {
   if (stage == Stage::kHistory && (options_.frame == 0 || options_.warm_up == 0)) {
     return "no frame comes before the one that is shown; give a later --frame and --warm-up";
   }
+  if (stage == Stage::kFocus && !plan.has_focus()) return "no part is in focus; give --focus";
   if ((stage == Stage::kTiles || stage == Stage::kBlurred) && !plan.blurs()) {
     return plan.settings.blur.shutter > 0 ? "nothing moves in this scene"
                                           : "there is no motion blur; give --blur";
@@ -180,7 +183,7 @@ Status DumpSession::resolve_next() {
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
   const FrameReport report =
-      service_->dispatch(inputs.value(), {resolved_.view(), presented.value(), blurred_.view()});
+      source_->dispatch(*service_, inputs.value(), {resolved_.view(), presented.value(), blurred_.view()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
 }
@@ -239,6 +242,11 @@ Status DumpSession::collect_targets() {
                            .fps = options_.fps};
   const Extent render = current_->view.render;
   planes_[Stage::kColour] = colour_planes(render, colour_of(current_->targets), tools::ChannelType::kHalf);
+  if (const Extent region = current_->focus.render; region.area() > 0) {
+    planes_[Stage::kFocus] = colour_planes(region, colour_of(current_->focus), tools::ChannelType::kHalf);
+  } else if (std::erase(options_.stages, Stage::kFocus) > 0) {
+    spdlog::warn("there is no stage 'focus': --focus {} is not in the picture", options_.focus);
+  }
   planes_[Stage::kDepth] = {render, {"Z"}, {depth_of(file)}};
   StagePlanes motion{render, {"backward.u", "backward.v"}, {{}, {}}};
   for (const Vec2 vector : backward_motion(file)) {
@@ -312,6 +320,7 @@ std::string DumpSession::path_of(const std::string& ending) const {
 Status DumpSession::write_exr_files() {
   const std::vector<std::pair<std::string, std::vector<Stage>>> groups = {
       {"particles.exr", {Stage::kParticles}},
+      {"focus.exr", {Stage::kFocus}},
       {"history.exr", {Stage::kHistory}},
       {"target.exr", {Stage::kClear}},
       {"tiles.exr", {Stage::kTiles}},

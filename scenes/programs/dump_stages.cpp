@@ -15,7 +15,7 @@ using tools::Canvas;
 using tools::ColourMap;
 
 constexpr std::array<const char*, kStageCount> kNames = {
-    "colour", "depth",    "velocity", "reactive",  "particles", "clear", "history",
+    "colour", "depth",    "velocity", "reactive",  "particles", "focus", "clear", "history",
     "tiles",  "resolved", "blurred",  "presented", "truth",     "error", "flip"};
 
 Canvas depth_picture(const StagePlanes& planes) {

@@ -21,6 +21,7 @@ enum class Stage : std::uint8_t {
   kVelocity,
   kReactive,
   kParticles,  // in a viewport of their own
+  kFocus,      // the region of a focus as it was drawn
   kClear,      // what a partial clear touches of the target
   kHistory,    // what the resolve reads of the past
   kTiles,      // classes of the motion blur's tiles
@@ -32,7 +33,7 @@ enum class Stage : std::uint8_t {
   kFlip,   // as the FLIP paper maps it
 };
 
-constexpr int kStageCount = 14;
+constexpr int kStageCount = 15;
 
 const char* name_of(Stage stage);  // "colour"
 std::optional<Stage> stage_named(const std::string& name);

@@ -30,16 +30,20 @@ Result<std::unique_ptr<FrameSource>> FrameSource::create(const FrameSourceSettin
   auto source = std::unique_ptr<FrameSource>(new FrameSource(settings));
   if (Status status = source->open_sequence(); !status.ok()) return status;
   if (Status status = source->open_stage(); !status.ok()) return status;
+  if (Status status = source->open_focus(); !status.ok()) return status;
   return source;
 }
 
 Result<std::unique_ptr<FrameSource>> FrameSource::another(const SequenceSettings& sequence,
-                                                          const std::optional<PartsSettings>& parts) const {
+                                                          const std::optional<PartsSettings>& parts,
+                                                          const std::optional<FocusOptions>& focus) const {
   auto source = std::unique_ptr<FrameSource>(new FrameSource(settings_));
   source->settings_.sequence = sequence;
   if (parts) source->settings_.parts = *parts;
+  if (focus) source->settings_.focus = *focus;
   if (Status status = source->open_sequence(); !status.ok()) return status;
   source->stage_ = stage_;
+  if (Status status = source->open_focus(); !status.ok()) return status;
   return source;
 }
 
@@ -69,6 +73,14 @@ Status FrameSource::open_stage() {
   return {};
 }
 
+Status FrameSource::open_focus() {
+  if (!settings_.focus.target) return {};
+  auto focus = FocusFeed::create(settings_.focus, scene(), settings_.sequence);
+  if (!focus.ok()) return focus.status();
+  focus_ = std::move(focus).value();
+  return {};
+}
+
 Result<ResolvePlan> FrameSource::connect(const ResolveSettings& resolve, HandOver hand_over) {
   auto plans = connect_all({resolve}, hand_over);
   if (!plans.ok()) return plans.status();
@@ -91,6 +103,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
     resolve.target = bridging.target;
     resolve.particle_target = particle_target();
     resolve.targets = bridging.targets;
+    if (focus_) resolve.focus = focus_->settings();
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
     bridging.checkerboard |= resolve.shading == Shading::kCheckerboard;
@@ -110,6 +123,8 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
     if (!plan.ok()) return plan.status();
     plans.push_back(plan.value());
   }
+  if (!focus_) return plans;
+  if (Status status = focus_->connect(context(), device(), bridging, plans); !status.ok()) return status;
   return plans;
 }
 
@@ -147,7 +162,8 @@ gl::Bridge::Memory FrameSource::memory() const {
 }
 
 std::uint64_t FrameSource::bytes_in() const {
-  return bridge_->traffic().bytes_in + (particle_bridge_ ? particle_bridge_->traffic().bytes_in : 0);
+  return bridge_->traffic().bytes_in + (particle_bridge_ ? particle_bridge_->traffic().bytes_in : 0) +
+         (focus() != nullptr ? focus_->bridge().traffic().bytes_in : 0);
 }
 
 Status FrameSource::draw(std::int64_t index, bool keep_targets) {
@@ -182,7 +198,9 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_t
   if (keep_targets && particle_bridge_)
     frame.particles = gl::read_targets(*particles.value(), frame.view.particles);
   drawn_.push_back(std::move(frame));
-  return {};
+  if (!focus_) return {};
+  DrawnFrame& last = drawn_.back();
+  return focus_->begin(renderer(), index, last.view, last.reset, keep_targets ? &last.focus : nullptr);
 }
 
 Result<const gl::RenderTargets*> FrameSource::begin_particles(int slot, const FrameView& view) {
@@ -193,11 +211,28 @@ Result<const gl::RenderTargets*> FrameSource::begin_particles(int slot, const Fr
 Status FrameSource::submit() {
   const int slot = static_cast<int>(drawn_.back().index % bridge_->slots());
   if (Status status = bridge_->submit(slot); !status.ok()) return status;
-  return particle_bridge_ ? particle_bridge_->submit(slot) : Status();
+  if (particle_bridge_) {
+    if (Status status = particle_bridge_->submit(slot); !status.ok()) return status;
+  }
+  return focus_ ? focus_->submit() : Status();
+}
+
+void FrameSource::release() {
+  drawn_.pop_front();
+  if (focus_) focus_->release();
+}
+
+FrameReport FrameSource::dispatch(ResolveService& service, const FrameInputs& inputs,
+                                  const FrameOutputs& outputs) const {
+  const FocusInputs* const focused = service.plan().has_focus() ? focus() : nullptr;
+  return focused != nullptr ? service.dispatch(inputs, *focused, outputs) : service.dispatch(inputs, outputs);
 }
 
 Result<FrameInputs> FrameSource::acquire() {
   const DrawnFrame& frame = drawn_.front();
+  if (focus_) {
+    if (Status status = focus_->acquire(*stage_->renderer); !status.ok()) return status;
+  }
   auto shared = bridge_->acquire(static_cast<int>(frame.index % bridge_->slots()));
   if (!shared.ok()) return shared.status();
   FrameInputs inputs;

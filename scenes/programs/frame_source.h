@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "programs/focus_feed.h"
 #include "programs/frame_sequence.h"
 #include "programs/part_scales.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
+#include "quincunx/resolve_service.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/egl_context.h"
 #include "quincunx_gl/target_readback.h"
@@ -28,6 +30,7 @@ struct FrameSourceSettings {
   std::uint64_t seed = 0;
   SequenceSettings sequence;
   PartsSettings parts;
+  FocusOptions focus;
   float exposure = 0;  // 0: the scene's own
   std::string device;  // see Device::open
   gl::Interop interop = gl::Interop::kAuto;
@@ -47,6 +50,7 @@ struct DrawnFrame {
   bool reset = false;  // the first frame, or the first of a shot
   gl::TargetPixels targets = {};    // only where draw() was asked for them
   gl::TargetPixels particles = {};  // the same, where they have targets of their own
+  gl::TargetPixels focus = {};      // the same, of the focus's region
 };
 
 // One thread, that of the GL context. Frames are drawn, acquired and released in order; of those not released
@@ -56,13 +60,14 @@ class FrameSource {
   // Errors: of any part, as that part words them.
   static Result<std::unique_ptr<FrameSource>> create(const FrameSourceSettings& settings);
 
-  // Another sequence of frames from the same scene, context, device and renderer; its parts are as this one's where
-  // none are given.
+  // Another sequence of frames from the same scene, context, device and renderer; its parts and focus are as this one's
+  // where none are given.
   Result<std::unique_ptr<FrameSource>> another(const SequenceSettings& sequence,
-                                               const std::optional<PartsSettings>& parts = {}) const;
+                                               const std::optional<PartsSettings>& parts = {},
+                                               const std::optional<FocusOptions>& focus = {}) const;
 
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
-  // have. Before the first draw(). `resolve.output` and `target` are taken from the sequence.
+  // have. Before the first draw(). `resolve.output`, `target` and `focus` are taken from the sequence.
   Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
   // The same for several resolves of the same frames: the slots have what any of their plans reads, and the kind of
@@ -97,8 +102,17 @@ class FrameSource {
   // the frame after the next is drawn. `reset` is set where DrawnFrame::reset is.
   Result<FrameInputs> acquire();
 
+  // Resolves the frame of the last acquire(), with its focus where it has one. `inputs` may differ from what that gave.
+  FrameReport dispatch(ResolveService& service, const FrameInputs& inputs, const FrameOutputs& outputs) const;
+  // Of the last acquire(); null where the frame has none.
+  const FocusInputs* focus() const { return focus_ ? focus_->inputs() : nullptr; }
+  // Output pixels; of the next begin(), for a focus on what the pointer is on.
+  void set_pointer(const std::optional<Vec2>& pixel) {
+    if (focus_) focus_->set_pointer(pixel);
+  }
+
   DrawnFrame& oldest() { return drawn_.front(); }
-  void release() { drawn_.pop_front(); }
+  void release();
 
  private:
   struct Stage {
@@ -114,6 +128,7 @@ class FrameSource {
   Status open_parts(const gl::BridgeSettings& bridging);
   Extent particle_target() const;
   Result<const gl::RenderTargets*> begin_particles(int slot, const FrameView& view);
+  Status open_focus();
 
   FrameSourceSettings settings_;
   std::shared_ptr<Stage> stage_;  // outlives what was made in its context
@@ -121,6 +136,7 @@ class FrameSource {
   std::unique_ptr<gl::Bridge> bridge_;
   std::optional<PartScales> parts_;
   std::unique_ptr<gl::Bridge> particle_bridge_;  // null where particles are drawn with everything else
+  std::unique_ptr<FocusFeed> focus_;             // null: there is none
   Display display_;                              // of targets with encoded colour
   std::deque<DrawnFrame> drawn_;
 };

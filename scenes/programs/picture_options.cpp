@@ -76,6 +76,14 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
   tools::add_choice(app, "--shading", options.resolve.shading, kShadings,
                     "Pixels that a frame shades: full or checkerboard, every other one (default: full)");
   add_part_options(app, options.parts);
+  app.add_option(
+         "--focus", options.focus,
+         "Draw a part again at --focus-scale and lay it over: an object of the scene, a rectangle of the "
+         "picture or, in the window, pointer")
+      .type_name("OBJECT|X,Y,W,H");
+  app.add_option("--focus-scale", options.focus_scale, "Render scale of that part")
+      .in_range(0.02, 2.0)
+      .show_default();
   app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
       .positive();
   app.add_option("--frames", options.frames, "Number of frames").positive().show_default();
@@ -161,6 +169,13 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   source.platform = options.platform;
   source.api = options.api;
   source.parts = parts_for(options.parts, options.fps);
+  source.focus.scale = options.focus_scale;
+  if (!options.focus.empty()) {
+    auto target = FocusTarget::parse(options.focus, options.output);
+    if (!target.ok()) return target.status();
+    source.focus.target = target.value();
+    source.focus.endless = options.frames == 0;
+  }
   SequenceSettings& settings = source.sequence;
   settings.output = options.output;
   settings.scale_path = path.value();

@@ -26,7 +26,9 @@ struct PictureOptions {
   std::string scale = "1";  // "S" or "SX,SY"
   std::string scale_path;   // empty: `scale` in every frame
   PartOptions parts;
-  ResolveSettings resolve;       // sizes and storage are left to FrameSource::connect()
+  ResolveSettings resolve;  // sizes and storage are left to FrameSource::connect()
+  std::string focus;        // as FocusTarget::parse() takes it; empty: none
+  float focus_scale = 1;
   std::optional<Jitter> jitter;  // absent: quincunx for that method, else none
   std::int64_t frames = 1;
   double fps = 60;

@@ -29,6 +29,11 @@ int explain(const RenderOptions& options) {
   settings.output = sequence->output();
   settings.target = sequence->target();
   if (has_particles) settings.particle_target = particle_target(source->parts, settings.target);
+  if (source->focus.target) {
+    auto focus = FocusFeed::create(source->focus, scene.value(), source->sequence);
+    if (!focus.ok()) return tools::fail(focus.status());
+    settings.focus = focus.value()->settings();
+  }
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
   fmt::print("Scene          {}: {}\n{}{}", scene->name, scene->summary,

@@ -30,6 +30,9 @@ Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions
   if (Status status = session->check_outputs(); !status.ok()) return status;
   auto settings = source_settings_for(options);
   if (!settings.ok()) return settings.status();
+  if (options.focus == kFocusPointer)
+    return Status::invalid(
+        "--focus pointer is for a window; give it with --window, or an object or a rectangle");
   // What can be said against the options is said before a device is opened.
   auto pacing = frame_pacing_for(options.pacing, options.output);
   if (!pacing.ok()) return pacing.status();
@@ -154,7 +157,7 @@ Status RenderSession::dispatch() {
   if (!presented.ok()) return presented.status();
   // The files hold the picture as it is before the tone map.
   const FrameReport report =
-      service_->dispatch(inputs.value(), outputs_for(plan(), resolved_.view(), presented.value()));
+      source_->dispatch(*service_, inputs.value(), outputs_for(plan(), resolved_.view(), presented.value()));
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bytes_in());
   return report.status;

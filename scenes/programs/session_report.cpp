@@ -18,6 +18,12 @@ std::string scale_text(const RenderOptions& options) {
   return options.scale_path.empty() ? options.scale : options.scale_path;
 }
 
+std::string focus_text(const PictureOptions& options, const FocusSettings& focus) {
+  if (options.focus.empty()) return "none";
+  return fmt::format("{}: {}x{} pixels at scale {}", options.focus, focus.extent.width, focus.extent.height,
+                     options.focus_scale);
+}
+
 std::string targets_text(Targets targets, const gl::Bridge::Memory& memory) {
   constexpr double kMebi = 1 << 20;
   return fmt::format("{}: {:.1f} MiB of OpenGL's, {:.1f} MiB of OpenCL's", name_of(targets),
@@ -52,6 +58,7 @@ tools::RunReport RenderSession::report() const {
       {"colour", name_of(options_.resolve.colour)},
       {"tone map", name_of(options_.resolve.tone_map)},
       {"targets", targets_text(plan().settings.targets, source_->memory())},
+      {"focus", focus_text(options_, plan().settings.focus)},
       {"dither", options_.resolve.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap", overlap_text()},

@@ -59,6 +59,12 @@ Status check_view(const gl::RenderTargets& targets, const FrameView& view) {
     return Status::invalid(fmt::format("FrameView::shadow_scale is {}; it must lie within [{}, 1]",
                                        view.shadow_scale, kLeastPartScale));
   }
+  for (const ViewWindow& window : {view.window, view.previous_window}) {
+    if (window.size.x > 0 && window.size.y > 0 && std::isfinite(window.size.x + window.size.y) &&
+        std::isfinite(window.corner.x + window.corner.y))
+      continue;
+    return Status::invalid("FrameView::window and previous_window must be finite and not empty");
+  }
   if (view.parity && !targets.has_checkerboard())
     return Status::invalid("FrameView::parity is given, but the targets have no checkerboard");
   if (view.parity && *view.parity != 0 && *view.parity != 1)
@@ -196,6 +202,7 @@ void Renderer::Impl::draw_particles_apart(const gl::RenderTargets& frame, const 
 }
 
 void Renderer::Impl::draw_faults(const gl::RenderTargets& targets, const FrameView& view) const {
+  if (view.window != ViewWindow{}) return;  // they are of the picture's own targets
   const glm::ivec2 viewport(view.render.width, view.render.height);
   for (const Fault& fault : scene.faults) {
     if (!shows(scene, fault, view.previous_seconds, view.seconds)) continue;

@@ -15,6 +15,7 @@
 #include "quincunx/status.h"
 #include "quincunx_gl/render_targets.h"
 #include "render/frame_parts.h"
+#include "render/view_math.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
@@ -44,6 +45,9 @@ struct FrameView {
   // The viewport that particles are drawn into, at most `render`; 0x0: they are drawn with everything else.
   Extent particles = {};
   Display display = {};
+  // The part of the picture that is drawn, and that which was drawn before, to which velocity is relative.
+  ViewWindow window = {};
+  ViewWindow previous_window = {};
 };
 
 struct TruthSettings;

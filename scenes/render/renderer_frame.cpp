@@ -110,8 +110,8 @@ Renderer::Impl::View Renderer::Impl::view_at(const FrameView& view) const {
   const float aspect = aspect_of(view);
   View matrices;
   matrices.camera = scene.camera(view.seconds);
-  matrices.now = view_of(matrices.camera, aspect);
-  matrices.before = view_of(scene.camera(view.previous_seconds), aspect);
+  matrices.now = view_of(matrices.camera, aspect, view.window);
+  matrices.before = view_of(scene.camera(view.previous_seconds), aspect, view.previous_window);
   return matrices;
 }
 
@@ -143,7 +143,8 @@ FrameBlock Renderer::Impl::frame_block(const View& view, const FrameView& frame,
   block.camera_position = glm::vec4(glm::vec3(camera[3]), frame.lod_bias);
   block.camera_right = glm::vec4(glm::normalize(glm::vec3(camera[0])), 0);
   block.camera_up = glm::vec4(glm::normalize(glm::vec3(camera[1])), 0);
-  block.ray_centre = glm::vec4(-glm::vec3(camera[2]), 0);
+  const glm::dvec3 centre = view.now.camera_from_clip[3];  // of the window, seen from the camera
+  block.ray_centre = glm::vec4(glm::vec3(glm::dmat3(camera) * glm::dvec3(centre.x, centre.y, -1)), 0);
   block.ray_x = glm::vec4(glm::vec3(camera[0] * view.now.camera_from_clip[0][0]), 0);
   block.ray_y = glm::vec4(glm::vec3(camera[1] * view.now.camera_from_clip[1][1]), 0);
   const bool has_sun = scene.sun.direction != glm::vec3(0);

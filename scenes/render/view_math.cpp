@@ -6,7 +6,26 @@
 
 namespace quincunx::scenes {
 
-ViewMatrices view_of(const Camera& camera, float aspect) {
+namespace {
+
+// From clip space of the whole picture to that of a part.
+void look_through(const ViewWindow& window, ViewMatrices& view) {
+  const glm::dvec2 centre(2 * window.corner.x + window.size.x - 1, 1 - 2 * window.corner.y - window.size.y);
+  glm::dmat4 closer(1);
+  closer[0][0] = 1 / window.size.x;
+  closer[1][1] = 1 / window.size.y;
+  closer[3] = {-centre / window.size, 0, 1};
+  glm::dmat4 back(1);
+  back[0][0] = window.size.x;
+  back[1][1] = window.size.y;
+  back[3] = {centre, 0, 1};
+  view.clip_from_camera = closer * view.clip_from_camera;
+  view.camera_from_clip = view.camera_from_clip * back;
+}
+
+}  // namespace
+
+ViewMatrices view_of(const Camera& camera, float aspect, const ViewWindow& window) {
   ViewMatrices view;
   view.world_from_camera = camera.world_from_camera;
   view.camera_from_world = glm::inverse(view.world_from_camera);
@@ -24,6 +43,7 @@ ViewMatrices view_of(const Camera& camera, float aspect) {
   view.camera_from_clip[1][1] = 1 / focal;
   view.camera_from_clip[2][3] = 1 / near_plane;
   view.camera_from_clip[3][2] = -1;
+  if (window != ViewWindow{}) look_through(window, view);
   return view;
 }
 

@@ -10,6 +10,14 @@
 
 namespace quincunx::scenes {
 
+// A part of the picture: its upper left corner and its size, in parts of the picture's width and height.
+struct ViewWindow {
+  glm::dvec2 corner{0};
+  glm::dvec2 size{1};
+
+  friend bool operator==(const ViewWindow&, const ViewWindow&) = default;
+};
+
 // Clip space: x right, y up, depth = z / w from 1 at the near plane to 0 at infinity (reversed, infinite).
 struct ViewMatrices {
   glm::dmat4 world_from_camera{1};
@@ -20,7 +28,8 @@ struct ViewMatrices {
   glm::mat4 clip_from_world() const { return clip_from_camera * camera_from_world; }
 };
 
-ViewMatrices view_of(const Camera& camera, float aspect);
+// `window`: the part of the picture that fills clip space; `aspect` is the whole picture's.
+ViewMatrices view_of(const Camera& camera, float aspect, const ViewWindow& window = {});
 
 // (ndc.x, ndc.y, depth, 1) of `now` to homogeneous clip coordinates of `before`. Exactly the identity where
 // the two are equal.

@@ -27,9 +27,10 @@ void FrameTrace::add(const FrameTimes& times, Extent output, double interval_ms,
     const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
     const double ms = std::max(pass.ms, 0.0);
     point.opencl_ms += ms;
+    const std::string name = name_of(pass);
     const auto known = std::find_if(passes_.begin(), passes_.end(),
-                                    [&](const PassTime& time) { return time.kernel == pass.kernel; });
-    passes.push_back({pass.kernel, known == passes_.end() ? 0 : known->ms});
+                                    [&](const PassTime& time) { return time.kernel == name; });
+    passes.push_back({name, known == passes_.end() ? 0 : known->ms});
     follow(passes.back().ms, ms);
   }
   passes_ = std::move(passes);

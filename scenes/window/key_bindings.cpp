@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "catalog/scene_catalog.h"
+#include "programs/focus_path.h"
 #include "tools/program/method_names.h"
 
 namespace quincunx::scenes {
@@ -49,6 +50,7 @@ void next_scene(WindowSettings& settings, bool back) {
   for (const SceneEntry& entry : list_scenes())
     names.push_back(entry.name);
   settings.look.scene = neighbour(names, settings.look.scene, back);
+  if (settings.look.focus != kFocusPointer) settings.look.focus.clear();  // that was in the other scene
 }
 
 void next_comparison(WindowSettings& settings, bool back) {
@@ -127,6 +129,11 @@ constexpr std::array
                  [](WindowSettings& settings, bool back) {
                    settings.look.particle_scale =
                        neighbour(kParticleScales, settings.look.particle_scale, back);
+                 }},
+                {GLFW_KEY_G, "g", "G", "gaze: a focus on what the pointer is on",
+                 [](WindowSettings& settings, bool) {
+                   std::string& focus = settings.look.focus;
+                   focus = focus == kFocusPointer ? "" : kFocusPointer;
                  }},
                 {GLFW_KEY_B, "b", "B", "motion blur: longer shutter", step_shutter},
                 {GLFW_KEY_V, "v", "V", "split view: truth, other methods", next_comparison},

@@ -59,6 +59,9 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   wanted.parts.particles.reset();
   if (look.particle_scale != kParticlesInFrame)
     wanted.parts.particles = part_option(look.particle_scale, budget_ms);
+  // A window may have become too small for a rectangle.
+  wanted.focus =
+      look.focus.empty() || FocusTarget::parse(look.focus, output).ok() ? look.focus : std::string();
   choose_method(wanted.resolve, look.method);
   return wanted;
 }
@@ -69,6 +72,7 @@ Status LivePicture::configure(const LookSettings& look, const ResolutionSettings
   const PictureOptions wanted = options_for(look, output);
   auto settings = source_settings_for(wanted);
   if (!settings.ok()) return settings.status();
+  settings->focus.endless = true;
   const float scale = resolution.mode == ResolutionMode::kFixed        ? resolution.scale
                       : resolution.mode == ResolutionMode::kController ? resolution.largest_controlled
                                                                        : 1;
@@ -94,7 +98,8 @@ Status LivePicture::configure(const LookSettings& look, const ResolutionSettings
 }
 
 Status LivePicture::open_source(const FrameSourceSettings& settings) {
-  auto source = source_ ? source_->another(settings.sequence, settings.parts) : FrameSource::create(settings);
+  auto source = source_ ? source_->another(settings.sequence, settings.parts, settings.focus)
+                        : FrameSource::create(settings);
   if (!source.ok()) return source.status();
   source_ = std::move(source).value();
   return {};
@@ -200,10 +205,11 @@ Status LivePicture::dispatch(bool reset) {
   }
   const ImageView linear = keep_ == Keep::kForFiles ? resolved_.view() : ImageView();
   const FrameOutputs outputs = outputs_for(plan(), linear, presented.value());
-  if (const FrameReport report = service_->dispatch(inputs.value(), outputs); !report.ok())
+  if (const FrameReport report = source_->dispatch(*service_, inputs.value(), outputs); !report.ok())
     return report.status;
   if (other_service_) {
-    const FrameReport report = other_service_->dispatch(inputs.value(), {.presented = other_image_.view()});
+    const FrameReport report =
+        source_->dispatch(*other_service_, inputs.value(), {.presented = other_image_.view()});
     if (!report.ok()) return report.status;
   }
   if (Status status = source_->bridge().present(); !status.ok()) return status;

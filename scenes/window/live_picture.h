@@ -40,6 +40,9 @@ class LivePicture {
 
   enum class Keep : std::uint8_t { kNothing, kForFiles };
 
+  // Where the pointer is, in pixels of the picture, from the next draw() on.
+  void point_at(Vec2 pixel) { source_->set_pointer(pixel); }
+
   // Draws frame `index` as `view`, then makes the picture from it and waits for that. `reset`: nothing of the
   // frames before may be used, as at a cut.
   Status draw(std::int64_t index, const FrameView& view, Keep keep = Keep::kNothing);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "programs/focus_path.h"
 #include "tools/program/method_names.h"
 #include "window/frame_graph.h"
 #include "window/key_bindings.h"
@@ -82,15 +83,24 @@ std::vector<std::string> method_names() {
   return names;
 }
 
+std::vector<std::string> focus_choices(const LookSettings& look) {
+  std::vector<std::string> choices = {"", kFocusPointer};
+  if (!look.focus.empty() && look.focus != kFocusPointer) choices.push_back(look.focus);
+  return choices;
+}
+
 void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   LookSettings& look = settings.look;
+  const std::string scene = look.scene;
   choose_text("scene", facts.scenes, look.scene);
+  if (look.scene != scene && look.focus != kFocusPointer) look.focus.clear();  // that was in the other scene
   choose_text("method", method_names(), look.method);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
   choose_value("targets", kTargetKinds, look.targets);
   choose_text("shadow map", kShadowScales, look.shadow_scale);
   choose_text("particles", kParticleScales, look.particle_scale, "in the frame");
+  choose_text("focus", focus_choices(look), look.focus, "none");
   choose_value("resolution", kResolutionModes, settings.resolution.mode);
   label("scale");
   float scale = settings.resolution.scale;

@@ -55,6 +55,7 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.shading = options.resolve.shading;
   settings.look.shadow_scale = text_of(options.parts.shadow);
   if (options.parts.particles) settings.look.particle_scale = text_of(*options.parts.particles);
+  settings.look.focus = options.focus;
   settings.look.jitter = options.jitter;
   settings.resolution.scale = scale.x;
   settings.show_ui = options.show_ui;
@@ -210,6 +211,7 @@ Status WindowSession::show_next() {
   recent_.emplace_back(frame_, view_);
   if (recent_.size() > kWarmUp + 1) recent_.pop_front();
   paced_->begin_frame(view_.render);
+  picture_->point_at(pointed_pixel());
   if (Status status = picture_->draw(frame_, view_); !status.ok()) return status;
   paced_->end_draw();
   if (Status status = picture_->resolve(); !status.ok()) return status;
@@ -253,6 +255,14 @@ void WindowSession::show_on_screen() {
   ui_->draw([&] { draw_panel(settings_, trace_, told); }, settings_.drawing, *screen_, window);
 }
 
+// Of the picture, under the pointer; outside of it where the pointer is.
+Vec2 WindowSession::pointed_pixel() const {
+  const ZoomOrigin origin = zoom_origin(settings_.zoom, picture_->output());
+  const auto factor = static_cast<float>(settings_.zoom.factor);
+  return {static_cast<float>(origin.x) + pointer_.position.x / factor,
+          static_cast<float>(origin.y) + pointer_.position.y / factor};
+}
+
 PanelFacts WindowSession::facts() {
   PanelFacts facts;
   for (const SceneEntry& entry : list_scenes())
@@ -265,9 +275,9 @@ PanelFacts WindowSession::facts() {
   facts.target_ms = 1000 / settings_.rate.target_fps;
   if (tools::ms_since(said_) < 1000 * kMessageSeconds) facts.message = message_;
   if (settings_.zoom.factor > 1) {
-    const ZoomOrigin origin = zoom_origin(settings_.zoom, facts.output);
-    const int x = origin.x + static_cast<int>(pointer_.position.x) / settings_.zoom.factor;
-    const int y = origin.y + static_cast<int>(pointer_.position.y) / settings_.zoom.factor;
+    const Vec2 pixel = pointed_pixel();
+    const int x = static_cast<int>(pixel.x);
+    const int y = static_cast<int>(pixel.y);
     if (x >= 0 && y >= 0 && x < facts.output.width && y < facts.output.height) {
       const std::uint8_t* texel =
           picture_->pixels() + (static_cast<std::size_t>(y) * facts.output.width + x) * 4;

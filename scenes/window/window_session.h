@@ -45,6 +45,7 @@ class WindowSession {
   FrameView view_again(std::int64_t index);
   void show_on_screen();
   Status write_files();
+  Vec2 pointed_pixel() const;
   PanelFacts facts();
   void say(std::string message);
 

@@ -73,6 +73,7 @@ struct LookSettings {
   Shading shading = Shading::kFull;
   std::string shadow_scale = "1";
   std::string particle_scale = kParticlesInFrame;
+  std::string focus;                    // as FocusTarget::parse() takes it; empty: none
   std::optional<tools::Jitter> jitter;  // absent: the one that suits the method
 
   bool compares_methods() const { return compared != kCompareNothing && compared != kCompareTruth; }

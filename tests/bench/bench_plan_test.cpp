@@ -66,6 +66,22 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   expect_refused({"--methods", "quincunx@rgba4"}, "no method 'quincunx@rgba4'");
 }
 
+TEST(Plan, AFocusIsOfTheMethodsThatAskForIt) {
+  const auto plan = plan_from(parsed({"--methods", "bilinear,focus/bilinear,focus/temporal@rgba8", "--focus",
+                                      "8,8,40,30", "--focus-scale", "1.5"}));
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  EXPECT_FALSE(focus_for(plan->conditions, plan->methods[0]).target.has_value());
+  EXPECT_EQ(plan->methods[1].name, "focus/bilinear");
+  const scenes::FocusOptions focus = focus_for(plan->conditions, plan->methods[1]);
+  EXPECT_EQ(focus.target->rectangle, (Rectangle{8, 8, 40, 30}));
+  EXPECT_EQ(focus.scale, 1.5f);
+  EXPECT_EQ(plan->methods[2].name, "focus/temporal:balanced@rgba8");
+  EXPECT_EQ(plan->methods[2].resolve.colour, PixelFormat::kRGBA8);
+  expect_refused({"--methods", "focus/bilinear"}, "'focus/bilinear' needs --focus OBJECT or X,Y,W,H");
+  expect_refused({"--focus", "8,8,4000,30"}, "is no rectangle within the picture of 1280x720");
+  expect_refused({"--focus", "pointer"}, "--focus pointer is for a window");
+}
+
 TEST(Plan, QuickIsOnlyWhatWasNotGiven) {
   const auto plan = plan_from(parsed({"--quick", "--frames", "9", "--scenes", "pan"}));
   ASSERT_TRUE(plan.ok());

@@ -51,18 +51,16 @@ TEST_P(KernelVariants, EveryRowBuilds) {
   EXPECT_GT(built, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, KernelVariants,
-                         ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter",
-                                           "scale_noise", "scale_noise_offset", "resolve_quincunx",
-                                           "reproject", "resolve_reprojected", "layer_records",
-                                           "advect_records", "layer_split", "temporal_tiles",
-                                           "temporal_light", "resolve_temporal", "resolve_layers",
-                                           "temporal_display", "display_layers", "motion_tiles",
-                                           "motion_neighbours", "motion_blur", "sharpen", "lay_focus",
-                                           "present", "resolve_checkerboard", "overlay_particles",
-                                           "velocity_from_depth",
-                                           "far_velocity", "far_surroundings", "far_fit", "far_match"),
-                         [](const auto& instance) { return instance.param; });
+INSTANTIATE_TEST_SUITE_P(
+    Kernels, KernelVariants,
+    ::testing::Values("clear_region", "scale_point", "scale_bilinear", "scale_filter", "scale_noise",
+                      "scale_noise_offset", "resolve_quincunx", "reproject", "resolve_reprojected",
+                      "layer_records", "advect_records", "layer_split", "temporal_tiles", "temporal_light",
+                      "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
+                      "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "lay_focus", "present",
+                      "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "far_velocity",
+                      "far_surroundings", "far_fit", "far_match"),
+    [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
   const std::vector<Row> all = rows();

@@ -69,6 +69,8 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   const ProgramResult none = run("--explain --scene wheel --particle-scale 0.5");
   EXPECT_NE(none.out.find("Particles      none in this scene"), std::string::npos) << none.out;
   EXPECT_EQ(none.out.find("overlay_particles"), std::string::npos) << none.out;
+  const ProgramResult focused = run("--explain --scene wheel --focus tyre");
+  EXPECT_NE(focused.out.find("The focus's region"), std::string::npos) << focused.out;
   const ProgramResult placed = run("--explain --scene wheel --targets placed");
   EXPECT_NE(placed.out.find("Targets        placed"), std::string::npos) << placed.out;
 }
@@ -101,6 +103,10 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--shadow-budget 2", 2, "--shadow-scale");
   expect_refused("--shadow-scale 0.5 --shadow-budget 2", 2, "nothing holds it");
   expect_refused("--shadow-scale auto --shadow-budget 0", 2, "--shadow-budget");
+  expect_refused("--scene wheel --focus 1270,0,20,20", 2, "is no rectangle within the picture of 1280x720");
+  expect_refused("--scene wheel --focus hat", 2, "the scene 'wheel' has no object 'hat'; it has band, brick");
+  expect_refused("--scene wheel --focus pointer", 2, "give it with --window");
+  expect_refused("--scene wheel --focus tyre --focus-scale 3", 2, "--focus-scale");
   expect_refused("--frames 0", 2, "--frames");
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");

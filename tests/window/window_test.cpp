@@ -42,6 +42,25 @@ TEST_F(Window, ShowsTheBitsOfARunWithoutOne) {
   }
 }
 
+TEST_F(Window, AFocusShowsTheSameBits) {
+  write_script("5 key s\n");
+  const std::string plain = "--scene wheel --scale 0.5 --method temporal ";
+  const std::string focused = plain + "--focus 40,20,60,40 ";
+  render_headless(plain + "--frames 6 --out '{}/plain.%04d.png'");
+  render_headless(focused + "--frames 6 --out '{}/focused.%04d.png'");
+  EXPECT_NE(image("plain.0005.png").pixels, image("focused.0005.png").pixels);
+  ASSERT_EQ(run_window(focused + "--frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("focused.0005.png").pixels);
+
+  // What the pointer is on from frame 1 to 2; this method needs nothing of the frames before.
+  std::filesystem::remove_all(path("captures"));
+  write_script("1 key g\n3 key g\n5 key s\n");
+  const std::string single = "--scene wheel --scale 0.5 --method mitchell ";
+  render_headless(single + "--frames 6 --out '{}/single.%04d.png'");
+  ASSERT_EQ(run_window(single + "--frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("single.0005.png").pixels);
+}
+
 TEST_F(Window, PlacedTargetsShowTheSameBits) {
   write_script("5 key s\n");
   const std::string arguments = "--scene wheel --scale 0.71 --method temporal ";

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "quincunx/export.h"
 #include "quincunx/image.h"
@@ -71,6 +72,9 @@ struct PassReport {
   std::uint64_t bytes = 0;  // read and written in this frame, each texel counted once
   bool in_focus = false;    // of the focus's region, which has passes of its own
 };
+
+// "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
+std::string name_of(const PassReport& pass);
 
 struct FrameReport {
   static constexpr int kMaxPasses = 48;  // 24 of the picture and 24 of its focus

@@ -32,9 +32,10 @@ std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports
   for (const FrameReport& report : reports) {
     for (int i = 0; i < report.pass_count; ++i) {
       const PassReport& pass = report.passes[i];
-      if (!samples.contains(pass.kernel)) order.emplace_back(pass.kernel);
-      samples[pass.kernel].ms.push_back(pass.ms);
-      samples[pass.kernel].bytes.push_back(pass.bytes);
+      const std::string name = name_of(pass);
+      if (!samples.contains(name)) order.push_back(name);
+      samples[name].ms.push_back(pass.ms);
+      samples[name].bytes.push_back(pass.bytes);
     }
   }
   std::vector<PassStatistics> statistics;

@@ -68,7 +68,7 @@ class RowRun {
   Status run_frame(int measured_frame) {
     auto inputs = feed_.next();
     if (!inputs.ok()) return inputs.status();
-    auto time = contender_.dispatch(inputs.value(), {.resolved = resolved_.view()});
+    auto time = contender_.dispatch(inputs.value(), nullptr, {.resolved = resolved_.view()});
     if (!time.ok()) return time.status();
     render_ = inputs->render;
     const float exposure = inputs->exposure;

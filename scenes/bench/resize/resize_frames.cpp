@@ -29,7 +29,7 @@ class Kind {
     if (!inputs.ok()) return inputs.status();
     auto presented = feed_.bridge().begin_present();
     if (!presented.ok()) return presented.status();
-    auto time = contender_.dispatch(inputs.value(), {.presented = presented.value()});
+    auto time = contender_.dispatch(inputs.value(), nullptr, {.presented = presented.value()});
     if (!time.ok()) return time.status();
     const StepClock clock;
     if (Status status = feed_.bridge().present(); !status.ok()) return status;

@@ -43,6 +43,8 @@ constexpr std::array kThresholds = {
     Threshold{"psnr_disoccluded", 0.1, 0},
     Threshold{"psnr_edge", 0.1, 0},
     Threshold{"psnr_rest", 0.1, 0},
+    Threshold{"psnr_focus", 0.1, 0},
+    Threshold{"psnr_outside", 0.1, 0},
 };
 
 double threshold_of(std::string_view measure, double before) {

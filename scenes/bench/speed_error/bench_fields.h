@@ -44,6 +44,8 @@ void fields(Archive& io, Quality& value) {
   io("flicker", value.flicker);
   io("ghosting", value.ghosting);
   region_fields(io, "psnr_", value.region_psnr);
+  io("psnr_focus", value.psnr_focus);
+  io("psnr_outside", value.psnr_outside);
   io("non_finite", value.non_finite);
 }
 
@@ -142,6 +144,8 @@ void fields(Archive& io, Conditions& value) {
   io("seed", value.seed);
   io("fps", value.fps);
   io("start", value.start);
+  io("focus", value.focus);
+  io("focus_scale", value.focus_scale);
 }
 
 template <typename Archive>

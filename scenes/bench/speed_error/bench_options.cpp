@@ -33,9 +33,16 @@ void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option(
          "--methods", options.methods,
          "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
-         "of frames with half of their pixels shaded")
+         "of frames with half of their pixels shaded, focus/NAME with --focus")
       .delimiter(',')
       .type_name("NAME,...");
+  app.add_option(
+         "--focus", options.focus,
+         "Tell errors in this part of the picture and outside of it apart; methods focus/NAME draw it again")
+      .type_name("OBJECT|X,Y,W,H");
+  app.add_option("--focus-scale", options.focus_scale, "Render scale of that part")
+      .in_range(0.02, 2.0)
+      .show_default();
   app.add_flag("--list-methods", options.list_methods, "List the methods");
   app.add_option_function<std::string>(
          "--output",

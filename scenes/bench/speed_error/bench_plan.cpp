@@ -50,15 +50,28 @@ BenchMethod on_checkerboard(BenchMethod method) {
   return method;
 }
 
+// A method's twin with a part of the picture in focus.
+constexpr std::string_view kFocus = "focus/";
+
+BenchMethod with_focus(BenchMethod method) {
+  method.name = std::string(kFocus) + method.name;
+  method.summary += ", with a focus";
+  method.focuses = true;
+  method.is_default = false;
+  return method;
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
     const bool encoded = name.ends_with(kEncoded);
+    const bool focuses = name.starts_with(kFocus);
     const bool checkerboard = name.starts_with(kCheckerboard);
     std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
     if (checkerboard) plain.erase(0, kCheckerboard.size());
+    if (focuses) plain.erase(0, kFocus.size());
     const std::string longest = longest_name(plain);
     const auto found = std::find_if(methods.begin(), methods.end(),
                                     [&](const BenchMethod& method) { return method.name == longest; });
@@ -66,14 +79,16 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
       std::string known;
       for (const BenchMethod& method : methods)
         known += (known.empty() ? "" : ", ") + method.name;
-      return Status::invalid(fmt::format(
-          "--methods: there is no method '{}'; there are {}, and each with {} behind it or {} before it",
-          name, known, kEncoded, kCheckerboard));
+      return Status::invalid(
+          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it or {} or "
+                      "{} before it",
+                      name, known, kEncoded, kCheckerboard, kFocus));
     }
     if (encoded && checkerboard)
       return Status::invalid(
           fmt::format("--methods: '{}': a checkerboard is of linear colour, so not {}", name, kEncoded));
-    chosen.push_back(encoded ? in_eight_bits(*found) : checkerboard ? on_checkerboard(*found) : *found);
+    BenchMethod method = encoded ? in_eight_bits(*found) : checkerboard ? on_checkerboard(*found) : *found;
+    chosen.push_back(focuses ? with_focus(std::move(method)) : std::move(method));
   }
   return chosen;
 }
@@ -120,6 +135,18 @@ Status check_numbers(const BenchOptions& options) {
   return {};
 }
 
+Status check_focus(const BenchOptions& options, const std::vector<BenchMethod>& methods) {
+  const auto focused =
+      std::find_if(methods.begin(), methods.end(), [](const BenchMethod& method) { return method.focuses; });
+  if (options.focus.empty()) {
+    if (focused == methods.end()) return {};
+    return Status::invalid(fmt::format("--methods: '{}' needs --focus OBJECT or X,Y,W,H", focused->name));
+  }
+  if (options.focus == scenes::kFocusPointer)
+    return Status::invalid("--focus pointer is for a window; give an object or a rectangle");
+  return scenes::FocusTarget::parse(options.focus, options.output).status();
+}
+
 // The default method where it is measured, else the last.
 std::size_t frame_method_of(const std::vector<BenchMethod>& methods) {
   const auto found = std::find_if(methods.begin(), methods.end(),
@@ -133,6 +160,7 @@ Result<BenchPlan> plan_from(const BenchOptions& options) {
   if (Status status = check_numbers(options); !status.ok()) return status;
   auto methods = chosen_methods(options.methods);
   if (!methods.ok()) return methods.status();
+  if (Status status = check_focus(options, methods.value()); !status.ok()) return status;
   std::vector<std::string> method_names;
   for (const BenchMethod& method : methods.value())
     method_names.push_back(method.name);
@@ -157,6 +185,10 @@ Result<BenchPlan> plan_from(const BenchOptions& options) {
                      .seed = options.seed,
                      .fps = options.fps,
                      .start = options.start};
+  if (!options.focus.empty()) {
+    plan.conditions.focus = options.focus;
+    plan.conditions.focus_scale = options.focus_scale;
+  }
   return plan;
 }
 
@@ -173,6 +205,12 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));
   sequence.lod_bias = method.lod_bias;
   return sequence;
+}
+
+scenes::FocusOptions focus_for(const Conditions& conditions, const BenchMethod& method) {
+  if (!method.focuses) return {};
+  return {.target = scenes::FocusTarget::parse(*conditions.focus, conditions.output).value(),
+          .scale = static_cast<float>(*conditions.focus_scale)};
 }
 
 int first_frame_for(const Conditions& conditions, const BenchMethod& method) {

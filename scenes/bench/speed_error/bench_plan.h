@@ -7,6 +7,7 @@
 
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_result.h"
+#include "programs/focus_feed.h"
 #include "programs/frame_sequence.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
@@ -21,6 +22,7 @@ struct BenchMethod {
   scenes::Jitter jitter = scenes::Jitter::kNone;  // of the frames that it gets
   float lod_bias = 0;
   bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
+  bool focuses = false;      // its frames have the focus of the conditions
   bool is_default = false;   // what the programs take where no --method is given
 };
 
@@ -40,6 +42,9 @@ Result<BenchPlan> plan_from(const BenchOptions& options);
 
 // The frames of one scale as methods with this jitter and bias get them; their times are seconds_of().
 scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method);
+
+// The focus of those frames; plan_from() has checked it.
+scenes::FocusOptions focus_for(const Conditions& conditions, const BenchMethod& method);
 
 // The frames of a case are numbered from 0: `warm_up` that warm up, those whose errors are measured, again
 // some that warm up, and those of the timed rounds. A method that accumulates begins with earlier ones, of

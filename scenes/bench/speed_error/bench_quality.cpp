@@ -46,6 +46,7 @@ void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPict
     const double error = pixel_error(picture, truth, i);
     regions_[static_cast<std::size_t>(masks.regions[i])].add(error);
     if (masks.disoccluded[i] != 0) disoccluded_.add(error);
+    if (!masks.focus.empty()) (masks.focus[i] != 0 ? focus_ : outside_).add(error);
   }
   latest_ = std::move(picture);
   ++frames_;
@@ -54,6 +55,11 @@ void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPict
 void QualityTally::PartError::add(double squared_error) {
   squares += squared_error;
   ++count;
+}
+
+std::optional<double> QualityTally::PartError::psnr() const {
+  if (count == 0) return std::nullopt;
+  return std::min(-10 * std::log10(mean_square()), kHighestRegionPsnr);
 }
 
 Quality QualityTally::quality() const {
@@ -67,10 +73,10 @@ Quality QualityTally::quality() const {
   quality.relative_error = relative_ / count;
   if (frames_ > 1) quality.flicker = flicker_ / (count - 1);
   if (disoccluded_.count > 0) quality.ghosting = std::sqrt(disoccluded_.mean_square());
-  for (std::size_t i = 0; i < kRegions; ++i) {
-    if (regions_[i].count == 0) continue;
-    quality.region_psnr[i] = std::min(-10 * std::log10(regions_[i].mean_square()), kHighestRegionPsnr);
-  }
+  for (std::size_t i = 0; i < kRegions; ++i)
+    quality.region_psnr[i] = regions_[i].psnr();
+  quality.psnr_focus = focus_.psnr();
+  quality.psnr_outside = outside_.psnr();
   quality.non_finite = non_finite_;
   return quality;
 }

@@ -31,6 +31,7 @@ class QualityTally {
     std::int64_t count = 0;
 
     void add(double squared_error);
+    std::optional<double> psnr() const;  // dB; nothing where there is no pixel
     double mean_square() const { return squares / static_cast<double>(count); }
   };
 
@@ -38,6 +39,7 @@ class QualityTally {
   Quality worst_;  // of its fields only those of the worst window
   double error_ = 0, error_linear_ = 0, ssim_ = 0, flip_ = 0, p99_ = 0, relative_ = 0, flicker_ = 0;
   PartError disoccluded_;
+  PartError focus_, outside_;
   std::array<PartError, kRegions> regions_;
   std::int64_t non_finite_ = 0;
   std::optional<tools::MeasuredPicture> latest_;

@@ -55,10 +55,12 @@ struct Quality {
   int worst_frame = 0;
   int worst_x = 0;  // upper left pixel
   int worst_y = 0;
-  std::optional<double> flicker;   // absent where one frame was measured
-  std::optional<double> ghosting;  // RMS error of what was disoccluded; absent where nothing was
-  RegionFigures region_psnr;       // dB, as psnr
-  std::int64_t non_finite = 0;     // pixels, all frames
+  std::optional<double> flicker;       // absent where one frame was measured
+  std::optional<double> ghosting;      // RMS error of what was disoccluded; absent where nothing was
+  RegionFigures region_psnr;           // dB, as psnr
+  std::optional<double> psnr_focus;    // dB, of the pixels in focus; absent where there is none
+  std::optional<double> psnr_outside;  // of all others
+  std::int64_t non_finite = 0;         // pixels, all frames
 
   friend bool operator==(const Quality&, const Quality&) = default;
 };
@@ -167,7 +169,9 @@ struct Conditions {
   int truth_samples = 0;  // along each side of a pixel
   std::uint64_t seed = 0;
   double fps = 0;
-  double start = 0;  // scene time of the first frame, seconds
+  double start = 0;                        // scene time of the first frame, seconds
+  std::optional<std::string> focus = {};   // as --focus has it; absent where there is none
+  std::optional<double> focus_scale = {};  // render scale of its region
 
   friend bool operator==(const Conditions&, const Conditions&) = default;
 };

@@ -40,6 +40,10 @@ constexpr std::array kMeasures = {
                  region_psnr<Region::kDisoccluded>},
     ErrorMeasure{"psnr_edge", "PSNR of edges of motion, dB", true, region_psnr<Region::kEdge>},
     ErrorMeasure{"psnr_rest", "PSNR of the rest, dB", true, region_psnr<Region::kRest>},
+    ErrorMeasure{"psnr_focus", "PSNR in focus, dB", true,
+                 [](const Quality& q) { return q.psnr_focus.value_or(kNone); }},
+    ErrorMeasure{"psnr_outside", "PSNR outside of the focus, dB", true,
+                 [](const Quality& q) { return q.psnr_outside.value_or(kNone); }},
 };
 
 Samples joined(const Rounds& rounds, std::span<const std::size_t> chosen) {

@@ -52,10 +52,12 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   if (!copy.ok()) return copy.status();
   copy_.emplace(std::move(copy).value());
 
-  std::map<std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat>, std::vector<std::size_t>> feeds;
+  std::map<std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat, bool>, std::vector<std::size_t>>
+      feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour}]
+    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour,
+           method.focuses}]
         .push_back(i);
   }
   entries_.resize(plan_.methods.size());
@@ -75,7 +77,8 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
   const bool presents = std::find(methods.begin(), methods.end(), plan_.frame_method) != methods.end();
   if (presents) resolves.push_back(plan_.methods[plan_.frame_method].resolve);
   const BenchMethod& any = plan_.methods[methods.front()];
-  auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, any), resolves);
+  auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, any), resolves, std::nullopt,
+                                focus_for(plan_.conditions, any));
   if (!feed.ok()) return feed.status();
   for (std::size_t i = 0; i < resolves.size(); ++i) {
     auto contender = Contender::create(device_, feed->plans()[i]);
@@ -110,7 +113,8 @@ void CaseRun::release(int frame) {
 }
 
 Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
-  auto time = entry.contender.dispatch(inputs_[entry.feed], {.resolved = resolved_.view()});
+  auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
+                                       {.resolved = resolved_.view()});
   if (!time.ok()) return time.status();
   const Extent output = plan_.conditions.output;
   std::vector<float> rgba(static_cast<std::size_t>(output.area()) * 4);
@@ -181,7 +185,8 @@ Status CaseRun::time_frame(int frame, bool keep) {
   if (Status status = time_copy(keep); !status.ok()) return status;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
-    auto time = entry.contender.dispatch(inputs_[entry.feed], {.resolved = resolved_.view()});
+    auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
+                                         {.resolved = resolved_.view()});
     if (!time.ok()) return time.status();
     if (keep) entry.contender.keep(time.value());
   }
@@ -203,14 +208,14 @@ Status CaseRun::time_whole_frame(bool keep) {
   FrameFeed& feed = feeds_[presenter_feed_].frames;
   auto presented = feed.bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  auto time = presenter_->dispatch(inputs_[presenter_feed_], {.presented = presented.value()});
+  auto time = presenter_->dispatch(inputs_[presenter_feed_], feed.focus(), {.presented = presented.value()});
   if (!time.ok()) return time.status();
   const StepClock clock;
   if (Status status = feed.bridge().present(); !status.ok()) return status;
   StepTime interop = feed.interop_time();
   interop += clock.elapsed();
   render_ = inputs_[presenter_feed_].render;
-  frame_.interop_bytes = feed.bridge().traffic().bytes_in + feed.bridge().traffic().bytes_out;
+  frame_.interop_bytes = feed.bytes_in() + feed.bridge().traffic().bytes_out;
   if (!keep) return {};
   StepTime whole = feed.draw_time();
   whole += interop;

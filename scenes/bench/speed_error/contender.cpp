@@ -11,10 +11,12 @@ Result<Contender> Contender::create(const Device& device, const ResolvePlan& pla
   return Contender(std::move(service).value());
 }
 
-Result<DispatchTime> Contender::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs) {
+Result<DispatchTime> Contender::dispatch(const FrameInputs& inputs, const FocusInputs* focus,
+                                         const FrameOutputs& outputs) {
   DispatchTime time;
   const StepClock clock;
-  const FrameReport accepted = service_.dispatch(inputs, outputs);
+  const FrameReport accepted =
+      focus != nullptr ? service_.dispatch(inputs, *focus, outputs) : service_.dispatch(inputs, outputs);
   if (!accepted.ok()) return accepted.status;
   if (Status status = service_.finish(); !status.ok()) return status;
   time.step = clock.elapsed();
@@ -25,7 +27,7 @@ Result<DispatchTime> Contender::dispatch(const FrameInputs& inputs, const FrameO
     if (std::string_view(pass.kernel) == "present") continue;
     time.resolve_ms += pass.ms;
     time.bytes += pass.bytes;
-    time.kernels += (time.kernels.empty() ? "" : " + ") + std::string(pass.kernel);
+    time.kernels += (time.kernels.empty() ? "" : " + ") + name_of(pass);
   }
   return time;
 }

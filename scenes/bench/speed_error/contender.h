@@ -22,7 +22,9 @@ class Contender {
  public:
   static Result<Contender> create(const Device& device, const ResolvePlan& plan);
 
-  Result<DispatchTime> dispatch(const FrameInputs& inputs, const FrameOutputs& outputs);
+  // `focus` null: none.
+  Result<DispatchTime> dispatch(const FrameInputs& inputs, const FocusInputs* focus,
+                                const FrameOutputs& outputs);
 
   // Keeps a time under the latest round.
   void begin_round();

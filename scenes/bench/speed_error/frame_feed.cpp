@@ -32,8 +32,9 @@ StepTime StepClock::elapsed() const {
 Result<FrameFeed> FrameFeed::create(const scenes::FrameSource& stage,
                                     const scenes::SequenceSettings& sequence,
                                     const std::vector<ResolveSettings>& resolves,
-                                    const std::optional<scenes::PartsSettings>& parts) {
-  auto source = stage.another(sequence, parts);
+                                    const std::optional<scenes::PartsSettings>& parts,
+                                    const std::optional<scenes::FocusOptions>& focus) {
+  auto source = stage.another(sequence, parts, focus);
   if (!source.ok()) return source.status();
   FrameFeed feed(std::move(source).value());
   auto plans = feed.source_->connect_all(resolves);

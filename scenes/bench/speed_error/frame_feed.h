@@ -37,18 +37,21 @@ class FrameFeed {
   // none are given.
   static Result<FrameFeed> create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
                                   const std::vector<ResolveSettings>& resolves,
-                                  const std::optional<scenes::PartsSettings>& parts = {});
+                                  const std::optional<scenes::PartsSettings>& parts = {},
+                                  const std::optional<scenes::FocusOptions>& focus = {});
 
   const std::vector<ResolvePlan>& plans() const { return plans_; }
 
   // Draws the next frame of the sequence and waits until OpenCL can read it.
   Result<FrameInputs> next();
-  void release() { source_->release(); }  // the frame of the last next()
+  const FocusInputs* focus() const { return source_->focus(); }  // of the last next(); null: none
+  void release() { source_->release(); }                         // the frame of the last next()
 
   // Of the last next().
   const StepTime& draw_time() const { return draw_; }
   const StepTime& interop_time() const { return interop_; }
 
+  std::uint64_t bytes_in() const { return source_->bytes_in(); }  // of the last next(), from GL to OpenCL
   gl::Bridge& bridge() { return source_->bridge(); }
   const gl::Bridge& bridge() const { return source_->bridge(); }
 

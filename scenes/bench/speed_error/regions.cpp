@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "bench/speed_error/bench_plan.h"
+#include "programs/focus_path.h"
 
 namespace quincunx::bench {
 namespace {
@@ -76,6 +77,30 @@ std::vector<std::uint8_t> above_zero(const Values& values) {
   return mask;
 }
 
+// Of the measured frames; nothing where the conditions have none.
+Result<std::optional<scenes::FocusPath>> focus_of(const scenes::Scene& scene, const Conditions& conditions) {
+  std::optional<scenes::FocusPath> none;
+  if (!conditions.focus) return none;
+  const auto target = scenes::FocusTarget::parse(*conditions.focus, conditions.output);
+  if (!target.ok()) return target.status();
+  const auto path = scenes::FocusPath::create(
+      target.value(), scene, conditions.output,
+      {seconds_of(conditions, conditions.warm_up), 1 / conditions.fps, conditions.frames});
+  if (!path.ok()) return path.status();
+  return std::optional(path.value());
+}
+
+// 1 for each pixel where it shows.
+std::vector<std::uint8_t> focus_mask(const scenes::FocusPath& focus, Extent output, double seconds) {
+  std::vector<std::uint8_t> mask(static_cast<std::size_t>(output.area()));
+  const auto place = focus.at(seconds);
+  if (!place) return mask;
+  const auto [x, y, width, height] = place->shown;
+  for (int row = y; row < y + height; ++row)
+    std::fill_n(mask.begin() + static_cast<std::ptrdiff_t>(row) * output.width + x, width, 1);
+  return mask;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> thin_pixels(Extent extent, std::span<const float> nearest) {
@@ -139,6 +164,8 @@ Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, cons
                                                 const Conditions& conditions) {
   constexpr int kBack = 2;
   const gl::RenderTargets targets({.target = conditions.output, .velocity = true, .reactive = false});
+  const auto focus = focus_of(scene, conditions);
+  if (!focus.ok()) return focus.status();
   std::vector<FrameMasks> masks;
   Geometry before;
   std::vector<std::uint8_t> older;
@@ -159,6 +186,7 @@ Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, cons
         FrameMasks& kept = masks.emplace_back();
         kept.disoccluded = disoccluded_within_two(now.value(), newer, older);
         kept.regions = regions_of(now.value(), nearest.value(), kept.disoccluded);
+        if (focus.value()) kept.focus = focus_mask(*focus.value(), conditions.output, seconds);
       }
       older = std::move(newer);
     }

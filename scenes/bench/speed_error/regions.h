@@ -15,6 +15,7 @@ namespace quincunx::bench {
 struct FrameMasks {
   std::vector<std::uint8_t> disoccluded;  // 1 where a pixel was hidden within the last two frames
   std::vector<Region> regions;
+  std::vector<std::uint8_t> focus;  // 1 where a focus shows; empty where the conditions have none
 };
 
 // 1 for each pixel with a surface that fills no block of 4 x 4 pixels around it: some pixel of every such block shows
