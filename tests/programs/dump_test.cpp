@@ -103,136 +103,135 @@ TEST_F(Dump, ParticlesOfTheirOwnHaveAViewportOfTheirOwn) {
   EXPECT_GT(covered, particles.extent.area() / 50);
   EXPECT_LT(covered, particles.extent.area()) << "the rest is transparent";
   EXPECT_TRUE(std::filesystem::exists(folder_.file("d/frame.0001.particles.png")));
-  TEST_F(Dump, AFocusIsAStageAndChangesNothingElse) {
-    const std::string run = "-q --scene wheel --output 96x54 --scale 0.5 --method temporal --frame 3 --out ";
-    expect_done(dump(run + "'{}/plain'"));
-    expect_done(dump(run + "'{}/focused' --focus 30,10,40,30 --focus-scale 1.5"));
-    EXPECT_EQ(image("focused/frame.0003.focus.exr").extent, (Extent{84, 68}));
-    for (const char* part : {"render", "history"}) {
-      const std::string file = "/frame.0003." + std::string(part) + ".exr";
-      EXPECT_EQ(image("focused" + file).pixels, image("plain" + file).pixels) << part;
-    }
-    EXPECT_NE(image("focused/frame.0003.output.exr").pixels, image("plain/frame.0003.output.exr").pixels);
-    const ProgramResult none = dump(run + "'{}/none' --stages focus");
-    EXPECT_NE(none.exit_code, 0);
-    EXPECT_NE(none.err.find("there is no stage 'focus': no part is in focus; give --focus"),
-              std::string::npos)
-        << none.err;
-  }
+}
 
-  TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
-    const std::string run =
-        "-q --scene wheel --output 96x54 --scale 0.5,0.6 --method temporal --frame 3 --out ";
-    expect_done(dump(run + "'{}/viewport'"));
-    expect_done(dump(run + "'{}/placed' --targets placed"));
-    for (const char* part : {"render", "history", "output"}) {
-      const std::string file = "/frame.0003." + std::string(part) + ".exr";
-      EXPECT_EQ(image("placed" + file).pixels, image("viewport" + file).pixels) << part;
-    }
-    const auto target = image("placed/frame.0003.target.exr");
-    EXPECT_EQ(target.extent, image("placed/frame.0003.render.exr").extent);
-    EXPECT_EQ(std::count(target.pixels.begin(), target.pixels.end(), 1.0f), target.extent.area());
+TEST_F(Dump, AFocusIsAStageAndChangesNothingElse) {
+  const std::string run = "-q --scene wheel --output 96x54 --scale 0.5 --method temporal --frame 3 --out ";
+  expect_done(dump(run + "'{}/plain'"));
+  expect_done(dump(run + "'{}/focused' --focus 30,10,40,30 --focus-scale 1.5"));
+  EXPECT_EQ(image("focused/frame.0003.focus.exr").extent, (Extent{84, 68}));
+  for (const char* part : {"render", "history"}) {
+    const std::string file = "/frame.0003." + std::string(part) + ".exr";
+    EXPECT_EQ(image("focused" + file).pixels, image("plain" + file).pixels) << part;
   }
+  EXPECT_NE(image("focused/frame.0003.output.exr").pixels, image("plain/frame.0003.output.exr").pixels);
+  const ProgramResult none = dump(run + "'{}/none' --stages focus");
+  EXPECT_NE(none.exit_code, 0);
+  EXPECT_NE(none.err.find("there is no stage 'focus': no part is in focus; give --focus"), std::string::npos)
+      << none.err;
+}
 
-  // Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
-  // hardly known and the rounding of history to halves.
-  TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {
-    const std::string run = "-q --scene still --output 64x36 --scale 0.5 --method temporal --format exr ";
-    expect_done(dump(run + "--frame 15 --warm-up 15 --stages resolved --out '{}/d'"));
-    expect_done(dump(run + "--frame 16 --warm-up 16 --stages history --out '{}/d'"));
-    const auto history = image("d/frame.0016.history.exr");
-    const auto resolved = image("d/frame.0015.output.exr");
-    EXPECT_EQ(history.channels, (std::vector<std::string>{"R", "G", "B", "confidence"}));
-    ASSERT_EQ(history.extent, (Extent{64, 36}));
-    int known = 0;
-    for (int y = 0; y < 36; ++y) {
-      for (int x = 0; x < 64; ++x) {
-        const float confidence = history.at(x, y, history.channel("confidence"));
-        ASSERT_GE(confidence, 0);
-        ASSERT_LE(confidence, 32);
-        if (confidence < 1.5f) continue;
-        ++known;
-        for (const char* name : {"R", "G", "B"}) {
-          const float seen = resolved.at(x, y, resolved.channel(name));
-          ASSERT_NEAR(history.at(x, y, history.channel(name)), seen, 0x1p-10f * seen + 0x1p-24f)
-              << name << " at " << x << ", " << y;
-        }
+TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
+  const std::string run =
+      "-q --scene wheel --output 96x54 --scale 0.5,0.6 --method temporal --frame 3 --out ";
+  expect_done(dump(run + "'{}/viewport'"));
+  expect_done(dump(run + "'{}/placed' --targets placed"));
+  for (const char* part : {"render", "history", "output"}) {
+    const std::string file = "/frame.0003." + std::string(part) + ".exr";
+    EXPECT_EQ(image("placed" + file).pixels, image("viewport" + file).pixels) << part;
+  }
+  const auto target = image("placed/frame.0003.target.exr");
+  EXPECT_EQ(target.extent, image("placed/frame.0003.render.exr").extent);
+  EXPECT_EQ(std::count(target.pixels.begin(), target.pixels.end(), 1.0f), target.extent.area());
+}
+
+// Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
+// hardly known and the rounding of history to halves.
+TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {
+  const std::string run = "-q --scene still --output 64x36 --scale 0.5 --method temporal --format exr ";
+  expect_done(dump(run + "--frame 15 --warm-up 15 --stages resolved --out '{}/d'"));
+  expect_done(dump(run + "--frame 16 --warm-up 16 --stages history --out '{}/d'"));
+  const auto history = image("d/frame.0016.history.exr");
+  const auto resolved = image("d/frame.0015.output.exr");
+  EXPECT_EQ(history.channels, (std::vector<std::string>{"R", "G", "B", "confidence"}));
+  ASSERT_EQ(history.extent, (Extent{64, 36}));
+  int known = 0;
+  for (int y = 0; y < 36; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const float confidence = history.at(x, y, history.channel("confidence"));
+      ASSERT_GE(confidence, 0);
+      ASSERT_LE(confidence, 32);
+      if (confidence < 1.5f) continue;
+      ++known;
+      for (const char* name : {"R", "G", "B"}) {
+        const float seen = resolved.at(x, y, resolved.channel(name));
+        ASSERT_NEAR(history.at(x, y, history.channel(name)), seen, 0x1p-10f * seen + 0x1p-24f)
+            << name << " at " << x << ", " << y;
       }
     }
-    EXPECT_GT(known, 64 * 36 / 2);
   }
+  EXPECT_GT(known, 64 * 36 / 2);
+}
 
-  TEST_F(Dump, AFrameAfterACutReadsNoHistory) {
-    // The second shot of the scene begins after four seconds.
-    const std::string run =
-        "-q --scene cut --output 32x18 --fps 4 --warm-up 2 --stages history --format exr ";
-    for (const std::string method : {"temporal", "quincunx"}) {
-      expect_done(dump(run + "--method " + method + " --frame 16 --out '{}/" + method + "'"));
-      expect_done(dump(run + "--method " + method + " --frame 17 --out '{}/" + method + "'"));
-      for (const float value : image(method + "/frame.0016.history.exr").pixels)
-        ASSERT_EQ(value, 0) << method;
-      const auto later = image(method + "/frame.0017.history.exr").pixels;
-      EXPECT_GT(*std::max_element(later.begin(), later.end()), 0) << method;
-    }
+TEST_F(Dump, AFrameAfterACutReadsNoHistory) {
+  // The second shot of the scene begins after four seconds.
+  const std::string run = "-q --scene cut --output 32x18 --fps 4 --warm-up 2 --stages history --format exr ";
+  for (const std::string method : {"temporal", "quincunx"}) {
+    expect_done(dump(run + "--method " + method + " --frame 16 --out '{}/" + method + "'"));
+    expect_done(dump(run + "--method " + method + " --frame 17 --out '{}/" + method + "'"));
+    for (const float value : image(method + "/frame.0016.history.exr").pixels)
+      ASSERT_EQ(value, 0) << method;
+    const auto later = image(method + "/frame.0017.history.exr").pixels;
+    EXPECT_GT(*std::max_element(later.begin(), later.end()), 0) << method;
   }
+}
 
-  TEST_F(Dump, FormatsAndStagesAreTheOnesAskedFor) {
-    expect_done(dump("-q --scene chart --output 64x36 --stages resolved,depth --format png --out '{}/d'"));
-    int files = 0;
-    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.file("d")))
-      ++files;
-    EXPECT_EQ(files, 2);
-  }
+TEST_F(Dump, FormatsAndStagesAreTheOnesAskedFor) {
+  expect_done(dump("-q --scene chart --output 64x36 --stages resolved,depth --format png --out '{}/d'"));
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.file("d")))
+    ++files;
+  EXPECT_EQ(files, 2);
+}
 
-  TEST_F(Dump, ASequenceHoldsEveryFrameItsTruthAndWhatIsConstant) {
-    expect_done(
-        dump("-q --scene pan --output 64x36 --scale 0.5 --frames 3 --truth 2 --sequence '{}/s/f.%04d.exr'"));
-    for (int index = 0; index < 3; ++index) {
-      const auto frame = image("s/f.000" + std::to_string(index) + ".exr");
-      EXPECT_EQ(frame.extent, (Extent{32, 18}));
-      for (const char* name : {"R", "A", "Z", "backward.u", "backward.v", "reactive.mask"})
-        EXPECT_GE(frame.channel(name), 0) << name;
-      EXPECT_EQ(image("s/truth.000" + std::to_string(index) + ".exr").extent, (Extent{64, 36}));
-    }
-    const auto json = nlohmann::json::parse(read_file(folder_.file("s/sequence.json")));
-    EXPECT_EQ(json["frames"], 3);
-    EXPECT_EQ(json["output_size"], nlohmann::json({64, 36}));
-    EXPECT_EQ(json["jitter_kind"], "quincunx");
+TEST_F(Dump, ASequenceHoldsEveryFrameItsTruthAndWhatIsConstant) {
+  expect_done(
+      dump("-q --scene pan --output 64x36 --scale 0.5 --frames 3 --truth 2 --sequence '{}/s/f.%04d.exr'"));
+  for (int index = 0; index < 3; ++index) {
+    const auto frame = image("s/f.000" + std::to_string(index) + ".exr");
+    EXPECT_EQ(frame.extent, (Extent{32, 18}));
+    for (const char* name : {"R", "A", "Z", "backward.u", "backward.v", "reactive.mask"})
+      EXPECT_GE(frame.channel(name), 0) << name;
+    EXPECT_EQ(image("s/truth.000" + std::to_string(index) + ".exr").extent, (Extent{64, 36}));
   }
+  const auto json = nlohmann::json::parse(read_file(folder_.file("s/sequence.json")));
+  EXPECT_EQ(json["frames"], 3);
+  EXPECT_EQ(json["output_size"], nlohmann::json({64, 36}));
+  EXPECT_EQ(json["jitter_kind"], "quincunx");
+}
 
-  TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {
-    const std::string run = "-q --scene wheel --output 32x18 --frames 1 ";
-    expect_done(dump(run + "--sequence '{}/a/f.%04d.exr'"));
-    expect_done(dump(run + "--device-depth --sequence '{}/b/f.%04d.exr'"));
-    const auto linear = image("a/f.0000.exr");
-    const auto device = image("b/f.0000.exr");
-    const auto* near_plane = linear.attribute("quincunx:near");
-    ASSERT_NE(near_plane, nullptr);
-    const float near_distance = std::get<float>(near_plane->value);
-    for (int x = 0; x < 32; ++x) {
-      const float z = linear.at(x, 9, linear.channel("Z"));
-      const float depth = device.at(x, 9, device.channel("Z"));
-      EXPECT_NEAR(depth * z, near_distance, 0x1p-22 * near_distance) << x;
-    }
+TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {
+  const std::string run = "-q --scene wheel --output 32x18 --frames 1 ";
+  expect_done(dump(run + "--sequence '{}/a/f.%04d.exr'"));
+  expect_done(dump(run + "--device-depth --sequence '{}/b/f.%04d.exr'"));
+  const auto linear = image("a/f.0000.exr");
+  const auto device = image("b/f.0000.exr");
+  const auto* near_plane = linear.attribute("quincunx:near");
+  ASSERT_NE(near_plane, nullptr);
+  const float near_distance = std::get<float>(near_plane->value);
+  for (int x = 0; x < 32; ++x) {
+    const float z = linear.at(x, 9, linear.channel("Z"));
+    const float depth = device.at(x, 9, device.channel("Z"));
+    EXPECT_NEAR(depth * z, near_distance, 0x1p-22 * near_distance) << x;
   }
+}
 
-  TEST_F(Dump, MistakesAreAnswered) {
-    expect_refused("--scene chart", "--out");
-    expect_refused("--scene chart --stages colour,colours --out '{}/d'",
-                   "'colours' is none of colour, depth");
-    expect_refused("--scene chart --format jpg --out '{}/d'", "'jpg' is none of png, exr, both");
-    expect_refused("-q --scene chart --method bilinear --frame 2 --stages history --out '{}/d'",
-                   "there is no stage 'history': the method 'bilinear' uses one frame only");
-    expect_refused("-q --scene chart --stages history --out '{}/d'", "no frame comes before");
-    expect_refused("-q --scene particles --stages particles --out '{}/d'", "give --particle-scale");
-    expect_refused("-q --scene chart --particle-scale 0.5 --stages particles --out '{}/d'",
-                   "the scene has none");
-    expect_refused("-q --scene particles --particle-scale 0.5 --frames 2 --sequence '{}/f.%04d.exr'",
-                   "without --particle-scale");
-    expect_refused("-q --scene chart --frames 2 --sequence '{}/f.%04d.png'", "must end in .exr");
-    expect_refused("-q --scene chart --frames 2 --sequence '{}/f.exr'", "f.exr");
-    expect_refused("-q --scene nowhere --out '{}/d'", "there is no scene 'nowhere'");
-  }
+TEST_F(Dump, MistakesAreAnswered) {
+  expect_refused("--scene chart", "--out");
+  expect_refused("--scene chart --stages colour,colours --out '{}/d'", "'colours' is none of colour, depth");
+  expect_refused("--scene chart --format jpg --out '{}/d'", "'jpg' is none of png, exr, both");
+  expect_refused("-q --scene chart --method bilinear --frame 2 --stages history --out '{}/d'",
+                 "there is no stage 'history': the method 'bilinear' uses one frame only");
+  expect_refused("-q --scene chart --stages history --out '{}/d'", "no frame comes before");
+  expect_refused("-q --scene particles --stages particles --out '{}/d'", "give --particle-scale");
+  expect_refused("-q --scene chart --particle-scale 0.5 --stages particles --out '{}/d'",
+                 "the scene has none");
+  expect_refused("-q --scene particles --particle-scale 0.5 --frames 2 --sequence '{}/f.%04d.exr'",
+                 "without --particle-scale");
+  expect_refused("-q --scene chart --frames 2 --sequence '{}/f.%04d.png'", "must end in .exr");
+  expect_refused("-q --scene chart --frames 2 --sequence '{}/f.exr'", "f.exr");
+  expect_refused("-q --scene nowhere --out '{}/d'", "there is no scene 'nowhere'");
+}
 
 }  // namespace
 }  // namespace quincunx

@@ -127,8 +127,8 @@ class Focused : public ::testing::Test {
   Pictures render(const PictureOptions& options, int kept) {
     const auto settings = source_settings_for(options);
     EXPECT_TRUE(settings.ok()) << settings.status().message();
-    auto source =
-        stage_ ? stage_->another(settings->sequence, settings->focus) : FrameSource::create(settings.value());
+    auto source = stage_ ? stage_->another(settings->sequence, {}, settings->focus)
+                         : FrameSource::create(settings.value());
     EXPECT_TRUE(source.ok()) << source.status().message();
     FrameSource& frames = *source.value();
     const auto plan = frames.connect(options.resolve);
