@@ -69,8 +69,7 @@ void ResolveService::Impl::warm_up() {
   const cl_uint zero = 0;
   cl_uint back = 1;
   queue.enqueueFillBuffer(counter, zero, 0, sizeof(zero));
-  queue.enqueueReadBuffer(counter, CL_FALSE, 0, sizeof(back), &back);
-  queue.finish();
+  queue.enqueueReadBuffer(counter, CL_TRUE, 0, sizeof(back), &back);  // waits: `back` must outlive it
 }
 
 Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* given,

@@ -74,7 +74,7 @@ struct PassReport {
 };
 
 // "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
-std::string name_of(const PassReport& pass);
+QUINCUNX_API std::string name_of(const PassReport& pass);
 
 struct FrameReport {
   static constexpr int kMaxPasses = 48;  // 24 of the picture and 24 of its focus
