@@ -3,13 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "bench/harness/process_clock.h"
 #include "bench/parts/parts_rows.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_options.h"
-#include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
 #include "tools/program/progress.h"
 
@@ -106,14 +103,6 @@ Result<PartsResult> run_parts(const BenchOptions& options) {
   }
   result.machine.load_after = load_of_last_minute();
   return result;
-}
-
-Status write_files(const PartsResult& result, const std::string& folder) {
-  const auto write = [&folder](const char* name, const std::string& text) {
-    return tools::write_text((std::filesystem::path(folder) / name).string(), text);
-  };
-  if (Status status = write("parts.json", json_of(result)); !status.ok()) return status;
-  return write("parts.csv", csv_of(result));
 }
 
 }  // namespace quincunx::bench

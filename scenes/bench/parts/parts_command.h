@@ -27,7 +27,4 @@ void add_parts_options(tools::CommandLine& app, PartsOptions& options);
 // picture's own scale goes through those that the options name. Errors: of any part, as that part words them.
 Result<PartsResult> run_parts(const BenchOptions& options);
 
-// parts.json and parts.csv in `folder`. Errors: kIoFailure.
-Status write_files(const PartsResult& result, const std::string& folder);
-
 }  // namespace quincunx::bench

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/parts/parts_result.h"
+#include "bench/speed_error/bench_machine.h"
 
 namespace quincunx::bench {
 namespace {
@@ -63,22 +64,10 @@ std::string text_of(const PartsResult& result) {
 }
 
 std::string json_of(const PartsResult& result) {
-  Json root = {{"version", result.version},
-               {"command", result.command},
-               {"date", result.date},
-               {"scene", result.scene},
-               {"method", result.method},
-               {"output", {result.output.width, result.output.height}},
-               {"frames", result.frames},
-               {"machine",
-                {{"processor", result.machine.processor},
-                 {"processors", result.machine.processors},
-                 {"cl_device", result.machine.cl_device},
-                 {"cl_driver", result.machine.cl_driver},
-                 {"gl_renderer", result.machine.gl_renderer},
-                 {"gl_version", result.machine.gl_version},
-                 {"load_before", result.machine.load_before},
-                 {"load_after", result.machine.load_after}}},
+  Json root = {{"version", result.version}, {"command", result.command},
+               {"date", result.date},       {"scene", result.scene},
+               {"method", result.method},   {"output", {result.output.width, result.output.height}},
+               {"frames", result.frames},   {"machine", json_of(result.machine)},
                {"rows", Json::array()}};
   for (const PartRow& row : result.rows) {
     const PartChange change = change_of(row, result.rows.front());

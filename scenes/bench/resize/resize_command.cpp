@@ -2,7 +2,6 @@
 #include "bench/resize/resize_command.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "bench/harness/process_clock.h"
 #include "bench/resize/resize_costs.h"
@@ -10,7 +9,6 @@
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_plan.h"
-#include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
 
 namespace quincunx::bench {
@@ -97,14 +95,6 @@ Result<ResizeResult> run_resize(const BenchOptions& options) {
   if (Status status = add(); !status.ok()) return status;
   result.machine.load_after = load_of_last_minute();
   return result;
-}
-
-Status write_files(const ResizeResult& result, const std::string& folder) {
-  const auto write = [&folder](const char* name, const std::string& text) {
-    return tools::write_text((std::filesystem::path(folder) / name).string(), text);
-  };
-  if (Status status = write("resize.json", json_of(result)); !status.ok()) return status;
-  return write("resize.csv", csv_of(result));
 }
 
 }  // namespace quincunx::bench

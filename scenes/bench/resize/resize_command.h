@@ -27,7 +27,4 @@ void add_resize_options(tools::CommandLine& app, ResizeOptions& options);
 // method and 0.5, 0.7 and 1. Errors: of any part, as that part words them.
 Result<ResizeResult> run_resize(const BenchOptions& options);
 
-// resize.json and resize.csv in `folder`. Errors: kIoFailure.
-Status write_files(const ResizeResult& result, const std::string& folder);
-
 }  // namespace quincunx::bench

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/resize/resize_result.h"
+#include "bench/speed_error/bench_machine.h"
 
 namespace quincunx::bench {
 namespace {
@@ -16,15 +17,6 @@ constexpr double kMebi = 1 << 20;
 
 Json json_of(const Quantiles& quantiles) {
   return {{"min", quantiles.least}, {"median", quantiles.median}, {"p95", quantiles.p95}};
-}
-
-Json json_of(const Machine& machine) {
-  return {{"processor", machine.processor},     {"processors", machine.processors},
-          {"system", machine.system},           {"cl_device", machine.cl_device},
-          {"cl_platform", machine.cl_platform}, {"cl_driver", machine.cl_driver},
-          {"gl_renderer", machine.gl_renderer}, {"gl_version", machine.gl_version},
-          {"interop", machine.interop},         {"load_before", machine.load_before},
-          {"load_after", machine.load_after}};
 }
 
 Json json_of(const TargetFrames& row) {

@@ -51,4 +51,13 @@ double load_of_last_minute() {
   return getloadavg(&load, 1) == 1 ? load : 0;
 }
 
+nlohmann::ordered_json json_of(const Machine& machine) {
+  return {{"processor", machine.processor},     {"processors", machine.processors},
+          {"system", machine.system},           {"cl_device", machine.cl_device},
+          {"cl_platform", machine.cl_platform}, {"cl_driver", machine.cl_driver},
+          {"gl_renderer", machine.gl_renderer}, {"gl_version", machine.gl_version},
+          {"interop", machine.interop},         {"load_before", machine.load_before},
+          {"load_after", machine.load_after}};
+}
+
 }  // namespace quincunx::bench

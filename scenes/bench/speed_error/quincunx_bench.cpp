@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <string>
 
 #include "bench/speed_error/bench_compare.h"
 #include "bench/speed_error/bench_findings.h"
@@ -88,25 +89,17 @@ int replay_traces(const BenchOptions& options) {
   return tools::kDone;
 }
 
-int measure_resizing(const BenchOptions& options) {
-  const auto result = run_resize(options);
+// Of a run that makes tables instead of the whole comparison: `measure` gives what text_of(), json_of() and csv_of()
+// take; `name`: of the files in --out.
+template <typename Measure>
+int tabulate(const BenchOptions& options, const std::string& name, const Measure& measure) {
+  const auto result = measure(options);
   if (!result.ok()) return tools::fail(result.status());
   if (!options.out.empty()) {
-    if (Status status = write_files(result.value(), options.out); !status.ok()) return tools::fail(status);
-  }
-  if (options.json) {
-    fmt::print("{}", json_of(result.value()));
-  } else if (!options.quiet) {
-    fmt::print("{}", text_of(result.value()));
-  }
-  return tools::kDone;
-}
-
-int measure_parts(const BenchOptions& options) {
-  const auto result = run_parts(options);
-  if (!result.ok()) return tools::fail(result.status());
-  if (!options.out.empty()) {
-    if (Status status = write_files(result.value(), options.out); !status.ok()) return tools::fail(status);
+    const std::string base = (std::filesystem::path(options.out) / name).string();
+    Status status = tools::write_text(base + ".json", json_of(result.value()));
+    if (status.ok()) status = tools::write_text(base + ".csv", csv_of(result.value()));
+    if (!status.ok()) return tools::fail(status);
   }
   if (options.json) {
     fmt::print("{}", json_of(result.value()));
@@ -131,9 +124,9 @@ int run(int argc, char** argv) {
   } else if (options.traces.wanted) {
     return replay_traces(options);
   } else if (options.resize.wanted) {
-    return measure_resizing(options);
+    return tabulate(options, "resize", run_resize);
   } else if (options.parts_bench.wanted) {
-    return measure_parts(options);
+    return tabulate(options, "parts", run_parts);
   } else {
     return measure(options);
   }
