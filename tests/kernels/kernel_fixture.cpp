@@ -218,6 +218,13 @@ const std::vector<Pattern>& all_patterns() {
   return patterns;
 }
 
+std::vector<Pattern> patterns_for(Extent output, std::size_t scale) {
+  constexpr int kLarge = 65 * 65;
+  const std::vector<Pattern>& all = all_patterns();
+  if (output.width * output.height < kLarge) return all;
+  return {all[scale % all.size()]};
+}
+
 const char* name_of(Pattern pattern) {
   switch (pattern) {
     case Pattern::kImpulse:

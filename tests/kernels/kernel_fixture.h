@@ -58,6 +58,9 @@ class Rig {
 
 enum class Pattern { kImpulse, kConstant, kRamp, kNoise, kExtremes, kNonFinite };
 const std::vector<Pattern>& all_patterns();
+// Those that a picture of this size is tested with at scale number `scale`: all of them, but for the largest pictures
+// one, another at each scale, because the reference is slow.
+std::vector<Pattern> patterns_for(Extent output, std::size_t scale);
 std::vector<Pixel> pattern_pixels(Pattern pattern, Extent extent, unsigned seed);
 const char* name_of(Pattern pattern);
 

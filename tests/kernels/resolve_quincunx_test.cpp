@@ -130,11 +130,10 @@ TEST_P(Resolve, MatchesTheReferenceAtEverySizeScaleAndInput) {
                               {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
   unsigned seed = 0;
   for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
-    for (const auto& scale : scales) {
-      for (const Pattern pattern : testing::all_patterns()) {
-        // One input for each of the largest pictures: the reference is slow.
+    for (std::size_t i = 0; i < std::size(scales); ++i) {
+      const auto& scale = scales[i];
+      for (const Pattern pattern : testing::patterns_for(output, i)) {
         ++seed;
-        if (output.width == 257 && seed % 6 != 0 && pattern != Pattern::kNonFinite) continue;
         const Pattern velocity = pattern == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise;
         compare({.render = testing::scaled(output, scale[0], scale[1]),
                  .jitter = {.25f, .25f},
