@@ -55,31 +55,14 @@
 #endif
 
 #include "checkerboard/fill_colour.h"
-#include "checkerboard/surfaces.h"
+#include "checkerboard/store_in_turn.h"
 
-// Pixel i of four: all that it gets but colour is its neighbour's.
-#define FILL(i, n)                                                                                                     \
-  if (columns.s0 + 2 * n < end) {                                                                                      \
-    const int to = columns.i, from_x = shown.x.i, from_y = shown.y.i;                                                  \
-    copy_depth(shaded_depth, params.shaded.depth, from_x, from_y, depth, params.filled.depth, to, y);                  \
-    FILL_VELOCITY(from_x, from_y, to)                                                                                  \
-    FILL_REACTIVE(from_x, from_y, to)                                                                                  \
-    const PastPixel near_pixel = {near.x.i, near.y.i, near.trust.i}, far_pixel = {far.x.i, far.y.i, far.trust.i};      \
-    store_colour(colour, params.filled.colour, to, y,                                                                  \
-                 filled_colour(&params, shaded_colour, previous_colour, to, y, near_pixel, far_pixel));                \
-  }
-
-#if VELOCITY
-#define FILL_VELOCITY(from_x, from_y, to)                                                                              \
-  copy_velocity(shaded_velocity, params.shaded.velocity, from_x, from_y, velocity, params.filled.velocity, to, y);
+#if MOTION == TARGET
+#define MOTION_OF(surface) motion_of(velocity_on(surfaces.surface, velocities))
+#elif MOTION == CAMERA
+#define MOTION_OF(surface) camera_motion(&params, x, y, surfaces.surface##_depth)
 #else
-#define FILL_VELOCITY(from_x, from_y, to)
-#endif
-#if REACTIVE
-#define FILL_REACTIVE(from_x, from_y, to)                                                                              \
-  copy_reactive(shaded_reactive, params.shaded.reactive, from_x, from_y, reactive, params.filled.reactive, to, y);
-#else
-#define FILL_REACTIVE(from_x, from_y, to)
+#define MOTION_OF(surface) no_motion()
 #endif
 
 __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXELS shaded_colour,
@@ -92,30 +75,66 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
   if (first >= params.width || y >= params.height) return;
 
   const int end = min(first + params.columns_per_item, params.width);
-  const int shaded_from = (y & 1) != params.parity;  // of columns, which begin at an even one
-  for (int x = first; x < end; x += kCheckerboardBlock) {
-    for (int to = x + shaded_from; to < min(x + kCheckerboardBlock, end); to += 2) {
-      copy_colour(shaded_colour, params.shaded.colour, colour, params.filled.colour, to, y);
-      copy_depth(shaded_depth, params.shaded.depth, to, y, depth, params.filled.depth, to, y);
-      FILL_VELOCITY(to, y, to)
-      FILL_REACTIVE(to, y, to)
+  const bool shaded_first = (y & 1) == params.parity;  // of columns, which begin at an even one
+  for (int run = first; run < end; run += kCheckerboardBlock) {
+    const int count = min(end - run, (int)kCheckerboardBlock);
+    const int x = run + shaded_first;  // of the first pixel that is not shaded
+
+    // Which surfaces lie around, and where they were.
+    const DepthsAround depths = depths_around(&params, shaded_depth, x, y);
+    const DepthsAround settled = settled_depths(&params, depths, x, y);
+    const Surfaces surfaces = surfaces_of(settled);
+    const float8 range = surfaces.nearest_depth - surfaces.farthest_depth;
+    float8 whole = (float8)(1.0f);
+#if REACTIVE
+    const ReactiveAround marks = reactive_around(&params, shaded_reactive, x, y);
+    whole = trust_in(marks);
+#endif
+#if MOTION == TARGET
+    const VelocitiesAround velocities = velocities_around(&params, shaded_velocity, x, y);
+#endif
+    Past nearest = no_past(), farthest = no_past();
+    if (params.has_history) {
+      nearest = past_of(&params, previous_depth, x, y, surfaces.nearest_depth, MOTION_OF(nearest), surfaces.is_surface,
+                        range, whole);
+    }
+    Sides shown = surfaces.nearest;
+    if (any_lane(nearest.trust < 1.0f)) {
+      if (params.has_history) {
+        farthest = past_of(&params, previous_depth, x, y, surfaces.farthest_depth, MOTION_OF(farthest),
+                           surfaces.is_surface, range, whole);
+      }
+      const int8 shows_farthest = (1.0f - nearest.trust) * farthest.trust >= 0.5f;
+      const Sides hidden = select(likely_sides(settled, surfaces.nearest), surfaces.farthest, shows_farthest);
+      shown = select(hidden, surfaces.nearest, nearest.trust >= 0.5f);
     }
 
-    // Which surfaces lie around the others, and where they were.
-    const int4 columns = x + 1 - shaded_from + (int4)(0, 2, 4, 6);
-    const FourSurfaces around = surfaces_around(&params, shaded_depth, columns, y);
-    const float4 whole = trust_in_reactive(&params, shaded_reactive, columns, y);
-    const FourPasts near = past_of(&params, shaded_velocity, previous_depth, around.range, around.nearest, columns, y,
-                                   whole);
-    FourPasts far = near;
-    if (any(near.trust < 1.0f)) {
-      far = past_of(&params, shaded_velocity, previous_depth, around.range, around.farthest, columns, y, whole);
-    }
-    const FourNeighbours shown = shown_surfaces(&around, near.trust, far.trust);
+    // All that the pixels get but colour is a neighbour's.
+    const float8 filled_depth = depth_on(shown, depths);
+    store_depths_in_turn(depth, params.filled.depth, run, y, count, shaded_first ? depths.left : filled_depth,
+                         shaded_first ? filled_depth : depths.right);
+#if VELOCITY
+    const VelocityBits filled_velocity = velocity_on(shown, velocities);
+    store_velocities_in_turn(velocity, params.filled.velocity, run, y, count,
+                             shaded_first ? velocities.left : filled_velocity,
+                             shaded_first ? filled_velocity : velocities.right);
+#endif
+#if REACTIVE
+    const uint8 filled_reactive = reactive_on(shown, marks);
+    store_reactive_in_turn(reactive, params.filled.reactive, run, y, count,
+                           shaded_first ? marks.left : filled_reactive, shaded_first ? filled_reactive : marks.right);
+#endif
 
-    FILL(s0, 0)
-    FILL(s1, 1)
-    FILL(s2, 2)
-    FILL(s3, 3)
+    const TexelLayout layout = params.shaded.colour;
+    const ColourBits left = load_every_other_colour(shaded_colour, layout, x - 1, y, params.width);
+    const ColourBits right = load_every_other_colour(shaded_colour, layout, x + 1, y, params.width);
+    const ColourBits above = load_every_other_colour(shaded_colour, layout, x, row_above(y), params.width);
+    const ColourBits below = load_every_other_colour(shaded_colour, layout, x, row_below(&params, y), params.width);
+    const EightAround around = colours_around(&params, left, right, above, below, x, y);
+    const ColourBits filled = bits_of(fill_colours(&params, previous_colour, around, nearest, farthest));
+    if (shaded_first)
+      store_colours_in_turn(colour, params.filled.colour, run, y, count, left, filled);
+    else
+      store_colours_in_turn(colour, params.filled.colour, run, y, count, filled, right);
   }
 }

@@ -12,6 +12,8 @@
 #else
 #if SOURCE_FORMAT == HALF
 #define STORED_COLOUR __global half*
+#elif SOURCE_FORMAT == SRGB8
+#define STORED_COLOUR __global uchar*
 #else
 #define STORED_COLOUR __global float*
 #endif
@@ -19,6 +21,7 @@
 #define STORED_REACTIVE __global uchar*
 #endif
 
+#if SOURCE_FORMAT != SRGB8
 // Finite values only; half saturates instead of becoming infinite, and so does an image, whose format is unknown here.
 static inline void store_colour(STORED_COLOUR texels, TexelLayout layout, int x, int y, float4 value) {
 #if SOURCE_STORAGE == IMAGE
@@ -40,31 +43,9 @@ static inline void copy_colour(COLOUR_TEXELS from, TexelLayout source, STORED_CO
   vstore4(vload4(texel_index(source, x, y), (__global const uint*)from), texel_index(layout, x, y), (__global uint*)to);
 #endif
 }
+#endif
 
 // From texel (x, y) to texel (to_x, to_y).
-static inline void copy_depth(DEPTH_TEXELS from, TexelLayout source, int x, int y, STORED_DEPTH to, TexelLayout layout,
-                              int to_x, int to_y) {
-#if SOURCE_STORAGE == IMAGE
-  write_imagef(to, (int2)(to_x, to_y), read_imagef(from, (int2)(x, y)));
-#else
-  const uint bits = ((__global const uint*)from)[texel_index(source, x, y)];
-  ((__global uint*)to)[texel_index(layout, to_x, to_y)] = bits;
-#endif
-}
-
-static inline void copy_velocity(VELOCITY_TEXELS from, TexelLayout source, int x, int y, STORED_VELOCITY to,
-                                 TexelLayout layout, int to_x, int to_y) {
-#if SOURCE_STORAGE == IMAGE
-  write_imagef(to, (int2)(to_x, to_y), read_imagef(from, (int2)(x, y)));
-#elif VELOCITY_FORMAT == HALF
-  const uint bits = ((__global const uint*)from)[texel_index(source, x, y)];
-  ((__global uint*)to)[texel_index(layout, to_x, to_y)] = bits;
-#else
-  const uint2 bits = vload2(texel_index(source, x, y), (__global const uint*)from);
-  vstore2(bits, texel_index(layout, to_x, to_y), (__global uint*)to);
-#endif
-}
-
 static inline void copy_reactive(REACTIVE_TEXELS from, TexelLayout source, int x, int y, STORED_REACTIVE to,
                                  TexelLayout layout, int to_x, int to_y) {
 #if SOURCE_STORAGE == IMAGE

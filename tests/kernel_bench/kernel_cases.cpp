@@ -145,6 +145,36 @@ void add_velocity(std::vector<Case>& cases, Stage& stage, Scene scene) {
              {"velocity_from_depth"});
 }
 
+// Fills one of two frames of the same wall, which differ in which half of their noise is shaded. `pixels`: how far it
+// moves over the output; where surfaces move `apart`, blocks of it against each other.
+void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted,
+                      const std::string& suffix, double pixels, bool apart = false) {
+  scene.settings.method = Method::kBilinear;
+  scene.settings.shading = Shading::kCheckerboard;
+  scene.settings.velocity = PixelFormat::kRG32F;
+  scene.needs.moving_objects = scene.needs.camera_motion = pixels != 0;
+  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+    const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
+    return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
+  });
+  scene.current.depth = scene.previous.depth = stage.constant(scene.current.render, PixelFormat::kR32F);
+  scene.current.parity = 1;
+  auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
+  Pass* const pass = chain->find("resolve_checkerboard");
+  const FrameOutputs outputs{.resolved = stage.noise(stage.output(), scene.settings.resolved)};
+  FrameReport unused;  // of the frame that leaves its history
+  chain->run(chain->frame(scene.previous, nullptr, outputs, stage.counter()), outputs, unused, nullptr);
+  Stage::add(cases,
+             {.name = "resolve_checkerboard" + scene.suffix + suffix,
+              .scale = scene.scale,
+              .wanted = wanted,
+              .bytes = bytes_of(pass->spec(), {scene.current.render, scene.previous.render, stage.output()})},
+             [chain, pass, &stage, outputs, scene](cl::Event* events) {
+               PassChain::enqueue(
+                   *pass, chain->frame(scene.current, &scene.previous, outputs, stage.counter()), events);
+             });
+}
+
 // All three kernels of the blur. `pixels`: how far a sample moves over the output while the shutter is open.
 void add_blur(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted, const std::string& suffix,
               const std::function<double(int x, int y)>& pixels) {
@@ -218,7 +248,10 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     add_scale(cases, stage, scene, Method::kNoiseOffset, 1.6);
     add_resolve(cases, stage, scene, 5);
     add_reprojected(cases, stage, scene, 9, "", 12);
+    add_checkerboard(cases, stage, scene, 5, "", -3.6);
     if (colour != PixelFormat::kRGBA16F) continue;
+    add_checkerboard(cases, stage, scene, 3, " still", 0);
+    add_checkerboard(cases, stage, scene, 5, " apart", -3.6, true);
     add_velocity(cases, stage, scene);
     add_blurs(cases, stage, scene);
     add_reprojected(cases, stage, scene, 9, " still", 0);

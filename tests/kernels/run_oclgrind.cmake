@@ -37,8 +37,10 @@ check("" "AxisTables.*" "Clear*"
   "*Resolve.ATight*/velocity_reactive_buffer_RGBA8_*_to_RGBA32F"
   "*Velocity.ATight*" "*Velocity.Poison*")
 # These run without optimisation. Optimised, the first stops oclgrind at hints about memory that its compiler puts in
-# where it inlines, and of the other it computes the minimum of int8 wrongly. The macro keeps texel.h from inlining.
-check("--build-options;-cl-opt-disable -D inline=inline" "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
+# where it inlines, and of the other it computes the minimum of int8 wrongly. The macros keep headers from
+# inlining.
+check("--build-options;-cl-opt-disable -D inline=inline -D IN_REGISTERS="
+  "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
   "*Overlay.ATight*/reactive_*" "*Overlay.Poison*/reactive_buffer_RGBA16F"
   "*LayFocus.TightImages*" "*LayFocus.ANonFinite*"
   "*Checkerboard.ATight*/camera_buffer_*" "*Checkerboard.ATight*/moving_velocity_reactive_buffer_*"

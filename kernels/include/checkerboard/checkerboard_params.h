@@ -9,7 +9,7 @@ namespace quincunx {
 #endif
 
 // A work-item makes runs of this many neighbouring pixels of a row, half of which are filled.
-enum { kCheckerboardBlock = 8 };
+enum { kCheckerboardBlock = 16 };
 
 // The targets of one frame.
 typedef struct FrameTexels {
