@@ -63,9 +63,6 @@ Status check(const ResolveSettings& settings) {
     complaints.add(
         fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
   }
-  if (settings.shading == Shading::kCheckerboard && settings.colour == PixelFormat::kRGBA8)
-    complaints.add(
-        "settings.colour is RGBA8; of a checkerboard it must be RGBA16F or RGBA32F, which are linear");
   if (settings.particle_target != Extent()) {
     const Extent particles = settings.particle_target;
     if (particles.width < 1 || particles.height < 1 || particles.width > settings.target.width ||

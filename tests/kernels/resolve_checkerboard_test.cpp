@@ -42,6 +42,16 @@ struct Variant {
   bool reactive;
 };
 
+// What nothing has written to.
+double untouched_value(PixelFormat format) {
+  return format == PixelFormat::kRGBA8 || format == PixelFormat::kR8 ? .2 : -7;
+}
+
+// RGBA8 colour is mixed as codes.
+double in_codes(double stored) {
+  return std::round(255 * stored);
+}
+
 struct Filled {
   ImageView colour, depth, velocity, reactive;
 };
@@ -94,6 +104,12 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
     made.inputs.camera.clip_to_previous_clip = kCameraStep;
     std::copy(kCameraStep.begin(), kCameraStep.end(), made.reference.clip_to_previous_clip.begin());
     std::vector<Pixel> colour = made.reference.colour;
+    if (v.colour == PixelFormat::kRGBA8) {
+      for (Pixel& pixel : made.reference.colour) {
+        for (double& value : pixel)
+          value = in_codes(testing::stored_value(v.colour, value));
+      }
+    }
     std::vector<Pixel> depth = depths(spec, spec.velocity == Pattern::kNonFinite), velocity, reactive;
     std::mt19937 random(spec.seed);
     for (std::size_t i = 0; i < colour.size(); ++i) {
@@ -121,9 +137,11 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
 
   Filled run(Rig& rig, const TestFrame& now, const TestFrame& before, bool tight = false) {
     const Extent render = now.inputs.render;
-    const std::vector<Pixel> untouched(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
     const auto output = [&](PixelFormat format) {
-      return rig.image(format, settings_.storage, render, untouched, -7, tight);
+      const double value = untouched_value(format);
+      const std::vector<Pixel> untouched(static_cast<std::size_t>(render.area()),
+                                         Pixel{value, value, value, value});
+      return rig.image(format, settings_.storage, render, untouched, value, tight);
     };
     const Filled filled = {output(settings_.colour), output(PixelFormat::kR32F), output(settings_.velocity),
                            output(PixelFormat::kR8)};
@@ -137,7 +155,7 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
       for (int i = 0; i < view.extent.area(); ++i) {
         const int x = i % view.extent.width, y = i / view.extent.width;
         if (x < render.width && y < render.height) continue;
-        EXPECT_EQ(all[static_cast<std::size_t>(i)][0], -7) << "beyond the viewport";
+        EXPECT_EQ(all[static_cast<std::size_t>(i)][0], untouched_value(view.format)) << "beyond the viewport";
       }
     }
     return filled;
@@ -174,7 +192,11 @@ void Checkerboard::compare(const FrameSpec& spec, const FrameSpec& spec_before, 
   const Variant& v = GetParam();
   const TestFrame now = frame(rig, spec, parity, false), before = frame(rig, spec_before, parity, true);
   const Filled filled = run(rig, now, before);
-  const std::vector<Pixel> colour = rig.pixels(filled.colour, spec.render);
+  std::vector<Pixel> colour = rig.pixels(filled.colour, spec.render);
+  for (std::size_t i = 0; v.colour == PixelFormat::kRGBA8 && i < colour.size(); ++i)
+    std::transform(colour[i].begin(), colour[i].end(), colour[i].begin(), in_codes);
+  // Of a code; what other formats round is told by expect_near().
+  const double rounding = v.colour == PixelFormat::kRGBA8 ? .5 : 0;
   const std::vector<Pixel> depth = rig.pixels(filled.depth, spec.render);
   const std::vector<Pixel> velocity = rig.pixels(filled.velocity, spec.render);
   const std::vector<Pixel> reactive = rig.pixels(filled.reactive, spec.render);
@@ -202,7 +224,9 @@ void Checkerboard::compare(const FrameSpec& spec, const FrameSpec& spec_before, 
         hidden_ += value.near_trust < .5 && value.far_trust > .5 ? 1 : 0;
         unknown_ += value.near_trust == 0 && value.far_trust == 0 ? 1 : 0;
         for (std::size_t c = 0; c < 4; ++c) {
-          testing::expect_near(value.colour[c], bound.colour[c], colour[i][c], what, v.colour, v.storage);
+          reference::Bounded rounded = bound.colour[c];
+          rounded.error += rounding;
+          testing::expect_near(value.colour[c], rounded, colour[i][c], what, v.colour, v.storage);
           if (HasFatalFailure()) return;
         }
         from = reference::index_of(spec.render.width, value.x, value.y);
@@ -288,7 +312,9 @@ INSTANTIATE_TEST_SUITE_P(
         Variant{Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG32F, Moves::kAll, true, false},
         Variant{Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kCamera, false, false},
         Variant{Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG16F, Moves::kNothing, false, true},
-        Variant{Storage::kImage, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true}),
+        Variant{Storage::kBuffer, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kAll, true, true},
+        Variant{Storage::kImage, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true},
+        Variant{Storage::kImage, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kCamera, false, false}),
     [](const auto& instance) {
       const Variant& v = instance.param;
       return fmt::format("{}{}{}_{}_{}_{}",

@@ -209,6 +209,7 @@ std::vector<StageVariant> variants() {
           {.alpha = true},
           {.colour = kRGBA8},
           {.checkerboard = true},
+          {.alpha = true, .checkerboard = true},
           {.history = kRGBA16F, .resolved = kRGBA16F},
           {.storage = Storage::kImage}};
 }

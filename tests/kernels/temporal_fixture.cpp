@@ -12,14 +12,13 @@
 namespace quincunx::testing {
 
 std::string name_of(const StageVariant& v) {
-  return fmt::format("{}{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still",
-                     v.reactive ? "_reactive" : "",
-                     v.alpha          ? "_alpha"
-                     : v.layers       ? "_layered"
-                     : v.checkerboard ? "_checkerboard"
-                                      : "",
-                     v.storage == Storage::kImage ? "image" : "buffer", quincunx::name_of(v.colour),
-                     quincunx::name_of(v.history), quincunx::name_of(v.resolved));
+  return fmt::format(
+      "{}{}{}{}_{}_{}_history_{}_to_{}", v.moves ? "moving" : "still", v.reactive ? "_reactive" : "",
+      v.alpha    ? "_alpha"
+      : v.layers ? "_layered"
+                 : "",
+      v.checkerboard ? "_checkerboard" : "", v.storage == Storage::kImage ? "image" : "buffer",
+      quincunx::name_of(v.colour), quincunx::name_of(v.history), quincunx::name_of(v.resolved));
 }
 
 KernelTile to_kernel(const reference::Tile& tile) {

@@ -155,7 +155,6 @@ std::vector<PlanFacts> all_facts() {
           settings.method = Method::kBilinear;
           settings.shading = Shading::kCheckerboard;
           for (const float shutter : {0.0f, .5f}) {
-            if (colour == kRGBA8) continue;  // no plan has both
             settings.blur.shutter = shutter;
             add_needs(settings);
           }

@@ -52,9 +52,11 @@ class OpenGlEs : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-// Shadows that move, velocity from depth, particles with reactive values, cut-out leaves and mirrored parts.
+// Shadows that move, velocity from depth, particles with reactive values, cut-out leaves and mirrored parts; 8-bit
+// colour in full and of a checkerboard.
 const char* const kScenes[] = {"--scene courtyard", "--scene pan", "--scene particles --method temporal",
-                               "--scene wheel --colour rgba8 --blur 0.5"};
+                               "--scene wheel --colour rgba8 --blur 0.5",
+                               "--scene pan --colour rgba8 --shading checkerboard"};
 
 TEST_F(OpenGlEs, DrawsTheSamePictures) {
   for (const char* scene : kScenes) {

@@ -87,6 +87,50 @@ TEST(Checkerboard, TwoFramesMakeAStillPictureWhole) {
   }
 }
 
+// Codes that are copied stay what they are, and what lies between codes is one of them again.
+TEST(Checkerboard, TwoFramesOfEightBitsMakeAStillPictureWhole) {
+  const ResolveSettings settings{
+      .method = Method::kPoint, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard};
+  ServiceRig rig(kMoving, settings, kExtent, kExtent);
+  HostFrame frame = ramp(0);
+  const auto light_of = [](int x, int y) { return static_cast<float>(3 * x + 5 * y) / 256; };
+  const auto half_of = [&](int parity) {
+    frame.parity = parity;
+    frame.colour = [=](int x, int y) {
+      const float light = (x + y) % 2 == parity ? light_of(x, y) : std::nanf("");
+      return Pixel{light, light, light, 1};
+    };
+    return frame;
+  };
+  rig.resolve(half_of(0));
+  rig.resolve(half_of(1));
+  const auto shown = rig.presented();
+  for (int i = 0; i < kExtent.area(); ++i) {
+    const int x = i % kExtent.width, y = i / kExtent.width;
+    const bool corner = (x == 0 || x + 1 == kExtent.width) && (y == 0 || y + 1 == kExtent.height);
+    if (corner) continue;
+    const float light = light_of(x, y);
+    ASSERT_EQ(shown[4 * static_cast<std::size_t>(i)], testing::codes_of({light, light, light, 1})[0])
+        << x << " " << y;
+  }
+}
+
+TEST(CheckerboardPlan, OfEightBitsFillsCodes) {
+  const ResolveSettings settings{.method = Method::kBilinear,
+                                 .output = kExtent,
+                                 .target = kExtent,
+                                 .colour = PixelFormat::kRGBA8,
+                                 .shading = Shading::kCheckerboard};
+  const auto plan = plan_for(kMoving, settings);
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  const auto area = static_cast<std::size_t>(kExtent.area());
+  EXPECT_EQ(buffer_of(plan.value(), "shaded colour")->bytes, area * 4);
+  EXPECT_EQ(buffer_of(plan.value(), "colour")->bytes, area * 4);
+  const std::string text = plan->explain();
+  EXPECT_NE(text.find("SOURCE_FORMAT=SRGB8"), std::string::npos) << text;
+  EXPECT_NE(text.find("RGBA8, sRGB encoded"), std::string::npos) << text;
+}
+
 // Without history, and from it where everything has become brighter, each pixel lies in its neighbours' range.
 TEST(Checkerboard, WhatIsFilledLiesInTheRangeOfItsNeighbours) {
   ServiceRig rig(kMoving, {.method = Method::kPoint, .shading = Shading::kCheckerboard}, kExtent, kExtent);

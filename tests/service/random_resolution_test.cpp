@@ -101,6 +101,9 @@ const LongRun kRuns[] = {
       .blur = {.shutter = 0.5f}},
      400},
     {"checkerboard_temporal", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}, 400},
+    {"checkerboard_rgba8",
+     {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard},
+     200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},
 };
 

@@ -84,10 +84,9 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
                       "{} before it",
                       name, known, kEncoded, kCheckerboard, kFocus));
     }
-    if (encoded && checkerboard)
-      return Status::invalid(
-          fmt::format("--methods: '{}': a checkerboard is of linear colour, so not {}", name, kEncoded));
-    BenchMethod method = encoded ? in_eight_bits(*found) : checkerboard ? on_checkerboard(*found) : *found;
+    BenchMethod method = *found;
+    if (encoded) method = in_eight_bits(std::move(method));
+    if (checkerboard) method = on_checkerboard(std::move(method));
     chosen.push_back(focuses ? with_focus(std::move(method)) : std::move(method));
   }
   return chosen;
