@@ -18,6 +18,7 @@ void blank_unshaded(gl::TargetPixels& pixels, int parity) {
         std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(i * channels), channels, 0);
     };
     blank(pixels.colour, 4);
+    blank(pixels.codes, 4);
     blank(pixels.depth, 1);
     blank(pixels.velocity, 2);
     blank(pixels.reactive, 1);

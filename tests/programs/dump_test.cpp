@@ -121,6 +121,21 @@ TEST_F(Dump, AFocusIsAStageAndChangesNothingElse) {
       << none.err;
 }
 
+// Frames 0 to 5 shade both halves in turn: nothing of the frames before is left in the other one.
+TEST_F(Dump, OfACheckerboardTheShadedHalfIsShown) {
+  for (const std::string colour : {"rgba16f", "rgba8"}) {
+    expect_done(dump("-q --scene pan --output 96x54 --frame 5 --warm-up 5 --shading checkerboard --colour " +
+                     colour + " --stages colour --out '{}/" + colour + "'"));
+    const auto render = image(colour + "/frame.0005.render.exr");
+    const int red = render.channel("R");
+    ASSERT_GE(red, 0);
+    for (int y = 0; y < render.extent.height; ++y) {
+      for (int x = 0; x < render.extent.width; ++x)
+        ASSERT_EQ(render.at(x, y, red) != 0, (x + y) % 2 == 1) << colour << " " << x << " " << y;
+    }
+  }
+}
+
 TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
   const std::string run =
       "-q --scene wheel --output 96x54 --scale 0.5,0.6 --method temporal --frame 3 --out ";
