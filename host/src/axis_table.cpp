@@ -45,16 +45,26 @@ void fill_axis(int render, int output, double jitter, AxisTap* taps) {
   }
 }
 
-AxisTables::AxisTables(const Device::Impl& device, Extent output)
-    : output_(output), ring_(device, count() * sizeof(AxisTap)) {}
+namespace {
 
-const cl::Buffer& AxisTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {
-  return ring_.get(queue, render, jitter, [&](std::byte* bytes) {
-    auto* taps = reinterpret_cast<AxisTap*>(bytes);
-    fill_axis(render.width, output_.width, jitter.x, taps);
-    std::fill(taps + output_.width, taps + row_axis(), taps[output_.width - 1]);
-    fill_axis(render.height, output_.height, jitter.y, taps + row_axis());
-    return count() * sizeof(AxisTap);
+std::size_t count_of(Extent output) {
+  return static_cast<std::size_t>(padded_columns(output)) + static_cast<std::size_t>(output.height);
+}
+
+}  // namespace
+
+AxisTables::AxisTables(const Device::Impl& device, Extent most)
+    : ring_(device, count_of(most) * sizeof(AxisTap)) {}
+
+const cl::Buffer& AxisTables::get(const cl::CommandQueue& queue, const TableKey& key) {
+  return ring_.get(queue, key, [&](std::byte* bytes) {
+    const Extent output = key.output;
+    auto* columns = reinterpret_cast<AxisTap*>(bytes);
+    AxisTap* rows = columns + padded_columns(output);
+    fill_axis(key.render.width, output.width, key.jitter.x, columns);
+    std::fill(columns + output.width, rows, columns[output.width - 1]);
+    fill_axis(key.render.height, output.height, key.jitter.y, rows);
+    return count_of(output) * sizeof(AxisTap);
   });
 }
 

@@ -26,25 +26,16 @@ inline int padded_columns(Extent output) {
   return (output.width + kBlock - 1) / kBlock * kBlock;
 }
 
-// The tables of one output extent on the device. Not thread-safe. Throws cl::Error.
+// The tables on the device, for outputs up to `most`. Not thread-safe. Throws cl::Error.
 class AxisTables {
  public:
-  AxisTables(const Device::Impl& device, Extent output);
+  AxisTables(const Device::Impl& device, Extent most);
 
-  // AxisTap of each output column, then, from row_axis() on, of each output row; see TableRing::get().
-  const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
-
-  Extent output() const { return output_; }
-
+  // AxisTap of each output column, then, from padded_columns(output) on, of each output row; see TableRing::get().
   // The columns are padded to whole blocks, repeating the last.
-  int row_axis() const { return padded_columns(output_); }
+  const cl::Buffer& get(const cl::CommandQueue& queue, const TableKey& key);
 
  private:
-  std::size_t count() const {
-    return static_cast<std::size_t>(row_axis()) + static_cast<std::size_t>(output_.height);
-  }
-
-  Extent output_;
   TableRing ring_;
 };
 

@@ -87,29 +87,45 @@ std::size_t spans_of(Extent output) {
   return static_cast<std::size_t>(padded_columns(output)) + static_cast<std::size_t>(output.height);
 }
 
+// Of an axis whose `pixels` have a table each.
+std::size_t weights_of(const Filter& filter, int render, int output, int pixels) {
+  return static_cast<std::size_t>(pixels) * static_cast<std::size_t>(filter_taps(filter, render, output));
+}
+
 std::size_t table_bytes(const Filter& filter, Extent render, Extent output) {
-  const auto weights =
-      static_cast<std::size_t>(padded_columns(output)) * filter_taps(filter, render.width, output.width) +
-      static_cast<std::size_t>(output.height) * filter_taps(filter, render.height, output.height);
+  const std::size_t weights = weights_of(filter, render.width, output.width, padded_columns(output)) +
+                              weights_of(filter, render.height, output.height, output.height);
   return spans_of(output) * sizeof(FilterSpan) + weights * sizeof(float);
+}
+
+// Of no output within the limits is the table larger. A smaller output has fewer pixels with more taps each.
+std::size_t most_bytes(const Filter& filter, const TableLimits& limits) {
+  std::size_t across = 0, down = 0;
+  for (int width = limits.least_output.width; width <= limits.output.width; ++width)
+    across = std::max(across, weights_of(filter, limits.target.width, width, padded_columns({width, 1})));
+  for (int height = limits.least_output.height; height <= limits.output.height; ++height)
+    down = std::max(down, weights_of(filter, limits.target.height, height, height));
+  return spans_of(limits.output) * sizeof(FilterSpan) + (across + down) * sizeof(float);
 }
 
 }  // namespace
 
-FilterTables::FilterTables(const Device::Impl& device, const Filter& filter, Extent target, Extent output)
-    : filter_(filter), output_(output), ring_(device, table_bytes(filter, target, output)) {}
+FilterTables::FilterTables(const Device::Impl& device, const Filter& filter, const TableLimits& limits)
+    : filter_(filter), ring_(device, most_bytes(filter, limits)) {}
 
-const cl::Buffer& FilterTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {
-  return ring_.get(queue, render, jitter, [&](std::byte* bytes) {
+const cl::Buffer& FilterTables::get(const cl::CommandQueue& queue, const TableKey& key) {
+  return ring_.get(queue, key, [&](std::byte* bytes) {
+    const Extent output = key.output;
+    const Extent render = key.render;
     auto* columns = reinterpret_cast<FilterSpan*>(bytes);
-    FilterSpan* rows = columns + padded_columns(output_);
-    auto* column_weights = reinterpret_cast<float*>(columns + spans_of(output_));
-    float* row_weights = column_weights + static_cast<std::ptrdiff_t>(padded_columns(output_)) *
-                                              filter_taps(filter_, render.width, output_.width);
-    fill_filter(filter_, render.width, output_.width, jitter.x, columns, column_weights);
-    std::fill(columns + output_.width, rows, columns[output_.width - 1]);
-    fill_filter(filter_, render.height, output_.height, jitter.y, rows, row_weights);
-    return table_bytes(filter_, render, output_);
+    FilterSpan* rows = columns + padded_columns(output);
+    auto* column_weights = reinterpret_cast<float*>(columns + spans_of(output));
+    float* row_weights =
+        column_weights + weights_of(filter_, render.width, output.width, padded_columns(output));
+    fill_filter(filter_, render.width, output.width, key.jitter.x, columns, column_weights);
+    std::fill(columns + output.width, rows, columns[output.width - 1]);
+    fill_filter(filter_, render.height, output.height, key.jitter.y, rows, row_weights);
+    return table_bytes(filter_, render, output);
   });
 }
 

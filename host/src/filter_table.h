@@ -43,22 +43,24 @@ int filter_inner(int render, int output);
 void fill_filter(const Filter& filter, int render, int output, double jitter, FilterSpan* spans,
                  float* weights);
 
-// The tables of one filter and output extent on the device, for viewports up to `target`. Not thread-safe.
-// Throws cl::Error.
+// The outputs of a plan's frames on each axis, and the largest viewport.
+struct TableLimits {
+  Extent target, least_output, output;
+};
+
+// The tables of one filter on the device. Not thread-safe. Throws cl::Error.
 class FilterTables {
  public:
-  FilterTables(const Device::Impl& device, const Filter& filter, Extent target, Extent output);
+  FilterTables(const Device::Impl& device, const Filter& filter, const TableLimits& limits);
 
   // FilterSpan of each output column, padded to whole blocks, then of each row; then the weights in the same
   // order. See TableRing::get().
-  const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
+  const cl::Buffer& get(const cl::CommandQueue& queue, const TableKey& key);
 
   const Filter& filter() const { return filter_; }
-  Extent output() const { return output_; }
 
  private:
   const Filter& filter_;
-  Extent output_;
   TableRing ring_;
 };
 

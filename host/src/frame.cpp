@@ -7,7 +7,7 @@ namespace quincunx {
 
 FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented) {
   FrameOutputs outputs{.presented = presented};
-  (plan.blurs() ? outputs.blurred : outputs.resolved) = linear;
+  (plan.is_dual() ? outputs.displayed : plan.blurs() ? outputs.blurred : outputs.resolved) = linear;
   return outputs;
 }
 

@@ -21,11 +21,13 @@ class FrameStream {
   const PassChain& chain() const { return chain_; }
 
   // Whether the frame before counts in this one. A dense frame has left no history.
-  bool has_history(const FrameInputs& inputs) const {
-    return has_previous_ && !inputs.reset && plan_.reads_history(previous_.render);
-  }
+  bool has_history(const FrameInputs& inputs) const { return leaves_history() && !inputs.reset; }
   // Whether the next frame can find a history.
-  bool leaves_history() const { return has_previous_ && plan_.reads_history(previous_.render); }
+  bool leaves_history() const {
+    return has_previous_ && plan_.reads_history(previous_.render, previous_.output);
+  }
+  // Of the last frame's picture.
+  Extent last_output() const { return chain_.output_of(previous_); }
 
   // What validate() cannot see: the previous frame must still be where it was.
   Status check_history(const FrameInputs& inputs) const;

@@ -15,12 +15,12 @@ int round_up(int value, int step) {
 }  // namespace
 
 AxisTables& PassTables::axis() {
-  if (!axis_) axis_ = std::make_unique<AxisTables>(device_, output_);
+  if (!axis_) axis_ = std::make_unique<AxisTables>(device_, limits_.output);
   return *axis_;
 }
 
 PositionTables& PassTables::positions() {
-  if (!positions_) positions_ = std::make_unique<PositionTables>(device_, output_);
+  if (!positions_) positions_ = std::make_unique<PositionTables>(device_, limits_.output);
   return *positions_;
 }
 
@@ -28,7 +28,7 @@ FilterTables& PassTables::filter(const Filter& filter) {
   for (const auto& made : filters_) {
     if (made->filter() == filter) return *made;
   }
-  return *filters_.emplace_back(std::make_unique<FilterTables>(device_, filter, target_, output_));
+  return *filters_.emplace_back(std::make_unique<FilterTables>(device_, filter, limits_));
 }
 
 Pass::Pass(const PassSetup& setup, const PassSpec& spec)
@@ -39,6 +39,7 @@ Pass::Pass(const PassSetup& setup, const PassSpec& spec)
 
 bool Pass::takes_part(const PassFrame& frame) const {
   const auto serves = [&] {
+    const bool dense = is_dense(frame.current.render, frame.output);
     switch (spec_.frames) {
       case Frames::kAll:
         return true;
@@ -47,11 +48,15 @@ bool Pass::takes_part(const PassFrame& frame) const {
       case Frames::kWithoutHistory:
         return !frame.has_history;
       case Frames::kSparse:
-        return !is_dense(frame.current.render, frame.output);
+        return !dense;
       case Frames::kDense:
-        return is_dense(frame.current.render, frame.output);
+        return dense;
       case Frames::kWithFocus:
         return frame.focus != nullptr;
+      case Frames::kResized:
+        return !dense && frame.resizes_history();
+      case Frames::kScaledOutput:
+        return frame.scales_output;
       case Frames::kOnRequest:
         return false;
     }

@@ -29,12 +29,10 @@ struct Counter {
   int index = 0;
 };
 
-// The tables that passes of one output read. Each is made when a pass first asks for it, at construction.
+// The tables that passes read. Each is made when a pass first asks for it, at construction.
 class PassTables {
  public:
-  // For viewports up to `target`.
-  PassTables(const Device::Impl& device, Extent target, Extent output)
-      : device_(device), target_(target), output_(output) {}
+  PassTables(const Device::Impl& device, const TableLimits& limits) : device_(device), limits_(limits) {}
 
   AxisTables& axis();
   PositionTables& positions();
@@ -42,8 +40,7 @@ class PassTables {
 
  private:
   const Device::Impl& device_;
-  Extent target_;
-  Extent output_;
+  TableLimits limits_;
   std::unique_ptr<AxisTables> axis_;
   std::unique_ptr<PositionTables> positions_;
   std::vector<std::unique_ptr<FilterTables>> filters_;
@@ -65,15 +62,24 @@ struct PassFrame {
   bool has_history = false;
   const FocusInputs* focus = nullptr;  // null: the frame has none
   Extent focus_extent = {};            // of the plan
-  Extent output = {};
+  Extent output = {};                  // of this frame
+  Extent previous_output = {};         // of the history
+  Extent display = {};                 // of the picture that is shown: the largest output
+  bool scales_output = false;          // the picture is scaled to the display by a pass of its own
   Counter counter = {};
   std::array<ImageView, kResources> views = {};  // of the resources that the plan has
 
   ImageView& operator[](Resource resource) { return views[static_cast<std::size_t>(resource)]; }
   const ImageView& operator[](Resource resource) const { return views[static_cast<std::size_t>(resource)]; }
   FrameExtents extents() const {
-    return {current.render, previous.render, output, current.particle_render, focus_extent};
+    return {current.render,  previous.render, output,      current.particle_render,
+            previous_output, display,         focus_extent};
   }
+  // History has another size than the picture that it becomes.
+  bool resizes_history() const { return has_history && previous_output != output; }
+  // The tables of this frame's viewport, and of the previous one's.
+  TableKey key() const { return {output, current.render, current.jitter}; }
+  TableKey previous_key() const { return {output, previous.render, previous.jitter}; }
 };
 
 // CLHPP takes no raw handle as an argument.

@@ -69,7 +69,10 @@ Image allocate_image(const Device& device, Extent extent, PixelFormat format, St
 }
 
 PassChain::PassChain(const Device& device, const PlanFacts& facts)
-    : device_(device), facts_(facts), tables_(*device_.impl(), facts.settings.target, facts.settings.output) {
+    : device_(device),
+      facts_(facts),
+      tables_(*device_.impl(),
+              {facts_.settings.target, facts_.settings.least_output, facts_.settings.output}) {
   const PassList list = list_passes(facts_);
   resources_ = resources_of(list.passes);
   const PassSetup setup{*device_.impl(), facts_, tables_};
@@ -89,7 +92,7 @@ bool PassChain::has(Resource resource) const {
 
 void PassChain::allocate(const ResourceUse& use) {
   const Extent extent = extent_of(use.largest.area, largest_extents(facts_.settings));
-  Owned& owned = owned_.emplace_back(Owned{use.resource, use.largest.area, {}});
+  Owned& owned = owned_.emplace_back(Owned{use.resource, use.largest.area, {}, is_resampled(use.resource)});
   for (std::size_t i = 0; i < (keeps(use.resource) ? 2 : 1); ++i) {
     if (use.largest.format != PixelFormat::kNone) {
       owned.images[i] = allocate_image(device_, extent, use.largest.format, storage_of(use.resource, facts_));
@@ -100,6 +103,16 @@ void PassChain::allocate(const ResourceUse& use) {
     fill_zero(device_.impl()->queue, records(), bytes);
     owned.images[i] = Image::borrow({.memory = records(), .extent = extent});
   }
+}
+
+bool PassChain::is_resampled(Resource resource) const {
+  return std::any_of(passes_.begin(), passes_.end(), [resource](const auto& pass) {
+    const std::vector<Use>& uses = pass->spec().uses;
+    return pass->spec().frames == Frames::kResized &&
+           std::any_of(uses.begin(), uses.end(), [resource](const Use& use) {
+             return use.resource == resource && use.access != Access::kRead;
+           });
+  });
 }
 
 Pass* PassChain::find(std::string_view kernel) const {
@@ -145,7 +158,9 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
                   .previous = previous != nullptr ? *previous : current,
                   .has_history = previous != nullptr,
                   .focus_extent = facts_.settings.focus.extent,
-                  .output = facts_.settings.output,
+                  .output = output_of(current),
+                  .previous_output = output_of(previous != nullptr ? *previous : current),
+                  .display = facts_.settings.output,
                   .counter = counter};
   if (facts_.velocity == VelocitySource::kCamera) {  // the service's own target, in uv
     frame.current.velocity_scale = {};
@@ -163,14 +178,35 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
   if (outputs.resolved) frame[Resource::kResolved] = outputs.resolved;
   if (outputs.blurred) frame[Resource::kBlurred] = outputs.blurred;
   frame[Resource::kPresented] = outputs.presented;
+  if (facts_.is_dual()) show(frame, outputs);
   return frame;
+}
+
+// A picture that has the size in which it is shown is made where it is shown, unless the caller wants both.
+void PassChain::show(PassFrame& frame, const FrameOutputs& outputs) const {
+  const Resource finished = finished_of(facts_);
+  if (outputs.displayed) frame[Resource::kDisplayed] = outputs.displayed;
+  const ImageView& wanted = finished == Resource::kBlurred ? outputs.blurred : outputs.resolved;
+  frame.scales_output = frame.output != frame.display || wanted;
+  if (!frame.scales_output) frame[finished] = frame[Resource::kDisplayed];
+}
+
+// What was resampled becomes the history, and the history's memory what this frame writes.
+void PassChain::take_resampled(PassFrame& frame) {
+  for (Owned& owned : owned_) {
+    if (!owned.is_resampled) continue;
+    std::swap(owned.images[0], owned.images[1]);
+    std::swap(frame[owned.resource], frame[previous_of(owned.resource)]);
+  }
 }
 
 // What the accumulating passes find of the previous frame is nothing.
 void PassChain::forget(const PassFrame& frame) {
   for (const ResourceUse& use : resources_) {
     if (!is_previous(use.resource) || !use.written) continue;
-    const Extent extent = extent_of(use.largest.area, largest_extents(facts_.settings));
+    FrameExtents extents = largest_extents(facts_.settings);
+    extents.output = extents.previous_output = frame.output;
+    const Extent extent = extent_of(use.largest.area, extents);
     fill_zero(frame.queue, frame[use.resource].memory,
               static_cast<std::size_t>(extent.area()) * use.largest.element_bytes());
   }
@@ -181,7 +217,10 @@ void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs)
   std::array<bool, kResources> wanted = kept_;
   wanted[index_of(Resource::kResolved)] = true;
   wanted[index_of(Resource::kBlurred)] = static_cast<bool>(outputs.blurred);
+  wanted[index_of(Resource::kDisplayed)] = static_cast<bool>(outputs.displayed);
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);
+  if (facts_.is_dual() && !frame.scales_output && (outputs.displayed || outputs.presented))
+    wanted[index_of(finished_of(facts_))] = true;
   for (std::size_t i = passes_.size(); i-- > 0;) {
     const std::vector<Use>& uses = passes_[i]->spec().uses;
     needed_[i] = passes_[i]->takes_part(frame) && std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
@@ -198,15 +237,19 @@ void PassChain::enqueue(Pass& pass, const PassFrame& frame, cl::Event* event) {
   pass.enqueue(frame, event);
 }
 
-void PassChain::run(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report,
-                    cl::Event* events) {
+void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events) {
   if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render, frame.output))
     forget(frame);
   mark_needed(frame, outputs);
+  bool resizes = frame.resizes_history();
   QueueStopwatch stopwatch(waits_ ? &frame.queue : nullptr);
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     if (!needed_[i]) continue;
     const PassSpec& spec = passes_[i]->spec();
+    if (resizes && spec.frames != Frames::kResized) {
+      take_resampled(frame);
+      resizes = false;
+    }
     enqueue(*passes_[i], frame, events != nullptr ? events++ : nullptr);
     report.passes[report.pass_count++] = {
         .kernel = spec.kernel, .ms = stopwatch.lap_ms(), .bytes = bytes_of(spec, frame.extents())};
@@ -218,7 +261,7 @@ void PassChain::warm_up() {
   constexpr Extent kPixel = {1, 1};
   const Device::Impl& device = *device_.impl();
   std::vector<cl::Memory> kept;
-  PassTables tables(device, kPixel, kPixel);
+  PassTables tables(device, {kPixel, kPixel, kPixel});
   const cl::Buffer counter(device.context, CL_MEM_READ_WRITE, sizeof(cl_uint));
   const FocusInputs focus = {.rectangles = {{{0, 0, 1, 1}}}, .rectangle_count = 1};
   PassFrame frame{.queue = device.queue,
@@ -226,6 +269,8 @@ void PassChain::warm_up() {
                   .focus = &focus,
                   .focus_extent = kPixel,
                   .output = kPixel,
+                  .previous_output = kPixel,
+                  .display = kPixel,
                   .counter = {counter(), 0}};
   frame.current.render = kPixel;
   frame.current.particle_render = kPixel;

@@ -42,6 +42,11 @@ class PassChain {
 
   const PlanFacts& facts() const { return facts_; }
 
+  // Of the frame's picture.
+  Extent output_of(const FrameInputs& inputs) const {
+    return inputs.output == Extent{} ? facts_.settings.output : inputs.output;
+  }
+
   // Runs every pass once on a picture of one pixel, so that the device finishes compiling it. Blocks.
   void warm_up();
 
@@ -52,7 +57,7 @@ class PassChain {
 
   // Enqueues what the outputs need, in order. Adds each pass to the report and, if not null, its event to `events`.
   // Afterwards the frame's resources are those of the previous frame.
-  void run(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
+  void run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
 
   // From now on run() waits for each pass, and its time in the report is the host clock's.
   void wait_for_each_pass(bool wait) { waits_ = wait; }
@@ -74,9 +79,13 @@ class PassChain {
     Resource resource;
     Area area;
     std::array<Image, 2> images;  // the second only where the previous frame's is read, too
+    bool is_resampled = false;    // where the output has another size than the history
   };
 
   void allocate(const ResourceUse& use);
+  bool is_resampled(Resource resource) const;
+  void show(PassFrame& frame, const FrameOutputs& outputs) const;
+  void take_resampled(PassFrame& frame);
   void forget(const PassFrame& frame);
   void mark_needed(const PassFrame& frame, const FrameOutputs& outputs);
   // Whether a pass of the next frame reads it.

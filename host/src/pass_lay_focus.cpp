@@ -70,8 +70,8 @@ class LayFocusPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const FocusInputs& focus = *frame.focus;
-    const ImageView& picture = frame[finished_picture(facts())];
-    const Laid laid = laid_by(focus, frame.focus_extent, frame.output);
+    const ImageView& picture = frame[shown_of(facts())];
+    const Laid laid = laid_by(focus, frame.focus_extent, frame.display);
     TexelLayout output = layout_of(picture);
     output.offset += focus.y * output.pitch + focus.x;
     FocusParams params{.left = laid.part.x - focus.x,
@@ -104,7 +104,7 @@ void plan_lay_focus(const PlanFacts& facts, PassList& list) {
                                        settings.focus.mask ? 1 : 0, precision_of(settings.resolved)),
                 .reason = "a part is in focus: its own picture is laid over",
                 .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.resolved},
-                         {finished_picture(facts), Access::kUpdate, Area::kFocus, settings.resolved}},
+                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.resolved}},
                 .make = make_pass<LayFocusPass>,
                 .frames = Frames::kWithFocus};
   if (settings.focus.mask)

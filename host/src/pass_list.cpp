@@ -6,6 +6,12 @@ namespace {
 
 // In the order in which they run.
 constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
+    // What the previous frame left behind, before any other pass: PassChain::run() exchanges it after these.
+    plan_resize_history,
+    plan_resize_tiles,
+    plan_resize_layers,
+    plan_resize_records,
+    // What completes the frame.
     plan_overlay_particles,
     plan_resolve_checkerboard,
     plan_velocity_from_depth,
@@ -31,6 +37,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_motion_tiles,
     plan_motion_neighbours,
     plan_motion_blur,
+    plan_scale_to_display,
     plan_lay_focus,
     plan_present,
     plan_clear_region,

@@ -15,9 +15,9 @@ class MotionBlurPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const MotionParams params = motion_params(frame, device(), settings().blur);
-    bind(params, frame.tables.axis().get(frame.queue, frame.current.render, frame.current.jitter),
-         frame[Resource::kTileBlurs], frame[Resource::kResolved], frame[Resource::kVelocity],
-         frame[Resource::kDepth], frame[Resource::kBlurred]);
+    bind(params, frame.tables.axis().get(frame.queue, frame.key()), frame[Resource::kTileBlurs],
+         frame[Resource::kResolved], frame[Resource::kVelocity], frame[Resource::kDepth],
+         frame[Resource::kBlurred]);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };

@@ -14,19 +14,19 @@ class PresentPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const ImageView& source = frame[finished_picture(facts())];
+    const ImageView& source = frame[shown_of(facts())];
     const ImageView& presented = frame[Resource::kPresented];
     const float exposure = facts().is_display_referred() ? 1 : frame.current.exposure;
     const PresentParams params{
-        .width = frame.output.width,
-        .height = frame.output.height,
+        .width = frame.display.width,
+        .height = frame.display.height,
         .source = layout_of(source),
         .output = layout_of(presented),
         .counter = frame.counter.index,
-        .columns_per_item = columns_per_item(device(), frame.output.width, kPresentBlock),
+        .columns_per_item = columns_per_item(device(), frame.display.width, kPresentBlock),
         .exposure = exposure == 0 ? 1 : exposure};
     bind(params, source, presented, frame.counter);
-    launch(frame, frame.output, params.columns_per_item, event);
+    launch(frame, frame.display, params.columns_per_item, event);
   }
 };
 
@@ -59,8 +59,8 @@ void plan_present(const PlanFacts& facts, PassList& list) {
                               curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
                               precision_of(settings.resolved), storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
-       .uses = {{finished_picture(facts), Access::kRead, Area::kOutput, settings.resolved},
-                {Resource::kPresented, Access::kWrite, Area::kOutput, PixelFormat::kRGBA8}},
+       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.resolved},
+                {Resource::kPresented, Access::kWrite, Area::kDisplay, PixelFormat::kRGBA8}},
        .make = make_pass<PresentPass>});
 }
 

@@ -17,15 +17,13 @@ class ResolveLayersPass : public Pass {
   }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    PositionTables& tables = frame.tables.positions();
-    const TemporalParams params = temporal_params(frame, device(), tables, facts());
+    const TemporalParams params = temporal_params(frame, device(), facts());
     const LayerPastParams before =
         layer_past_params(frame.previous, frame.output, layout_of(frame[Resource::kDepth]),
                           layout_of(frame[Resource::kPreviousDepth]));
-    bind(params, before, tables.get(frame.queue, frame.current.render, frame.current.jitter),
-         frame[Resource::kColour], frame[Resource::kReprojection], frame[Resource::kDepth],
-         frame[Resource::kPreviousDepth], frame[Resource::kOpenTrust], frame[Resource::kSplits],
-         frame[Resource::kPreviousHistory],
+    bind(params, before, frame.tables.positions().get(frame.queue, frame.key()), frame[Resource::kColour],
+         frame[Resource::kReprojection], frame[Resource::kDepth], frame[Resource::kPreviousDepth],
+         frame[Resource::kOpenTrust], frame[Resource::kSplits], frame[Resource::kPreviousHistory],
          view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
          frame[Resource::kPreviousNearHistory], frame[Resource::kPreviousLayerStates],
          frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousLayerTiles],

@@ -40,16 +40,16 @@ class ResolveQuincunxPass : public Pass {
                      layout_if_used(frame, Resource::kPreviousVelocity),
                      layout_if_used(frame, Resource::kPreviousReactive)};
     params.output = layout_of(frame[picture()]);
-    params.row_axis = tables.row_axis();
+    params.row_axis = padded_columns(frame.output);
     params.counter = frame.counter.index;
     params.columns_per_item = columns_per_item(device(), frame.output.width);
     params.velocity0_scale_x = scale0.x;
     params.velocity0_scale_y = scale0.y;
     params.velocity1_scale_x = scale1.x;
     params.velocity1_scale_y = scale1.y;
-    bind(params, tables.get(frame.queue, current.render, current.jitter),
-         tables.get(frame.queue, previous.render, previous.jitter), frame[Resource::kColour],
-         frame[Resource::kPreviousColour], view_or(frame, Resource::kVelocity, Resource::kColour),
+    bind(params, tables.get(frame.queue, frame.key()), tables.get(frame.queue, frame.previous_key()),
+         frame[Resource::kColour], frame[Resource::kPreviousColour],
+         view_or(frame, Resource::kVelocity, Resource::kColour),
          view_or(frame, Resource::kPreviousVelocity, Resource::kPreviousColour),
          view_or(frame, Resource::kReactive, Resource::kColour),
          view_or(frame, Resource::kPreviousReactive, Resource::kPreviousColour), frame[picture()],

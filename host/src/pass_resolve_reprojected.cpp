@@ -41,16 +41,16 @@ class ResolveReprojectedPass : public Pass {
                    layout_if_used(frame, Resource::kPreviousReactive)},
         .reprojection = layout_if_used(frame, Resource::kReprojection),
         .output = layout_of(frame[picture()]),
-        .columns = tables.columns(),
+        .columns = position_columns(extent),
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(device(), extent.width, kReprojectedBlock),
         .falloff0_x = falloff(now.width, extent.width),
         .falloff0_y = falloff(now.height, extent.height),
         .falloff1_x = falloff(before.width, extent.width),
         .falloff1_y = falloff(before.height, extent.height)};
-    bind(params, tables.get(frame.queue, now, frame.current.jitter),
-         tables.get(frame.queue, before, frame.previous.jitter), frame[Resource::kColour],
-         frame[Resource::kPreviousColour], view_or(frame, Resource::kReprojection, picture()),
+    bind(params, tables.get(frame.queue, frame.key()), tables.get(frame.queue, frame.previous_key()),
+         frame[Resource::kColour], frame[Resource::kPreviousColour],
+         view_or(frame, Resource::kReprojection, picture()),
          view_or(frame, Resource::kReactive, Resource::kColour),
          view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[picture()], frame.counter);
     launch(frame, extent, params.columns_per_item, event);

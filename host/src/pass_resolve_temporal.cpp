@@ -36,15 +36,14 @@ class ResolveTemporalPass : public Pass {
   }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    PositionTables& tables = frame.tables.positions();
     // A debug view is written here, the picture by temporal_display.
     const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
-    TemporalParams params = temporal_params(frame, device(), tables, facts());
+    TemporalParams params = temporal_params(frame, device(), facts());
     params.frame0.reactive = layout_if_used(frame, Resource::kReactive);
     params.frame1.reactive = layout_if_used(frame, Resource::kPreviousReactive);
     params.output = layout_of(frame[shown]);
-    bind(params, tables.get(frame.queue, frame.current.render, frame.current.jitter),
-         frame[Resource::kColour], view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
+    bind(params, frame.tables.positions().get(frame.queue, frame.key()), frame[Resource::kColour],
+         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
          view_or(frame, Resource::kReactive, Resource::kColour),
          view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
          view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),

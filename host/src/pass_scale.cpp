@@ -34,7 +34,6 @@ class ScalePass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
     const Extent render = frame.current.render;
-    AxisTables& tables = frame.tables.axis();
     const ImageView& colour = frame[Resource::kColour];
     const ImageView& output = frame[picture()];
     const ScaleParams params{.output_width = extent.width,
@@ -43,10 +42,10 @@ class ScalePass : public Pass {
                              .source_height = render.height,
                              .source = layout_of(colour),
                              .output = layout_of(output),
-                             .row_axis = tables.row_axis(),
+                             .row_axis = padded_columns(extent),
                              .counter = frame.counter.index,
                              .columns_per_item = columns_per_item(device(), extent.width)};
-    const cl::Buffer& taps = tables.get(frame.queue, render, frame.current.jitter);
+    const cl::Buffer& taps = frame.tables.axis().get(frame.queue, frame.key());
     if (is_noise(settings().method)) {
       const auto seed = static_cast<unsigned>(settings().noise_moves ? frame.current.frame_index : 0);
       const NoiseParams noise{params, seed, grain_amplitude(settings().grain, render, extent),

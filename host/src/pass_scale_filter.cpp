@@ -2,22 +2,13 @@
 // scale_filter: one rendered frame to the output through a separable filter of any width.
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "filter_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
 
 namespace quincunx {
 namespace {
-
-// Output pixels, in whole blocks, whose columns fit into the kernel's array: the first and the last pixel of
-// a run of n are (n - 1) * render / output texels apart, and both may round.
-int run_length(int render, int output, int taps, int columns) {
-  const double step = static_cast<double>(render) / output;
-  const int fitting = static_cast<int>((kFilterColumns - taps - 1) / step) + 1;
-  return std::min(fitting / kBlock * kBlock, columns);
-}
 
 class ScaleFilterPass : public Pass {
  public:
@@ -29,28 +20,11 @@ class ScaleFilterPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
     const Extent render = frame.current.render;
-    const int taps_x = filter_taps(filter_, render.width, extent.width);
-    const int taps_y = filter_taps(filter_, render.height, extent.height);
-    const int columns = columns_per_item(device(), extent.width);
-    const bool narrow = render.width < std::max<int>(taps_x, kBlock) || render.height < taps_y;
-    const FilterParams params{
-        .output_width = extent.width,
-        .output_height = extent.height,
-        .source_width = render.width,
-        .source_height = render.height,
-        .source = layout_of(frame[Resource::kColour]),
-        .output = layout_of(frame[picture()]),
-        .row_axis = padded_columns(extent),
-        .taps_x = taps_x,
-        .taps_y = taps_y,
-        .inner_x = filter_inner(render.width, extent.width),
-        .inner_y = filter_inner(render.height, extent.height),
-        .run = narrow ? 0 : std::max(run_length(render.width, extent.width, taps_x, columns), 0),
-        .counter = frame.counter.index,
-        .columns_per_item = columns};
-    bind(params, frame.tables.filter(filter_).get(frame.queue, render, frame.current.jitter),
-         frame[Resource::kColour], frame[picture()], frame.counter);
-    launch(frame, extent, columns, event);
+    const FilterParams params = filter_params(filter_, device(), {render, frame[Resource::kColour]},
+                                              {extent, frame[picture()]}, frame.counter);
+    bind(params, frame.tables.filter(filter_).get(frame.queue, frame.key()), frame[Resource::kColour],
+         frame[picture()], frame.counter);
+    launch(frame, extent, params.columns_per_item, event);
   }
 
  private:
@@ -87,11 +61,11 @@ void plan_scale_filter(const PlanFacts& facts, PassList& list) {
     return;
   }
   if (has_four_taps) add(kFourTaps, "the method: 16 samples", Viewports::kNotWider);
-  if (!widens(settings.target, settings.output)) return;
+  if (!facts.may_widen()) return;
   if (!facts.accumulates()) {
     add(kAnyTaps, "in its place where a viewport is larger than the output: the filter widens",
         Viewports::kWider);
-  } else if (is_dense(settings.target, settings.output)) {
+  } else if (facts.may_be_dense()) {
     add(kAnyTaps, "in place of the history where samples are denser than pixels", Viewports::kWider);
   }
 }

@@ -149,6 +149,8 @@ const char* name_of(Resource resource) {
       return "blur tiles";
     case Resource::kBlurred:
       return "blurred";
+    case Resource::kDisplayed:
+      return "displayed";
     case Resource::kFocus:
       return "focus";
     case Resource::kFocusMask:
@@ -177,7 +179,9 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 }
 
 FrameExtents largest_extents(const ResolveSettings& settings) {
-  return {settings.target, settings.target, settings.output, settings.particle_target, settings.focus.extent};
+  const Extent output = settings.output;
+  return {settings.target, settings.target,      output, settings.particle_target, output,
+          output,          settings.focus.extent};
 }
 
 Extent extent_of(Area area, const FrameExtents& extents) {
@@ -190,12 +194,18 @@ Extent extent_of(Area area, const FrameExtents& extents) {
       return extents.particles;
     case Area::kOutput:
       return extents.output;
+    case Area::kPreviousOutput:
+      return extents.previous_output;
+    case Area::kDisplay:
+      return extents.display;
     case Area::kFocus:
       return extents.focus;
     case Area::kFarCells:
       return tiles_of(extents.render, kFarCell);
     case Area::kTiles:
       return tiles_of(extents.output, kTemporalTile);
+    case Area::kPreviousTiles:
+      return tiles_of(extents.previous_output, kTemporalTile);
     case Area::kBlurTiles:
       return tiles_of(extents.output, kTileSide);
     case Area::kWhole:

@@ -81,6 +81,7 @@ enum class Resource : std::uint8_t {
   kLongestStreak,
   kTileBlurs,
   kBlurred,
+  kDisplayed,
   kFocus,
   kFocusMask,
   kPresented,
@@ -92,9 +93,12 @@ inline Resource picture_of(const PlanFacts& facts) {
   return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
 }
 
-// The picture that is shown.
-inline Resource finished_picture(const PlanFacts& facts) {
+// The picture with all that is made of it, in the output's size, and the one that is shown.
+inline Resource finished_of(const PlanFacts& facts) {
   return facts.blurs() ? Resource::kBlurred : Resource::kResolved;
+}
+inline Resource shown_of(const PlanFacts& facts) {
+  return facts.is_dual() ? Resource::kDisplayed : finished_of(facts);
 }
 
 const char* name_of(Resource resource);  // "colour of the previous frame"
@@ -114,12 +118,15 @@ enum class Area : std::uint8_t {
   kViewport,          // of this frame, within the target
   kPreviousViewport,  // of the previous frame, within the target
   kParticles,         // the particles' viewport of this frame, within their target
-  kOutput,
-  kFocus,      // the focus's region
-  kFarCells,   // one element for each cell of kFarCell^2 samples of the viewport
-  kTiles,      // one element for each tile of kTemporalTile^2 output pixels
-  kBlurTiles,  // one element for each tile of kTileSide^2 output pixels
-  kWhole,      // one element
+  kOutput,            // of this frame, within the largest one
+  kPreviousOutput,    // of the history, where that has another size
+  kDisplay,           // the largest output: what is shown
+  kFocus,             // the focus's region, within what is shown
+  kFarCells,          // one element for each cell of kFarCell^2 samples of the viewport
+  kTiles,             // one element for each tile of kTemporalTile^2 output pixels
+  kPreviousTiles,     // the same of the history, where that has another size
+  kBlurTiles,         // one element for each tile of kTileSide^2 output pixels
+  kWhole,             // one element
 };
 
 struct Use {
@@ -139,8 +146,10 @@ enum class Frames : std::uint8_t {
   kWithoutHistory,  // the first frame and those after a reset
   kSparse,          // is_dense() does not hold
   kDense,
-  kWithFocus,  // a focus is given
-  kOnRequest,  // none: a call of its own runs it
+  kResized,       // kSparse, with a history of another size than the output
+  kScaledOutput,  // the picture is not shown in the size in which it is made
+  kWithFocus,     // a focus is given
+  kOnRequest,     // none: a call of its own runs it
 };
 
 // Which viewports it serves: those for which widens() holds or does not hold, or all.
@@ -164,8 +173,7 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 // The extents that uses follow.
 struct FrameExtents {
   Extent render, previous_render, output;
-  Extent particles = {};
-  Extent focus = {};
+  Extent particles = {}, previous_output = {}, display = {}, focus = {};
 };
 
 // Those of a plan's largest frame.

@@ -19,7 +19,17 @@ VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& s
 }  // namespace
 
 PlanFacts::PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings)
-    : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {}
+    : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {
+  if (settings.least_output == Extent{}) settings.least_output = settings.output;
+}
+
+bool PlanFacts::may_widen() const {
+  return widens(settings.target, settings.least_output);
+}
+
+bool PlanFacts::may_be_dense() const {
+  return is_dense(settings.target, settings.least_output);
+}
 
 bool PlanFacts::reads_velocity() const {
   return has_velocity() && (method_reads_velocity(settings) || settings.blur.shutter > 0);

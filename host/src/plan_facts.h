@@ -50,10 +50,15 @@ struct PlanFacts {
   bool has_layers() const {  // a second layer of history where surfaces move apart
     return displays_history() && reprojects() && settings.temporal.preset != TemporalPreset::kFast;
   }
+  bool resizes_history() const { return is_dual() && accumulates(); }
   bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
   bool has_focus() const { return settings.focus.extent != Extent{} && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
+  bool is_dual() const { return settings.least_output != settings.output; }  // the output is dynamic
+  // Whether a viewport may be larger than an output on an axis, or dense.
+  bool may_widen() const;
+  bool may_be_dense() const;
   bool places_targets() const { return settings.targets == Targets::kPlaced; }
   Storage presented_storage() const { return places_targets() ? Storage::kBuffer : settings.storage; }
 };

@@ -21,29 +21,35 @@ void fill_positions(int render, int output, double jitter, int* texels, float* f
   }
 }
 
-PositionTables::PositionTables(const Device::Impl& device, Extent output)
-    : output_(output), ring_(device, count() * sizeof(float)) {}
-
-int PositionTables::columns() const {
+int position_columns(Extent output) {
   constexpr int kStep = kReprojectedBlock;
-  return (output_.width + kStep - 1) / kStep * kStep;
+  return (output.width + kStep - 1) / kStep * kStep;
 }
 
-std::size_t PositionTables::count() const {
-  return 2 * (static_cast<std::size_t>(columns()) + static_cast<std::size_t>(output_.height));
+namespace {
+
+std::size_t count_of(Extent output) {
+  return 2 * (static_cast<std::size_t>(position_columns(output)) + static_cast<std::size_t>(output.height));
 }
 
-const cl::Buffer& PositionTables::get(const cl::CommandQueue& queue, Extent render, Vec2 jitter) {
-  return ring_.get(queue, render, jitter, [&](std::byte* bytes) {
+}  // namespace
+
+PositionTables::PositionTables(const Device::Impl& device, Extent most)
+    : ring_(device, count_of(most) * sizeof(float)) {}
+
+const cl::Buffer& PositionTables::get(const cl::CommandQueue& queue, const TableKey& key) {
+  return ring_.get(queue, key, [&](std::byte* bytes) {
+    const Extent output = key.output;
+    const int columns = position_columns(output);
     auto* texels = reinterpret_cast<int*>(bytes);
-    auto* fractions = reinterpret_cast<float*>(texels + columns());
-    fill_positions(render.width, output_.width, jitter.x, texels, fractions);
-    std::fill(texels + output_.width, texels + columns(), texels[output_.width - 1]);
-    std::fill(fractions + output_.width, fractions + columns(), fractions[output_.width - 1]);
-    texels = reinterpret_cast<int*>(fractions + columns());
-    fill_positions(render.height, output_.height, jitter.y, texels,
-                   reinterpret_cast<float*>(texels + output_.height));
-    return count() * sizeof(float);
+    auto* fractions = reinterpret_cast<float*>(texels + columns);
+    fill_positions(key.render.width, output.width, key.jitter.x, texels, fractions);
+    std::fill(texels + output.width, texels + columns, texels[output.width - 1]);
+    std::fill(fractions + output.width, fractions + columns, fractions[output.width - 1]);
+    texels = reinterpret_cast<int*>(fractions + columns);
+    fill_positions(key.render.height, output.height, key.jitter.y, texels,
+                   reinterpret_cast<float*>(texels + output.height));
+    return count_of(output) * sizeof(float);
   });
 }
 

@@ -16,23 +16,19 @@ namespace quincunx {
 // the rest, in [0, 1]. `render` and `output` >= 1, |jitter| <= 1. Pure, no allocation.
 void fill_positions(int render, int output, double jitter, int* texels, float* fractions);
 
-// The tables of one output extent on the device. Not thread-safe. Throws cl::Error.
+// Columns of an output, padded to whole blocks of kReprojectedBlock.
+int position_columns(Extent output);
+
+// The tables on the device, for outputs up to `most`. Not thread-safe. Throws cl::Error.
 class PositionTables {
  public:
-  PositionTables(const Device::Impl& device, Extent output);
+  PositionTables(const Device::Impl& device, Extent most);
 
-  // Texels of the columns, their fractions, texels of the rows, their fractions; see TableRing::get().
-  const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter);
-
-  Extent output() const { return output_; }
-
-  // Columns padded to whole blocks of kReprojectedBlock, repeating the last.
-  int columns() const;
+  // Texels of the position_columns(), which repeat the last, their fractions, texels of the rows, their fractions; see
+  // TableRing::get().
+  const cl::Buffer& get(const cl::CommandQueue& queue, const TableKey& key);
 
  private:
-  std::size_t count() const;
-
-  Extent output_;
   TableRing ring_;
 };
 

@@ -34,6 +34,16 @@ void check_extent(Complaints& complaints, const char* field, Extent extent) {
                              extent.height, kLargestSide));
 }
 
+void check_least_output(Complaints& complaints, const ResolveSettings& settings) {
+  const Extent least = settings.least_output;
+  const Extent most = settings.output;
+  if (least == Extent{} || !usable(most)) return;
+  if (least.width >= 1 && least.height >= 1 && least.width <= most.width && least.height <= most.height)
+    return;
+  complaints.add(fmt::format("settings.least_output is {}x{}; it must lie within 1x1 and the output's {}x{}",
+                             least.width, least.height, most.width, most.height));
+}
+
 void check_format(Complaints& complaints, const char* field, PixelFormat format, PixelFormat half,
                   PixelFormat full) {
   if (format == half || format == full) return;
@@ -58,6 +68,7 @@ Status check(const ResolveSettings& settings) {
   Complaints complaints;
   check_extent(complaints, "output", settings.output);
   check_extent(complaints, "target", settings.target);
+  check_least_output(complaints, settings);
   if (settings.colour != PixelFormat::kRGBA8 && settings.colour != PixelFormat::kRGBA16F &&
       settings.colour != PixelFormat::kRGBA32F) {
     complaints.add(
@@ -104,18 +115,35 @@ Status check(const ResolveSettings& settings) {
   return complaints.status();
 }
 
-Scaling scaling_of(Area area) {
-  if (area == Area::kViewport) return Scaling::kScales;
-  if (area == Area::kParticles) return Scaling::kOwn;
-  return area == Area::kPreviousViewport ? Scaling::kHistory : Scaling::kFixed;
+Scaling scaling_of(Area area, const PlanFacts& facts) {
+  switch (area) {
+    case Area::kViewport:
+    case Area::kFarCells:
+      return Scaling::kScales;
+    case Area::kParticles:
+      return Scaling::kOwn;
+    case Area::kPreviousViewport:
+    case Area::kPreviousOutput:
+    case Area::kPreviousTiles:
+      return Scaling::kHistory;
+    case Area::kOutput:
+    case Area::kTiles:
+    case Area::kBlurTiles:
+      return facts.is_dual() ? Scaling::kScales : Scaling::kFixed;
+    case Area::kDisplay:
+    case Area::kFocus:
+    case Area::kWhole:
+      break;
+  }
+  return Scaling::kFixed;
 }
 
-PlannedBuffer planned(const ResourceUse& use, const FrameExtents& largest) {
+PlannedBuffer planned(const ResourceUse& use, const PlanFacts& facts, const FrameExtents& largest) {
   const Extent extent = extent_of(use.largest.area, largest);
   return {.name = name_of(use.resource),
           .extent = extent,
           .format = use.largest.format,
-          .scaling = scaling_of(use.largest.area),
+          .scaling = scaling_of(use.largest.area, facts),
           .bytes = static_cast<std::uint64_t>(extent.area()) * use.largest.element_bytes(),
           .owned = (use.written && use.resource != Resource::kPresented) || use.resource == Resource::kFocus};
 }
@@ -140,7 +168,7 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
   for (const PassSpec& spec : list.passes)
     plan.passes.push_back({spec.kernel, spec.options, spec.reason, bytes_of(spec, largest)});
   for (const ResourceUse& use : resources_of(list.passes)) {
-    plan.buffers.push_back(planned(use, largest));
+    plan.buffers.push_back(planned(use, facts, largest));
     plan.reads_depth |= use.resource == Resource::kDepth || use.resource == Resource::kShadedDepth;
     plan.reads_reactive |= use.resource == Resource::kReactive || use.resource == Resource::kShadedReactive;
   }
@@ -156,8 +184,12 @@ bool ResolvePlan::keeps_previous_frame() const {
   return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull;
 }
 
-bool ResolvePlan::reads_history(Extent render) const {
-  if (accumulates()) return !is_dense(render, settings.output);
+bool ResolvePlan::is_dual() const {
+  return PlanFacts(needs, settings).is_dual();
+}
+
+bool ResolvePlan::reads_history(Extent render, Extent output) const {
+  if (accumulates()) return !is_dense(render, output == Extent{} ? settings.output : output);
   return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
 }
 
@@ -169,6 +201,7 @@ std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   if (!has_focus()) return std::nullopt;
   ResolveSettings region = settings;
   region.output = settings.focus.extent;
+  region.least_output = {};
   region.target = settings.focus.target != Extent{} ? settings.focus.target : settings.focus.extent;
   region.shading = Shading::kFull;
   region.present = false;

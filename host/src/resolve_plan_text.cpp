@@ -35,6 +35,15 @@ std::string targets_text(const ResolvePlan& plan) {
       largest.width, largest.height, size_text(plan.frame_bytes()));
 }
 
+std::string output_text(const ResolvePlan& plan) {
+  const Extent least = plan.settings.least_output;
+  const Extent most = plan.settings.output;
+  if (!plan.is_dual()) return fmt::format("always {}x{}", most.width, most.height);
+  const char* history = plan.accumulates() ? "; history is resized where it changes" : "";
+  return fmt::format("dynamic: {}x{} to {}x{}, shown in {}x{}{}", least.width, least.height, most.width,
+                     most.height, most.width, most.height, history);
+}
+
 std::string focus_text(const FocusSettings& focus) {
   return fmt::format("{}x{} pixels of the picture, drawn again and resolved on their own{}",
                      focus.extent.width, focus.extent.height, focus.mask ? "; a mask is given" : "");
@@ -94,6 +103,7 @@ std::string ResolvePlan::explain() const {
       settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
       yes(settings.dither));
   fmt::format_to(out, "Colour         {}\n", colour_text(settings));
+  fmt::format_to(out, "Output         {}\n", output_text(*this));
   fmt::format_to(out, "Targets        {}\n", targets_text(*this));
   const std::optional<ResolvePlan> region = focus_plan();
   if (region) fmt::format_to(out, "Focus          {}\n", focus_text(settings.focus));

@@ -117,10 +117,12 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
     slot.report.render = inputs.render;
-    const Extent output = picture.plan().settings.output;
+    const Extent output = picture.chain().output_of(inputs);
+    slot.report.output = output;
     slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
                          static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
-    slot.report.used_previous = picture.has_history(inputs) && picture.plan().reads_history(inputs.render);
+    slot.report.used_previous =
+        picture.has_history(inputs) && picture.plan().reads_history(inputs.render, output);
     enqueue(inputs, given, outputs, slot);
     ring.commit();
     picture.keep(inputs);
@@ -228,10 +230,11 @@ Result<TileKinds> ResolveService::tile_kinds() const {
   if (!tiles)
     return Status::invalid("the plan has no motion blur and so no tiles; set settings.blur.shutter");
   try {
-    std::vector<TileBlur> blurs(static_cast<std::size_t>(tiles.extent.area()));
+    const Extent extent = extent_of(Area::kBlurTiles, {{}, {}, impl_->picture.last_output()});
+    std::vector<TileBlur> blurs(static_cast<std::size_t>(extent.area()));
     impl_->device.impl()->queue.enqueueReadBuffer(borrow<cl::Buffer>(tiles.memory), CL_TRUE, 0,
                                                   blurs.size() * sizeof(TileBlur), blurs.data());
-    TileKinds found{tiles.extent, std::vector<std::uint8_t>(blurs.size())};
+    TileKinds found{extent, std::vector<std::uint8_t>(blurs.size())};
     std::transform(blurs.begin(), blurs.end(), found.kinds.begin(),
                    [](const TileBlur& blur) { return static_cast<std::uint8_t>(blur.kind); });
     return found;
@@ -244,7 +247,10 @@ Result<ImageView> ResolveService::history() const {
   if (!plan().accumulates())
     return Status::invalid("the plan accumulates no history; choose the method temporal");
   if (!impl_->picture.leaves_history()) return ImageView();
-  return impl_->picture.chain().newest(Resource::kHistory);
+  ImageView history = impl_->picture.chain().newest(Resource::kHistory);
+  history.extent = impl_->picture.last_output();
+  history.pitch = 0;
+  return history;
 }
 
 const ResolvePlan& ResolveService::plan() const {

@@ -16,10 +16,10 @@ TableRing::~TableRing() {
   }
 }
 
-TableRing::Slot& TableRing::find(Extent render, Vec2 jitter) {
+TableRing::Slot& TableRing::find(const TableKey& key) {
   Slot* oldest = &slots_[0];
   for (Slot& slot : slots_) {
-    if (slot.holds(render, jitter)) return slot;
+    if (slot.holds(key)) return slot;
     if (slot.last_use < oldest->last_use) oldest = &slot;
   }
   return *oldest;

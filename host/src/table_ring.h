@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// TableRing: tables on the device that follow from a viewport and a jitter, made on the host when first asked
-// for.
+// TableRing: tables on the device that follow from an output, a viewport and a jitter, made on the host when first
+// asked for.
 #pragma once
 
 #include <array>
@@ -13,9 +13,16 @@
 
 namespace quincunx {
 
-// A viewport and jitter that were used lately cost nothing. The table of a new one is filled into the slot that
-// has been unused for longest, and written without blocking. There is no allocation after construction. Not
-// thread-safe. Throws cl::Error.
+// What a table follows from.
+struct TableKey {
+  Extent output, render;
+  Vec2 jitter;
+
+  friend bool operator==(const TableKey&, const TableKey&) = default;
+};
+
+// A key that was used lately costs nothing. The table of a new one is filled into the slot that has been unused for
+// longest, and written without blocking. There is no allocation after construction. Not thread-safe. Throws cl::Error.
 class TableRing {
  public:
   TableRing(const Device::Impl& device, std::size_t bytes);
@@ -26,14 +33,13 @@ class TableRing {
   // `fill` makes the table in host memory, aligned for any type, and gives the bytes of it that are in use.
   // Valid for kernels enqueued on the in-order `queue` before the eighth further call.
   template <typename Fill>
-  const cl::Buffer& get(const cl::CommandQueue& queue, Extent render, Vec2 jitter, const Fill& fill) {
-    Slot& slot = find(render, jitter);
-    const bool known = slot.holds(render, jitter);
+  const cl::Buffer& get(const cl::CommandQueue& queue, const TableKey& key, const Fill& fill) {
+    Slot& slot = find(key);
+    const bool known = slot.holds(key);
     slot.last_use = ++uses_;
     if (!known) {
       wait_for(slot);
-      slot.render = render;
-      slot.jitter = jitter;
+      slot.key = key;
       write(queue, slot, fill(slot.bytes.data()));
     }
     return slot.buffer;
@@ -44,19 +50,16 @@ class TableRing {
   static constexpr int kSlots = 8;
 
   struct Slot {
-    Extent render;
-    Vec2 jitter;
+    TableKey key;
     std::uint64_t last_use = 0;
     std::vector<std::byte> bytes;
     cl::Buffer buffer;
     cl::Event written;
 
-    bool holds(Extent of_render, Vec2 of_jitter) const {
-      return last_use != 0 && render == of_render && jitter == of_jitter;
-    }
+    bool holds(const TableKey& of) const { return last_use != 0 && key == of; }
   };
 
-  Slot& find(Extent render, Vec2 jitter);
+  Slot& find(const TableKey& key);
   static void wait_for(Slot& slot);
   static void write(const cl::CommandQueue& queue, Slot& slot, std::size_t bytes);
 

@@ -7,8 +7,7 @@ int shaded_parity(const PlanFacts& facts, const FrameInputs& frame) {
   return facts.fills() ? frame.parity : -1;
 }
 
-TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, PositionTables& tables,
-                               const PlanFacts& facts) {
+TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, const PlanFacts& facts) {
   const Extent output = frame.output;
   const Extent now = frame.current.render;
   const Extent before = frame.previous.render;
@@ -21,7 +20,7 @@ TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& devic
           .frame1 = {before.width, before.height, {}, {}, {}},
           .reprojection = layout_of(frame[Resource::kReprojection]),
           .output = {},
-          .columns = tables.columns(),
+          .columns = position_columns(output),
           .counter = frame.counter.index,
           .columns_per_item = columns_per_item(device, output.width, kTemporalTile),
           .motion_x = motion.x,

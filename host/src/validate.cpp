@@ -50,6 +50,7 @@ constexpr struct {
   const char* absent;  // what a plan lacks that does not have it
 } kOutputs[] = {{"resolved", &FrameOutputs::resolved, ""},
                 {"blurred", &FrameOutputs::blurred, "motion blur; set settings.blur.shutter"},
+                {"displayed", &FrameOutputs::displayed, "dynamic output; set settings.least_output"},
                 {"presented", &FrameOutputs::presented, "present pass; set settings.present"}};
 
 const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
@@ -67,8 +68,8 @@ void check_parity(FrameCheck& check, const FrameInputs& inputs) {
 }
 
 void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutputs& outputs) {
-  if (!outputs.resolved && !outputs.blurred && !outputs.presented) {
-    check.complain("outputs are all missing; give resolved, blurred, presented or several");
+  if (!outputs.resolved && !outputs.blurred && !outputs.displayed && !outputs.presented) {
+    check.complain("outputs are all missing; give resolved, blurred, displayed, presented or several");
   }
   for (const auto& output : kOutputs) {
     const ImageView& image = outputs.*output.image;
@@ -81,10 +82,29 @@ void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutput
     check.output(output.name, image, buffer->format,
                  buffer->owned ? Storage::kBuffer : plan.presented_storage(), plan.settings.output, "output");
   }
-  if (outputs.blurred && find(plan, "blurred") != nullptr &&
-      outputs.blurred.memory == outputs.resolved.memory &&
-      outputs.blurred.offset == outputs.resolved.offset) {
-    check.complain("blurred is the memory of resolved; give it other memory");
+  const auto check_apart = [&](const char* name, const ImageView& image, const char* other_name,
+                               const ImageView& other) {
+    if (!image || image.memory != other.memory || image.offset != other.offset) return;
+    check.complain(fmt::format("{0} is the memory of {1}; give it other memory", name, other_name));
+  };
+  check_apart("blurred", outputs.blurred, "resolved", outputs.resolved);
+  check_apart("displayed", outputs.displayed, "resolved", outputs.resolved);
+  check_apart("displayed", outputs.displayed, "blurred", outputs.blurred);
+}
+
+void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent output) {
+  const Extent most = plan.settings.output;
+  const Extent least = plan.is_dual() ? plan.settings.least_output : most;
+  if (output == Extent{}) return;
+  if (output.width >= least.width && output.height >= least.height && output.width <= most.width &&
+      output.height <= most.height)
+    return;
+  if (plan.is_dual()) {
+    check.complain(fmt::format("output is {}x{}; it must lie within the plan's {}x{} and {}x{}", output.width,
+                               output.height, least.width, least.height, most.width, most.height));
+  } else {
+    check.complain(fmt::format("output is {}x{}; the plan has always {}x{}; set settings.least_output",
+                               output.width, output.height, most.width, most.height));
   }
 }
 
@@ -95,6 +115,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   check.viewport("render", inputs.render, plan.settings.target);
   if (plan.settings.particle_target != Extent())
     check.viewport("particle_render", inputs.particle_render, plan.settings.particle_target);
+  check_output_extent(check, plan, inputs.output);
   for (const auto& input : kInputs) {
     const PlannedBuffer* buffer = find(plan, input.name);
     if (buffer == nullptr || buffer->owned) continue;

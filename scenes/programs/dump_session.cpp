@@ -42,6 +42,7 @@ bool is_colour(Stage stage) {
     case Stage::kHistory:
     case Stage::kResolved:
     case Stage::kBlurred:
+    case Stage::kDisplayed:
     case Stage::kTruth:
       return true;
     default:
@@ -51,7 +52,8 @@ bool is_colour(Stage stage) {
 
 // Of its file: what a viewer shows first.
 bool is_only_colour(Stage stage) {
-  return stage == Stage::kResolved || stage == Stage::kHistory || stage == Stage::kParticles;
+  return stage == Stage::kResolved || stage == Stage::kDisplayed || stage == Stage::kHistory ||
+         stage == Stage::kParticles;
 }
 
 // Opaque where the fourth plane is no alpha.
@@ -104,14 +106,16 @@ Status DumpSession::open() {
   auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
   service_.emplace(std::move(service).value());
-  auto resolved = source_->device().allocate(options_.output, plan->settings.resolved);
-  if (!resolved.ok()) return resolved.status();
-  resolved_ = std::move(resolved).value();
-  if (!plan->blurs()) return {};
-  auto blurred = source_->device().allocate(options_.output, plan->settings.resolved);
-  if (!blurred.ok()) return blurred.status();
-  blurred_ = std::move(blurred).value();
-  return {};
+  const auto make = [&](Image& image) -> Status {
+    auto made = source_->device().allocate(options_.output, plan->settings.resolved);
+    if (made.ok()) image = std::move(made).value();
+    return made.status();
+  };
+  if (Status status = make(resolved_); !status.ok()) return status;
+  if (plan->is_dual()) {
+    if (Status status = make(displayed_); !status.ok()) return status;
+  }
+  return plan->blurs() ? make(blurred_) : Status();
 }
 
 std::string DumpSession::why_missing(Stage stage) const {
@@ -132,6 +136,8 @@ std::string DumpSession::why_missing(Stage stage) const {
     return plan.settings.blur.shutter > 0 ? "nothing moves in this scene"
                                           : "there is no motion blur; give --blur";
   }
+  if (stage == Stage::kDisplayed && !plan.is_dual())
+    return "the picture is shown in the size in which it is made; give --dual";
   return {};
 }
 
@@ -182,8 +188,8 @@ Status DumpSession::resolve_next() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report =
-      source_->dispatch(*service_, inputs.value(), {resolved_.view(), presented.value(), blurred_.view()});
+  const FrameReport report = source_->dispatch(
+      *service_, inputs.value(), {resolved_.view(), presented.value(), blurred_.view(), displayed_.view()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
 }
@@ -192,7 +198,7 @@ Status DumpSession::resolve_next() {
 Status DumpSession::collect_history() {
   const DrawnFrame& next = source_->oldest();
   const ResolvePlan& plan = service_->plan();
-  const bool reads_past = !next.reset && plan.reads_history(next.view.render);
+  const bool reads_past = !next.reset && plan.reads_history(next.view.render, next.output);
   if (!plan.accumulates()) {
     planes_[Stage::kHistory] =
         colour_planes(current_->view.render, colour_of(current_->targets), tools::ChannelType::kHalf);
@@ -200,8 +206,10 @@ Status DumpSession::collect_history() {
     const bool half = plan.settings.temporal.history == PixelFormat::kRGBA16F;
     auto history = accumulated();
     if (!history.ok()) return history.status();
-    planes_[Stage::kHistory] = colour_planes(options_.output, history.value(),
-                                             half ? tools::ChannelType::kHalf : tools::ChannelType::kFloat);
+    // In the size that it has: resizing it is the next frame's work.
+    const Extent extent = current_ ? current_->output : options_.output;
+    planes_[Stage::kHistory] =
+        colour_planes(extent, history.value(), half ? tools::ChannelType::kHalf : tools::ChannelType::kFloat);
     planes_[Stage::kHistory].channels[3] = "confidence";
   }
   for (std::vector<float>& plane : planes_[Stage::kHistory].planes) {
@@ -212,11 +220,12 @@ Status DumpSession::collect_history() {
 
 // R, G, B and confidence; all zero where there is no history.
 Result<std::vector<float>> DumpSession::accumulated() const {
-  std::vector<float> texels(static_cast<std::size_t>(options_.output.area()) * 4);
+  const Extent extent = current_ ? current_->output : options_.output;
+  std::vector<float> texels(static_cast<std::size_t>(extent.area()) * 4);
   const auto history = service_->history();
   if (!history.ok()) return history.status();
   if (!history.value()) return texels;
-  if (history->format == PixelFormat::kRGBA32F) return download(history.value());
+  if (history->format == PixelFormat::kRGBA32F) return download(history.value(), extent);
   std::vector<std::uint16_t> halves(texels.size());
   if (Status status = source_->device().download(history.value(), history->extent, halves.data());
       !status.ok())
@@ -225,10 +234,9 @@ Result<std::vector<float>> DumpSession::accumulated() const {
   return texels;
 }
 
-Result<std::vector<float>> DumpSession::download(const ImageView& image) const {
-  std::vector<float> rgba(static_cast<std::size_t>(image.extent.area()) * 4);
-  if (Status status = source_->device().download(image, image.extent, rgba.data()); !status.ok())
-    return status;
+Result<std::vector<float>> DumpSession::download(const ImageView& image, Extent extent) const {
+  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
+  if (Status status = source_->device().download(image, extent, rgba.data()); !status.ok()) return status;
   return rgba;
 }
 
@@ -275,13 +283,17 @@ Status DumpSession::collect_targets() {
 
 Status DumpSession::collect_output() {
   const Extent output = options_.output;
-  auto resolved = download(resolved_.view());
-  if (!resolved.ok()) return resolved.status();
-  planes_[Stage::kResolved] = colour_planes(output, resolved.value(), tools::ChannelType::kFloat);
+  const auto collect = [this](Stage stage, const Image& image, Extent extent) -> Status {
+    auto rgba = download(image.view(), extent);
+    if (rgba.ok()) planes_[stage] = colour_planes(extent, rgba.value(), tools::ChannelType::kFloat);
+    return rgba.status();
+  };
+  if (Status status = collect(Stage::kResolved, resolved_, current_->output); !status.ok()) return status;
+  if (displayed_) {
+    if (Status status = collect(Stage::kDisplayed, displayed_, output); !status.ok()) return status;
+  }
   if (blurred_) {
-    auto blurred = download(blurred_.view());
-    if (!blurred.ok()) return blurred.status();
-    planes_[Stage::kBlurred] = colour_planes(output, blurred.value(), tools::ChannelType::kFloat);
+    if (Status status = collect(Stage::kBlurred, blurred_, current_->output); !status.ok()) return status;
     auto tiles = service_->tile_kinds();
     if (!tiles.ok()) return tiles.status();
     planes_[Stage::kTiles] = {tiles->tiles, {"kind"}, {{tiles->kinds.begin(), tiles->kinds.end()}}};
@@ -302,8 +314,8 @@ Status DumpSession::collect_output() {
   if (is_display_referred())
     truth = tools::display_light(truth.value(), options_.resolve.tone_map, exposure_);
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
-  const tools::MeasuredPicture picture(output,
-                                       blurred_ ? interleaved(planes_[Stage::kBlurred]) : resolved.value());
+  const Stage finished = displayed_ ? Stage::kDisplayed : blurred_ ? Stage::kBlurred : Stage::kResolved;
+  const tools::MeasuredPicture picture(output, interleaved(planes_[finished]));
   const tools::MeasuredPicture target(output, truth.value());
   planes_[Stage::kError] = {output, {"absolute"}, {error_of(picture, target)}};
   planes_[Stage::kFlip] = {
@@ -318,15 +330,14 @@ std::string DumpSession::path_of(const std::string& ending) const {
 
 // One file for each extent: EXR has one size a part.
 Status DumpSession::write_exr_files() {
-  const std::vector<std::pair<std::string, std::vector<Stage>>> groups = {
-      {"particles.exr", {Stage::kParticles}},
-      {"focus.exr", {Stage::kFocus}},
-      {"history.exr", {Stage::kHistory}},
-      {"target.exr", {Stage::kClear}},
-      {"tiles.exr", {Stage::kTiles}},
-      {"output.exr",
-       {Stage::kResolved, Stage::kBlurred, Stage::kPresented, Stage::kTruth, Stage::kError, Stage::kFlip}},
+  std::vector<std::pair<std::string, std::vector<Stage>>> groups = {
+      {"particles.exr", {Stage::kParticles}}, {"focus.exr", {Stage::kFocus}},
+      {"history.exr", {Stage::kHistory}},     {"target.exr", {Stage::kClear}},
+      {"tiles.exr", {Stage::kTiles}},         {"output.exr", {Stage::kResolved, Stage::kBlurred}},
   };
+  if (displayed_) groups.push_back({"displayed.exr", {Stage::kDisplayed}});
+  for (const Stage stage : {Stage::kPresented, Stage::kTruth, Stage::kError, Stage::kFlip})
+    groups.back().second.push_back(stage);
   for (const auto& [ending, stages] : groups) {
     std::vector<tools::Channel> channels;
     Extent extent;

@@ -37,7 +37,7 @@ class DumpSession {
   Status write_exr_files();
   Status write_pictures();
   Result<std::vector<float>> accumulated() const;
-  Result<std::vector<float>> download(const ImageView& image) const;
+  Result<std::vector<float>> download(const ImageView& image, Extent extent) const;
   bool wants(Stage stage) const;
   bool is_display_referred() const;
   std::string path_of(const std::string& ending) const;
@@ -46,7 +46,8 @@ class DumpSession {
   std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
   Image resolved_;
-  Image blurred_;  // empty without motion blur
+  Image blurred_;    // empty without motion blur
+  Image displayed_;  // empty where the output is not dynamic
   float exposure_ = 1;
   std::optional<DrawnFrame> current_;    // the last one that was resolved
   std::vector<std::uint8_t> presented_;  // RGBA8

@@ -16,7 +16,7 @@ using tools::ColourMap;
 
 constexpr std::array<const char*, kStageCount> kNames = {
     "colour", "depth",    "velocity", "reactive",  "particles", "focus", "clear", "history",
-    "tiles",  "resolved", "blurred",  "presented", "truth",     "error", "flip"};
+    "tiles",  "resolved", "blurred",  "displayed", "presented", "truth", "error", "flip"};
 
 Canvas depth_picture(const StagePlanes& planes) {
   // Nearer than a millimetre or farther than a thousand kilometres is not a surface.

@@ -27,13 +27,14 @@ enum class Stage : std::uint8_t {
   kTiles,      // classes of the motion blur's tiles
   kResolved,
   kBlurred,
+  kDisplayed,  // in the size in which it is shown, where the output is dynamic
   kPresented,
   kTruth,
   kError,  // absolute, of the tone-mapped resolved picture against truth
   kFlip,   // as the FLIP paper maps it
 };
 
-constexpr int kStageCount = 15;
+constexpr int kStageCount = 16;
 
 const char* name_of(Stage stage);  // "colour"
 std::optional<Stage> stage_named(const std::string& name);

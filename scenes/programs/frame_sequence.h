@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "programs/output_path.h"
 #include "programs/scale_path.h"
 #include "quincunx/dynamic_viewport.h"
 #include "quincunx/status.h"
@@ -19,6 +21,7 @@ using tools::jitter_of;
 struct SequenceSettings {
   Extent output;
   ScalePath scale_path;
+  std::optional<OutputPath> outputs;  // absent: always `output`
   Jitter jitter = Jitter::kNone;
   Shading shading = Shading::kFull;
   std::int64_t frames = 1;

@@ -52,6 +52,7 @@ Status FrameSource::open_sequence() {
   auto sequence = FrameSequence::create(settings_.sequence);
   if (!sequence.ok()) return sequence.status();
   sequence_ = sequence.value();
+  outputs_ = settings_.sequence.outputs;
   return {};
 }
 
@@ -101,6 +102,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
     resolve.output = bridging.output;
+    resolve.least_output = outputs_ ? outputs_->least() : Extent();
     resolve.target = bridging.target;
     resolve.particle_target = particle_target();
     resolve.targets = bridging.targets;
@@ -182,7 +184,8 @@ Status FrameSource::begin(std::int64_t index, bool keep_targets) {
 
 Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep_targets) {
   const bool cut = is_cut(scene(), view.previous_seconds, view.seconds);
-  DrawnFrame frame = {.index = index, .view = view, .reset = cut || index == 0};
+  const Extent output = outputs_ ? outputs_->next(view.render) : sequence_->output();
+  DrawnFrame frame = {.index = index, .output = output, .view = view, .reset = cut || index == 0};
   if (cut) frame.view.previous_seconds = view.seconds;
   frame.view.display = display_;
   parts_->choose(frame.view);
@@ -242,6 +245,7 @@ Result<FrameInputs> FrameSource::acquire() {
   inputs.velocity = shared->velocity;
   inputs.reactive = shared->reactive;
   inputs.render = frame.view.render;
+  inputs.output = frame.output;
   inputs.jitter = frame.view.jitter;
   inputs.parity = frame.view.parity.value_or(0);
   inputs.camera = stage_->renderer->camera_motion(frame.view);

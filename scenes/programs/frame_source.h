@@ -46,6 +46,7 @@ enum class HandOver : std::uint8_t {
 // A frame that was drawn and is not released yet.
 struct DrawnFrame {
   std::int64_t index = 0;
+  Extent output;       // of the picture that is made of it
   FrameView view;      // at a cut of the scene with its own time as the previous one: nothing has moved
   bool reset = false;  // the first frame, or the first of a shot
   gl::TargetPixels targets = {};    // only where draw() was asked for them
@@ -67,7 +68,7 @@ class FrameSource {
                                                const std::optional<FocusOptions>& focus = {}) const;
 
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
-  // have. Before the first draw(). `resolve.output`, `target` and `focus` are taken from the sequence.
+  // have. Before the first draw(). `resolve.output`, `least_output`, `target` and `focus` are taken from the sequence.
   Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
   // The same for several resolves of the same frames: the slots have what any of their plans reads, and the kind of
@@ -133,6 +134,7 @@ class FrameSource {
   FrameSourceSettings settings_;
   std::shared_ptr<Stage> stage_;  // outlives what was made in its context
   std::optional<FrameSequence> sequence_;
+  std::optional<OutputPath> outputs_;
   std::unique_ptr<gl::Bridge> bridge_;
   std::optional<PartScales> parts_;
   std::unique_ptr<gl::Bridge> particle_bridge_;  // null where particles are drawn with everything else

@@ -61,6 +61,10 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
                  "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
       .type_name("PATH")
       .excludes(scale);
+  app.add_option(
+         "--dual", options.dual,
+         "The output's resolution is dynamic, too: auto (follows the viewport's), a fixed scale, or random")
+      .type_name("auto|S|random");
   tools::add_resolve_options(app, options.resolve);
   tools::add_choice(app, "--targets", options.resolve.targets, kTargets,
                     "viewport (default): a part of large targets; placed: targets of just that size");
@@ -179,6 +183,11 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   SequenceSettings& settings = source.sequence;
   settings.output = options.output;
   settings.scale_path = path.value();
+  if (!options.dual.empty()) {
+    auto outputs = OutputPath::parse(options.dual, options.output, options.seed);
+    if (!outputs.ok()) return outputs.status();
+    settings.outputs = outputs.value();
+  }
   settings.jitter = jitter_for(options);
   settings.shading = options.resolve.shading;
   settings.frames = options.frames;

@@ -26,6 +26,7 @@ struct PictureOptions {
   std::string scale = "1";  // "S" or "SX,SY"
   std::string scale_path;   // empty: `scale` in every frame
   PartOptions parts;
+  std::string dual;         // empty: the output is `output` in every frame; else as of OutputPath
   ResolveSettings resolve;  // sizes and storage are left to FrameSource::connect()
   std::string focus;        // as FocusTarget::parse() takes it; empty: none
   float focus_scale = 1;

@@ -27,6 +27,7 @@ int explain(const RenderOptions& options) {
   const bool has_particles = static_cast<bool>(scene->particles);
   ResolveSettings settings = options.resolve;
   settings.output = sequence->output();
+  if (source->sequence.outputs) settings.least_output = source->sequence.outputs->least();
   settings.target = sequence->target();
   if (has_particles) settings.particle_target = particle_target(source->parts, settings.target);
   if (source->focus.target) {

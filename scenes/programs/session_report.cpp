@@ -24,6 +24,10 @@ std::string focus_text(const PictureOptions& options, const FocusSettings& focus
                      options.focus_scale);
 }
 
+std::string dual_text(const std::string& dual) {
+  return dual.empty() ? "always the display's" : "dynamic: " + dual;
+}
+
 std::string targets_text(Targets targets, const gl::Bridge::Memory& memory) {
   constexpr double kMebi = 1 << 20;
   return fmt::format("{}: {:.1f} MiB of OpenGL's, {:.1f} MiB of OpenCL's", name_of(targets),
@@ -53,6 +57,7 @@ tools::RunReport RenderSession::report() const {
   report.settings = {
       {"scale", scale_text(options_)},
       {"parts", source_->parts().summary()},
+      {"output's resolution", dual_text(options_.dual)},
       {"jitter", name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"colour", name_of(options_.resolve.colour)},

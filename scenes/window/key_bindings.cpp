@@ -152,6 +152,8 @@ constexpr std::array
                  [](WindowSettings& settings, bool back) {
                    settings.look.targets = neighbour(settings.look.targets, kTargetKinds, back);
                  }},
+                {GLFW_KEY_U, "u", "U", "output: the window's size, or one that follows the viewport",
+                 [](WindowSettings& settings, bool) { switch_dual(settings.look); }},
                 {GLFW_KEY_S, "s", "S", "screenshot (PNG)",
                  [](WindowSettings& settings, bool) { settings.screenshot = true; }},
                 {GLFW_KEY_D, "d", "D", "dump targets and picture (EXR)",

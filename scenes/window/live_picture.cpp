@@ -62,6 +62,7 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   // A window may have become too small for a rectangle.
   wanted.focus =
       look.focus.empty() || FocusTarget::parse(look.focus, output).ok() ? look.focus : std::string();
+  wanted.dual = look.dual;
   choose_method(wanted.resolve, look.method);
   return wanted;
 }

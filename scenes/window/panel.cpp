@@ -71,9 +71,10 @@ void draw_head(const FrameTrace& trace, const PanelFacts& facts, bool frozen) {
   ImGui::TextDisabled("frame %lld%s", static_cast<long long>(facts.frame), frozen ? ", frozen" : "");
   const std::string rate = interval > 0 ? fmt::format("{:.1f} fps", 1000 / interval) : "";
   at_right(rate);
-  ImGui::TextDisabled("%s", fmt::format("{}×{} → {}×{}", facts.render.width, facts.render.height,
-                                        facts.output.width, facts.output.height)
-                                .c_str());
+  std::string sizes = fmt::format("{}×{} → ", facts.render.width, facts.render.height);
+  if (facts.made != facts.output) sizes += fmt::format("{}×{} → ", facts.made.width, facts.made.height);
+  sizes += fmt::format("{}×{}", facts.output.width, facts.output.height);
+  ImGui::TextDisabled("%s", sizes.c_str());
 }
 
 std::vector<std::string> method_names() {
@@ -101,6 +102,9 @@ void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   choose_text("shadow map", kShadowScales, look.shadow_scale);
   choose_text("particles", kParticleScales, look.particle_scale, "in the frame");
   choose_text("focus", focus_choices(look), look.focus, "none");
+  bool dual = !look.dual.empty();
+  label("output");
+  if (ImGui::Checkbox("dynamic", &dual)) switch_dual(look);
   choose_value("resolution", kResolutionModes, settings.resolution.mode);
   label("scale");
   float scale = settings.resolution.scale;

@@ -25,6 +25,7 @@ struct PanelFacts {
   std::vector<std::string> scenes;
   std::int64_t frame = 0;
   Extent render = {};
+  Extent made = {};  // the picture's, before it is scaled to `output`
   Extent output = {};
   double target_ms = 0;  // 0: none
   std::string opengl;

@@ -56,6 +56,7 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.shadow_scale = text_of(options.parts.shadow);
   if (options.parts.particles) settings.look.particle_scale = text_of(*options.parts.particles);
   settings.look.focus = options.focus;
+  settings.look.dual = options.dual;
   settings.look.jitter = options.jitter;
   settings.resolution.scale = scale.x;
   settings.show_ui = options.show_ui;
@@ -272,6 +273,7 @@ PanelFacts WindowSession::facts() {
   facts.frame = frame_;
   facts.render = view_.render;
   facts.output = picture_->output();
+  facts.made = picture_->times().report.output;
   facts.target_ms = 1000 / settings_.rate.target_fps;
   if (tools::ms_since(said_) < 1000 * kMessageSeconds) facts.message = message_;
   if (settings_.zoom.factor > 1) {

@@ -31,4 +31,8 @@ const char* name_of(UiDrawing drawing) {
   return "unknown";
 }
 
+void switch_dual(LookSettings& look) {
+  look.dual = look.dual.empty() ? "auto" : "";
+}
+
 }  // namespace quincunx::scenes

@@ -74,12 +74,16 @@ struct LookSettings {
   std::string shadow_scale = "1";
   std::string particle_scale = kParticlesInFrame;
   std::string focus;                    // as FocusTarget::parse() takes it; empty: none
+  std::string dual;                     // as --dual; empty: the output always has the window's size
   std::optional<tools::Jitter> jitter;  // absent: the one that suits the method
 
   bool compares_methods() const { return compared != kCompareNothing && compared != kCompareTruth; }
 
   friend bool operator==(const LookSettings&, const LookSettings&) = default;
 };
+
+// Between an output of the window's size and one that follows the viewport.
+void switch_dual(LookSettings& look);
 
 // How the user interface comes over the picture; it always has the window's own resolution.
 enum class UiDrawing : std::uint8_t {

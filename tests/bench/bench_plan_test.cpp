@@ -68,6 +68,18 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   EXPECT_EQ(both->methods[0].name, "checkerboard/bilinear@rgba8");
   EXPECT_EQ(both->methods[0].resolve.shading, Shading::kCheckerboard);
   EXPECT_EQ(both->methods[0].resolve.colour, PixelFormat::kRGBA8);
+  const auto dual = plan_from(parsed({"--methods", "temporal,dual0.8/temporal"}));
+  ASSERT_TRUE(dual.ok()) << dual.status().message();
+  EXPECT_EQ(dual->methods[1].name, "dual0.8/" + dual->methods[0].name);
+  EXPECT_FALSE(sequence_for(dual.value(), 0.5, dual->methods[0]).outputs);
+  auto outputs = sequence_for(dual.value(), 0.5, dual->methods[1]).outputs;
+  ASSERT_TRUE(outputs);
+  EXPECT_EQ(outputs->least(), outputs->next({64, 64}));
+  const auto focused = plan_from(parsed({"--methods", "dual0.8/focus/temporal", "--focus", "9,9,90,90"}));
+  ASSERT_TRUE(focused.ok()) << focused.status().message();
+  EXPECT_EQ(focused->methods[0].dual, "0.8");
+  EXPECT_TRUE(focused->methods[0].focuses);
+  expect_refused({"--methods", "dual1.5/temporal"}, "is no resolution of the output");
   expect_refused({"--methods", "quincunx@rgba4"}, "no method 'quincunx@rgba4'");
 }
 

@@ -76,7 +76,7 @@ void add_clear(std::vector<Case>& cases, Stage& stage, PixelFormat format, Exten
   struct Clear {
     Clear(Stage& stage, PixelFormat format)
         : facts({}, {}),
-          tables(stage.impl(), {1, 1}, {1, 1}),
+          tables(stage.impl(), {{1, 1}, {1, 1}, {1, 1}}),
           pass({stage.impl(), facts, tables},
                clear_region_spec(Storage::kBuffer, Resource::kColour, format)) {}
 

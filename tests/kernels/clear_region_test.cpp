@@ -23,7 +23,7 @@ constexpr float kValue[4] = {.25f, .7f, 1.0f, 1e-5f};
 
 void check(PixelFormat format, Storage storage) {
   const PlanFacts facts({}, {});
-  PassTables tables(testing::impl(), {1, 1}, {1, 1});
+  PassTables tables(testing::impl(), {{1, 1}, {1, 1}, {1, 1}});
   ClearRegionPass pass({testing::impl(), facts, tables},
                        clear_region_spec(storage, Resource::kColour, format));
   const PassFrame frame{.queue = testing::impl().queue, .tables = tables};

@@ -6,16 +6,23 @@
 namespace quincunx::testing {
 namespace {
 
-ImageView view_of(const cl::Buffer& buffer) {
-  return {.memory = buffer()};
-}
-
 std::vector<LayerSplit> splits_of(const std::vector<reference::LayerSplit>& splits) {
   const auto number = [](double value) { return static_cast<float>(value); };
   std::vector<LayerSplit> made;
   for (const reference::LayerSplit& s : splits)
     made.push_back({number(s.near_depth), number(s.far_depth), number(s.motion[0]), number(s.motion[1])});
   return made;
+}
+
+PassRig rig_of(const TemporalStages& stages, TemporalPreset preset, std::string_view kernel) {
+  const PlanFacts facts = stages.facts(preset);
+  return {facts.needs, facts.settings, kernel};
+}
+
+}  // namespace
+
+ImageView view_of(const cl::Buffer& buffer) {
+  return {.memory = buffer()};
 }
 
 std::vector<TileReprojection> reprojections_of(const std::vector<reference::Tile>& tiles) {
@@ -38,13 +45,6 @@ cl::Buffer states_to_device(const std::vector<reference::StoredState>& states) {
     texels.push_back({s.far_root, s.near_root, s.near_confidence, 0});
   return to_device(encode(PixelFormat::kRGBA16F, texels));
 }
-
-PassRig rig_of(const TemporalStages& stages, TemporalPreset preset, std::string_view kernel) {
-  const PlanFacts facts = stages.facts(preset);
-  return {facts.needs, facts.settings, kernel};
-}
-
-}  // namespace
 
 std::vector<LayerTile> to_kernel(const std::vector<reference::LayerTile>& tiles) {
   const auto number = [](double value) { return static_cast<float>(value); };

@@ -20,6 +20,10 @@ struct LayerStageInputs {
 };
 
 std::vector<LayerTile> to_kernel(const std::vector<reference::LayerTile>& tiles);
+std::vector<TileReprojection> reprojections_of(const std::vector<reference::Tile>& tiles);
+std::vector<TileLight> lights_of(const std::vector<reference::Tile>& tiles);
+cl::Buffer states_to_device(const std::vector<reference::StoredState>& states);
+ImageView view_of(const cl::Buffer& buffer);
 
 class LayerStages {
  public:

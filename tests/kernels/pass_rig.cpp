@@ -17,14 +17,14 @@ PassSpec spec_of(const PlanFacts& facts, std::string_view kernel) {
 
 PassRig::PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel)
     : facts_(needs, settings) {
-  PassTables tables(impl(), {1, 1}, {1, 1});
+  PassTables tables(impl(), {{1, 1}, {1, 1}, {1, 1}});
   const PassSpec spec = spec_of(facts_, kernel);
   pass_ = spec.make({impl(), facts_, tables}, spec);
 }
 
 void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
-                  Bound bound) {
-  PassTables tables(impl(), current.render, output);
+                  Bound bound, Extent previous_output) {
+  PassTables tables(impl(), {current.render, output, output});
   PassFrame frame{.queue = impl().queue,
                   .tables = tables,
                   .current = current,
@@ -33,6 +33,8 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,
                   .output = output,
+                  .previous_output = previous_output == Extent{} ? output : previous_output,
+                  .display = output,
                   .counter = counter};
   bind_inputs(frame);
   for (const auto& [resource, view] : bound)

@@ -28,8 +28,9 @@ class PassRig {
   void set_focus(const FocusInputs* focus) { focus_ = focus; }
 
   // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.
+  // `previous_output`: of the history; {0, 0}: the output.
   void run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
-           Bound bound);
+           Bound bound, Extent previous_output = {});
 
  private:
   PlanFacts facts_;

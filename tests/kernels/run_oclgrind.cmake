@@ -49,4 +49,5 @@ check("--build-options;-cl-opt-disable -D inline=inline -D IN_REGISTERS="
   "*Temporal.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F"
   "*Temporal.ATight*/still_reactive_buffer_*" "TemporalLight*"
   "*TemporalTiles.ATight*/moving_layered_buffer_RGBA16F_history_RGBA16F_*" "*LayerSplits.ATight*"
-  "*Layers.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F")
+  "*Layers.ATight*/moving_buffer_RGBA16F_history_RGBA16F_to_RGBA16F"
+  "*Resize.ATight*/moving_alpha_buffer_RGBA16F_history_RGBA16F_*" "*Resize.Records*/moving_buffer_*")

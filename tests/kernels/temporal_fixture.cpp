@@ -113,8 +113,6 @@ std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned 
   return values;
 }
 
-namespace {}  // namespace
-
 PlanFacts TemporalStages::facts(TemporalPreset preset) const {
   ResolveSettings settings{.method = Method::kTemporal,
                            .colour = variant_.colour,
@@ -286,7 +284,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   }
   params.reprojection = variant_.moves ? layout_of(in.reprojection) : TexelLayout{};
   params.output = layout_of(view);
-  params.columns = tables.columns();
+  params.columns = position_columns(output);
   params.counter = counter.index;
   params.columns_per_item = columns_per_item(impl(), output.width, kReprojectedBlock);
   params.motion_x = to_float(r.reprojection_scale(0));
@@ -303,7 +301,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const std::string options = spec_of(facts(how.preset), "resolve_temporal").options;
   cl::Kernel resolve = kernel("resolve_temporal", how.layers.empty() ? without_layers(options) : options);
   resolve.setArg(0, params);
-  resolve.setArg(1, tables.get(impl().queue, in.frame.render, in.frame.jitter));
+  resolve.setArg(1, tables.get(impl().queue, {output, in.frame.render, in.frame.jitter}));
   set_memory(resolve, 2, in.frame.colour.memory);
   set_memory(resolve, 3, variant_.moves ? in.reprojection.memory : before());
   set_memory(resolve, 4, (variant_.reactive ? in.frame.reactive : in.frame.colour).memory);

@@ -59,7 +59,8 @@ INSTANTIATE_TEST_SUITE_P(
                       "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
                       "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "lay_focus", "present",
                       "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "far_velocity",
-                      "far_surroundings", "far_fit", "far_match"),
+                      "far_surroundings", "far_fit", "far_match", "resize_history", "resize_tiles",
+                      "resize_layers", "resize_records"),
     [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -177,6 +178,13 @@ std::vector<PlanFacts> all_facts() {
             all.push_back({{}, settings});
           }
           settings.focus = {};
+          settings.least_output = {1, 1};
+          for (const PixelFormat history : {kRGBA16F, kRGBA32F}) {
+            settings.method = Method::kTemporal;
+            settings.temporal = {.history = history};
+            add_needs(settings);
+          }
+          settings.least_output = {};
           for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
             for (const bool dither : {false, true}) {
               settings.tone_map = tone_map;

@@ -73,6 +73,8 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   EXPECT_NE(focused.out.find("The focus's region"), std::string::npos) << focused.out;
   const ProgramResult placed = run("--explain --scene wheel --targets placed");
   EXPECT_NE(placed.out.find("Targets        placed"), std::string::npos) << placed.out;
+  const ProgramResult dual = run("--explain --scene wheel --output 640x360 --dual auto");
+  EXPECT_NE(dual.out.find("Output         dynamic: 320x200 to 640x360"), std::string::npos) << dual.out;
 }
 
 TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
@@ -91,6 +93,9 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   for (const char* amount : {"-0.1", "1.1", "nan", "much"})
     expect_refused(std::string("--scene chart --sharpen ") + amount, 2, "--sharpen");
   expect_refused("--velocity-weight -1", 2, "--velocity-weight");
+  for (const char* output : {"fast", "0.05", "1.5", "nan", "0.5x"})
+    expect_refused(std::string("--dual ") + output, 2,
+                   "is no resolution of the output; write auto, random, or");
   expect_refused("--targets large", 2, "'large' is none of placed, viewport");
   expect_refused("--scene chart --targets placed --interop gl", 2, "exclude each other");
   for (const char* scale : {"0", "0.06", "1.5", "nan", "automatic"})

@@ -150,6 +150,19 @@ TEST_F(Dump, PlacedTargetsHaveNothingOutsideTheViewport) {
   EXPECT_EQ(std::count(target.pixels.begin(), target.pixels.end(), 1.0f), target.extent.area());
 }
 
+TEST_F(Dump, ADynamicOutputIsShownAsItIsMadeAndAsItIsSeen) {
+  expect_refused("--scene wheel --frame 1 --stages displayed --out '{}/e'", "give --dual");
+  const std::string run =
+      "-q --scene wheel --output 96x54 --scale 0.5 --method temporal --frame 3 --out '{}/d' ";
+  expect_done(dump(run + "--dual 0.75 --truth 2"));
+  EXPECT_EQ(image("d/frame.0003.output.exr").extent, (Extent{72, 41}));
+  EXPECT_EQ(image("d/frame.0003.history.exr").extent, (Extent{72, 41}));
+  const auto displayed = image("d/frame.0003.displayed.exr");
+  EXPECT_EQ(displayed.extent, (Extent{96, 54}));
+  EXPECT_GE(displayed.channel("truth.G"), 0);
+  EXPECT_EQ(image("d/frame.0003.displayed.png").extent, (Extent{96, 54}));
+}
+
 // Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
 // hardly known and the rounding of history to halves.
 TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {

@@ -125,6 +125,29 @@ TEST_F(EndToEnd, PlacedTargetsGiveTheSamePictures) {
   }
 }
 
+// An output that always has its largest size changes no bit. One that changes in every frame gives pictures of that
+// size, the same in every run.
+TEST_F(EndToEnd, TheOutputMayBeDynamic) {
+  for (const std::string method : {"quincunx", "temporal --blur 0.5", "bilinear --focus 10,8,40,30"}) {
+    const std::string arguments =
+        "--scene wheel --scale-path random:0.3,1.2 --seed 5 --frames 6 --method " + method + " --out ";
+    render(arguments + "'{}/fixed.%04d.png'");
+    render(arguments + "'{}/largest.%04d.png' --dual 1");
+    render(arguments + "'{}/random.%04d.png' --dual random");
+    render(arguments + "'{}/again.%04d.png' --dual random --no-overlap");
+    render(arguments + "'{}/auto.%04d.exr' --dual auto");
+    for (int index = 0; index < 6; ++index) {
+      const std::string number = ".000" + std::to_string(index);
+      const auto fixed = image("fixed" + number + ".png");
+      EXPECT_EQ(image("largest" + number + ".png").pixels, fixed.pixels) << method << index;
+      EXPECT_EQ(image("random" + number + ".png").extent, fixed.extent) << method << index;
+      EXPECT_NE(image("random" + number + ".png").pixels, fixed.pixels) << method << index;
+      EXPECT_EQ(image("again" + number + ".png").pixels, image("random" + number + ".png").pixels) << index;
+      EXPECT_EQ(image("auto" + number + ".exr").extent, fixed.extent) << method << index;
+    }
+  }
+}
+
 TEST_F(EndToEnd, TheTargetFileHoldsEveryChannel) {
   render("--scene occluders --scale 0.5 --frames 2 --exr-frame 1 --out '{}/f.%04d.png'");
   const auto targets = image("frame_0001_targets.exr");

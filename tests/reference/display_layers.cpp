@@ -19,19 +19,10 @@ constexpr double kDisplaySharpness = -.75;  // Keys' a, as of temporal_display
 constexpr double kUnknownFar = .15;         // confidence of the far layer below which the near one stands in
 constexpr double kLeastCoverage = .02;      // from which the near layer has a colour
 
-// A texel as the near layer of a pixel has it.
-template <typename Real>
-PixelOf<Real> near_texel(const LayerHistory& history, double between, int x, int y) {
-  if (history.has_two(x, y)) return as<Real>(history.near[history.texel(x, y)]);
-  if (!(state_at<Real>(history, x, y).far_depth > between)) return {};
-  const Pixel& alone = history.far[history.texel(x, y)];
-  return {alone[0], alone[1], alone[2], 1};
-}
-
 template <typename Real>
 PixelOf<Real> near_at_centre(const LayerHistory& history, const LayerTile& tile, int x, int y) {
   const auto near = [&](int i, int j) {
-    return LayerTap<Real>{near_texel<Real>(history, tile.between, i, j)};
+    return LayerTap<Real>{near_texel<Real>(history, Real(tile.between), i, j)};
   };
   if (tile.phase[0] == 0 && tile.phase[1] == 0) return near(x, y).value;
   std::array<int, 2> texel = {x, y};

@@ -52,6 +52,16 @@ struct LayerHistory {
 template <typename Real>
 LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y);
 
+// A texel as the near layer before depth `between` has it: premultiplied colour and coverage. A texel of one layer
+// counts as its colour and 1 if it is nearer than that, else as 0.
+template <typename Real>
+PixelOf<Real> near_texel(const LayerHistory& history, const Real& between, int x, int y) {
+  if (history.has_two(x, y)) return as<Real>(history.near[history.texel(x, y)]);
+  if (!(state_at<Real>(history, x, y).far_depth > between)) return {};
+  const Pixel& alone = history.far[history.texel(x, y)];
+  return {alone[0], alone[1], alone[2], 1};
+}
+
 // Coverage from which a near layer may stand for a surface alone.
 constexpr double kSolid = .3;
 

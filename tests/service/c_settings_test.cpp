@@ -13,7 +13,7 @@ namespace {
 using testing::COwner;
 
 // Does not compile once a struct has a field more: c_settings.h then wants it at its end, too, and here.
-// It knows nothing of particles of their own viewport, and of no focus.
+// It knows nothing of particles of their own viewport, of a dynamic output, and of no focus.
 SceneNeeds other_needs() {
   SceneNeeds needs;
   auto& [moving_objects, camera_motion, transparents, background] = needs;
@@ -23,9 +23,9 @@ SceneNeeds other_needs() {
 
 ResolveSettings other_settings() {
   ResolveSettings settings;
-  auto& [method, output, target, particle_target, colour, velocity, resolved, storage, targets, shading,
-         present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, far, quincunx, temporal, blur,
-         sharpness, focus] = settings;
+  auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, storage, targets,
+         shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, far, quincunx,
+         temporal, blur, sharpness, focus] = settings;
   method = Method::kTemporal;
   output = {3, 4};
   target = {5, 6};

@@ -34,6 +34,7 @@ ServiceRig region_rig(const Device& device, const ResolveSettings& picture) {
   ResolveSettings settings = picture;
   settings.shading = Shading::kFull;
   settings.present = true;
+  settings.least_output = {};
   return ServiceRig(device, {}, settings, kRegion, kRegionTarget);
 }
 
@@ -48,20 +49,22 @@ bool is_inside(const Rectangle& where, int x, int y) {
   return x >= where.x && y >= where.y && x < where.x + where.width && y < where.y + where.height;
 }
 
-// Frames of any size, jitter and picture, with a focus that wanders and is now and then not there.
+// Frames of any size, jitter and picture, with a focus that wanders and is now and then not there. Where the output is
+// dynamic, it is often the largest one, and now and then nobody asks for the picture in the size in which it is made.
 TEST_P(FocusMethods, OutsideOfItsRectangleNoBitChanges) {
   const ResolveSettings& settings = GetParam().settings;
-  const bool blurs = settings.blur.shutter > 0;
+  const bool is_dual = settings.least_output != Extent{};
+  const bool is_apart = is_dual || settings.blur.shutter > 0;  // the finished picture is not the resolved one
   ServiceRig plain({}, settings, kOutput, kTarget);
   ServiceRig with(plain.device(), {}, focused(settings), kOutput, kTarget);
   ServiceRig region = region_rig(plain.device(), settings);
-  const Image blurred = plain.device().allocate(kOutput, PixelFormat::kRGBA32F).value();
-  const ImageView picture = blurs ? blurred.view() : ImageView();
+  const Image finished = plain.device().allocate(kOutput, PixelFormat::kRGBA32F).value();
   std::mt19937 random(7);
   int changed = 0;
   for (int i = 0; i < 60; ++i) {
     HostFrame frame = random_frame(random, kTarget);
     if (settings.shading == Shading::kCheckerboard && frame.render.area() > 1) frame.parity = i % 2;
+    if (is_dual && i % 3 != 0) frame.output = random_frame(random, kOutput).render;
     HostFrame close = random_frame(random, kRegionTarget);
     close.reset = false;
     const Rectangle shown = {static_cast<int>(random() % 30) + 2, static_cast<int>(random() % 20) + 1, 26,
@@ -72,12 +75,15 @@ TEST_P(FocusMethods, OutsideOfItsRectangleNoBitChanges) {
                       .rectangles = {{shown}},
                       .rectangle_count = 1};
     const auto both = [&](ServiceRig& rig) {
-      return FrameOutputs{rig.resolved_view(), rig.presented_view(), picture};
+      FrameOutputs outputs = outputs_for(
+          rig.service().plan(), is_apart ? finished.view() : rig.resolved_view(), rig.presented_view());
+      if (i % 2 == 0) outputs.resolved = rig.resolved_view();
+      return outputs;
     };
     const auto pixels = [&](ServiceRig& rig) {
-      if (!blurs) return rig.resolved();
+      if (!is_apart) return rig.resolved();
       std::vector<Pixel> found(static_cast<std::size_t>(kOutput.area()));
-      EXPECT_TRUE(rig.device().download(picture, kOutput, found.data()).ok());
+      EXPECT_TRUE(rig.device().download(finished.view(), kOutput, found.data()).ok());
       return found;
     };
     ASSERT_TRUE(plain.service().dispatch(plain.upload(frame), both(plain)).ok());
@@ -123,6 +129,8 @@ const Case kCases[] = {
       .temporal = {.preset = TemporalPreset::kFast}}},
     {"temporal_placed", {.method = Method::kTemporal, .targets = Targets::kPlaced}},
     {"temporal_checkerboard", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}},
+    {"dual_lanczos3", {.method = Method::kLanczos3, .least_output = {1, 1}, .blur = {.shutter = .5f}}},
+    {"dual_temporal", {.method = Method::kTemporal, .least_output = {1, 1}, .sharpness = .5f}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, FocusMethods, ::testing::ValuesIn(kCases),

@@ -159,6 +159,29 @@ TEST_P(ParticleOverlay, PoisonOutsideTheirViewportNeverShows) {
   }
 }
 
+// Where there are none, the picture is that of a plan without them: also where the output is dynamic, so that the
+// history of the frame before is resized before they are laid over.
+TEST_P(ParticleOverlay, NoneChangeNoBit) {
+  ResolveSettings settings = GetParam().settings;
+  settings.least_output = {1, 1};
+  ServiceRig apart({}, with_particles(settings), kOutput, kTarget);
+  ServiceRig without({}, settings, kOutput, kTarget);
+  Particles particles(apart.device());
+  std::mt19937 random(13);
+  for (int i = 0; i < 60; ++i) {
+    HostFrame frame = random_frame(random, kTarget);
+    frame.output = random_frame(random, kOutput).render;
+    frame.parity = frame.render == Extent{1, 1} ? 0 : i % 2;
+    HostFrame none = frame;
+    none.colour = [](int, int) { return Pixel{}; };
+    none.reactive = [](int, int) { return std::uint8_t{0}; };
+    particles.fill(frame.render, none);
+    const std::vector<Pixel> actual = resolve(apart, frame, particles, frame.render);
+    const std::vector<Pixel> expected = without.resolve(frame);
+    ASSERT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0) << i;
+  }
+}
+
 const Run kRuns[] = {
     {"bilinear", {.method = Method::kBilinear}},
     {"quincunx", {.method = Method::kQuincunx, .quincunx = {.form = TwoFrameForm::kReprojected}}},

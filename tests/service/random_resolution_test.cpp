@@ -53,6 +53,14 @@ HostFrame with_holes(const HostFrame& frame, float value) {
   return holed;
 }
 
+// Any size up to the largest, but for two frames in a row often the same.
+Extent random_output(std::mt19937& random, int frame) {
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  static Extent kept = kOutput;
+  if (frame == 0 || below(3) == 0) kept = {1 + below(kOutput.width), 1 + below(kOutput.height)};
+  return kept;
+}
+
 // What lies outside the viewport, or in pixels that are not shaded, changes no bit of any frame, and no frame has a
 // value that is not finite.
 TEST_P(RandomResolution, PoisonOutsideNeverShows) {
@@ -64,6 +72,7 @@ TEST_P(RandomResolution, PoisonOutsideNeverShows) {
                           -std::numeric_limits<float>::infinity(), 1e30f};
   for (int i = 0; i < run.frames; ++i) {
     HostFrame frame = random_frame(random, kTarget);
+    if (run.settings.least_output != Extent{}) frame.output = random_output(random, i);
     const bool checkerboard = run.settings.shading == Shading::kCheckerboard;
     if (checkerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
     poisoned.flood(poison(values[i % 4]));
@@ -105,6 +114,22 @@ const LongRun kRuns[] = {
      {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard},
      200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},
+    {"dual_bilinear", {.method = Method::kBilinear, .least_output = {1, 1}}, 400},
+    {"dual_lanczos3", {.method = Method::kLanczos3, .least_output = {1, 1}}, 400},
+    {"dual_reprojected",
+     {.method = Method::kQuincunx,
+      .least_output = {1, 1},
+      .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
+      .blur = {.shutter = 0.5f},
+      .sharpness = .5f},
+     400},
+    {"dual_temporal", {.method = Method::kTemporal, .least_output = {1, 1}}, 1000},
+    {"dual_temporal_half",
+     {.method = Method::kTemporal, .least_output = {1, 1}, .temporal = {.history = PixelFormat::kRGBA16F}},
+     200},
+    {"dual_checkerboard",
+     {.method = Method::kTemporal, .least_output = {1, 1}, .shading = Shading::kCheckerboard},
+     400},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, RandomResolution, ::testing::ValuesIn(kRuns),

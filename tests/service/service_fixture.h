@@ -23,6 +23,7 @@ using Pixel = std::array<float, 4>;
 // the settings ask for it, RGBA8.
 struct HostFrame {
   Extent render = {};
+  Extent output = {};
   Vec2 jitter = {};
   std::function<Pixel(int x, int y)> colour = [](int, int) { return Pixel{0, 0, 0, 1}; };
   std::function<Vec2(int x, int y)> velocity = [](int, int) { return Vec2{}; };
@@ -103,6 +104,7 @@ class ServiceRig {
     inputs.depth = slot.depth.view();
     inputs.reactive = slot.reactive.view();
     inputs.render = frame.render;
+    inputs.output = frame.output;
     inputs.jitter = frame.jitter;
     inputs.camera = frame.camera;
     inputs.reset = frame.reset;
@@ -112,6 +114,8 @@ class ServiceRig {
   }
 
   FrameReport dispatch(const FrameInputs& inputs) {
+    if (plan_.is_dual())
+      return service_->dispatch(inputs, outputs_for(plan_, resolved_.view(), presented_.view()));
     return service_->dispatch(inputs, {resolved_.view(), presented_.view()});
   }
 
@@ -121,6 +125,7 @@ class ServiceRig {
     return resolved();
   }
 
+  // The displayed picture where the output is dynamic.
   std::vector<Pixel> resolved() {
     const Extent output = plan_.settings.output;
     std::vector<Pixel> pixels(static_cast<std::size_t>(output.area()));

@@ -164,6 +164,7 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
     FrameInputs inputs = frames[i % slots];
     inputs.render = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
     if (placed) place(inputs, inputs.render);
+    if (settings.least_output != Extent{}) inputs.output = {1 + (i / 2 * 29) % 64, 1 + (i / 2 * 17) % 48};
     inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
     inputs.reset = i % 50 == 49;
     refused += dispatch(rig, inputs).ok() ? 0 : 1;
@@ -218,6 +219,10 @@ TEST(SteadyFrame, TemporalOfAStillScene) {
 TEST(SteadyFrame, PlacedTargetsOfAnotherSizeEveryFrame) {
   run_steady_frames({}, {.method = Method::kTemporal, .targets = Targets::kPlaced});
   run_steady_frames({.moving_objects = false}, {.method = Method::kQuincunx, .targets = Targets::kPlaced});
+}
+TEST(SteadyFrame, AnOutputOfAnotherSizeEverySecondFrame) {
+  run_steady_frames({}, {.method = Method::kTemporal, .least_output = {1, 1}});
+  run_steady_frames({}, {.method = Method::kCatmullRom, .least_output = {1, 1}});
 }
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});

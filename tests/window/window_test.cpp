@@ -77,6 +77,22 @@ TEST_F(Window, PlacedTargetsShowTheSameBits) {
   EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("single.0005.png").pixels);
 }
 
+TEST_F(Window, ADynamicOutputShowsTheSameBits) {
+  write_script("5 key s\n");
+  const std::string arguments = "--scene wheel --scale 0.5 --method temporal --dual random --seed 3 ";
+  render_headless(arguments + "--frames 6 --out '{}/headless.%04d.png'");
+  ASSERT_EQ(run_window(arguments + "--frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("headless.0005.png").pixels);
+
+  // Switched on by its key in frame 2; this method needs nothing of the frames before.
+  std::filesystem::remove_all(path("captures"));
+  write_script("2 key u\n5 key s\n");
+  const std::string single = "--scene wheel --scale 0.5 --method mitchell ";
+  render_headless(single + "--dual auto --frames 6 --out '{}/single.%04d.png'");
+  ASSERT_EQ(run_window(single + "--frames 6 --hide-ui -q"), 0) << said();
+  EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("single.0005.png").pixels);
+}
+
 TEST_F(Window, DumpsWhatARunWithoutOneDumps) {
   write_script("4 key d\n");
   const std::string arguments = "--scene wheel --scale 0.71 ";

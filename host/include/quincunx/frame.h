@@ -37,6 +37,9 @@ struct FrameInputs {
   ImageView velocity = {};  // RG16F or RG32F, this position - previous position
   ImageView reactive = {};  // R8, 0: trust history, 1: ignore it
   Extent render = {};       // the viewport, within the images' extents (placed: just that); any size from 1x1
+  // The picture's size in this frame, from the plan's least_output to its output; {0, 0}: the plan's output. History
+  // of another size is resampled to it.
+  Extent output = {};
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
@@ -54,15 +57,20 @@ struct FrameInputs {
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
 };
 
-// Where the results go. At least one is needed; each has the plan's output extent.
+// Where the results go. At least one is needed; each has the plan's output extent. Of `resolved` and `blurred` a frame
+// of a smaller output writes the top left part only.
 struct FrameOutputs {
   ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent; sharpened as planned
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
   ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
+  // The finished picture in the plan's output extent, format as resolved, other memory; only where the output is
+  // dynamic (ResolvePlan::is_dual()).
+  ImageView displayed = {};
 };
 
-// Outputs for a caller who wants the finished picture: `linear` becomes the blurred picture where the plan blurs and
-// the resolved one where it does not. An empty view leaves its picture out.
+// Outputs for a caller who wants the finished picture: `linear` becomes the displayed picture where the output is
+// dynamic, else the blurred one where the plan blurs and the resolved one where it does not. An empty view leaves its
+// picture out.
 QUINCUNX_API FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear,
                                       const ImageView& presented);
 
@@ -77,11 +85,12 @@ struct PassReport {
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 48;  // 24 of the picture and 24 of its focus
+  static constexpr int kMaxPasses = 56;  // 28 of the picture and 28 of its focus
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
   Extent render = {};
+  Extent output = {};
   Vec2 ratio = {};             // render / output, recomputed from the integer viewport
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
   int pass_count = 0;

@@ -80,6 +80,9 @@ QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 struct ResolveSettings {
   Method method = Method::kQuincunx;
   Extent output = {};  // the picture's size
+  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output may have any size from this one to
+  // `output`, in which its picture is then shown. {0, 0}: always `output`.
+  Extent least_output = {};
   Extent target = {};  // the inputs' allocated size: at least the largest viewport
   // 0x0: the inputs' colour holds everything. Else particles are drawn apart, into a viewport of their own within
   // images of this size, at most the target's: see FrameInputs::particle_colour.
@@ -170,6 +173,7 @@ struct QUINCUNX_API ResolvePlan {
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool has_focus() const;             // dispatch() takes FocusInputs
+  bool is_dual() const;               // the output is dynamic: settings.least_output
   bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
   // Of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an image of that
@@ -182,7 +186,8 @@ struct QUINCUNX_API ResolvePlan {
   std::uint64_t frame_bytes() const;
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.
-  bool reads_history(Extent render) const;
+  // `output`: the frame's; {0, 0}: settings.output.
+  bool reads_history(Extent render, Extent output = {}) const;
   std::string explain() const;  // a page of plain text
 
   friend bool operator==(const ResolvePlan&, const ResolvePlan&) = default;

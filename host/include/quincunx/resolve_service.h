@@ -79,7 +79,8 @@ class QUINCUNX_API ResolveService {
   Result<TileKinds> tile_kinds() const;
 
   // The history that kTemporal's next frame finds, for inspection: R, G, B, linear, and as alpha the confidence, the
-  // weights of all samples in it. Output extent, as settings.temporal.history. Empty where there is none: before the
+  // weights of all samples in it. The last frame's output extent, as
+  // settings.temporal.history. Empty where there is none: before the
   // first frame, and after one whose samples are so dense that it keeps none. The service owns the memory; the next
   // dispatch but one overwrites it. Errors: kInvalidArgument where the plan does not accumulate.
   Result<ImageView> history() const;

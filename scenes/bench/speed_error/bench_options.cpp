@@ -33,7 +33,8 @@ void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option(
          "--methods", options.methods,
          "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
-         "of frames with half of their pixels shaded, focus/NAME with --focus")
+         "of frames with half of their pixels shaded, dual0.8/NAME at an output of 0.8 that is then scaled, "
+         "focus/NAME with --focus")
       .delimiter(',')
       .type_name("NAME,...");
   app.add_option(

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -61,11 +62,41 @@ BenchMethod with_focus(BenchMethod method) {
   return method;
 }
 
+// A method's twin at an output of so much of the picture's size on each axis, which is then scaled to it.
+constexpr std::string_view kDual = "dual";
+
+// "dual0.8/temporal": 0.8 and "temporal"; nothing for a name without it. Errors: for a scale that is none.
+struct DualName {
+  std::string scale;
+  std::string method;
+};
+std::optional<DualName> split_dual(const std::string& name) {
+  const std::size_t slash = name.find('/');
+  if (!name.starts_with(kDual) || slash == std::string::npos) return {};
+  return DualName{name.substr(kDual.size(), slash - kDual.size()), name.substr(slash + 1)};
+}
+
+BenchMethod at_smaller_output(BenchMethod method, const std::string& scale) {
+  method.name = std::string(kDual) + scale + "/" + method.name;
+  method.summary += fmt::format(", at {} of the output, scaled", scale);
+  method.dual = scale;
+  method.is_default = false;
+  return method;
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
+    if (const auto dual = split_dual(name)) {
+      if (auto outputs = scenes::OutputPath::parse(dual->scale, {1000, 1000}, 0); !outputs.ok())
+        return Status::invalid(fmt::format("--methods: '{}': {}", name, outputs.status().message()));
+      auto method = chosen_methods({dual->method});
+      if (!method.ok()) return method.status();
+      chosen.push_back(at_smaller_output(method->front(), dual->scale));
+      continue;
+    }
     const bool encoded = name.ends_with(kEncoded);
     const bool focuses = name.starts_with(kFocus);
     const bool checkerboard = name.starts_with(kCheckerboard);
@@ -80,9 +111,9 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
       for (const BenchMethod& method : methods)
         known += (known.empty() ? "" : ", ") + method.name;
       return Status::invalid(
-          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it or {} or "
-                      "{} before it",
-                      name, known, kEncoded, kCheckerboard, kFocus));
+          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it, or {}, "
+                      "{} or {}S/ before it",
+                      name, known, kEncoded, kCheckerboard, kFocus, kDual));
     }
     BenchMethod method = *found;
     if (encoded) method = in_eight_bits(std::move(method));
@@ -199,6 +230,8 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   sequence.scale_path = scenes::ScalePath::fixed({axis, axis}).value();  // plan_from() has checked it
   sequence.jitter = method.jitter;
   sequence.shading = method.resolve.shading;
+  if (!method.dual.empty())  // chosen_methods() has checked it
+    sequence.outputs = scenes::OutputPath::parse(method.dual, conditions.output, conditions.seed).value();
   sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);
   sequence.fps = conditions.fps;
   sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));

@@ -52,12 +52,12 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   if (!copy.ok()) return copy.status();
   copy_.emplace(std::move(copy).value());
 
-  std::map<std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat, bool>, std::vector<std::size_t>>
-      feeds;
+  using Feeding = std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat, bool, std::string>;
+  std::map<Feeding, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
     feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour,
-           method.focuses}]
+           method.focuses, method.dual}]
         .push_back(i);
   }
   entries_.resize(plan_.methods.size());
@@ -114,7 +114,7 @@ void CaseRun::release(int frame) {
 
 Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
   auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
-                                       {.resolved = resolved_.view()});
+                                       outputs_for(entry.contender.plan(), resolved_.view(), {}));
   if (!time.ok()) return time.status();
   const Extent output = plan_.conditions.output;
   std::vector<float> rgba(static_cast<std::size_t>(output.area()) * 4);
@@ -186,7 +186,7 @@ Status CaseRun::time_frame(int frame, bool keep) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
     auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
-                                         {.resolved = resolved_.view()});
+                                         outputs_for(entry.contender.plan(), resolved_.view(), {}));
     if (!time.ok()) return time.status();
     if (keep) entry.contender.keep(time.value());
   }

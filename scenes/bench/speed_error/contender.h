@@ -26,6 +26,8 @@ class Contender {
   Result<DispatchTime> dispatch(const FrameInputs& inputs, const FocusInputs* focus,
                                 const FrameOutputs& outputs);
 
+  const ResolvePlan& plan() const { return service_.plan(); }
+
   // Keeps a time under the latest round.
   void begin_round();
   void keep(const DispatchTime& time);

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// OutputFollower: an output resolution that goes along with the render resolution ("dual" resolution scaling).
+//
+// Upscaling to the whole display is wasted where few samples are drawn. So the passes from upscaling on may run at a
+// smaller output, whose picture is then scaled to the display. Each change of the output resamples the history,
+// so the output moves in few, large steps, each only when the render resolution has clearly moved on, and then rests.
+// Pure values; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 10.
+#pragma once
+
+#include "quincunx/export.h"
+#include "quincunx/extent.h"
+#include "quincunx/resolution_ladder.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+struct OutputSettings {
+  Extent display = {};        // the largest output; both sides in [1, 32768]
+  double min_scale = 0.5;     // of the smallest output, per axis, of the display; in (0, 1]
+  int steps = 8;              // at most so many for each axis, of equal size; at least 1
+  double most_filled = 0.64;  // see dual_output()
+  double hysteresis = 0.15;   // of the render area: so much less before the output falls; in [0, 1)
+  int rest_frames = 30;       // at least, between two changes, until a viewport has more pixels; at least 0
+};
+
+class QUINCUNX_API OutputFollower {
+ public:
+  // Errors: kInvalidArgument for a field outside its range.
+  static Result<OutputFollower> create(const OutputSettings& settings);
+
+  // Called once per frame with the extent it is drawn at. The first one is followed at once. An empty extent changes
+  // nothing. Returns output().
+  Extent observe(Extent render);
+
+  Extent output() const { return output_; }     // the display's before the first frame
+  Extent least() const { return outputs_[0]; }  // the smallest there may be
+
+ private:
+  OutputFollower(const OutputSettings& settings, ResolutionLadder outputs);
+
+  OutputSettings settings_;
+  ResolutionLadder outputs_;
+  Extent output_;
+  int since_;
+};
+
+}  // namespace quincunx

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// resize_layers: what the history has of two layers, in the size of another output. Runs after resize_history and
+// resize_tiles, in layered tiles only.
+//   The state of a pixel is that of the texel nearest to its centre. Where that has two layers, the near one is read as
+//   resize_history reads the far one, among texels whose near layer is what stands before the depth half-way between
+//   that texel's layers.
+//
+//   params             in   extents, places
+//   before             in   where the samples of the history's frame lie, and the layout of its depth
+//   positions          in   as in resize_history
+//   depth              in   R32F, of the history's frame
+//   previous_tiles     in   TileReprojection of each tile of the history
+//   previous_layers    in   LayerTile of each
+//   history            in   the far layer
+//   near_history       in   the near layer
+//   states             in   LayerState of each texel of a layered tile
+//   layers             in   LayerTile of each of the output's tiles
+//   resized_near       out  the near layer of pixels that have two
+//   resized_states     out  LayerState of each pixel of a layered tile
+// Options: SOURCE_STORAGE, HISTORY_FORMAT as of resolve_layers
+// Reference: tests/reference/resize_history.cpp
+#define ALPHA 0
+#include "layers/display_rows.h"
+#include "temporal/resized_pixels.h"
+
+// What the texels nearest to eight pixels are.
+typedef struct NearestTexels {
+  float far_depth[8], near_depth[8], near_confidence[8];
+  bool is_split[8];
+} NearestTexels;
+
+// Sets the pixels' phases to those of the near layer.
+static inline NearestTexels look_at_nearest(const ResizeParams* params, const PastLayers* past, DEPTH_TEXELS depth,
+                                            TexelLayout layout, ResizedPixels* pixels) {
+  NearestTexels nearest;
+  int texel[8];
+  float phase_x[8], phase_y[8];
+  vstore8(pixels->x, 0, texel);
+  for (int i = 0; i < 8; ++i) {
+    const LayerState state = state_at(past, depth, layout, texel[i], pixels->y);
+    __global const LayerTile* tile = past->layer_tiles + previous_tile(params, texel[i], pixels->y);
+    nearest.far_depth[i] = state.far_depth;
+    nearest.near_depth[i] = state.near_depth;
+    nearest.near_confidence[i] = min(state.near_confidence * params->share, params->most);
+    nearest.is_split[i] = as_int(load_confidence(past->far, pixels->y * past->far.width + texel[i])) < 0;
+    phase_x[i] = tile->phase_x;
+    phase_y[i] = tile->phase_y;
+  }
+  pixels->phase_x = vload8(0, phase_x);
+  pixels->phase_y = vload8(0, phase_y);
+  return nearest;
+}
+
+// The near layer at one of a pixel's places, among the 4x4 texels from (x, y) on.
+static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout, float between, int x,
+                             int y, float4 wx, float4 wy) {
+  const TexelWindow window = window_at(past, x, y, 4);
+  const Neighbourhood around = {near_of_row(past, depth, layout, between, window, 0),
+                                near_of_row(past, depth, layout, between, window, 1),
+                                near_of_row(past, depth, layout, between, window, 2),
+                                near_of_row(past, depth, layout, between, window, 3)};
+  return sample_neighbourhood(around, wx, wy);
+}
+
+// Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
+static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout,
+                            const NearestTexels* nearest, SourcePlaces from, int count, float part, float4* sums) {
+  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
+  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
+  const float4 x_weights[8] = {wx.p0, wx.p1, wx.p2, wx.p3, wx.p4, wx.p5, wx.p6, wx.p7};
+  const float4 y_weights[8] = {wy.p0, wy.p1, wy.p2, wy.p3, wy.p4, wy.p5, wy.p6, wy.p7};
+  int x[8], y[8];
+  vstore8(from.x.texel, 0, x);
+  vstore8(from.y.texel, 0, y);
+  for (int i = 0; i < count; ++i) {
+    if (!nearest->is_split[i]) continue;
+    const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
+    sums[i] += near_at(past, depth, layout, between, x[i], y[i], x_weights[i], y_weights[i]) * part;
+  }
+}
+
+__kernel void resize_layers(const ResizeParams params, const ResizeSamples before, __global const int* positions,
+                            DEPTH_TEXELS depth, __global const TileReprojection* previous_tiles,
+                            __global const LayerTile* previous_layers, HISTORY_TEXELS history,
+                            HISTORY_TEXELS near_history, __global const half* states, __global const LayerTile* layers,
+                            STORED_HISTORY resized_near, __global half* resized_states) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  const Positions row = row_among_texels(&params, positions, y);
+  const int places = params.places_x * params.places_y;
+  const PastLayers past = {{history, params.previous_width, params.previous_height},
+                           {history, params.previous_width, params.previous_height},  // no alpha is read
+                           {near_history, params.previous_width, params.previous_height},
+                           states,
+                           previous_tiles,
+                           previous_layers,
+                           params.previous_tiles_x,
+                           params.previous_tiles_y,
+                           before.width,
+                           before.height,
+                           (float2)(before.spacing_x, before.spacing_y),
+                           (float2)(before.start_x, before.start_y)};
+  for (int x = first; x < end; x += kTemporalTile) {
+    if (!layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile].is_layered) continue;
+    const int count = min(end - x, (int)kTemporalTile);
+    ResizedPixels pixels = pixels_among_texels(&params, positions, x, row);
+    const NearestTexels nearest = look_at_nearest(&params, &past, depth, before.depth, &pixels);
+    store_states(resized_states, y * params.width + x, count, vload8(0, nearest.far_depth),
+                 vload8(0, nearest.near_depth), vload8(0, nearest.near_confidence));
+    float4 sums[8];
+    for (int i = 0; i < 8; ++i) sums[i] = (float4)(0.0f);
+    for (int place = 0; place < places; ++place) {
+      const SourcePlaces from =
+          places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);
+      add_near(&past, depth, before.depth, &nearest, from, count, 1.0f / (float)places, sums);
+    }
+    for (int i = 0; i < count; ++i) {
+      if (nearest.is_split[i]) store_history(resized_near, y * params.width + x + i, sums[i]);
+    }
+  }
+}

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// resize_history: the history in the size of another output, so that it goes on where the output's resolution changes.
+//   A pixel is the mean of the history at its places, by the cubic of resolve_temporal. On an axis of at most 1.5
+//   texels a pixel there is one place, the pixel's centre; else there are as many as texels, rounded up, 4 at most.
+//   What a texel holds is its picture at its centre + its tile's phase; here phases end.
+//   Confidence is that of the texel nearest to the pixel's centre, with its sign, times params.share: a texel that
+//   becomes several pixels has no more samples than before. At most params.most is left: 8, as of all history that was
+//   resampled, or 1 where the output grows, so that the detail that history cannot have soon replaces its blur.
+//
+//   params          in   extents, places
+//   positions       in   of each output column, then row, among the texels, as in resolve_reprojected
+//   previous_tiles  in   TileReprojection of each tile of the history: phases
+//   history         in   the layer; of pixels of two layers the far one
+//   alpha           in   ALPHA 1: its alpha
+//   resized         out  the layer in the output's size
+//   resized_alpha   out  ALPHA 1: its alpha
+// Options: ALPHA  0 (default) | 1
+//          HISTORY_FORMAT as in temporal/history.h
+// Reference: tests/reference/resize_history.cpp
+#ifndef ALPHA
+#define ALPHA 0
+#endif
+#if ALPHA < 0 || ALPHA > 1
+#error "ALPHA must be 0 or 1"
+#endif
+
+#include "temporal/alpha.h"
+#include "temporal/resized_pixels.h"
+
+// The pixels with the phases of the texels there.
+static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __global const int* positions,
+                                               __global const TileReprojection* tiles, int x, Positions row) {
+  ResizedPixels pixels = pixels_among_texels(params, positions, x, row);
+  float phase_x[8], phase_y[8];
+  int texel[8];
+  vstore8(pixels.x, 0, texel);
+  for (int i = 0; i < 8; ++i) {
+    __global const TileReprojection* tile = tiles + previous_tile(params, texel[i], pixels.y);
+    phase_x[i] = tile->phase_x;
+    phase_y[i] = tile->phase_y;
+  }
+  pixels.phase_x = vload8(0, phase_x);
+  pixels.phase_y = vload8(0, phase_y);
+  return pixels;
+}
+
+// Of the texels nearest to the pixels' centres, less what resizing takes, with their signs.
+static inline float8 confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
+  float known[8];
+  int texel[8];
+  vstore8(pixels->x, 0, texel);
+  for (int i = 0; i < 8; ++i) known[i] = load_confidence(layer, pixels->y * layer.width + texel[i]);
+  const float8 stored = vload8(0, known);
+  return copysign(min(fabs(stored) * params->share, params->most), stored);
+}
+
+__kernel void resize_history(const ResizeParams params, __global const int* positions,
+                             __global const TileReprojection* previous_tiles, HISTORY_TEXELS history,
+                             HISTORY_TEXELS alpha, STORED_HISTORY resized, STORED_HISTORY resized_alpha) {
+  const int y = get_global_id(1);
+  const int first = get_global_id(0) * params.columns_per_item;
+  if (first >= params.width || y >= params.height) return;
+
+  const int end = min(first + params.columns_per_item, params.width);
+  const HistoryLayer layer = {history, params.previous_width, params.previous_height};
+  const Positions row = row_among_texels(&params, positions, y);
+  const float part = 1.0f / (float)(params.places_x * params.places_y);
+  for (int x = first; x < end; x += kTemporalTile) {
+    const ResizedPixels pixels = pixels_with_phases(&params, positions, previous_tiles, x, row);
+    EightTexels sum = {(float16)(0.0f), (float16)(0.0f)};
+#if ALPHA
+    const AlphaPlane plane = {alpha, params.previous_width, params.previous_height};
+    float8 sum_alpha = (float8)(0.0f);
+#endif
+    for (int place = 0; place < params.places_x * params.places_y; ++place) {
+      const SourcePlaces from =
+          places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);
+      const EightTexels texels = resample_history(layer, from).texels;
+      sum.left += texels.left * part;
+      sum.right += texels.right * part;
+#if ALPHA
+      sum_alpha += resample_alpha(plane, from) * part;
+#endif
+    }
+    const float8 confidence = confidence_left(&params, layer, &pixels);
+    sum.left.s37bf = confidence.lo;
+    sum.right.s37bf = confidence.hi;
+    store_history8(resized, y * params.width + x, end - x, sum);
+#if ALPHA
+    store_alpha8(resized_alpha, y * params.width + x, end - x, sum_alpha);
+#endif
+  }
+}
