@@ -58,8 +58,13 @@ PixelBuffer::PixelBuffer(const Device& device, std::shared_ptr<PixelMemory> memo
   if (size_ < memory_->size()) part_ = memory_->sub_buffer(offset_, size_);
   if (transfer() == Transfer::kZeroCopy) {
     host_owns_ = false;
-    take_back(Access::kOverwrite);
-    wait();
+    try {
+      take_back(Access::kOverwrite);
+      wait();
+    } catch (...) {
+      settle();
+      throw;
+    }
   }
 }
 
@@ -84,15 +89,22 @@ std::uint8_t* PixelMemory::client_memory() {
 }
 
 PixelBuffer::~PixelBuffer() {
-  if (!memory_) return;  // moved from
+  if (memory_) settle();  // else moved from
+}
+
+// Waits until OpenCL is done with the memory that GL is about to free.
+void PixelBuffer::settle() noexcept {
   cl_int code = CL_SUCCESS;
   if (transfer() == Transfer::kZeroCopy && host_owns_) {
     code = clEnqueueUnmapMemObject(device_.queue(), cl_buffer(), own_bytes(), 0, nullptr, nullptr);
     if (code != CL_SUCCESS) log_release_failure(code);
   }
-  // OpenCL may still be at work on the memory that GL is about to free.
   code = clFinish(device_.queue());
-  if (code != CL_SUCCESS) log_release_failure(code);
+  if (code == CL_SUCCESS) return;
+  log_release_failure(code);
+  // A device that does not answer may still be at work: the memory stays until the process ends.
+  static auto* const kept = new std::vector<std::shared_ptr<PixelMemory>>;
+  kept->push_back(memory_);
 }
 
 void PixelBuffer::take_back(Access access) {

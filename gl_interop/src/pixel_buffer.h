@@ -97,6 +97,7 @@ class PixelBuffer {
 
  private:
   std::uint8_t* own_bytes() const { return memory_->bytes() + offset_; }
+  void settle() noexcept;
 
   Device device_;
   std::shared_ptr<PixelMemory> memory_;

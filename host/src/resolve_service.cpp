@@ -12,6 +12,7 @@
 #include "frame_check.h"
 #include "frame_ring.h"
 #include "frame_stream.h"
+#include "never_freed.h"
 #include "pass_clear_region.h"
 #include "program_cache.h"
 
@@ -149,8 +150,10 @@ ResolveService& ResolveService::operator=(ResolveService&&) noexcept = default;
 ResolveService::~ResolveService() {
   if (!impl_) return;
   // The device may still write the counters of the ring.
-  if (Status status = finish(); !status.ok())
-    spdlog::warn("closing the resolve service: {}", status.message());
+  const Status status = finish();
+  if (status.ok()) return;
+  spdlog::warn("closing the resolve service: {}", status.message());
+  never_free(std::move(impl_));
 }
 
 Result<ResolveService> ResolveService::create(const Device& device, const ResolvePlan& plan) {

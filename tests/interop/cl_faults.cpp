@@ -5,9 +5,27 @@
 #include <dlfcn.h>
 
 #include <atomic>
+#include <cstring>
+#include <vector>
 
 namespace quincunx::gl::testing {
 namespace {
+
+template <auto function>
+auto next(const char* name) {
+  return reinterpret_cast<decltype(function)>(dlsym(RTLD_NEXT, name));
+}
+
+struct LateCopy {
+  cl_command_queue queue;
+  cl_mem buffer;
+  size_t offset;
+  cl_event gate;
+  std::vector<unsigned char> given;
+};
+bool g_late = false;
+std::vector<LateCopy> g_copies;
+std::size_t g_let_through = 0;
 
 std::atomic<bool> g_active = false;
 std::atomic<bool> g_for_good = false;
@@ -37,22 +55,58 @@ cl_int injected_fault() {
   return left == 0 || (left < 0 && g_for_good) ? g_code.load() : CL_SUCCESS;
 }
 
+void let_copies_through() {
+  static const auto set = next<&clSetUserEventStatus>("clSetUserEventStatus");
+  for (; g_let_through < g_copies.size(); ++g_let_through)
+    set(g_copies[g_let_through].gate, CL_COMPLETE);
+}
+
+PretendLateCopies::PretendLateCopies() {
+  g_late = true;
+}
+
+PretendLateCopies::~PretendLateCopies() {
+  g_late = false;
+  let_copies_through();
+  for (const LateCopy& copy : g_copies) {
+    next<&clFinish>("clFinish")(copy.queue);
+    clReleaseEvent(copy.gate);
+    clReleaseMemObject(copy.buffer);
+  }
+  g_copies.clear();
+  g_let_through = 0;
+}
+
+int PretendLateCopies::count() const {
+  return static_cast<int>(g_copies.size());
+}
+
+bool PretendLateCopies::copied_what_was_given() const {
+  let_copies_through();
+  bool right = true;
+  for (const LateCopy& copy : g_copies) {
+    std::vector<unsigned char> copied(copy.given.size());
+    next<&clEnqueueReadBuffer>("clEnqueueReadBuffer")(copy.queue, copy.buffer, CL_TRUE, copy.offset,
+                                                      copied.size(), copied.data(), 0, nullptr, nullptr);
+    right = right && copied == copy.given;
+  }
+  return right;
+}
+
 }  // namespace quincunx::gl::testing
 
 using quincunx::gl::testing::injected_fault;
+using namespace quincunx::gl::testing;
 
-namespace {
-
-template <auto function>
-auto next(const char* name) {
-  return reinterpret_cast<decltype(function)>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-// A function that returns its error, and one that returns an object and hands its error out through `code`.
+// A function that returns its error, one that may also wait for the device, and one that returns an object and hands
+// its error out through `code`.
 #define FAILS(name, ...)                                                        \
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault; \
+  static const auto real = next<&name>(#name);                                  \
+  return real(__VA_ARGS__)
+#define FAILS_TO_WAIT(waits, name, ...)                                         \
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault; \
+  if (waits) let_copies_through();                                              \
   static const auto real = next<&name>(#name);                                  \
   return real(__VA_ARGS__)
 #define FAILS_TO_MAKE(name, ...)                                    \
@@ -111,13 +165,24 @@ cl_int CL_API_CALL clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, co
 cl_int CL_API_CALL clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
                                        size_t size, void* to, cl_uint count, const cl_event* wait,
                                        cl_event* event) {
-  FAILS(clEnqueueReadBuffer, queue, buffer, blocking, offset, size, to, count, wait, event);
+  FAILS_TO_WAIT(blocking, clEnqueueReadBuffer, queue, buffer, blocking, offset, size, to, count, wait, event);
 }
 
 cl_int CL_API_CALL clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
                                         size_t offset, size_t size, const void* from, cl_uint count,
                                         const cl_event* wait, cl_event* event) {
-  FAILS(clEnqueueWriteBuffer, queue, buffer, blocking, offset, size, from, count, wait, event);
+  if (!g_late || blocking || count != 0) {
+    FAILS_TO_WAIT(blocking, clEnqueueWriteBuffer, queue, buffer, blocking, offset, size, from, count, wait,
+                  event);
+  }
+  if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
+  cl_context context = nullptr;
+  clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof(context), &context, nullptr);
+  const auto* bytes = static_cast<const unsigned char*>(from);
+  clRetainMemObject(buffer);
+  g_copies.push_back({queue, buffer, offset, clCreateUserEvent(context, nullptr), {bytes, bytes + size}});
+  static const auto real = next<&clEnqueueWriteBuffer>("clEnqueueWriteBuffer");
+  return real(queue, buffer, blocking, offset, size, from, 1, &g_copies.back().gate, event);
 }
 
 cl_int CL_API_CALL clFlush(cl_command_queue queue) {
@@ -125,7 +190,7 @@ cl_int CL_API_CALL clFlush(cl_command_queue queue) {
 }
 
 cl_int CL_API_CALL clWaitForEvents(cl_uint count, const cl_event* events) {
-  FAILS(clWaitForEvents, count, events);
+  FAILS_TO_WAIT(true, clWaitForEvents, count, events);
 }
 
 cl_int CL_API_CALL clGetEventInfo(cl_event event, cl_event_info name, size_t room, void* value,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A device that fails: while a PretendFault lives, a call of OpenCL from this executable returns an error instead of
-// being made. Calls that release, and those that ask what a device is, never fail.
+// A device that fails, or is late: while a PretendFault lives, a call of OpenCL from this executable returns an error
+// instead of being made. Calls that release, and those that ask what a device is, never fail.
 #pragma once
 
 #include <CL/cl.h>
@@ -18,6 +18,23 @@ class PretendFault {
 
   bool struck() const;  // whether a call has failed so far
 };
+
+// While it lives, the device is late: copies that do not block, from host memory into buffers, are made when the host
+// waits for anything, or when this object is asked about them.
+class PretendLateCopies {
+ public:
+  PretendLateCopies();
+  ~PretendLateCopies();  // all are made
+  PretendLateCopies(const PretendLateCopies&) = delete;
+  PretendLateCopies& operator=(const PretendLateCopies&) = delete;
+
+  int count() const;  // of copies so far
+  // Makes what is left: whether each copied what the memory held when it was asked for.
+  bool copied_what_was_given() const;
+};
+
+// The host waits for the device.
+void let_copies_through();
 
 // What the call that asks is to return; CL_SUCCESS: it is made.
 cl_int injected_fault();

@@ -417,6 +417,7 @@ cl_int CL_API_CALL clEnqueueWriteBufferRect(cl_command_queue queue, cl_mem buffe
 
 cl_int CL_API_CALL clFinish(cl_command_queue queue) {
   if (const cl_int fault = injected_fault(); fault != CL_SUCCESS) return fault;
+  let_copies_through();
   ++state().counts.blocking_waits;
   return next<decltype(clFinish)>("clFinish")(queue);
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A device that fails under the service: a Status in words, no exception, and later frames are right.
+#include <malloc.h>
+
 #include <array>
 #include <vector>
 
@@ -81,6 +83,53 @@ TEST_F(FaultyService, CreationFailsInWordsOrFindsAnotherWay) {
     return;
   }
   FAIL() << "every creation met the fault";
+}
+
+// Tables are copied from host memory, and a service that is lost while it is created frees its own at once.
+TEST_F(FaultyService, ALostDeviceStillFindsTheTablesOfACreationThatFailed) {
+  (void)service();           // kernels are in the cache from here on
+  mallopt(M_PERTURB, 0xa5);  // memory that is freed holds something else
+  bool had_copies = false;
+  for (int at = 0; at < kMoreThanAnyCalls; ++at) {
+    const PretendLateCopies late;
+    bool struck = false;
+    {
+      const PretendFault fault(at, kLost, kForGood);
+      (void)ResolveService::create(device(), plan());
+      struck = fault.struck();
+    }
+    had_copies |= late.count() > 0;
+    ASSERT_TRUE(late.copied_what_was_given()) << "after call " << at;
+    if (!struck) break;
+  }
+  mallopt(M_PERTURB, 0);
+  EXPECT_TRUE(had_copies);
+}
+
+// A table that did not reach the device is not taken for one that is there.
+TEST_F(FaultyService, AFirstFrameThatFailsLeavesNoTablesBehind) {
+  const auto first_picture = [this](ResolveService& service) {
+    const FrameReport report = dispatch(service, 1);
+    EXPECT_TRUE(report.ok()) << report.status.message();
+    return picture();
+  };
+  ResolveService good = service();
+  const Bytes expected = first_picture(good);
+  for (int at = 0; at < kMoreThanAnyCalls; ++at) {
+    ResolveService service = this->service();
+    bool struck = false;
+    {
+      const PretendFault fault(at, CL_OUT_OF_RESOURCES);
+      (void)dispatch(service, 1);
+      struck = fault.struck();
+    }
+    if (!struck) {
+      EXPECT_GT(at, 20) << "the calls of a frame are seen";
+      return;
+    }
+    ASSERT_EQ(first_picture(service), expected) << "after call " << at;
+  }
+  FAIL() << "every frame met the fault";
 }
 
 TEST_F(FaultyService, AFrameThatFailsLeavesNothingToTheNext) {
