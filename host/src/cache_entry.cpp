@@ -48,24 +48,30 @@ std::optional<std::vector<unsigned char>> read_cache_entry(const fs::path& path)
   return bytes;
 }
 
-void write_cache_entry(const fs::path& path, const std::vector<unsigned char>& bytes) {
+bool write_whole_file(const fs::path& path, std::string_view bytes) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  // Several processes may write the same entry at once: each writes its own file, the last rename wins.
+  // Several processes may write the same file at once: each writes its own, the last rename wins.
   const fs::path temporary = path.string() + fmt::format(".{}", getpid());
   {
     std::ofstream file(temporary, std::ios::binary);
-    file << fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!file.flush()) {
-      spdlog::debug("cache: cannot write {}", temporary.string());
       file.close();
       fs::remove(temporary, error);
-      return;
+      return false;
     }
   }
   fs::rename(temporary, path, error);
-  if (error) fs::remove(temporary, error);
+  if (!error) return true;
+  fs::remove(temporary, error);
+  return false;
+}
+
+void write_cache_entry(const fs::path& path, const std::vector<unsigned char>& bytes) {
+  std::string entry = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  entry.append(bytes.begin(), bytes.end());
+  if (!write_whole_file(path, entry)) spdlog::debug("cache: cannot write {}", path.string());
 }
 
 }  // namespace quincunx

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "device_impl.h"
@@ -18,7 +19,10 @@ std::string cache_key(const Device::Impl& device, const std::string& source, con
 // Nothing where there is no such entry, or it is torn or damaged.
 std::optional<std::vector<unsigned char>> read_cache_entry(const std::filesystem::path& path);
 
-// Whole or not at all; a folder that cannot be written is no error.
+// Whole or not at all: whether it was written. Makes the folder where there is none.
+bool write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+// The same as an entry; a folder that cannot be written is no error.
 void write_cache_entry(const std::filesystem::path& path, const std::vector<unsigned char>& bytes);
 
 }  // namespace quincunx

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "device_impl.h"
+#include "device_profile_file.h"
 #include "timer_validation.h"
 
 namespace quincunx {
@@ -242,7 +243,7 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
     impl->timer = validated_timer(*impl);
-    impl->profile = default_profile(impl->info.kind);
+    impl->profile = find_profile(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::open", infos[*chosen].name);
@@ -265,15 +266,24 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
     impl->info.two_channel_images =
         impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
     impl->timer = validated_timer(*impl);
-    impl->profile = default_profile(impl->info.kind);
+    impl->profile = find_profile(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::borrow", "a borrowed device");
   }
 }
 
+Device Device::with_profile(const DeviceProfile& profile) const {
+  auto impl = std::make_shared<Impl>(*impl_);
+  impl->profile = profile;
+  return Device(std::move(impl));
+}
+
 const DeviceInfo& Device::info() const {
   return impl_->info;
+}
+const DeviceProfile& Device::profile() const {
+  return impl_->profile;
 }
 cl_context Device::context() const {
   return impl_->context();
@@ -363,6 +373,8 @@ Status Device::download(const ImageView& image, Extent extent, void* texels, std
 
 Status Device::finish() const {
   try {
+    // rusticl 22.3 waits only for what was not flushed yet.
+    impl_->queue.enqueueMarkerWithWaitList();
     impl_->queue.finish();
     return {};
   } catch (const cl::Error& error) {

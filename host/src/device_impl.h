@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "device_profile.h"
 #include "opencl.h"
 #include "quincunx/device.h"
+#include "quincunx/device_profile.h"
 #include "quincunx/pass_timer.h"
 
 namespace quincunx {

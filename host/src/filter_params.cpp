@@ -16,13 +16,13 @@ int run_length(int render, int output, int taps, int columns) {
 
 }  // namespace
 
-FilterParams filter_params(const Filter& filter, const Device::Impl& device, const FilterPicture& from,
+FilterParams filter_params(const Filter& filter, const WorkShape& shape, const FilterPicture& from,
                            const FilterPicture& to, const Counter& counter) {
   const Extent render = from.extent;
   const Extent extent = to.extent;
   const int taps_x = filter_taps(filter, render.width, extent.width);
   const int taps_y = filter_taps(filter, render.height, extent.height);
-  const int columns = columns_per_item(device, extent.width);
+  const int columns = columns_per_item(shape, extent.width);
   const bool narrow = render.width < std::max<int>(taps_x, kBlock) || render.height < taps_y;
   return {.output_width = extent.width,
           .output_height = extent.height,

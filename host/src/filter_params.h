@@ -13,7 +13,7 @@ struct FilterPicture {
 };
 
 // For the tables of `filter` from the one extent to the other.
-FilterParams filter_params(const Filter& filter, const Device::Impl& device, const FilterPicture& from,
+FilterParams filter_params(const Filter& filter, const WorkShape& shape, const FilterPicture& from,
                            const FilterPicture& to, const Counter& counter);
 
 }  // namespace quincunx

@@ -18,7 +18,7 @@ SamplePlaces places_of(const FrameInputs& frame, Extent output) {
 
 }  // namespace
 
-LayerParams layer_params(const PassFrame& frame, const Device::Impl& device, Extent extent) {
+LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent extent) {
   const FrameInputs& current = frame.current;
   const Extent render = current.render;
   const Extent before = frame.previous.render;
@@ -48,7 +48,7 @@ LayerParams layer_params(const PassFrame& frame, const Device::Impl& device, Ext
           .to_previous_y = to_previous.y,
           .tiles_x = tiles.width,
           .tiles_y = tiles.height,
-          .columns_per_item = columns_per_item(device, extent.width, kReprojectedBlock)};
+          .columns_per_item = columns_per_item(shape, extent.width, kReprojectedBlock)};
 }
 
 LayerPastParams layer_past_params(const FrameInputs& frame, Extent output, TexelLayout depth0,

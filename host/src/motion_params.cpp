@@ -20,7 +20,7 @@ Vec2 streak_scale(const FrameInputs& inputs, Extent output, float shutter) {
 
 }  // namespace
 
-MotionParams motion_params(const PassFrame& frame, const Device::Impl& device,
+MotionParams motion_params(const PassFrame& frame, const WorkShape& shape,
                            const MotionBlurSettings& settings) {
   const Extent grid = extent_of(Area::kBlurTiles, frame.extents());
   const Vec2 scale = streak_scale(frame.current, frame.output, settings.shutter);
@@ -33,7 +33,7 @@ MotionParams motion_params(const PassFrame& frame, const Device::Impl& device,
           .depth = layout_of(frame[Resource::kDepth]),
           .output = layout_of(frame[Resource::kBlurred]),
           .row_axis = padded_columns(frame.output),
-          .columns_per_item = columns_per_item(device, frame.output.width),
+          .columns_per_item = columns_per_item(shape, frame.output.width),
           .most_samples_log2 = log2_of(settings.samples),
           .scale_x = scale.x,
           .scale_y = scale.y};

@@ -6,7 +6,7 @@
 
 namespace quincunx {
 
-MotionParams motion_params(const PassFrame& frame, const Device::Impl& device,
+MotionParams motion_params(const PassFrame& frame, const WorkShape& shape,
                            const MotionBlurSettings& settings);
 
 }  // namespace quincunx

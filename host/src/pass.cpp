@@ -32,10 +32,11 @@ FilterTables& PassTables::filter(const Filter& filter) {
 }
 
 Pass::Pass(const PassSetup& setup, const PassSpec& spec)
-    : device_(setup.device),
-      facts_(setup.facts),
+    : facts_(setup.facts),
       spec_(spec),
-      kernel_(build_kernel(setup.device, spec.kernel, spec.options)) {}
+      kernel_(build_kernel(setup.device, spec.kernel, spec.options)),
+      shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
+                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))) {}
 
 bool Pass::takes_part(const PassFrame& frame) const {
   const auto serves = [&] {
@@ -79,10 +80,10 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
   kernel.setArg(index, sizeof(memory), &memory);
 }
 
-void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   Extent extent, int columns, cl::Event* event) {
-  const int group_x = device.profile.group_width;
-  const int group_y = device.profile.group_height;
+  const int group_x = shape.group_width;
+  const int group_y = shape.group_height;
   const int items_x = (extent.width + columns - 1) / columns;
   queue.enqueueNDRangeKernel(
       kernel, cl::NullRange,
@@ -107,8 +108,17 @@ Ratio ratio_of(Extent to, Extent from) {
           static_cast<float>(static_cast<double>(to.height) / from.height)};
 }
 
-int columns_per_item(const Device::Impl& device, int width, int block) {
-  const int pixels = device.profile.pixels_per_item;
+WorkShape with_smaller_group(WorkShape shape, std::size_t most) {
+  while (static_cast<std::size_t>(shape.group_width) * static_cast<std::size_t>(shape.group_height) > most) {
+    int& longer = shape.group_width > shape.group_height ? shape.group_width : shape.group_height;
+    if (longer == 1) break;
+    longer /= 2;
+  }
+  return shape;
+}
+
+int columns_per_item(const WorkShape& shape, int width, int block) {
+  const int pixels = shape.pixels_per_item;
   return round_up(pixels == 0 ? width : std::min(pixels, width), block);
 }
 

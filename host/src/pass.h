@@ -87,8 +87,11 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
 // Enough work-items of `columns` x 1 pixels for the extent, in groups of one fixed size: a device compiles a
 // kernel anew for each size.
-void enqueue_rows(const Device::Impl& device, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
                   Extent extent, int columns, cl::Event* event);
+
+// The shape with its group halved, the longer side first, until it has at most `most` work-items. Pure.
+WorkShape with_smaller_group(WorkShape shape, std::size_t most);
 
 class Pass {
  public:
@@ -106,7 +109,7 @@ class Pass {
   virtual void enqueue(const PassFrame& frame, cl::Event* event) = 0;
 
  protected:
-  const Device::Impl& device() const { return device_; }
+  const WorkShape& shape() const { return shape_; }
   const PlanFacts& facts() const { return facts_; }
   const ResolveSettings& settings() const { return facts_.settings; }
   // What a variant does not read may be any memory: `other`'s.
@@ -119,7 +122,7 @@ class Pass {
 
   // As enqueue_rows().
   void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event) {
-    enqueue_rows(device_, frame.queue, kernel_, extent, columns, event);
+    enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event);
   }
 
   // Sets the kernel's arguments in order: structs by value, buffers, the memory of images and counters.
@@ -139,10 +142,10 @@ class Pass {
     }
   }
 
-  const Device::Impl& device_;
   const PlanFacts& facts_;
   PassSpec spec_;
   cl::Kernel kernel_;
+  WorkShape shape_;
 };
 
 // A pass's `make`.
@@ -167,7 +170,7 @@ struct Ratio {
 };
 Ratio ratio_of(Extent to, Extent from);
 
-// Pixels of a row that one work-item makes, by the device's profile: a multiple of `block`.
-int columns_per_item(const Device::Impl& device, int width, int block = kBlock);
+// Pixels of a row that one work-item makes: a multiple of `block`.
+int columns_per_item(const WorkShape& shape, int width, int block = kBlock);
 
 }  // namespace quincunx

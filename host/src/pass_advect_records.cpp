@@ -12,7 +12,7 @@ class AdvectRecordsPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent before = frame.previous.render;
-    const LayerParams params = layer_params(frame, device(), before);
+    const LayerParams params = layer_params(frame, shape(), before);
     bind(params, frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
          frame[Resource::kRecordKeys]);
     launch(frame, before, params.columns_per_item, event);

@@ -91,7 +91,7 @@ void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Exte
   ClearParams params{};
   params.width = render.width;
   params.height = render.height;
-  params.columns_per_item = columns_per_item(device(), render.width);
+  params.columns_per_item = columns_per_item(shape(), render.width);
   params.output = layout_of(image);
   encode_texel(image.format, value, params.bits);
   stored_value(image.format, value, params.value);

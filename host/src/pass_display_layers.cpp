@@ -28,7 +28,7 @@ class DisplayLayersPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const TemporalDisplayParams params = temporal_display_params(frame, device(), picture());
+    const TemporalDisplayParams params = temporal_display_params(frame, shape(), picture());
     const LayerPastParams now =
         layer_past_params(frame.current, frame.output, layout_of(frame[Resource::kDepth]), {});
     bind(params, now, frame[Resource::kDepth], frame[Resource::kTileReprojection],

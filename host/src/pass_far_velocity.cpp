@@ -28,7 +28,7 @@ class FarVelocityPass : public Pass {
                                              .height = render.height,
                                              .depth = layout_of(frame[Resource::kDepth]),
                                              .velocity = layout_of(frame[Resource::kVelocity]),
-                                             .columns_per_item = columns_per_item(device(), render.width),
+                                             .columns_per_item = columns_per_item(shape(), render.width),
                                              .camera = camera_params(frame.current)},
                                    .drawn = layout_of(frame[Resource::kDrawnVelocity]),
                                    .places = far_places(frame.current, frame.output),

@@ -81,7 +81,7 @@ class LayFocusPass : public Pass {
                        .focus = layout_of(frame[Resource::kFocus]),
                        .mask = layout_if_used(frame, Resource::kFocusMask),
                        .output = output,
-                       .columns_per_item = columns_per_item(device(), laid.part.width),
+                       .columns_per_item = columns_per_item(shape(), laid.part.width),
                        .rectangle_count = laid.count,
                        .rectangles = {}};
     std::copy(laid.rectangles.begin(), laid.rectangles.end(), params.rectangles);

@@ -13,7 +13,7 @@ class LayerRecordsPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent render = frame.current.render;
-    const LayerParams params = layer_params(frame, device(), render);
+    const LayerParams params = layer_params(frame, shape(), render);
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kReprojection],
          frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
          frame[Resource::kRecordKeys], frame[Resource::kRecords]);

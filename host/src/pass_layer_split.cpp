@@ -13,7 +13,7 @@ class LayerSplitPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent render = frame.current.render;
-    const LayerParams params = layer_params(frame, device(), render);
+    const LayerParams params = layer_params(frame, shape(), render);
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kOpenTrust],
          frame[Resource::kRecordKeys], frame[Resource::kPreviousRecords], frame[Resource::kRecords],
          frame[Resource::kReprojection], frame[Resource::kSplits], frame[Resource::kSplitMarks]);

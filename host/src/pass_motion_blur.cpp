@@ -14,7 +14,7 @@ class MotionBlurPass : public Pass {
   MotionBlurPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) { setup.tables.axis(); }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const MotionParams params = motion_params(frame, device(), settings().blur);
+    const MotionParams params = motion_params(frame, shape(), settings().blur);
     bind(params, frame.tables.axis().get(frame.queue, frame.key()), frame[Resource::kTileBlurs],
          frame[Resource::kResolved], frame[Resource::kVelocity], frame[Resource::kDepth],
          frame[Resource::kBlurred]);

@@ -11,7 +11,7 @@ class MotionNeighboursPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    bind(motion_params(frame, device(), settings().blur), frame[Resource::kStreaks],
+    bind(motion_params(frame, shape(), settings().blur), frame[Resource::kStreaks],
          frame[Resource::kLongestStreak], frame[Resource::kTileBlurs]);
     launch(frame, extent_of(Area::kBlurTiles, frame.extents()), 1, event);
   }

@@ -12,7 +12,7 @@ class MotionTilesPass : public Pass {
   MotionTilesPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) { setup.tables.axis(); }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    bind(motion_params(frame, device(), settings().blur), frame.tables.axis().get(frame.queue, frame.key()),
+    bind(motion_params(frame, shape(), settings().blur), frame.tables.axis().get(frame.queue, frame.key()),
          frame[Resource::kVelocity], frame[Resource::kStreaks], frame[Resource::kLongestStreak]);
     launch(frame, extent_of(Area::kBlurTiles, frame.extents()), 1, event);
   }

@@ -35,7 +35,7 @@ class OverlayParticlesPass : public Pass {
                                .height = render.height,
                                .particle_width = particles.width,
                                .particle_height = particles.height,
-                               .columns_per_item = columns_per_item(device(), render.width, kParticleBlock),
+                               .columns_per_item = columns_per_item(shape(), render.width, kParticleBlock),
                                .bare_colour = layout_of(frame[Resource::kBareColour]),
                                .bare_reactive = layout_if_used(frame, Resource::kBareReactive),
                                .depth = layout_of(frame[depth]),

@@ -23,7 +23,7 @@ class PresentPass : public Pass {
         .source = layout_of(source),
         .output = layout_of(presented),
         .counter = frame.counter.index,
-        .columns_per_item = columns_per_item(device(), frame.display.width, kPresentBlock),
+        .columns_per_item = columns_per_item(shape(), frame.display.width, kPresentBlock),
         .exposure = exposure == 0 ? 1 : exposure};
     bind(params, source, presented, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);

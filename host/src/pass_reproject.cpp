@@ -59,7 +59,7 @@ class ReprojectPass : public Pass {
     params.depth1 = layout_of(frame[Resource::kPreviousDepth]);
     params.reprojection = layout_of(frame[Resource::kReprojection]);
     params.previous_reprojection = layout_if_used(frame, Resource::kPreviousReprojection);
-    params.columns_per_item = columns_per_item(device(), current.render.width);
+    params.columns_per_item = columns_per_item(shape(), current.render.width);
     params.reactive0 = layout_if_used(frame, Resource::kReactive);
     params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
     set_positions(params, current, previous);

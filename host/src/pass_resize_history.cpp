@@ -17,7 +17,7 @@ class ResizeHistoryPass : public Pass {
   }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const ResizeParams params = resize_params(frame, device());
+    const ResizeParams params = resize_params(frame, shape());
     bind(params, frame.tables.positions().get(frame.queue, resize_key(frame)),
          frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousHistory],
          view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
@@ -31,7 +31,7 @@ class ResizeTilesPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const ResizeParams params = resize_params(frame, device());
+    const ResizeParams params = resize_params(frame, shape());
     bind(params, frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousTileLight],
          view_or(frame, Resource::kPreviousLayerTiles, Resource::kPreviousTileReprojection),
          frame[Resource::kTileReprojection], frame[Resource::kTileLight],

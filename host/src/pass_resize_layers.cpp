@@ -18,7 +18,7 @@ class ResizeLayersPass : public Pass {
   }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const ResizeParams params = resize_params(frame, device());
+    const ResizeParams params = resize_params(frame, shape());
     const LayerPastParams past = layer_past_params(frame.previous, frame.previous_output,
                                                    layout_of(frame[Resource::kPreviousDepth]), {});
     const ResizeSamples before{past.depth0,    past.width,   past.height, past.spacing_x,
@@ -39,7 +39,7 @@ class ResizeRecordsPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent grid = frame.previous.render;
     const Ratio ratio = ratio_of(frame.output, frame.previous_output);
-    const int columns = columns_per_item(device(), grid.width);
+    const int columns = columns_per_item(shape(), grid.width);
     bind(grid.width, grid.height, columns, cl_float2{{ratio.x, ratio.y}},
          frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords]);
     launch(frame, grid, columns, event);

@@ -37,7 +37,7 @@ class ResolveCheckerboardPass : public Pass {
         .previous_height = frame.previous.render.height,
         .parity = frame.current.parity,
         .has_history = frame.has_history ? 1 : 0,
-        .columns_per_item = columns_per_item(device(), render.width, kCheckerboardBlock),
+        .columns_per_item = columns_per_item(shape(), render.width, kCheckerboardBlock),
         .shaded = {layout_of(frame[Resource::kShadedColour]),
                    layout_if_used(frame, Resource::kShadedVelocity), layout_of(frame[Resource::kShadedDepth]),
                    layout_if_used(frame, Resource::kShadedReactive)},

@@ -17,7 +17,7 @@ class ResolveLayersPass : public Pass {
   }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const TemporalParams params = temporal_params(frame, device(), facts());
+    const TemporalParams params = temporal_params(frame, shape(), facts());
     const LayerPastParams before =
         layer_past_params(frame.previous, frame.output, layout_of(frame[Resource::kDepth]),
                           layout_of(frame[Resource::kPreviousDepth]));

@@ -42,7 +42,7 @@ class ResolveQuincunxPass : public Pass {
     params.output = layout_of(frame[picture()]);
     params.row_axis = padded_columns(frame.output);
     params.counter = frame.counter.index;
-    params.columns_per_item = columns_per_item(device(), frame.output.width);
+    params.columns_per_item = columns_per_item(shape(), frame.output.width);
     params.velocity0_scale_x = scale0.x;
     params.velocity0_scale_y = scale0.y;
     params.velocity1_scale_x = scale1.x;

@@ -38,7 +38,7 @@ class ResolveTemporalPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     // A debug view is written here, the picture by temporal_display.
     const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
-    TemporalParams params = temporal_params(frame, device(), facts());
+    TemporalParams params = temporal_params(frame, shape(), facts());
     params.frame0.reactive = layout_if_used(frame, Resource::kReactive);
     params.frame1.reactive = layout_if_used(frame, Resource::kPreviousReactive);
     params.output = layout_of(frame[shown]);

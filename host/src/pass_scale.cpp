@@ -44,7 +44,7 @@ class ScalePass : public Pass {
                              .output = layout_of(output),
                              .row_axis = padded_columns(extent),
                              .counter = frame.counter.index,
-                             .columns_per_item = columns_per_item(device(), extent.width)};
+                             .columns_per_item = columns_per_item(shape(), extent.width)};
     const cl::Buffer& taps = frame.tables.axis().get(frame.queue, frame.key());
     if (is_noise(settings().method)) {
       const auto seed = static_cast<unsigned>(settings().noise_moves ? frame.current.frame_index : 0);

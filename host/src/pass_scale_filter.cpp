@@ -20,7 +20,7 @@ class ScaleFilterPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
     const Extent render = frame.current.render;
-    const FilterParams params = filter_params(filter_, device(), {render, frame[Resource::kColour]},
+    const FilterParams params = filter_params(filter_, shape(), {render, frame[Resource::kColour]},
                                               {extent, frame[picture()]}, frame.counter);
     bind(params, frame.tables.filter(filter_).get(frame.queue, frame.key()), frame[Resource::kColour],
          frame[picture()], frame.counter);

@@ -22,7 +22,7 @@ class ScaleToDisplayPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ImageView& finished = frame[finished_of(facts())];
     const ImageView& displayed = frame[Resource::kDisplayed];
-    const FilterParams params = filter_params(display_filter(), device(), {frame.output, finished},
+    const FilterParams params = filter_params(display_filter(), shape(), {frame.output, finished},
                                               {frame.display, displayed}, frame.counter);
     bind(params, frame.tables.filter(display_filter()).get(frame.queue, {frame.display, frame.output, {}}),
          finished, displayed, frame.counter);

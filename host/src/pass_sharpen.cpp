@@ -18,7 +18,7 @@ class SharpenPass : public Pass {
                                .height = frame.output.height,
                                .source = layout_of(frame[Resource::kUnsharpened]),
                                .output = layout_of(frame[Resource::kResolved]),
-                               .columns_per_item = columns_per_item(device(), frame.output.width),
+                               .columns_per_item = columns_per_item(shape(), frame.output.width),
                                .sharpness = settings().sharpness};
     bind(params, frame[Resource::kUnsharpened], frame[Resource::kResolved]);
     launch(frame, frame.output, params.columns_per_item, event);

@@ -15,7 +15,7 @@ class TemporalDisplayPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const TemporalDisplayParams params = temporal_display_params(frame, device(), picture());
+    const TemporalDisplayParams params = temporal_display_params(frame, shape(), picture());
     bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
          view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[picture()]);
     launch(frame, frame.output, params.columns_per_item, event);

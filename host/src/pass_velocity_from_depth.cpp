@@ -20,7 +20,7 @@ class VelocityFromDepthPass : public Pass {
                                 .height = render.height,
                                 .depth = layout_of(depth),
                                 .velocity = layout_of(velocity),
-                                .columns_per_item = columns_per_item(device(), render.width),
+                                .columns_per_item = columns_per_item(shape(), render.width),
                                 .camera = camera_params(frame.current)};
     bind(params, depth, velocity);
     launch(frame, render, params.columns_per_item, event);

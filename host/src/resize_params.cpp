@@ -25,7 +25,7 @@ constexpr float kGrown = 1;
 
 }  // namespace
 
-ResizeParams resize_params(const PassFrame& frame, const Device::Impl& device) {
+ResizeParams resize_params(const PassFrame& frame, const WorkShape& shape) {
   const Extent output = frame.output;
   const Extent before = frame.previous_output;
   const Extent tiles = extent_of(Area::kTiles, frame.extents());
@@ -41,7 +41,7 @@ ResizeParams resize_params(const PassFrame& frame, const Device::Impl& device) {
           .previous_tiles_x = tiles_before.width,
           .previous_tiles_y = tiles_before.height,
           .columns = position_columns(output),
-          .columns_per_item = columns_per_item(device, output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, output.width, kTemporalTile),
           .ratio_x = ratio.x,
           .ratio_y = ratio.y,
           .places_x = places_of(before.width, output.width),

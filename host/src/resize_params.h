@@ -7,7 +7,7 @@
 
 namespace quincunx {
 
-ResizeParams resize_params(const PassFrame& frame, const Device::Impl& device);
+ResizeParams resize_params(const PassFrame& frame, const WorkShape& shape);
 
 // Where the output's pixels lie among the texels of the history.
 TableKey resize_key(const PassFrame& frame);

@@ -7,7 +7,7 @@ int shaded_parity(const PlanFacts& facts, const FrameInputs& frame) {
   return facts.fills() ? frame.parity : -1;
 }
 
-TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, const PlanFacts& facts) {
+TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts) {
   const Extent output = frame.output;
   const Extent now = frame.current.render;
   const Extent before = frame.previous.render;
@@ -22,7 +22,7 @@ TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& devic
           .output = {},
           .columns = position_columns(output),
           .counter = frame.counter.index,
-          .columns_per_item = columns_per_item(device, output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, output.width, kTemporalTile),
           .motion_x = motion.x,
           .motion_y = motion.y,
           .spacing_x = spacing.x,
@@ -32,13 +32,13 @@ TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& devic
           .parity = shaded_parity(facts, frame.current)};
 }
 
-TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,
+TemporalDisplayParams temporal_display_params(const PassFrame& frame, const WorkShape& shape,
                                               Resource picture) {
   return {.output_width = frame.output.width,
           .output_height = frame.output.height,
           .output = layout_of(frame[picture]),
           .tiles_x = extent_of(Area::kTiles, frame.extents()).width,
-          .columns_per_item = columns_per_item(device, frame.output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, frame.output.width, kTemporalTile),
           .first = frame.has_history ? 0 : 1};
 }
 

@@ -11,10 +11,10 @@ namespace quincunx {
 int shaded_parity(const PlanFacts& facts, const FrameInputs& frame);
 
 // Without reactive values and a view.
-TemporalParams temporal_params(const PassFrame& frame, const Device::Impl& device, const PlanFacts& facts);
+TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts);
 
 // `picture`: where it goes.
-TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Device::Impl& device,
+TemporalDisplayParams temporal_display_params(const PassFrame& frame, const WorkShape& shape,
                                               Resource picture);
 
 }  // namespace quincunx

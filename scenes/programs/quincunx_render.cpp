@@ -11,6 +11,7 @@
 #include "programs/render_session.h"
 #include "programs/truth_run.h"
 #include "tools/page/report_page.h"
+#include "tools/program/device_lines.h"
 #include "tools/program/program.h"
 #include "window/window_run.h"
 
@@ -37,8 +38,8 @@ int explain(const RenderOptions& options) {
   }
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  fmt::print("Scene          {}: {}\n{}{}", scene->name, scene->summary,
-             explain(source->parts, has_particles), plan->explain());
+  fmt::print("Scene          {}: {}\n{}{}{}", scene->name, scene->summary,
+             tools::device_lines(options.device), explain(source->parts, has_particles), plan->explain());
   return tools::kDone;
 }
 

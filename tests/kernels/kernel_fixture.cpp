@@ -57,10 +57,11 @@ Pixel decoded(const Pixel& codes) {
 
 DeviceProfile profile_of(const char* text) {
   DeviceProfile profile;
+  WorkShape& shape = profile.shape;
   char end = 0;
-  const int read = std::sscanf(text, "%dx%dx%d%c", &profile.group_width, &profile.group_height,
-                               &profile.pixels_per_item, &end);
-  if (read == 3 && profile.group_width > 0 && profile.group_height > 0 && profile.pixels_per_item >= 0)
+  const int read =
+      std::sscanf(text, "%dx%dx%d%c", &shape.group_width, &shape.group_height, &shape.pixels_per_item, &end);
+  if (read == 3 && shape.group_width > 0 && shape.group_height > 0 && shape.pixels_per_item >= 0)
     return profile;
   std::fprintf(stderr, "QUINCUNX_TEST_PROFILE is '%s' and must be like 16x8x4\n", text);
   std::exit(1);

@@ -234,7 +234,7 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   tiles.setArg(11, now);
   tiles.setArg(12, evidence);
   tiles.setArg(13, total);
-  enqueue_rows(impl(), impl().queue, tiles, count, 1, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, tiles, count, 1, nullptr);
   const auto reprojections = from_device<TileReprojection>(now, r.before.size());
   const auto found = from_device<TileEvidence>(evidence, r.before.size());
   Tiles made{{}, from_device<LayerTile>(layers, r.before.size()), from_device<TotalLight>(total, 1).front()};
@@ -259,7 +259,7 @@ std::vector<TileLight> TemporalStages::run_light(Extent tiles, const std::vector
   light.setArg(4, sums);
   light.setArg(5, previous);
   light.setArg(6, changed);
-  enqueue_rows(impl(), impl().queue, light, tiles, 1, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, light, tiles, 1, nullptr);
   return from_device<TileLight>(changed, now.size());
 }
 
@@ -286,7 +286,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.output = layout_of(view);
   params.columns = position_columns(output);
   params.counter = counter.index;
-  params.columns_per_item = columns_per_item(impl(), output.width, kReprojectedBlock);
+  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kReprojectedBlock);
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
   params.spacing_x = to_float(r.spacing(0));
@@ -321,7 +321,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   resolve.setArg(13, updated_alpha);
   set_memory(resolve, 14, view.memory);
   set_memory(resolve, 15, counter.memory);
-  enqueue_rows(impl(), impl().queue, resolve, output, params.columns_per_item, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, resolve, output, params.columns_per_item, nullptr);
   Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);
   if (!variant_.alpha) return result;
@@ -342,7 +342,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.output_height = output.height;
   params.output = layout_of(view);
   params.tiles_x = r.tiles_x();
-  params.columns_per_item = columns_per_item(impl(), output.width, kTemporalTile);
+  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kTemporalTile);
   params.first = shown.first ? 1 : 0;
   cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);
   display.setArg(0, params);
@@ -353,7 +353,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   display.setArg(2, known);
   display.setArg(3, known_alpha);
   set_memory(display, 4, view.memory);
-  enqueue_rows(impl(), impl().queue, display, output, params.columns_per_item, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, display, output, params.columns_per_item, nullptr);
   Result result{rig.bytes(view, output), {}, {}, 0};
   result.pixels = decode(variant_.resolved, result.bytes);
   return result;

@@ -54,6 +54,11 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   const ProgramResult moving = run("--explain --scene wheel");
   EXPECT_EQ(moving.exit_code, 0) << moving.err;
   EXPECT_NE(moving.out.find("WEIGHT=1"), std::string::npos) << moving.out;
+  EXPECT_NE(moving.out.find("Profile        "), std::string::npos) << moving.out;
+  const ProgramResult none_there = run("--explain --scene wheel --device nowhere");
+  EXPECT_EQ(none_there.exit_code, 0) << none_there.err;
+  EXPECT_NE(none_there.out.find("Device         none: no OpenCL device matches 'nowhere'"), std::string::npos)
+      << none_there.out;
   const ProgramResult camera = run("--explain --scene pan");
   EXPECT_NE(camera.out.find("velocity_from_depth"), std::string::npos) << camera.out;
   EXPECT_NE(camera.out.find("velocity target"), std::string::npos);

@@ -372,6 +372,7 @@ TEST_F(Run, ExplainPrintsThePlan) {
   EXPECT_EQ(two.exit_code, 0) << two.err;
   EXPECT_NE(two.out.find("resolve_quincunx"), std::string::npos);
   EXPECT_NE(two.out.find("transparents no"), std::string::npos) << two.out;
+  EXPECT_NE(two.out.find("Profile        "), std::string::npos) << two.out;
   const auto one = resolve("'{}/f.%04d.exr' --explain --method bilinear");
   EXPECT_EQ(one.out.find("resolve_quincunx"), std::string::npos);
 }

@@ -17,6 +17,8 @@
 
 namespace quincunx {
 
+struct DeviceProfile;
+
 enum class DeviceKind { kCpu, kGpu, kAccelerator, kOther };
 
 struct DeviceInfo {
@@ -55,7 +57,11 @@ class QUINCUNX_API Device {
   // reported only where it was made with CL_QUEUE_PROFILING_ENABLE.
   static Result<Device> borrow(cl_context context, cl_device_id device, cl_command_queue queue);
 
+  // The same device, context and queue; services made on it cut their work by this profile.
+  Device with_profile(const DeviceProfile& profile) const;
+
   const DeviceInfo& info() const;
+  const DeviceProfile& profile() const;
   cl_context context() const;
   cl_device_id id() const;
   cl_command_queue queue() const;

@@ -10,6 +10,7 @@
 
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
+#include "tools/program/device_lines.h"
 #include "tools/program/method_names.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
@@ -119,7 +120,7 @@ int run(int argc, char** argv) {
   if (options.dry_run) return print_listing(options, task.value());
   if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
   if (options.explain) {
-    fmt::print("{}", task->plan.explain());
+    fmt::print("{}{}", device_lines(options.device), task->plan.explain());
     return kDone;
   }
   if (task->scan.frames.empty()) {

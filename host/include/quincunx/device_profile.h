@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// DeviceProfile: how the work of each pass is cut for a device. No result depends on it, only speed does.
+//
+// Device::open() takes the first that there is of
+//   tuned     what quincunx-bench --tune has measured on this device with this driver, kept in cache_folder()
+//   shipped   of host/profiles, for the device's platform and kind
+//   default   the same shape for every pass, by the device's kind
+// The search is modelled on CLBlast's (Nugteren, "CLBlast: A Tuned OpenCL BLAS Library", 2018).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "quincunx/export.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+class Device;
+
+// How the rows of a pass are cut into work-items, and those into groups.
+struct WorkShape {
+  static constexpr int kMostOfGroup = 1024;  // on either axis
+  static constexpr int kMostPixels = 1 << 16;
+
+  // A group, in work-items. A group that is larger than a kernel can have on the device is halved until it is not.
+  int group_width = 1;
+  int group_height = 4;
+  // Of a row that one work-item makes, rounded up to a kernel's block; 0: the whole row.
+  int pixels_per_item = 0;
+
+  friend bool operator==(const WorkShape&, const WorkShape&) = default;
+};
+
+enum class ProfileSource { kDefault, kShipped, kTuned };
+
+struct QUINCUNX_API DeviceProfile {
+  ProfileSource source = ProfileSource::kDefault;
+  std::string date;    // of the measurement, "2026-11-22 21:05 UTC"; empty for kDefault
+  std::string driver;  // it was measured with; empty for kDefault
+  WorkShape shape;     // of every pass that has none of its own
+  std::map<std::string, WorkShape, std::less<>> passes;  // by the kernel's name
+
+  const WorkShape& shape_of(std::string_view kernel) const;
+
+  // "tuned 2026-11-22 21:05 UTC", "shipped (measured 2026-11-22 21:05 UTC, driver 3.1)" or "default"
+  std::string describe() const;
+
+  friend bool operator==(const DeviceProfile&, const DeviceProfile&) = default;
+};
+
+// Of a device of which nothing was measured. Pure.
+QUINCUNX_API DeviceProfile default_profile(const Device& device);
+
+// The file of a tuned profile: JSON, of this device with this driver. It need not exist. Nothing where there is no
+// cache_folder().
+QUINCUNX_API std::optional<std::filesystem::path> profile_path(const Device& device);
+
+// Writes that file, whole or not at all; whoever opens the device from now on uses it. `date` is in the profile.
+// Errors: kUnsupported where there is no cache folder, kIoFailure where the file cannot be written.
+QUINCUNX_API Status keep_profile(const Device& device, const DeviceProfile& profile);
+
+}  // namespace quincunx

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Device profiles: as files, as what a device is opened with, and that no picture depends on them.
+#include "quincunx/device_profile.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "device_profile_file.h"
+#include "pass.h"
+#include "quincunx/resolve_service.h"
+#include "shipped_profiles.h"
+
+namespace quincunx {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr WorkShape kTile = {.group_width = 8, .group_height = 4, .pixels_per_item = 1};
+
+// A cache of its own, and what is logged.
+class DeviceProfiles : public ::testing::Test {
+ protected:
+  DeviceProfiles()
+      : folder_(fs::temp_directory_path() / ("quincunx-profile-test-" + std::to_string(getpid()))) {
+    if (const char* before = std::getenv("QUINCUNX_CACHE_DIR")) before_ = before;
+    fs::remove_all(folder_);
+    use(folder_.string());
+  }
+  ~DeviceProfiles() override {
+    fs::remove_all(folder_);
+    if (before_) {
+      setenv("QUINCUNX_CACHE_DIR", before_->c_str(), 1);
+    } else {
+      unsetenv("QUINCUNX_CACHE_DIR");
+    }
+  }
+
+  static void use(const std::string& folder) { setenv("QUINCUNX_CACHE_DIR", folder.c_str(), 1); }
+
+  static Device open() { return Device::open().value(); }
+
+  static DeviceProfile tuned() {
+    DeviceProfile profile;
+    profile.source = ProfileSource::kTuned;
+    profile.date = "2026-11-22 21:05 UTC";
+    profile.driver = open().info().driver;
+    profile.shape = {.group_width = 2, .group_height = 2, .pixels_per_item = 8};
+    profile.passes["scale_point"] = kTile;
+    return profile;
+  }
+
+  static std::string text_of(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+
+  // What opening the device warns of.
+  static std::string warnings_of_opening(DeviceProfile& used) {
+    ::testing::internal::CaptureStdout();
+    used = open().profile();
+    return ::testing::internal::GetCapturedStdout();
+  }
+
+  fs::path folder_;
+  std::optional<std::string> before_;
+};
+
+TEST_F(DeviceProfiles, WhatWasKeptIsUsedFromThenOn) {
+  const DeviceProfile before = open().profile();
+  EXPECT_NE(before.source, ProfileSource::kTuned);
+  const Status kept = keep_profile(open(), tuned());
+  ASSERT_TRUE(kept.ok()) << kept.message();
+  const Device device = open();
+  EXPECT_EQ(device.profile(), tuned());
+  EXPECT_EQ(device.profile().describe(), "tuned 2026-11-22 21:05 UTC");
+  EXPECT_EQ(device.profile().shape_of("scale_point"), kTile);
+  EXPECT_EQ(device.profile().shape_of("sharpen"), tuned().shape);
+  const auto borrowed = Device::borrow(device.context(), device.id(), device.queue());
+  ASSERT_TRUE(borrowed.ok());
+  EXPECT_EQ(borrowed->profile(), tuned());
+  fs::remove(*profile_path(device));
+  EXPECT_EQ(open().profile(), before);
+}
+
+TEST_F(DeviceProfiles, WithoutACacheFolderNoneIsKept) {
+  use("");
+  EXPECT_FALSE(profile_path(open()).has_value());
+  const Status kept = keep_profile(open(), tuned());
+  EXPECT_EQ(kept.code(), StatusCode::kUnsupported);
+  EXPECT_NE(kept.message().find("QUINCUNX_CACHE_DIR"), std::string::npos) << kept.message();
+}
+
+TEST_F(DeviceProfiles, AFileThatCannotBeWrittenIsNamed) {
+  std::ofstream(folder_) << "a file where the folder would be";
+  const Status kept = keep_profile(open(), tuned());
+  EXPECT_EQ(kept.code(), StatusCode::kIoFailure);
+  EXPECT_NE(kept.message().find(folder_.string()), std::string::npos) << kept.message();
+}
+
+TEST_F(DeviceProfiles, ABadFileIsOneSentenceAndPassedOver) {
+  const DeviceProfile plain = open().profile();
+  ASSERT_TRUE(keep_profile(open(), tuned()).ok());
+  const fs::path path = *profile_path(open());
+  const std::string good = text_of(path);
+  const auto with = [&good](const std::string& what, const std::string& instead) {
+    std::string text = good;
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), instead);
+  };
+  const std::string driver = "\"driver\": \"" + open().info().driver + "\"";
+  const struct {
+    std::string text, says;
+  } bad[] = {{"", "no JSON"},
+             {good.substr(0, good.size() / 2), "no JSON"},
+             {"[]", "has no quincunx_device_profile"},
+             {with("profile\": 1", "profile\": 2"), "reads 1"},
+             {with(driver, "\"driver\": \"another\""), "driver 'another'"},
+             {with("\"device\": \"", "\"device\": \"not "), "device 'not "},
+             {with("\"date\"", "\"day\""), "has no date"},
+             {with("\"pixels\": 8", "\"pixels\": -1"), "pixels of shape is -1"},
+             {with("\"pixels\": 1", "\"pixels\": 1.5"), "pixels of scale_point is 1.5"},
+             {with("\"group\"", "\"groups\""), "shape has no group"},
+             {with("\"scale_point\": {", "\"scale_point\": 3, \"sharpen\": {"), "scale_point has no group"}};
+  for (const auto& [text, says] : bad) {
+    std::ofstream(path, std::ios::trunc) << text;
+    DeviceProfile used;
+    const std::string warning = warnings_of_opening(used);
+    EXPECT_EQ(used, plain) << text;
+    EXPECT_NE(warning.find(says), std::string::npos) << text << " -> " << warning;
+    EXPECT_NE(warning.find(path.string()), std::string::npos) << warning;
+    EXPECT_EQ(std::count(warning.begin(), warning.end(), '\n'), 1) << warning;
+  }
+}
+
+TEST_F(DeviceProfiles, SidesOfAGroupHaveTheirRange) {
+  for (const int side : {0, -3, WorkShape::kMostOfGroup + 1, 1, WorkShape::kMostOfGroup}) {
+    DeviceProfile profile = tuned();
+    profile.shape.group_width = side;
+    const bool fits = side >= 1 && side <= WorkShape::kMostOfGroup;
+    EXPECT_EQ(parse_profile(profile_text({owner_of(open().info()), profile})).ok(), fits) << side;
+  }
+}
+
+TEST(WorkShapes, AGroupIsHalvedUntilItFits) {
+  const auto halved = [](int width, int height, std::size_t most) {
+    const WorkShape shape =
+        with_smaller_group({.group_width = width, .group_height = height, .pixels_per_item = 3}, most);
+    EXPECT_EQ(shape.pixels_per_item, 3);
+    return std::pair(shape.group_width, shape.group_height);
+  };
+  EXPECT_EQ(halved(16, 8, 128), std::pair(16, 8));
+  EXPECT_EQ(halved(16, 8, 127), std::pair(8, 8));
+  EXPECT_EQ(halved(16, 8, 32), std::pair(8, 4));
+  EXPECT_EQ(halved(1, 1024, 256), std::pair(1, 256));
+  EXPECT_EQ(halved(3, 5, 1), std::pair(1, 1));
+  EXPECT_EQ(halved(1, 1, 0), std::pair(1, 1));
+}
+
+TEST(ShippedProfiles, AreWholeAndOneForEachPlatformAndKind) {
+  std::vector<std::string> seen;
+  for (const EmbeddedFile& shipped : shipped_profile_files()) {
+    const auto file = parse_profile(std::string(shipped.text));
+    ASSERT_TRUE(file.ok()) << shipped.name << ": " << file.status().message();
+    EXPECT_FALSE(file.value().profile.passes.empty()) << shipped.name;
+    seen.push_back(file.value().owner.platform + "/" + file.value().owner.kind);
+  }
+  EXPECT_FALSE(seen.empty());
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::adjacent_find(seen.begin(), seen.end()), seen.end());
+}
+
+// Frames of a service that has most kinds of passes, as bits of the last presented picture and of the history.
+std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfile& profile, Method method) {
+  constexpr Extent kRender = {83, 41}, kOutput = {131, 67};
+  ResolveSettings settings{.method = method, .output = kOutput, .target = kRender};
+  settings.quincunx.form = TwoFrameForm::kReprojected;
+  settings.sharpness = 0.5f;
+  settings.blur.shutter = 0.5f;
+  settings.far = FarMotion::kEvidence;
+  const ResolvePlan plan = plan_for({.moving_objects = true, .transparents = true}, settings).value();
+  const Device own = device.with_profile(profile);
+  ResolveService service = ResolveService::create(own, plan).value();
+  std::mt19937 random(1);
+  const auto filled = [&](PixelFormat format, std::uint16_t least, std::uint16_t span) {
+    Image image = own.allocate(kRender, format).value();
+    std::vector<std::uint16_t> bits(static_cast<std::size_t>(kRender.area()) * bytes_per_pixel(format) / 2 +
+                                    1);
+    for (std::uint16_t& word : bits)
+      word = static_cast<std::uint16_t>(least + random() % span);
+    EXPECT_TRUE(own.upload(image.view(), kRender, bits.data()).ok());
+    return image;
+  };
+  struct Frame {
+    Image colour, velocity, depth, reactive;
+  };
+  std::vector<Frame> frames;  // kept: the next frame may read them
+  for (int i = 0; i < 4; ++i) {
+    frames.push_back({filled(settings.colour, 0x3400, 0x800), filled(settings.velocity, 0x1c00, 0x400),
+                      filled(PixelFormat::kR32F, 0x3e00, 0x100), filled(PixelFormat::kR8, 0, 0x100)});
+  }
+  const Image resolved = own.allocate(kOutput, settings.resolved).value();
+  const Image blurred = own.allocate(kOutput, settings.resolved).value();
+  const Image presented = own.allocate(kOutput, PixelFormat::kRGBA8).value();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameReport report = service.dispatch({.colour = frames[i].colour.view(),
+                                                 .depth = frames[i].depth.view(),
+                                                 .velocity = frames[i].velocity.view(),
+                                                 .reactive = frames[i].reactive.view(),
+                                                 .render = kRender,
+                                                 .jitter = {0.25f, i % 2 == 0 ? 0.25f : -0.25f},
+                                                 .frame_index = i},
+                                                {resolved.view(), presented.view(), blurred.view()});
+    EXPECT_TRUE(report.ok()) << report.status.message();
+  }
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(kOutput.area()) * 20);
+  EXPECT_TRUE(own.download(blurred.view(), kOutput, bytes.data()).ok());
+  EXPECT_TRUE(own.download(presented.view(), kOutput, bytes.data() + kOutput.area() * 16).ok());
+  return bytes;
+}
+
+TEST(WorkShapes, NoBitOfAPictureDependsOnThem) {
+  const Device device = Device::open().value();
+  std::vector<DeviceProfile> profiles(4);
+  profiles[0].shape = {.group_width = 1, .group_height = 4, .pixels_per_item = 0};
+  profiles[1].shape = {.group_width = 16, .group_height = 8, .pixels_per_item = 1};
+  profiles[2].shape = {.group_width = 3, .group_height = 2, .pixels_per_item = 24};
+  profiles[3].shape = {.group_width = 1, .group_height = 1, .pixels_per_item = 0};
+  profiles[3].passes["present"] = kTile;
+  profiles[3].passes["temporal_display"] = kTile;
+  for (const Method method : {Method::kBilinear, Method::kLanczos2, Method::kQuincunx, Method::kTemporal}) {
+    const auto expected = pictures_with(device, profiles[0], method);
+    for (std::size_t i = 1; i < profiles.size(); ++i)
+      EXPECT_EQ(pictures_with(device, profiles[i], method), expected) << name_of(method) << ", profile " << i;
+  }
+}
+
+}  // namespace
+}  // namespace quincunx
