@@ -20,6 +20,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --traces --out report               resolution controllers over load traces; open report/traces.html
   quincunx-bench --resize --scenes pan               another resolution: its cost, viewport and placed targets
   quincunx-bench --parts --scenes courtyard           scales of the picture, the shadow map and particles
+  quincunx-bench --tune                              how each pass is best cut on this device; used from then on
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
 void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
@@ -85,7 +86,8 @@ void add_measuring_options(tools::CommandLine& app, BenchOptions& options) {
 void add_result_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--out", options.out,
                  "Write bench.json, .csv, .svg and .html (with --traces: traces.json, .csv and .html; with "
-                 "--resize: resize.json and .csv; with --parts: parts.json and .csv) into this folder")
+                 "--resize: resize.json and .csv; with --parts: parts.json and .csv; with --tune: tune.json "
+                 "and .csv) into this folder")
       .type_name("FOLDER");
   const auto compare =
       app.add_option("--compare", options.compare, "Say what got better or worse since this bench.json")
@@ -122,6 +124,7 @@ std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& optio
   traces::add_trace_options(app, options.traces);
   add_resize_options(app, options.resize);
   add_parts_options(app, options.parts_bench);
+  add_tune_options(app, options.tune);
   scenes::add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-bench", argc, argv);
   if (const std::optional<int> code = app.parse(argc, argv)) return code;

@@ -10,6 +10,7 @@
 #include "bench/parts/parts_command.h"
 #include "bench/resize/resize_command.h"
 #include "bench/traces/trace_command.h"
+#include "bench/tune/tune_command.h"
 #include "programs/picture_options.h"
 #include "quincunx/extent.h"
 
@@ -34,6 +35,7 @@ struct BenchOptions : scenes::PictureOptions {
   traces::TraceOptions traces;
   ResizeOptions resize;
   PartsOptions parts_bench;
+  TuneOptions tune;
   bool json = false;
 
   std::string command_line;

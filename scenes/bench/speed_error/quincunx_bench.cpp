@@ -127,6 +127,8 @@ int run(int argc, char** argv) {
     return tabulate(options, "resize", run_resize);
   } else if (options.parts_bench.wanted) {
     return tabulate(options, "parts", run_parts);
+  } else if (options.tune.wanted) {
+    return tabulate(options, "tune", run_tune);
   } else {
     return measure(options);
   }

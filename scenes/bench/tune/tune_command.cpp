@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#include "bench/tune/tune_command.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "bench/harness/process_clock.h"
+#include "bench/speed_error/bench_machine.h"
+#include "bench/speed_error/bench_options.h"
+#include "bench/tune/tune_cases.h"
+#include "bench/tune/tune_storages.h"
+#include "tools/program/command_line.h"
+#include "tools/program/progress.h"
+
+namespace quincunx::bench {
+namespace {
+
+using Stage = std::unique_ptr<scenes::FrameSource>;
+
+Result<Stage> open_stage(const BenchOptions& options) {
+  scenes::FrameSourceSettings settings;
+  settings.scene = options.scenes.empty() ? "courtyard" : options.scenes.front();
+  settings.seed = options.seed;
+  settings.device = options.device;
+  settings.interop = options.interop;
+  settings.platform = options.platform;
+  settings.sequence.output = options.output;
+  settings.sequence.scale_path = scenes::ScalePath::fixed({1, 1}).value();
+  return scenes::FrameSource::create(settings);
+}
+
+std::size_t largest_group(const Device& device) {
+  std::size_t items = 1;
+  clGetDeviceInfo(device.id(), CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(items), &items, nullptr);
+  return items;
+}
+
+class Tuner {
+ public:
+  Tuner(const scenes::FrameSource& stage, std::vector<TuneCase> cases, const TuneEffort& effort, bool quiet)
+      : stage_(stage),
+        effort_(effort),
+        cases_(std::move(cases)),
+        progress_("tuning", 2 * static_cast<std::int64_t>(cases_.size()),
+                  quiet ? tools::Progress::Show::kNever : tools::Progress::Show::kOnTerminal) {}
+
+  // Every case with each of the shapes, for all passes.
+  Result<std::vector<ShapeTimes>> search(const std::vector<WorkShape>& shapes) {
+    std::vector<DeviceProfile> profiles(shapes.size());
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      profiles[i].shape = shapes[i];
+    return time_cases(profiles, effort_);
+  }
+
+  // Every case with the default shape and with what was chosen, in twice as many frames.
+  Result<std::vector<ShapeTimes>> compare(const WorkShape& plain, const DeviceProfile& chosen) {
+    DeviceProfile profile;
+    profile.shape = plain;
+    TuneEffort effort = effort_;
+    effort.frames *= 2;
+    return time_cases({profile, chosen}, effort);
+  }
+
+  double copy_ms() const { return *std::min_element(copy_ms_.begin(), copy_ms_.end()); }
+
+ private:
+  Result<std::vector<ShapeTimes>> time_cases(const std::vector<DeviceProfile>& profiles,
+                                             const TuneEffort& effort) {
+    std::vector<ShapeTimes> all;
+    copy_ms_.clear();
+    for (const TuneCase& what : cases_) {
+      progress_.update(done_++, what.name);
+      auto times = time_case(stage_, what, effort, profiles);
+      if (!times.ok()) return times.status();
+      copy_ms_.insert(copy_ms_.end(), times->copy_ms.begin(), times->copy_ms.end());
+      all.push_back(std::move(times->shapes));
+    }
+    return all;
+  }
+
+  const scenes::FrameSource& stage_;
+  TuneEffort effort_;
+  std::vector<TuneCase> cases_;
+  tools::Progress progress_;
+  std::int64_t done_ = 0;
+  Samples copy_ms_;  // of the last times
+};
+
+// Least times with both shapes, in the case that ran a pass first.
+std::vector<TunedPass> passes_of(const DeviceProfile& profile, const std::vector<ShapeTimes>& compared,
+                                 double copy_ms) {
+  const auto least = [copy_ms](const Samples& ms) {
+    return *std::min_element(ms.begin(), ms.end()) / copy_ms;
+  };
+  std::vector<TunedPass> passes;
+  for (const auto& [kernel, shape] : profile.passes) {
+    for (const ShapeTimes& shapes : compared) {
+      const auto before = shapes[0].find(kernel), after = shapes[1].find(kernel);
+      if (before == shapes[0].end() || after == shapes[1].end()) continue;
+      passes.push_back({kernel, shape, least(before->second), least(after->second)});
+      break;
+    }
+  }
+  return passes;
+}
+
+}  // namespace
+
+void add_tune_options(tools::CommandLine& app, TuneOptions& options) {
+  const auto tune = app.add_flag(
+      "--tune", options.wanted,
+      "Instead: find how each pass is best cut into work-items on this device, and use that from now on");
+  app.add_option("--tune-frames", options.frames, "With --tune: timed frames of each shape (default: 8)")
+      .in_range(1, 10000)
+      .needs(tune);
+  app.add_option("--tune-cases", options.cases,
+                 "With --tune: only point, bilinear, lanczos2, noise, noise-offset, quincunx, reprojected, "
+                 "camera, temporal or checkerboard; passes that none of them runs share one shape")
+      .delimiter(',')
+      .type_name("NAME,...")
+      .needs(tune);
+}
+
+Result<TuneResult> run_tune(const BenchOptions& options) {
+  const StepClock clock;
+  auto cases = tune_cases(options.tune.cases);
+  if (!cases.ok()) return cases.status();
+  auto stage = open_stage(options);
+  if (!stage.ok()) return stage.status();
+  const Device& device = stage.value()->device();
+  if (!profile_path(device)) return keep_profile(device, {});
+  TuneResult result{.version = QUINCUNX_VERSION,
+                    .command = options.command_line,
+                    .date = date_now(),
+                    .output = options.output,
+                    .clock = name_of(pass_timer(device)),
+                    .machine = {},
+                    .default_shape = default_profile(device).shape,
+                    .profile = {},
+                    .file = profile_path(device)->string(),
+                    .passes = {},
+                    .storages = {}};
+  describe_machine(*stage.value(), result.machine);
+  result.machine.load_before = load_of_last_minute();
+  const TuneEffort effort{.output = options.output, .frames = options.tune.frames, .fps = options.fps};
+  Tuner tuner(*stage.value(), cases.value(), effort, options.quiet);
+  const auto shapes = shapes_to_try(result.default_shape, largest_group(device));
+  auto searched = tuner.search(shapes);
+  if (!searched.ok()) return searched.status();
+  result.profile = choose_profile(shapes, quotients_of(searched.value()));
+  auto compared = tuner.compare(result.default_shape, result.profile);
+  if (!compared.ok()) return compared.status();
+  keep_what_gains(result.profile, result.default_shape, compared.value());
+  result.copy_ms = tuner.copy_ms();
+  result.passes = passes_of(result.profile, compared.value(), result.copy_ms);
+  auto storages = time_storages(*stage.value(), cases.value(), effort, result.profile);
+  if (!storages.ok()) return storages.status();
+  result.storages = std::move(storages).value();
+  result.profile.source = ProfileSource::kTuned;
+  result.profile.date = result.date;
+  result.profile.driver = device.info().driver;
+  if (Status status = keep_profile(device, result.profile); !status.ok()) return status;
+  result.machine.load_after = load_of_last_minute();
+  result.seconds = clock.elapsed().ms / 1000;
+  return result;
+}
+
+}  // namespace quincunx::bench

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// quincunx-bench --tune: its options, and what it does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/tune/tune_result.h"
+#include "quincunx/status.h"
+
+namespace quincunx::tools {
+class CommandLine;
+}
+
+namespace quincunx::bench {
+
+struct BenchOptions;
+
+struct TuneOptions {
+  bool wanted = false;
+  int frames = 8;
+  std::vector<std::string> cases;  // empty: all
+};
+
+// --tune, and options that need it.
+void add_tune_options(tools::CommandLine& app, TuneOptions& options);
+
+// Chooses a shape for each pass on the device that the options name, and keeps the profile for it; frames are those of
+// the first scene, by default the courtyard. Errors: of any part, as that part words them; then no profile is written.
+Result<TuneResult> run_tune(const BenchOptions& options);
+
+}  // namespace quincunx::bench
