@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// ErrorFront: how wrong each method's picture is at each scale, and what the resolve costs, as measured.
+//
+// A point is one class of scenes, one method and one scale. quincunx-bench --front and quincunx-render --calibrate
+// measure points; a table that is built in serves until then. It is what a controller needs that chooses a method as
+// well as a scale. All types here are values without clock or device; a const ErrorFront may be used from any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "quincunx/export.h"
+#include "quincunx/extent.h"
+#include "quincunx/method.h"
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+// What a picture does, as far as it makes methods err differently. docs/quality.md says which scenes stand for each.
+enum class SceneClass : std::uint8_t {
+  kStill,    // nothing moves
+  kPan,      // the camera moves, everything else stands
+  kObjects,  // objects move before others: parts of the picture move apart
+  kThin,     // things thinner than four pixels move before something else
+  kLight,    // what changes has no velocity: shadows, highlights, particles
+  kZoom,     // everything grows or shrinks
+};
+inline constexpr std::size_t kSceneClasses = 6;
+QUINCUNX_API const char* name_of(SceneClass scene_class);  // "still"
+
+// How much of a picture is of each class: at least 0 each, 1 together.
+struct SceneMix {
+  std::array<double, kSceneClasses> share{};
+
+  static constexpr SceneMix only(SceneClass scene_class) {
+    SceneMix mix;
+    mix.share[static_cast<std::size_t>(scene_class)] = 1;
+    return mix;
+  }
+  QUINCUNX_API bool valid() const;  // to within 1e-6
+};
+
+// A method with that which changes its error and cost. `form` counts for kQuincunx alone, `preset` for kTemporal alone.
+struct FrontMethod {
+  Method method = Method::kBilinear;
+  TwoFrameForm form = TwoFrameForm::kReprojected;
+  TemporalPreset preset = TemporalPreset::kBalanced;
+
+  QUINCUNX_API friend bool operator==(const FrontMethod& a, const FrontMethod& b);
+};
+QUINCUNX_API std::string name_of(
+    const FrontMethod& method);  // "bilinear", "quincunx:reprojected", "temporal:fast"
+// Errors: kInvalidArgument for another name; the message lists those that there are.
+QUINCUNX_API Result<FrontMethod> front_method(const std::string& name);
+
+// Errors are against supersampled truth, exposed and tone mapped, as docs/bench.md defines them. A spread is the
+// standard deviation between what a mean was taken over: the scenes of the class, or the moments of one scene.
+struct FrontPoint {
+  SceneClass scene_class = SceneClass::kStill;
+  FrontMethod method;
+  double scale = 1;  // per axis, in (0, 1]
+  double flip = 0;   // mean FLIP, [0, 1]
+  double flip_spread = 0;
+  double psnr_db = 0;  // at most kHighestPsnr, which stands for no error
+  double psnr_spread = 0;
+  double ms_per_megapixel = 0;  // of the output: all resolve passes but present, above 0
+  double ms_spread = 0;         // half the 95 % interval of that median
+
+  static constexpr double kHighestPsnr = 100;
+  friend bool operator==(const FrontPoint&, const FrontPoint&) = default;
+};
+
+// Where points come from.
+struct FrontSource {
+  std::string device;   // OpenCL platform and device: "Portable Computing Language pthread-..."
+  std::string driver;   // version of the driver
+  std::string scene;    // the one scene that it holds for; empty: points of classes, for any scene
+  std::string date;     // UTC, "2026-11-22 21:03 UTC"
+  std::string command;  // that measured it
+  std::string truth;    // what errors are against: "64 samples a pixel"
+  Extent output;        // whose resolves were timed
+
+  friend bool operator==(const FrontSource&, const FrontSource&) = default;
+};
+
+class QUINCUNX_API ErrorFront {
+ public:
+  static constexpr int kFormat = 1;  // of the JSON; a reader refuses others
+
+  // In any order. Each method needs at least one point in every class, and one at most at a scale of a class. Errors:
+  // kInvalidArgument, naming the point.
+  static Result<ErrorFront> create(FrontSource source, std::vector<FrontPoint> points);
+
+  // The table that was measured on PoCL and is compiled in. Its errors hold for any device, its times for none: they
+  // say which method costs more than which.
+  static const ErrorFront& built_in();
+
+  // JSON text, a line a point, and back. Errors of from_json(): kInvalidArgument for text that to_json() would not
+  // write; the message is one sentence that begins with "error front: ".
+  std::string to_json() const;
+  static Result<ErrorFront> from_json(const std::string& text);
+
+  bool is_built_in() const { return built_in_; }
+  const FrontSource& source() const { return source_; }
+  std::string summary() const;  // one clause: where its figures come from, and when
+
+  std::span<const FrontPoint> points() const { return points_; }  // by class, method and scale
+  std::span<const FrontMethod> methods() const {
+    return methods_;
+  }  // each once, in the order of growing effort
+
+  // The points of a class that no other of it dominates: none has at most its scale (so at most its cost of drawing),
+  // its milliseconds and its FLIP, and less of one of them.
+  std::vector<FrontPoint> front(SceneClass scene_class) const;
+
+  // The expected mean FLIP of such a picture. Between measured scales it is interpolated linearly; below the lowest
+  // and above the highest it is that of the nearest. Nothing for a method without points, an invalid mix, or a scale
+  // that is not above 0.
+  std::optional<double> flip(const SceneMix& mix, const FrontMethod& method, double scale) const;
+
+  // The same of the resolve passes' milliseconds, the mean over the classes, for an output of so many megapixels
+  // (10^6 pixels, above 0).
+  std::optional<double> resolve_ms(const FrontMethod& method, double scale, double output_megapixels) const;
+
+ private:
+  ErrorFront(FrontSource source, std::vector<FrontPoint> points);
+  std::span<const FrontPoint> curve(SceneClass scene_class, const FrontMethod& method) const;
+
+  FrontSource source_;
+  std::vector<FrontPoint> points_;
+  std::vector<FrontMethod> methods_;
+  bool built_in_ = false;
+};
+
+}  // namespace quincunx

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// ErrorFront as JSON text, and the one that is built in.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "embedded_front.h"
+#include "quincunx/error_front.h"
+
+namespace quincunx {
+namespace {
+
+constexpr const char* kVersionKey = "quincunx_error_front";
+constexpr const char* kColumns[] = {"class",       "method",           "scale",
+                                    "flip",        "flip_spread",      "psnr_db",
+                                    "psnr_spread", "ms_per_megapixel", "ms_spread"};
+
+SceneClass class_named(const std::string& name) {
+  std::string known;
+  for (std::size_t i = 0; i < kSceneClasses; ++i) {
+    const auto scene_class = static_cast<SceneClass>(i);
+    if (name == name_of(scene_class)) return scene_class;
+    known += (known.empty() ? "" : ", ") + std::string(name_of(scene_class));
+  }
+  throw std::invalid_argument(fmt::format("there is no class '{}'; there are {}", name, known));
+}
+
+nlohmann::ordered_json row_of(const FrontPoint& point) {
+  return {name_of(point.scene_class),
+          name_of(point.method),
+          point.scale,
+          point.flip,
+          point.flip_spread,
+          point.psnr_db,
+          point.psnr_spread,
+          point.ms_per_megapixel,
+          point.ms_spread};
+}
+
+FrontPoint point_of(const nlohmann::json& row) {
+  if (!row.is_array() || row.size() != std::size(kColumns))
+    throw std::invalid_argument(fmt::format("{} is no row of {} cells", row.dump(), std::size(kColumns)));
+  auto method = front_method(row[1].get<std::string>());
+  if (!method.ok()) throw std::invalid_argument(method.status().message());
+  return {.scene_class = class_named(row[0].get<std::string>()),
+          .method = method.value(),
+          .scale = row[2].get<double>(),
+          .flip = row[3].get<double>(),
+          .flip_spread = row[4].get<double>(),
+          .psnr_db = row[5].get<double>(),
+          .psnr_spread = row[6].get<double>(),
+          .ms_per_megapixel = row[7].get<double>(),
+          .ms_spread = row[8].get<double>()};
+}
+
+FrontSource source_of(const nlohmann::json& root) {
+  const auto text = [&](const char* key) { return root.at(key).get<std::string>(); };
+  return {.device = text("device"),
+          .driver = text("driver"),
+          .scene = text("scene"),
+          .date = text("date"),
+          .command = text("command"),
+          .truth = text("truth"),
+          .output = {root.at("output").at(0).get<int>(), root.at("output").at(1).get<int>()}};
+}
+
+}  // namespace
+
+std::string ErrorFront::to_json() const {
+  nlohmann::ordered_json head = {
+      {kVersionKey, kFormat},     {"device", source_.device},
+      {"driver", source_.driver}, {"scene", source_.scene},
+      {"date", source_.date},     {"command", source_.command},
+      {"truth", source_.truth},   {"output", {source_.output.width, source_.output.height}},
+      {"columns", kColumns}};
+  std::string text = "{\n";
+  for (const auto& [key, value] : head.items())
+    text += fmt::format("\"{}\": {},\n", key, value.dump());
+  text += "\"points\": [";
+  const char* separator = "\n";
+  for (const FrontPoint& point : points_) {
+    text += separator + row_of(point).dump();
+    separator = ",\n";
+  }
+  return text + "]\n}\n";
+}
+
+Result<ErrorFront> ErrorFront::from_json(const std::string& text) {
+  const auto refuse = [](const std::string& what) { return Status::invalid("error front: " + what); };
+  try {
+    const nlohmann::json root = nlohmann::json::parse(text);
+    if (root.at(kVersionKey) != kFormat)
+      return refuse(fmt::format("version {} cannot be read, only {}", root.at(kVersionKey).dump(), kFormat));
+    if (root.at("columns") != nlohmann::json(kColumns))
+      return refuse(fmt::format("the columns are {}; they must be {}", root.at("columns").dump(),
+                                nlohmann::json(kColumns).dump()));
+    std::vector<FrontPoint> points;
+    for (const nlohmann::json& row : root.at("points"))
+      points.push_back(point_of(row));
+    auto front = create(source_of(root), std::move(points));
+    if (!front.ok()) return refuse(front.status().message());
+    return front;
+  } catch (const std::exception& error) {
+    return refuse(error.what());
+  }
+}
+
+const ErrorFront& ErrorFront::built_in() {
+  static const ErrorFront front = [] {
+    auto read = from_json(std::string(embedded_front_file().front().text));
+    if (!read.ok()) throw std::logic_error(read.status().message());
+    read->built_in_ = true;
+    return std::move(read).value();
+  }();
+  return front;
+}
+
+std::string ErrorFront::summary() const {
+  const std::string where =
+      fmt::format("measured on {}, driver {}, {}", source_.device, source_.driver, source_.date);
+  if (built_in_) return fmt::format("built in, {}: its times are another device's", where);
+  return source_.scene.empty() ? where : fmt::format("{}, for scene {}", where, source_.scene);
+}
+
+}  // namespace quincunx
