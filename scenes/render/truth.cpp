@@ -61,6 +61,8 @@ Result<std::vector<float>> render_truth(Renderer& renderer, const TruthSettings&
     view.jitter = {place(k % n), place(k / n)};
     view.seconds = seconds - settings.shutter_seconds * (1 - (moment + 0.5) / count);
     view.previous_seconds = view.seconds;
+    view.window = view.previous_window = settings.window;
+    view.aspect = settings.aspect;
     view.lod_bias = -std::log2(static_cast<float>(n));
     if (Status status = renderer.draw(targets->frame(), view); !status.ok()) return status;
     targets->add(1.0f / static_cast<float>(count));

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "bench/harness/event_times.h"
-#include "bench/harness/process_clock.h"
 #include "clear_cases.h"
 #include "kernel_cases.h"
 #include "kernel_report.h"
@@ -17,6 +16,7 @@
 #include "stage.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
+#include "tools/program/date.h"
 #include "tools/program/program.h"
 
 namespace quincunx::bench {
@@ -86,7 +86,7 @@ int run(const Options& options, const std::string& command) {
   }
   Run figures{.device = device.value().info(),
               .opengl = context ? context->info().renderer + " | " + context->info().version : "",
-              .date = date_now(),
+              .date = tools::date_now(),
               .command = command,
               .rounds = options.rounds,
               .sizes = {}};

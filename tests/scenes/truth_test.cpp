@@ -117,6 +117,33 @@ TEST_F(TruthTest, StillSceneDoesNotFeelTheShutterAndCallsAgree) {
   EXPECT_EQ(sharp, again);
 }
 
+TEST_F(TruthTest, AWindowIsThatPartOfThePicture) {
+  Renderer renderer = renderer_of(bar_scene({}));
+  const std::vector<float> whole = truth_of(renderer, 4);
+  constexpr int kX = 20, kY = 9;
+  constexpr Extent kPart = {24, 18};
+  const glm::dvec2 picture(kSize.width, kSize.height);
+  const auto part =
+      render_truth(renderer,
+                   {.output = kPart,
+                    .samples = 4,
+                    .window = {glm::dvec2(kX, kY) / picture, glm::dvec2(kPart.width, kPart.height) / picture},
+                    .aspect = static_cast<float>(kSize.width) / kSize.height},
+                   0);
+  ASSERT_TRUE(part.ok()) << part.status().message();
+  int edges = 0;
+  for (int y = 0; y < kPart.height; ++y) {
+    for (int x = 0; x < kPart.width; ++x) {
+      const float expected = whole[static_cast<std::size_t>((y + kY) * kSize.width + x + kX) * 4];
+      edges += expected > 0 && expected < 1;
+      // Rounded otherwise, at most one of 16 samples on an edge changes sides.
+      EXPECT_NEAR(part.value()[static_cast<std::size_t>(y * kPart.width + x) * 4], expected, 1.001 / 16)
+          << x << ", " << y;
+    }
+  }
+  EXPECT_GT(edges, 10) << "a part with nothing in it shows nothing";
+}
+
 TEST_F(TruthTest, BadSettingsAreRefusedByName) {
   Renderer renderer = renderer_of(bar_scene({}));
   const auto code_of = [&](TruthSettings settings) {

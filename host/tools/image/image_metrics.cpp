@@ -100,6 +100,15 @@ MeasuredPicture::MeasuredPicture(Extent extent, std::span<const float> rgba) : e
   }
 }
 
+MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure) {
+  constexpr float kGrey = 0.18f;
+  for (std::size_t i = 0; i < rgba.size(); i += 4) {
+    for (std::size_t c = i; c < i + 3; ++c)
+      rgba[c] = rgba[c] * exposure + kGrey * (1 - rgba[i + 3]);
+  }
+  return {extent, rgba};
+}
+
 double psnr_linear(const MeasuredPicture& picture, const MeasuredPicture& truth) {
   double sum = 0;
   for (std::size_t i = 0; i < picture.linear().size(); ++i) {

@@ -37,6 +37,10 @@ class MeasuredPicture {
   std::int64_t non_finite_ = 0;
 };
 
+// Of linear RGBA that is not exposed yet. What is transparent is laid over grey (0.18, after exposure), so that alpha
+// counts.
+MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure);
+
 // Peak signal-to-noise ratio, dB, of all colour values: linear ones clipped to [0, 1], or tone-mapped ones.
 // Infinite for equal pictures.
 double psnr_linear(const MeasuredPicture& picture, const MeasuredPicture& truth);

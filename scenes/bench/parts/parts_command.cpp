@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "bench/harness/process_clock.h"
 #include "bench/parts/parts_rows.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_options.h"
 #include "tools/program/command_line.h"
+#include "tools/program/date.h"
 #include "tools/program/progress.h"
 
 namespace quincunx::bench {
@@ -78,7 +78,7 @@ Result<PartsResult> run_parts(const BenchOptions& options) {
   plan->conditions = conditions_for(plan->conditions, scene);
   PartsResult result{.version = QUINCUNX_VERSION,
                      .command = options.command_line,
-                     .date = date_now(),
+                     .date = tools::date_now(),
                      .scene = plan->scenes.front(),
                      .method = method.name,
                      .output = options.output,

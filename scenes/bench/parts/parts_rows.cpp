@@ -89,7 +89,7 @@ class RowRun {
     const Status read = scene_.stage.device().download(resolved_.view(), output, rgba.data());
     if (!read.ok()) return read;
     const SceneTruth& truth = scene_.truth;
-    tally_.add(measured(output, std::move(rgba), exposure), truth.pictures[frame],
+    tally_.add(tools::measured(output, std::move(rgba), exposure), truth.pictures[frame],
                frame > 0 ? &truth.pictures[frame - 1] : nullptr, truth.masks[frame]);
     return {};
   }

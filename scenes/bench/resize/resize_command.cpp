@@ -3,13 +3,13 @@
 
 #include <algorithm>
 
-#include "bench/harness/process_clock.h"
 #include "bench/resize/resize_costs.h"
 #include "bench/resize/resize_frames.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_plan.h"
 #include "tools/program/command_line.h"
+#include "tools/program/date.h"
 
 namespace quincunx::bench {
 namespace {
@@ -59,7 +59,7 @@ Result<ResizeResult> run_resize(const BenchOptions& options) {
   const BenchMethod& method = plan->methods.front();
   ResizeResult result{.version = QUINCUNX_VERSION,
                       .command = options.command_line,
-                      .date = date_now(),
+                      .date = tools::date_now(),
                       .scene = plan->scenes.front(),
                       .method = method.name,
                       .output = options.output,

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include "bench/harness/event_times.h"
-#include "bench/harness/process_clock.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_statistics.h"
 #include "bench/speed_error/case_run.h"
 #include "tools/program/clock.h"
+#include "tools/program/date.h"
 #include "tools/program/jitter.h"
 #include "tools/program/progress.h"
 
@@ -106,7 +106,7 @@ Result<BenchRun> run_bench(const BenchPlan& plan, const BenchOptions& options) {
   BenchResult& result = runner.result();
   result.version = QUINCUNX_VERSION;
   result.command = options.command_line;
-  result.date = date_now();
+  result.date = tools::date_now();
   result.conditions = plan.conditions;
   for (const BenchMethod& method : plan.methods) {
     result.methods.push_back({method.name, method.summary, tools::name_of(method.jitter), method.lod_bias});

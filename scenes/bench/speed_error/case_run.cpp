@@ -134,8 +134,8 @@ Status CaseRun::measure_frame(int frame) {
   const auto at = static_cast<std::size_t>(frame - plan_.conditions.warm_up);
   const tools::MeasuredPicture* previous = at > 0 ? &truth_.pictures[at - 1] : nullptr;
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
-    entries_[i]->tally.add(measured(plan_.conditions.output, std::move(pictures[i]),
-                                    entries_[i]->is_encoded ? 1 : inputs_[entries_[i]->feed].exposure),
+    entries_[i]->tally.add(tools::measured(plan_.conditions.output, std::move(pictures[i]),
+                                           entries_[i]->is_encoded ? 1 : inputs_[entries_[i]->feed].exposure),
                            truth_.pictures[at], previous, truth_.masks[at]);
   });
   return {};

@@ -102,15 +102,6 @@ void add_parts(SceneTruth& truth) {
 
 }  // namespace
 
-tools::MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure) {
-  constexpr float kGrey = 0.18f;
-  for (std::size_t i = 0; i < rgba.size(); i += 4) {
-    for (std::size_t c = i; c < i + 3; ++c)
-      rgba[c] = rgba[c] * exposure + kGrey * (1 - rgba[i + 3]);
-  }
-  return {extent, rgba};
-}
-
 Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions) {
   SceneTruth truth;
@@ -119,7 +110,7 @@ Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& s
     const double seconds = seconds_of(conditions, conditions.warm_up + frame);
     auto rgba = truth_of({renderer, scene.name, gl_version, conditions, seconds});
     if (!rgba.ok()) return rgba.status();
-    truth.pictures.push_back(measured(conditions.output, std::move(rgba).value(), scene.exposure));
+    truth.pictures.push_back(tools::measured(conditions.output, std::move(rgba).value(), scene.exposure));
     if (frame > 0) change += mean_change(truth.pictures.back(), *(truth.pictures.end() - 2));
     spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
   }

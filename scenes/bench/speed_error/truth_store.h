@@ -28,7 +28,4 @@ struct SceneTruth {
 Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
                               const std::string& gl_version, const Conditions& conditions);
 
-// Linear RGBA, exposed, made ready to compare. What is transparent is laid over grey, so that alpha counts.
-tools::MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure);
-
 }  // namespace quincunx::bench
