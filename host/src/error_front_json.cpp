@@ -2,6 +2,7 @@
 // ErrorFront as JSON text, and the one that is built in.
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -26,16 +27,17 @@ SceneClass class_named(const std::string& name) {
   throw std::invalid_argument(fmt::format("there is no class '{}'; there are {}", name, known));
 }
 
+// What a measurement holds, not what a double can.
+double rounded(double value) {
+  return std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr);
+}
+
 nlohmann::ordered_json row_of(const FrontPoint& point) {
-  return {name_of(point.scene_class),
-          name_of(point.method),
-          point.scale,
-          point.flip,
-          point.flip_spread,
-          point.psnr_db,
-          point.psnr_spread,
-          point.ms_per_megapixel,
-          point.ms_spread};
+  nlohmann::ordered_json row = {name_of(point.scene_class), name_of(point.method)};
+  for (const double figure : {point.scale, point.flip, point.flip_spread, point.psnr_db, point.psnr_spread,
+                              point.ms_per_megapixel, point.ms_spread})
+    row.push_back(rounded(figure));
+  return row;
 }
 
 FrontPoint point_of(const nlohmann::json& row) {

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "quincunx/cache_folder.h"
+#include "quincunx/device.h"
 
 namespace quincunx {
 namespace {
@@ -29,6 +30,10 @@ std::optional<Result<ErrorFront>> read_front(const FrontKey& key, const fs::path
 
 }  // namespace
 
+FrontKey front_key(const DeviceInfo& device, const std::string& scene) {
+  return {.device = device.platform + " " + device.name, .driver = device.driver, .scene = scene};
+}
+
 std::optional<fs::path> front_path(const FrontKey& key) {
   const auto folder = cache_folder();
   if (!folder) return std::nullopt;
@@ -42,9 +47,11 @@ FoundFront find_front(const FrontKey& key) {
     const FrontKey wanted = {key.device, key.driver, scene};
     const auto path = front_path(wanted);
     auto front = path ? read_front(wanted, *path) : std::nullopt;
-    if (front && front->ok())
-      return {std::move(*front).value(),
-              fmt::format("{}; {}{}", front->value().summary(), path->string(), passed_over)};
+    if (front && front->ok()) {
+      std::string explanation =
+          fmt::format("{}; {}{}", front->value().summary(), path->string(), passed_over);
+      return {std::move(*front).value(), std::move(explanation)};
+    }
     if (front && passed_over.empty())
       passed_over = fmt::format("; '{}' was not taken: {}", path->string(), front->status().message());
   }

@@ -16,6 +16,7 @@ TEST(Statistics, MedianAndPercentileOfKnownLists) {
   EXPECT_EQ(median_of({3, 1, 2}), 2);
   EXPECT_EQ(median_of({4, 1, 3, 2}), 2.5);
   EXPECT_EQ(median_of({7}), 7);
+  EXPECT_EQ(least_median_of({{9, 1, 8}, {}, {4, 5, 6, 7}}), 5.5);
   Samples hundred;
   for (int i = 100; i >= 1; --i)
     hundred.push_back(i);

@@ -58,8 +58,16 @@ TEST(ErrorFront, JsonKeepsEverything) {
   const auto read = ErrorFront::from_json(front.to_json());
   ASSERT_TRUE(read.ok()) << read.status().message();
   EXPECT_EQ(read->source(), kSource);
-  EXPECT_TRUE(
-      std::equal(read->points().begin(), read->points().end(), front.points().begin(), front.points().end()));
+  ASSERT_EQ(read->points().size(), front.points().size());
+  for (std::size_t i = 0; i < front.points().size(); ++i) {
+    const FrontPoint &now = read->points()[i], &before = front.points()[i];
+    EXPECT_EQ(now.scene_class, before.scene_class);
+    EXPECT_EQ(now.method, before.method);
+    for (const auto field :
+         {&FrontPoint::scale, &FrontPoint::flip, &FrontPoint::flip_spread, &FrontPoint::psnr_db,
+          &FrontPoint::psnr_spread, &FrontPoint::ms_per_megapixel, &FrontPoint::ms_spread})
+      EXPECT_NEAR(now.*field, before.*field, 5e-6 * before.*field);  // six significant digits
+  }
   EXPECT_EQ(read->to_json(), front.to_json());
   EXPECT_FALSE(read->is_built_in());
 }

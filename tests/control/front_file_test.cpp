@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 
+#include "../tools/own_cache.h"
 #include "../tools/temporary_folder.h"
+#include "quincunx/cache_folder.h"
 
 namespace quincunx {
 namespace {
@@ -16,19 +17,6 @@ namespace fs = std::filesystem;
 // A cache folder of its own.
 class FrontFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (const char* before = std::getenv("QUINCUNX_CACHE_DIR")) before_ = before;
-    setenv("QUINCUNX_CACHE_DIR", folder_.file("cache").c_str(), 1);
-    fs::create_directories(folder_.file("cache"));
-  }
-  void TearDown() override {
-    if (before_) {
-      setenv("QUINCUNX_CACHE_DIR", before_->c_str(), 1);
-    } else {
-      unsetenv("QUINCUNX_CACHE_DIR");
-    }
-  }
-
   // The figures that are built in, as if measured for `source` and written where those of `place` are looked for.
   static void write(const FrontKey& place, const FrontKey& source) {
     const auto points = ErrorFront::built_in().points();
@@ -49,16 +37,16 @@ class FrontFile : public ::testing::Test {
   const FrontKey scene_ = {"platform device", "1.2", kScene};
 
  private:
-  std::optional<std::string> before_;
   testing::TemporaryFolder folder_;
+  testing::OwnCache cache_{folder_.file(".")};
 };
 
 TEST_F(FrontFile, LiesInTheCacheFolderByDeviceDriverAndScene) {
-  EXPECT_EQ(front_path(any_)->parent_path(), fs::path(std::getenv("QUINCUNX_CACHE_DIR")));
+  EXPECT_EQ(front_path(any_)->parent_path(), *cache_folder());
   EXPECT_NE(*front_path(any_), *front_path(scene_));
   EXPECT_NE(*front_path(any_), *front_path({"platform device", "1.3", ""}));
   EXPECT_NE(*front_path(any_), *front_path({"another device", "1.2", ""}));
-  setenv("QUINCUNX_CACHE_DIR", "", 1);
+  const testing::OwnCache none("");
   EXPECT_FALSE(front_path(any_));
   EXPECT_TRUE(find_front(any_).front.is_built_in());
 }
@@ -71,7 +59,9 @@ TEST_F(FrontFile, TheScenesGoesBeforeTheDevicesGoesBeforeTheBuiltIn) {
   EXPECT_EQ(find_front(scene_).front.source().scene, "");
   write(scene_, scene_);
   EXPECT_EQ(find_front(scene_).front.source().scene, kScene);
-  EXPECT_NE(find_front(scene_).explanation.find(front_path(scene_)->string()), std::string::npos);
+  EXPECT_EQ(
+      find_front(scene_).explanation,
+      "measured on platform device, driver 1.2, now, for scene courtyard; " + front_path(scene_)->string());
   EXPECT_EQ(find_front(any_).front.source().scene, "");
 }
 

@@ -58,7 +58,7 @@ QUINCUNX_API std::string name_of(
 QUINCUNX_API Result<FrontMethod> front_method(const std::string& name);
 
 // Errors are against supersampled truth, exposed and tone mapped, as docs/bench.md defines them. A spread is the
-// standard deviation between what a mean was taken over: the scenes of the class, or the moments of one scene.
+// standard deviation between what a mean was taken over: the scenes of the class, or the frames of one scene.
 struct FrontPoint {
   SceneClass scene_class = SceneClass::kStill;
   FrontMethod method;
@@ -68,7 +68,7 @@ struct FrontPoint {
   double psnr_db = 0;  // at most kHighestPsnr, which stands for no error
   double psnr_spread = 0;
   double ms_per_megapixel = 0;  // of the output: all resolve passes but present, above 0
-  double ms_spread = 0;         // half the 95 % interval of that median
+  double ms_spread = 0;
 
   static constexpr double kHighestPsnr = 100;
   friend bool operator==(const FrontPoint&, const FrontPoint&) = default;
@@ -99,8 +99,9 @@ class QUINCUNX_API ErrorFront {
   // say which method costs more than which.
   static const ErrorFront& built_in();
 
-  // JSON text, a line a point, and back. Errors of from_json(): kInvalidArgument for text that to_json() would not
-  // write; the message is one sentence that begins with "error front: ".
+  // JSON text, a line a point, its figures to six significant digits, and back. Errors of from_json():
+  // kInvalidArgument for text that to_json() would not write; the message is one sentence that begins with
+  // "error front: ".
   std::string to_json() const;
   static Result<ErrorFront> from_json(const std::string& text);
 

@@ -21,6 +21,9 @@ struct FrontKey {
   std::string scene;  // empty: any
 };
 
+struct DeviceInfo;
+QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& scene = {});
+
 // Nothing where there is no cache folder. The file may not exist yet.
 QUINCUNX_API std::optional<std::filesystem::path> front_path(const FrontKey& key);
 

@@ -52,6 +52,7 @@ void fields(Archive& io, Quality& value) {
 template <typename Archive>
 void fields(Archive& io, Speed& value) {
   io("ms", value.ms);
+  io("least_ms", value.least_ms);
   io("processor_ms", value.processor_ms);
   io("ratio", value.ratio);
   io("processor_ratio", value.processor_ratio);

@@ -21,6 +21,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-bench --resize --scenes pan               another resolution: its cost, viewport and placed targets
   quincunx-bench --parts --scenes courtyard           scales of the picture, the shadow map and particles
   quincunx-bench --tune                              how each pass is best cut on this device; used from then on
+  quincunx-bench --front front.json                  what each method errs and costs here, by class of scenes and scale
 Exit status: 0 done, 1 failed or something got worse (--compare), 2 wrong usage.)";
 
 void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
@@ -125,12 +126,14 @@ std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& optio
   add_resize_options(app, options.resize);
   add_parts_options(app, options.parts_bench);
   add_tune_options(app, options.tune);
+  add_front_options(app, options.front);
   scenes::add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-bench", argc, argv);
   if (const std::optional<int> code = app.parse(argc, argv)) return code;
   apply_quick(app, options);
   if (options.resize.wanted && !app.has("--scales")) options.scales = {0.5, 0.7, 1};
   if (options.parts_bench.wanted && !app.has("--scales")) options.scales = {0.35, 0.5, 0.6, 0.85, 1};
+  if (!options.front.file.empty()) apply_front_defaults(app, options);
   return std::nullopt;
 }
 

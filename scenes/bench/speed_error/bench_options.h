@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/front/front_command.h"
 #include "bench/parts/parts_command.h"
 #include "bench/resize/resize_command.h"
 #include "bench/traces/trace_command.h"
@@ -36,6 +37,7 @@ struct BenchOptions : scenes::PictureOptions {
   ResizeOptions resize;
   PartsOptions parts_bench;
   TuneOptions tune;
+  FrontOptions front;
   bool json = false;
 
   std::string command_line;

@@ -68,6 +68,7 @@ struct Quality {
 // What the resolve passes of one frame cost, the present pass not among them.
 struct Speed {
   Spread ms;                        // OpenCL events
+  std::optional<double> least_ms;   // the least of the rounds' medians; absent in older results
   Spread processor_ms;              // of this process, all threads
   Spread ratio;                     // ms / that of the float4 copy, by round; p95 is that of rounds
   Spread processor_ratio;           // processor_ms / that of the copy

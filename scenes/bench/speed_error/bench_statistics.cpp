@@ -69,6 +69,14 @@ double median_of(Samples samples) {
   return (*at + *std::max_element(samples.begin(), at)) / 2;
 }
 
+double least_median_of(const Rounds& rounds) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Samples& round : rounds) {
+    if (!round.empty()) least = std::min(least, median_of(round));
+  }
+  return least;
+}
+
 double mean_of(const Samples& samples) {
   return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
 }

@@ -26,6 +26,9 @@ double p95_of(Samples samples);  // nearest rank: the smallest that at least 95 
 // there is no sample.
 Spread spread_of(const Rounds& rounds);
 
+// The least of the medians of rounds: that which other programs disturbed least. At least one sample.
+double least_median_of(const Rounds& rounds);
+
 // Of the quotients of the rounds' medians. Both have the same number of rounds, none empty.
 Spread ratio_of(const Rounds& rounds, const Rounds& unit);
 

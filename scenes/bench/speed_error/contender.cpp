@@ -47,6 +47,7 @@ void Contender::keep(const DispatchTime& time) {
 Speed Contender::speed(const Rounds& copy_ms, const Rounds& copy_processor_ms) const {
   Speed speed;
   speed.ms = spread_of(ms_);
+  speed.least_ms = least_median_of(ms_);
   speed.processor_ms = spread_of(processor_ms_);
   speed.ratio = ratio_of(ms_, copy_ms);
   speed.processor_ratio = ratio_of(processor_ms_, copy_processor_ms);

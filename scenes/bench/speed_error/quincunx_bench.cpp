@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/front/front_points.h"
 #include "bench/speed_error/bench_compare.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_options.h"
@@ -109,6 +110,18 @@ int tabulate(const BenchOptions& options, const std::string& name, const Measure
   return tools::kDone;
 }
 
+int write_measured_front(const BenchOptions& options) {
+  const auto front = measure_front(options);
+  if (!front.ok()) return tools::fail(front.status());
+  if (Status status = write_front(options, front.value()); !status.ok()) return tools::fail(status);
+  if (options.json) {
+    fmt::print("{}", front->to_json());
+  } else if (!options.quiet) {
+    fmt::print("{}", text_of(front.value()));
+  }
+  return tools::kDone;
+}
+
 int run(int argc, char** argv) {
   BenchOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
@@ -129,6 +142,8 @@ int run(int argc, char** argv) {
     return tabulate(options, "parts", run_parts);
   } else if (options.tune.wanted) {
     return tabulate(options, "tune", run_tune);
+  } else if (!options.front.file.empty()) {
+    return write_measured_front(options);
   } else {
     return measure(options);
   }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// The points of an ErrorFront, from results of the bench. Pure.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/speed_error/bench_result.h"
+#include "quincunx/error_front.h"
+
+namespace quincunx::bench {
+
+// The means of each class, method and scale over all rows of its measured scenes. All results have the same methods,
+// scales and output; rows of other scenes do not count. Errors: kInvalidArgument for a method that an ErrorFront does
+// not know.
+Result<std::vector<FrontPoint>> front_points(std::span<const BenchResult> results);
+
+// A table for a terminal: for each class and method FLIP, dB and milliseconds by scale; what is on the front is marked.
+std::string text_of(const ErrorFront& front);
+
+}  // namespace quincunx::bench
