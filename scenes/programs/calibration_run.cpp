@@ -2,13 +2,19 @@
 #include "programs/calibration_run.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
+#include "programs/front_calibration.h"
 #include "programs/paced_loop.h"
+#include "quincunx/front_file.h"
 #include "quincunx/resolve_service.h"
+#include "tools/page/scored_frames.h"
 #include "tools/program/atomic_file.h"
+#include "tools/program/date.h"
 #include "tools/program/progress.h"
 
 namespace quincunx::scenes {
@@ -131,18 +137,11 @@ void print(const CostTable& table, const std::vector<Extent>& points, const Reso
   }
 }
 
-}  // namespace
-
-Status run_calibration(const RenderOptions& options) {
+Status calibrate_costs(const RenderOptions& options) {
   auto ladder_settings = ladder_for(options.pacing, options.output);
   if (!ladder_settings.ok()) return ladder_settings.status();
   auto ladder = ResolutionLadder::create(ladder_settings.value());
   if (!ladder.ok()) return ladder.status();
-  {
-    const auto file =
-        tools::AtomicFile::create(options.pacing.calibrate);  // said before the work, not after it
-    if (!file.ok()) return file.status();
-  }
   auto calibration = Calibration::create(options, ladder.value());
   if (!calibration.ok()) return calibration.status();
   if (Status status = calibration->measure(ladder.value(), options.quiet); !status.ok()) return status;
@@ -152,6 +151,50 @@ Status run_calibration(const RenderOptions& options) {
     return status;
   if (!options.quiet) print(table.value(), test_points(ladder.value()), ladder.value());
   return {};
+}
+
+std::vector<double> front_scales(const PacingOptions& pacing) {
+  const double high = std::min(pacing.max_scale, 1.0);
+  const double low = std::min(pacing.min_scale, high);
+  if (low == high) return {high};
+  return {low, (low + high) / 2, high};
+}
+
+Status calibrate_methods(const RenderOptions& options) {
+  auto settings = source_settings_for(options);
+  if (!settings.ok()) return settings.status();
+  auto stage = FrameSource::create(settings.value());
+  if (!stage.ok()) return stage.status();
+  const auto front = calibrate_front(*stage.value(), {.output = options.output,
+                                                      .scales = front_scales(options.pacing),
+                                                      .fps = options.fps,
+                                                      .seconds = options.start,
+                                                      .truth_seconds = options.pacing.truth_seconds,
+                                                      .command = options.command_line,
+                                                      .date = tools::date_now()});
+  if (!front.ok()) return front.status();
+  const auto path = front_path(front_key(stage.value()->device().info(), stage.value()->scene().name));
+  if (!path) {
+    spdlog::warn("what methods err and cost is not kept: QUINCUNX_CACHE_DIR is empty");
+  } else if (Status status = tools::write_text(path->string(), front->to_json()); !status.ok()) {
+    return status;
+  }
+  if (!options.quiet)
+    fmt::print("\n{}{}", text_of_scene(front.value()), path ? "kept in " + path->string() + "\n" : "");
+  return {};
+}
+
+}  // namespace
+
+Status run_calibration(const RenderOptions& options) {
+  // Said before the work, not after it.
+  if (Status status = tools::ScoredFrames::check(options.output, "--calibrate"); !status.ok()) return status;
+  {
+    const auto file = tools::AtomicFile::create(options.pacing.calibrate);
+    if (!file.ok()) return file.status();
+  }
+  if (Status status = calibrate_costs(options); !status.ok()) return status;
+  return calibrate_methods(options);
 }
 
 }  // namespace quincunx::scenes

@@ -100,10 +100,18 @@ void add_measuring_options(tools::CommandLine& app, PacingOptions& options) {
       app, "--frame-cost", options.cost, kCosts,
       "What a frame costs: device (timers of OpenGL and OpenCL), span (until its picture is complete) "
       "or auto (default: device where the timers of both can be trusted)");
-  app.add_option("--calibrate", options.calibrate,
-                 "Measure instead what frames cost at a few resolutions, and write it for --calibration")
+  app.add_option(
+         "--calibrate", options.calibrate,
+         "Measure instead what frames cost at a few resolutions, and write it for --calibration; then "
+         "what each method errs and costs in this scene, and keep it in the cache folder")
       .excludes("--target-fps")
       .type_name("FILE");
+  app.add_option(
+         "--truth-seconds", options.truth_seconds,
+         "With --calibrate: the longest that truth may take; beyond it errors are against the best method")
+      .in_range(0.0, 3600.0)
+      .needs("--calibrate")
+      .show_default();
 }
 
 // What fits together, where it is more than one option needing another.

@@ -29,6 +29,7 @@ struct PacingOptions {
   bool detail_follows = false;
   std::string calibration;             // file that --calibrate wrote; empty: none
   std::string calibrate;               // file to write instead of a run; empty: none
+  double truth_seconds = 4;            // with it: the longest that truth may take
   std::vector<float> compared_scales;  // the same frames again, each at one of these
 
   bool on() const { return target_fps > 0; }

@@ -10,6 +10,7 @@
 #include "programs/render_options.h"
 #include "programs/render_session.h"
 #include "programs/truth_run.h"
+#include "quincunx/front_file.h"
 #include "tools/page/report_page.h"
 #include "tools/program/device_lines.h"
 #include "tools/program/program.h"
@@ -17,6 +18,13 @@
 
 namespace quincunx::scenes {
 namespace {
+
+// Which figures a controller that chooses methods would go by. Nothing where there is no OpenCL device.
+std::string front_text(const RenderOptions& options, const Scene& scene) {
+  const auto device = Device::open(options.device);
+  if (!device.ok()) return {};
+  return fmt::format("Error front    {}\n", find_front(front_key(device->info(), scene.name)).explanation);
+}
 
 int explain(const RenderOptions& options) {
   auto source = source_settings_for(options);
@@ -38,8 +46,9 @@ int explain(const RenderOptions& options) {
   }
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  fmt::print("Scene          {}: {}\n{}{}{}", scene->name, scene->summary,
-             tools::device_lines(options.device), explain(source->parts, has_particles), plan->explain());
+  fmt::print("Scene          {}: {}\n{}{}{}{}", scene->name, scene->summary,
+             front_text(options, scene.value()), tools::device_lines(options.device),
+             explain(source->parts, has_particles), plan->explain());
   return tools::kDone;
 }
 

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: MIT
+#include "programs/front_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <span>
+
+#include "programs/front_feed.h"
+#include "programs/front_methods.h"
+#include "programs/front_reference.h"
+#include "programs/picture_options.h"
+#include "quincunx/front_file.h"
+#include "tools/program/method_names.h"
+
+namespace quincunx::scenes {
+namespace {
+
+constexpr Extent kMostCrop = {320, 180};
+constexpr int kMeasuredFrames = 2;
+constexpr int kTimedFrames = 4;
+constexpr int kTimedWarmUp = 2;
+
+// What is known of one method at one scale.
+struct Measured {
+  std::vector<double> flip, psnr;
+};
+struct Cell {
+  Measured held, moving;
+  std::vector<double> ms;
+};
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double deviation_of(const std::vector<double>& values) {
+  double squares = 0;
+  for (const double value : values)
+    squares += (value - mean_of(values)) * (value - mean_of(values));
+  return values.size() < 2 ? 0 : std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+// Of all passes; nothing where one of them has no time.
+std::optional<double> resolve_ms_of(const FrameReport& report) {
+  double ms = 0;
+  for (int i = 0; i < report.pass_count; ++i) {
+    if (report.passes[static_cast<std::size_t>(i)].ms < 0) return std::nullopt;
+    ms += report.passes[static_cast<std::size_t>(i)].ms;
+  }
+  return ms > 0 ? std::optional<double>(ms) : std::nullopt;
+}
+
+class Calibration {
+ public:
+  Calibration(FrameSource& stage, const FrontCalibration& settings) : stage_(stage), settings_(settings) {}
+
+  Result<ErrorFront> run() {
+    feed_.crop = PictureCrop::middle_of(settings_.output, kMostCrop);
+    feed_.fps = settings_.fps;
+    feed_.seconds = settings_.seconds;
+    feed_.frames = kMeasuredFrames;
+    auto reference = reference_of(stage_, feed_, settings_.truth_seconds);
+    if (!reference.ok()) return reference.status();
+    reference_ = std::move(reference).value();
+    for (const double scale : settings_.scales) {
+      if (Status status = run_scale(scale); !status.ok()) return status;
+    }
+    return ErrorFront::create(source(), std::move(points_));
+  }
+
+ private:
+  Status run_scale(double scale) {
+    const std::vector<std::string>& names = front_methods();
+    std::vector<Cell> cells(names.size());
+    const auto jitter_of = [&](std::size_t i) {
+      return jitter_for(tools::method_choices().at(names[i]).method);
+    };
+    for (std::size_t first = 0, last = 0; first < names.size(); first = last) {
+      while (last < names.size() && jitter_of(last) == jitter_of(first))
+        ++last;
+      const std::span<const std::string> methods(&names[first], last - first);
+      const std::span<Cell> of_feed(&cells[first], last - first);
+      if (Status status = measure(scale, methods, of_feed); !status.ok()) return status;
+      if (Status status = time(scale, methods, of_feed); !status.ok()) return status;
+    }
+    for (std::size_t i = 0; i < names.size(); ++i)
+      add_points(scale, front_method(names[i]).value(), cells[i]);
+    return {};
+  }
+
+  Status measure(double scale, std::span<const std::string> methods, std::span<Cell> cells) {
+    FrontFeed feed = feed_;
+    feed.scale = static_cast<float>(scale);
+    const bool accumulates = tools::method_choices().at(methods.front()).method == Method::kTemporal;
+    feed.warm_up = accumulates ? kWarmUpFrames : 1;
+    std::vector<float> rgba(static_cast<std::size_t>(feed.crop.extent.area()) * 4);
+    for (const bool held : {false, true}) {
+      feed.held = held;
+      const Status status = run_feed(stage_, feed, methods, [&](const FrontFrame& frame) -> Status {
+        if (frame.index < 0) return {};
+        if (Status read = stage_.device().download(frame.resolved, feed.crop.extent, rgba.data()); !read.ok())
+          return read;
+        const auto picture = tools::measured(feed.crop.extent, rgba, stage_.exposure());
+        const auto& truth =
+            held ? reference_.held.front() : reference_.moving[static_cast<std::size_t>(frame.index)];
+        const tools::PictureScores scores = tools::measure(picture, truth);
+        Measured& measured = held ? cells[frame.method].held : cells[frame.method].moving;
+        measured.flip.push_back(scores.flip);
+        measured.psnr.push_back(std::min(scores.psnr_tone_mapped, FrontPoint::kHighestPsnr));
+        return {};
+      });
+      if (!status.ok()) return status;
+    }
+    return {};
+  }
+
+  Status time(double scale, std::span<const std::string> methods, std::span<Cell> cells) {
+    FrontFeed feed = feed_;
+    feed.crop = PictureCrop::middle_of(settings_.output, settings_.output);
+    feed.scale = static_cast<float>(scale);
+    feed.warm_up = kTimedWarmUp;
+    feed.frames = kTimedFrames;
+    return run_feed(stage_, feed, methods, [&](const FrontFrame& frame) -> Status {
+      if (frame.index < 0) return {};
+      const auto ms = resolve_ms_of(frame.report);
+      if (!ms) return Status::unsupported(fmt::format("'{}' gives no times", stage_.device().info().name));
+      cells[frame.method].ms.push_back(*ms / (static_cast<double>(settings_.output.area()) * 1e-6));
+      return {};
+    });
+  }
+
+  void add_points(double scale, const FrontMethod& method, const Cell& cell) {
+    for (std::size_t i = 0; i < kSceneClasses; ++i) {
+      const auto scene_class = static_cast<SceneClass>(i);
+      const Measured& measured = scene_class == SceneClass::kStill ? cell.held : cell.moving;
+      points_.push_back({.scene_class = scene_class,
+                         .method = method,
+                         .scale = scale,
+                         .flip = mean_of(measured.flip),
+                         .flip_spread = deviation_of(measured.flip),
+                         .psnr_db = mean_of(measured.psnr),
+                         .psnr_spread = deviation_of(measured.psnr),
+                         .ms_per_megapixel = *std::min_element(cell.ms.begin(), cell.ms.end()),
+                         .ms_spread = deviation_of(cell.ms)});
+    }
+  }
+
+  FrontSource source() const {
+    const FrontKey key = front_key(stage_.device().info(), stage_.scene().name);
+    return {.device = key.device,
+            .driver = key.driver,
+            .scene = key.scene,
+            .date = settings_.date,
+            .command = settings_.command,
+            .truth = reference_.what,
+            .output = settings_.output};
+  }
+
+  FrameSource& stage_;
+  const FrontCalibration& settings_;
+  FrontFeed feed_;
+  FrontReference reference_;
+  std::vector<FrontPoint> points_;
+};
+
+}  // namespace
+
+Result<ErrorFront> calibrate_front(FrameSource& stage, const FrontCalibration& calibration) {
+  return Calibration(stage, calibration).run();
+}
+
+std::string text_of_scene(const ErrorFront& front) {
+  std::string text = fmt::format("scale:FLIP against {}, ms at {}x{}", front.source().truth,
+                                 front.source().output.width, front.source().output.height);
+  const double megapixels = static_cast<double>(front.source().output.area()) * 1e-6;
+  const FrontPoint* last = nullptr;
+  for (const FrontPoint& point : front.points()) {
+    if (point.scene_class != SceneClass::kStill && point.scene_class != SceneClass::kPan) continue;
+    const bool same =
+        last != nullptr && last->scene_class == point.scene_class && last->method == point.method;
+    const char* state = point.scene_class == SceneClass::kStill ? "still" : "moving";
+    if (!same) text += fmt::format("\n{:<7} {:<21}", state, name_of(point.method));
+    text +=
+        fmt::format("  {:.2f}:{:.4f} {:6.2f}", point.scale, point.flip, point.ms_per_megapixel * megapixels);
+    last = &point;
+  }
+  return text + "\n";
+}
+
+}  // namespace quincunx::scenes
