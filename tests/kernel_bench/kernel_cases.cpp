@@ -39,8 +39,7 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
   std::vector<Pass*> passes;
   for (const std::string& kernel : kernels) {
     passes.push_back(chain->find(kernel));
-    what.bytes +=
-        bytes_of(passes.back()->spec(), {scene.current.render, scene.previous.render, stage.output()});
+    what.bytes += bytes_of(passes.back()->spec(), largest_extents(scene.settings));
   }
   Stage::add(
       cases, std::move(what),
@@ -168,7 +167,7 @@ void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, doubl
              {.name = "resolve_checkerboard" + scene.suffix + suffix,
               .scale = scene.scale,
               .wanted = wanted,
-              .bytes = bytes_of(pass->spec(), {scene.current.render, scene.previous.render, stage.output()})},
+              .bytes = bytes_of(pass->spec(), largest_extents(scene.settings))},
              [chain, pass, &stage, outputs, scene](cl::Event* events) {
                PassChain::enqueue(
                    *pass, chain->frame(scene.current, &scene.previous, outputs, stage.counter()), events);
