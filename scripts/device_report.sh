@@ -109,8 +109,11 @@ outcome() {
 
 report=$out/report.md
 say() { printf '%s\n' "$@" >>"$report"; }
-# block LOG: as it is, but for the folder's name.
-block() { say '' '```' "$(sed "s|$out/||g" "$out/$1" | fold -s -w 118 | sed 's/ *$//')" '```'; }
+# block LOG: as it is, but for the folder's name; nothing where it is empty.
+block() { [[ ! -s "$out/$1" ]] || say '' '```' "$(sed "s|$out/||g" "$out/$1" | fold -s -w 118 | sed 's/ *$//')" '```'; }
+
+# told COMMAND: how it ended.
+told() { say '' "$(fold -s -w 118 <<<"\`$1\`: $(outcome)." | sed 's/ *$//')"; }
 
 # test_row SHARE PROGRAM OPTION...
 test_row() {
@@ -133,34 +136,37 @@ say "# $name" '' \
 block devices.log
 
 say '' '## Tests' '' '| command | passed | failed | skipped | s | |' '|---|---|---|---|---|---|'
-test_row 27 kernel_tests "--gtest_filter=$pattern"
-test_row 8 service_tests
-test_row 8 interop_tests
+test_row 25 kernel_tests "--gtest_filter=$pattern"
+test_row 7 service_tests
+test_row 7 interop_tests
 failed=$(sed -n 's/^\[  FAILED  \] \(.*\) (.*ms)$/- `\1`/p' "$out"/*_tests.log)
 [[ -z "$failed" ]] || say '' 'Failed:' '' "$failed"
 
 prefix=("${measure[@]}")
-limited 25 tune.log quincunx-bench --tune --out "$out" ${cases:+--tune-cases "$cases"}
+limited 28 tune.log quincunx-bench --tune --out "$out" ${cases:+--tune-cases "$cases"}
 grep -q '"passes"' "$out/tune.json" 2>/dev/null && cp "$QUINCUNX_CACHE_DIR"/device_profile-*.json "$out/profile.json"
-say '' '## Tuned' '' "\`quincunx-bench --tune${cases:+ --tune-cases $cases}\`: $(outcome)."
+say '' '## Tuned'
+told "quincunx-bench --tune${cases:+ --tune-cases $cases}"
 block tune.log
 
 sizes=(1280x720 1920x1080 3840x2160)
-limited 14 kernels.log quincunx-kernel-bench --no-peers --output "${sizes[@]}" --scales 0.5 --rounds 5 "${filter[@]}" \
+limited 12 kernels.log quincunx-kernel-bench --no-peers --output "${sizes[@]}" --scales 0.5 --rounds 5 "${filter[@]}" \
   --json "$out/kernels.json"
-say '' '## Kernels' '' "\`quincunx-kernel-bench --no-peers --output ${sizes[*]} --scales 0.5 --rounds 5 ${filter[*]}\`: $(outcome)."
+say '' '## Kernels'
+told "quincunx-kernel-bench --no-peers --output ${sizes[*]} --scales 0.5 --rounds 5${filter[*]:+ ${filter[*]}}"
 block kernels.log
 
-limited 15 bench.log quincunx-bench --quick --scenes courtyard --out "$out/bench"
-say '' '## Speed against error' '' "\`quincunx-bench --quick --scenes courtyard\`: $(outcome)."
+limited 12 bench.log quincunx-bench --quick --scenes courtyard --out "$out/bench"
+say '' '## Speed against error'
+told "quincunx-bench --quick --scenes courtyard"
 block bench.log
 
 # The same frames by shared textures and by copies are the same pictures.
 say '' '## Frames from OpenGL'
 frames=(--scene courtyard --method temporal --scale-path random --frames 20)
 for way in gl copy; do
-  limited 4 "interop_$way.log" quincunx-render --interop "$way" "${frames[@]}" --out "$out/$way/frame.%04d.png"
-  say '' "\`quincunx-render --interop $way ${frames[*]}\`: $(outcome)."
+  limited 3 "interop_$way.log" quincunx-render --interop "$way" "${frames[@]}" --out "$out/$way/frame.%04d.png"
+  told "quincunx-render --interop $way ${frames[*]}"
   block "interop_$way.log"
 done
 if [[ -d "$out/gl" && -d "$out/copy" ]]; then
