@@ -41,11 +41,11 @@ foreach(i RANGE ${last})
   string(JSON width GET "${profile}" passes ${kernel} group 0)
 endforeach()
 
-# Every kernel but the one that runs on request has its shape.
+# Every kernel has its shape, but for those that run on request or where the output has another size than before.
 file(GLOB_RECURSE sources ${SOURCES}/kernels/*.cl)
 foreach(source ${sources})
   get_filename_component(kernel ${source} NAME_WE)
-  if(NOT kernel IN_LIST kernels AND NOT kernel STREQUAL "clear_region")
+  if(NOT kernel IN_LIST kernels AND NOT kernel MATCHES "^(clear_region$|resize_)")
     list(APPEND missing ${kernel})
   endif()
 endforeach()

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The cases of --tune: methods and options that together run every pass but clear_region, and how one is timed.
+// The cases of --tune: methods and options that together run every pass but those that seldom run (clear_region,
+// resize_*), and how one is timed.
 #pragma once
 
 #include <span>
