@@ -121,7 +121,8 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
     near_tile.phase_x = layer.phase_x;
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
-    NearLayers near = fetch_near(&pixels, &past, depth1, before.depth1, layer, x, y, left, right);
+    const float cut = light[tile_index].new_cut;
+    NearLayers near = fetch_near(&pixels, &past, depth1, before.depth1, layer, x, y, left, right, cut);
     near = update_near(near, &pixels, colour, depth, before.depth0, &params, &nearest_near);
     const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);

@@ -37,6 +37,7 @@
 #define CUT_RATIO 0.95f           // of history's error to the neighbours', from which on it rejects
 #define CUT_RANGE 0.25f           // by how much more of the neighbours' error it rejects wholly
 #define CUT_FLOOR 0.03f           // of the light: less is no error
+#define CUT_MEMORY 0.9f           // from one frame to the next: where each seems another picture there is no cut
 // Rejection by change.
 #define SIGN_TEST 1.1f            // least majority, in squared standard deviations of a fair coin
 #define LEAST_CHANGE 0.15f        // of the tile's light
@@ -137,6 +138,9 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
   const float by_change = calm ? sure_change : changed;
   const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
   tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
+  const float cut = clamp(by_cut, 0.0f, 1.0f);
+  tile.cut = max(cut, CUT_MEMORY * before.cut);
+  tile.new_cut = max(cut - before.cut, 0.0f);
 
   // Startling samples. Those of a picture that is another one, or in another light, are no faults.
   tile.startled = around.sum.startling > 0.0f ? 1.0f : STARTLED_MEMORY * before.startled;

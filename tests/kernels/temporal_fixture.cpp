@@ -43,6 +43,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                       .startling = static_cast<float>(evidence.startling)};
   static_cast<TileLight&>(made) = {.gain = number(light.gain),
                                    .rejection = number(light.rejection),
+                                   .cut = number(light.cut),
+                                   .new_cut = number(light.new_cut),
                                    .persistence = number(light.persistence),
                                    .flicker = number(light.flicker),
                                    .mean_brightening = number(light.mean_brightening),
@@ -87,6 +89,8 @@ reference::Tile to_reference(const KernelTile& tile) {
                        .startling = static_cast<int>(tile.startling)},
           .light = {.gain = number(tile.gain),
                     .rejection = number(tile.rejection),
+                    .cut = number(tile.cut),
+                    .new_cut = number(tile.new_cut),
                     .persistence = number(tile.persistence),
                     .flicker = number(tile.flicker),
                     .mean_brightening = number(tile.mean_brightening),

@@ -274,6 +274,7 @@ std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsign
     if (zone() % 3 == 0) exact.light.rejection = as_float(uniform(zone));
     if (zone() % 3 == 0) exact.light.gain = as_float(.25 + 2 * uniform(zone));
     exact.light.holds_back = zone() % 2 == 0;
+    if (zone() % 3 == 0) exact.light.new_cut = as_float(uniform(zone));
     made.push_back(exact);
   }
   return made;

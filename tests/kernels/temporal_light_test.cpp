@@ -181,6 +181,8 @@ TEST(TemporalLight, MatchesTheReference) {
       if (undecided) continue;
       expect_near(value.gain, bound.gain, actual[i].gain, what + "gain");
       expect_near(value.rejection, bound.rejection, actual[i].rejection, what + "rejection");
+      expect_near(value.cut, bound.cut, actual[i].cut, what + "cut");
+      expect_near(value.new_cut, bound.new_cut, actual[i].new_cut, what + "new cut");
       expect_near(value.persistence, bound.persistence, actual[i].persistence, what + "persistence");
       expect_near(value.suspected_error, bound.suspected_error, actual[i].suspected_error, what + "error");
       expect_near(value.suspected_change, bound.suspected_change, actual[i].suspected_change,

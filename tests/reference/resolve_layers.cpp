@@ -12,8 +12,8 @@
 //              accumulate        n, if it lies behind D
 //   near layer, as premultiplied colour and coverage: a sample before D counts as its colour and 1, one behind as 0
 //              fetch history     the near surface, at the place that p + R' moved from
-//              limit confidence  W <- W / (1 + .2 k W); at most 8, and min(t, 1 - rejection of the tile) in place of t
-//                                in t / (1 + 1/32 - t), t being open trust
+//              limit confidence  W <- W / (1 + .2 k W); at most 8, and min(t, 1 - new cut) in place of t in
+//                                t / (1 + 1/32 - t), t being open trust
 //              relight           as in resolve_temporal
 //              reseed            where W < .15: f = 1 - W / .15; F <- F + f (Gaussian of 3 x 3 samples - F); W <- .15;
 //                                without any valid sample F <- F (1 - f), W <- 0
@@ -193,11 +193,11 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
   NearTexel<Real> near{fetched.value, fetched.confidence};
 
   // Limit confidence, relight.
-  const auto rejection = between_tiles<Real>(in.now, in.tiles, pixel.x, pixel.y, &TileLight::rejection);
   const auto gain = between_tiles<Real>(in.now, in.tiles, pixel.x, pixel.y, &TileLight::gain);
   near.confidence = near.confidence / (1 + kResamplingCost * fetched.between * near.confidence);
   near.confidence =
-      min(near.confidence, min(most_confidence(min(pixel.open_trust, 1 - rejection)), kMostNear));
+      min(near.confidence,
+          min(most_confidence(min(pixel.open_trust, 1 - Real(pixel.tile->light.new_cut))), kMostNear));
   for (std::size_t c = 0; c < 3; ++c)
     near.value[c] *= gain;
   return near;

@@ -51,10 +51,12 @@ using TileEvidence = TileEvidenceOf<double>;
 // What is made of it.
 template <typename Real>
 struct TileLightOf {
-  Real gain = 1;              // relighting gain: history times this has this frame's light
-  Real rejection = 0;         // of history, in [0, 1]
-  Real persistence = 0;       // in [-1, 1]: of a coherent change of light, over frames
-  Real flicker = 0;           // how far a sample's luma goes to and fro from frame to frame: aliasing
+  Real gain = 1;       // relighting gain: history times this has this frame's light
+  Real rejection = 0;  // of history, in [0, 1]
+  Real cut = 0,
+       new_cut = 0;      // how far the whole picture is another one, now or of late, and by how much more
+  Real persistence = 0;  // in [-1, 1]: of a coherent change of light, over frames
+  Real flicker = 0;      // how far a sample's luma goes to and fro from frame to frame: aliasing
   Real mean_brightening = 0;  // of a sample
   // What rejection by error and by change would be by this frame alone, from 0 on; that by change with the
   // sign of the change.
@@ -135,6 +137,8 @@ template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
   return {l.gain,
           l.rejection,
+          l.cut,
+          l.new_cut,
           l.persistence,
           l.flicker,
           l.mean_brightening,

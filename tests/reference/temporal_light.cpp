@@ -68,6 +68,7 @@ constexpr double kCalm = .3;            // unrest below which a tile that stands
 constexpr double kCut = .95;            // E / N of the whole picture after a cut; usual are .6 to .9
 constexpr double kCutRange = .25;       // of N, over which rejection grows to 1
 constexpr double kCutFloor = .03;       // of the whole picture's light
+constexpr double kCutMemory = .9;       // each frame: what seems another picture in each of them has no cut
 constexpr double kSpread = .2;          // of all tiles: fewer are not the whole picture
 
 // Startling samples.
@@ -224,6 +225,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   suspect(evidence, before, sums, stands_still(in.tiles[i].reprojection), light);
   const Real by_cut = is_widespread && !relit ? rejection_by_cut(total) : Real(0);
   light.rejection = max(light.rejection, by_cut);
+  light.cut = max(by_cut, kCutMemory * before.cut);
+  light.new_cut = max(by_cut - before.cut, 0);
   light.startled = sums.startling > 0 ? Real(1) : kStartledMemory * before.startled;
   light.holds_back = sums.startling > 0 && Real(sums.startled) < kForgotten && !relit && !(by_cut > 0);
   if (light.holds_back) {

@@ -94,6 +94,49 @@ TEST(TemporalLayers, WhereNothingMovesApartThereIsOneLayer) {
     ASSERT_EQ(pixel[0], 0);
 }
 
+// Wires under a camera that turns, before a sky of broad bands that was drawn infinitely far away and without motion,
+// as Cycles draws it.
+TemporalScene wires_before_a_sky() {
+  TemporalScene scene = testing::wires_before_a_wall();
+  for (testing::Surface& surface : scene.surfaces) {
+    surface.velocity = {-4.3, .2};
+    surface.turn = std::polar(1., .0004);
+  }
+  for (std::size_t i = 0; i + 1 < scene.surfaces.size(); ++i)
+    scene.surfaces[i].centre += 120;
+  testing::Surface& sky = scene.surfaces.back();
+  sky.velocity = {-3.4, 0};
+  sky.is_sky = true;
+  sky.texture = [](Place place) {
+    const auto wave = static_cast<float>(.5 + .5 * std::sin(place.real() / 6));
+    return Pixel{.25f + .55f * wave, .4f + .45f * wave, .7f + .2f * wave, 1};
+  };
+  return scene;
+}
+
+// History of the sky is wrong and rejected, in every frame; what is known of the wires must not go with it.
+TEST(TemporalLayers, WiresBeforeASkyThatIsSaidToStandStillAreBetterThanBilinear) {
+  const TemporalScene scene = wires_before_a_sky();
+  const double bilinear = error_of(scene, {.method = Method::kBilinear});
+  EXPECT_LT(error_of(scene, preset(TemporalPreset::kBalanced)), .7 * bilinear);
+}
+
+// Other wires of the same depths, before another wall.
+TEST(TemporalLayers, ACutThatNobodyAnnouncesLeavesNothingOfTheNearLayer) {
+  const auto error_after_cut = [](TemporalPreset one) {
+    TemporalRun run(testing::wires_before_a_wall(), preset(one));
+    run.until(20);
+    for (testing::Surface& surface : run.scene().surfaces) {
+      surface.centre += Place(9, 5);
+      surface.texture = testing::plain_texture(.8f, .7f, .1f);
+    }
+    run.scene().surfaces.back().texture = testing::noise_texture(9, 5);
+    const Pixels shown = run.next();
+    return testing::squared_error(shown, run.truth(), run.scene().output);
+  };
+  EXPECT_LT(error_after_cut(TemporalPreset::kBalanced), 1.05 * error_after_cut(TemporalPreset::kFast));
+}
+
 TEST(TemporalLayers, ViewsShowThem) {
   const TemporalScene scene = testing::wires_before_a_wall();
   const auto show = [&scene](TemporalView view) {

@@ -18,17 +18,19 @@ typedef struct NearLayers {
   float8 confidence;
 } NearLayers;
 
-// What history has of them, in this frame's light and with confidence limited.
+// What history has of them, in this frame's light and with confidence limited. The tile's own rejection tells of the
+// far layer alone; `cut`: how far
+// the whole picture is another one.
 static inline NearLayers fetch_near(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
                                     TexelLayout layout, LayerTile tile, int x, int y, EdgeLight left,
-                                    EdgeLight right) {
+                                    EdgeLight right, float cut) {
   const LayerWishes wishes = wishes_of(pixels, kNearLayer);
   const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, pixels->motion_x, pixels->motion_y);
   const LayerSources from = find_sources(past, depth1, layout, &wishes, place, tile.is_rigid);
   const FetchedLayers fetched = fetch_layers(past, depth1, layout, &wishes, &from, pixels->is_split);
   const float8 fx = from.fraction_x, fy = from.fraction_y;
   const float8 between = min(4.0f * (fx * (1.0f - fx) + fy * (1.0f - fy)), 1.0f);
-  const float8 most = most_confidence(min(pixels->open_trust, 1.0f - ramp(left.rejection, right.rejection)));
+  const float8 most = most_confidence(min(pixels->open_trust, 1.0f - cut));
   const float8 known = fetched.confidence / (1.0f + RESAMPLING_COST * between * fetched.confidence);
   const float8 coverage = confidences(fetched.texels);
   NearLayers near = {relight(fetched.texels, left, right), min(known, min(most, MOST_NEAR_CONFIDENCE))};

@@ -61,6 +61,8 @@ QUINCUNX_CHECK_SIZE(TileEvidence, 28);
 typedef struct TileLight {
   float gain;         // the relighting gain: history's light times this is this frame's; 1 where light has not changed
   float rejection;    // of history, in [0, 1]: how far it is brought into the range of this frame's samples
+  float cut;          // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
+  float new_cut;      // by how much it is that more than of late
   float persistence;  // of a change of light over frames, in [-1, 1]: positive where it brightens
   float flicker;      // how far the mean brightening alternates from frame to frame, averaged over frames: aliasing
   float mean_brightening;  // TileEvidence's brightening / count, for the next frame
@@ -72,7 +74,7 @@ typedef struct TileLight {
   // 0 or 1: startling samples are held back, because no frame of late had any: they may be faults of one frame.
   int holds_back;
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 40);
+QUINCUNX_CHECK_SIZE(TileLight, 48);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 // many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
