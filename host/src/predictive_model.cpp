@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "predictive_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx {
+namespace {
+
+// All found on the development traces; docs/control.md says what each does.
+constexpr double kHeadroom = 0.002;  // of the target, while the backlog rests
+constexpr double kRest = 0.1;        // backlog that is let be, in refreshes
+constexpr double kRestSigmas = 5;    // and more of it with noise
+constexpr double kRecovery = 0.04;   // of the target per refresh of backlog above the rest
+constexpr double kUrgentFrom = 0.4;  // in refreshes: from here the answer grows with the square, too
+constexpr double kUrgent = 0.5;
+constexpr double kLargestRecovery = 0.3;
+constexpr double kOverdraw = 0.008;    // of the target: spent to keep a little backlog when times are noisy
+constexpr double kNoisy = 0.015;       // sigma from which they are
+constexpr double kUsableSlack = 0.92;  // that a frame like the worst may use up
+constexpr double kWorstSigmas = 2;
+constexpr double kDeepestCut = 0.6;  // of the target: lowest aim in answer to one frame
+constexpr double kLargeMove = 0.9;   // area ratio below which the cost model is doubted
+constexpr double kBandDown = 0.05;   // dead bands just after a change, in area
+constexpr double kBandUp = 0.012;
+constexpr double kBandFade = 110;  // frames; then they shrink to
+constexpr double kLeastBandDown = 0.009;
+constexpr double kLeastBandUp = 0.006;
+constexpr double kBandSigmas = 0.7;      // but never below the noise of the level
+constexpr int kRestFrames = 3;           // between a change and a rise
+constexpr double kTightHeadroom = 0.01;  // without slack: this, and
+constexpr double kTightSigmas = 4;
+constexpr double kTightExcess = 1.1;  // of the excess that recurs
+constexpr double kTightTrend = 2;
+constexpr double kTightBandDown = 0.008;
+constexpr double kLeastExcess = 0.04;     // of the target: smaller ones are noise
+constexpr double kFollowHeadroom = 0.05;  // below the processor's time
+constexpr double kBlurRate = 0.1;
+
+double first_fixed_part(const PredictiveSettings& settings) {
+  return settings.calibration ? settings.calibration->fixed_part().value_or(settings.fixed_part)
+                              : settings.fixed_part;
+}
+
+}  // namespace
+
+PredictiveModel::PredictiveModel(const ResolutionLadder& ladder, const PredictiveSettings& settings)
+    : ladder_(&ladder),
+      settings_(settings),
+      cost_(first_fixed_part(settings)),
+      backlog_(settings.buffers),
+      target_ms_(settings.target_ms) {
+  chosen_.fill({ladder.area_fraction(ladder.top()), 0});
+}
+
+void PredictiveModel::observe(const FrameTiming& timing, double apart_ms, double target_ms) {
+  const double area = ladder_->area_fraction(timing.render);
+  target_ms_ = target_ms;
+  backlog_.observe({.gpu_ms = timing.gpu_ms,
+                    .cpu_ms = timing.cpu_ms,
+                    .interval_ms = timing.interval_ms,
+                    .queued = timing.queued,
+                    .missed_vsyncs = timing.missed_vsyncs},
+                   target_ms);
+  cost_.learn(area, timing.gpu_ms - apart_ms);
+  level_.observe(cost_.work(area), timing.gpu_ms - apart_ms);
+  last_cpu_ms_ = timing.cpu_ms;
+  last_gpu_ms_ = timing.gpu_ms;
+  cpu_ms_[cpu_count_++ % cpu_ms_.size()] = timing.cpu_ms;
+  blur_px_ += kBlurRate * (timing.blur_px - blur_px_);
+  next_ = timing.next_frame == 0 ? timing.frame + 1 : timing.next_frame;
+  first_unknown_ = timing.frame + 1;
+  ++since_change_;
+}
+
+void PredictiveModel::choose(int from_rung, int rung, double apart_ms) {
+  if (rung != from_rung) since_change_ = 0;
+  chosen_[next_ % kRemembered] = {ladder_->area_fraction(rung), apart_ms};
+}
+
+// Backlog when the frames that are under way are done, if the level is this.
+double PredictiveModel::backlog_then(double level) const {
+  double backlog = backlog_.now();
+  const std::uint64_t known = next_ > kRemembered ? next_ - kRemembered + 1 : 0;
+  for (std::uint64_t frame = std::max(first_unknown_, known); frame < next_; ++frame) {
+    const Chosen& chosen = chosen_[frame % kRemembered];
+    backlog = std::max(0.0, backlog + level * cost_.work(chosen.area) + chosen.apart_ms - target_ms_);
+  }
+  return backlog;
+}
+
+// The time that the next frame may take.
+double PredictiveModel::aim() const {
+  const double target = target_ms_;
+  const double sigma = level_.sigma();
+  if (!has_slack()) {
+    const double expected = std::max(kTightSigmas * sigma, kTightExcess * level_.recurring_excess() / target);
+    const double headroom = kTightHeadroom + expected + kTightTrend * std::max(0.0, level_.trend());
+    return target * std::max(0.5, 1 - headroom);
+  }
+  const double behind = backlog_then(level_.mean_level()) / target;
+  const double urgent = std::max(0.0, behind - kUrgentFrom);
+  const double recovery = kRecovery * (behind - kRest - kRestSigmas * sigma) + kUrgent * urgent * urgent;
+  return target * (1 - kHeadroom - std::clamp(recovery, sigma > kNoisy ? -kOverdraw : 0, kLargestRecovery));
+}
+
+double PredictiveModel::area_within(double ms, double apart_ms) const {
+  return cost_.area_for((ms - apart_ms) / level_.mean_level());
+}
+
+int PredictiveModel::wanted_rung(int rung, double apart_ms) const {
+  const double now = ladder_->area_fraction(rung);
+  const int highest = ladder_->highest_within(blur_limit());
+  if (cpu_bound()) {
+    if (follows_cpu()) return std::min(highest, move_to(area_within(steady_ms(), apart_ms), rung));
+    if (level_.level() * cost_.work(now) + apart_ms <= target_ms_) return std::min(highest, rung);
+  }
+  if (const auto least = area_to_survive(now, apart_ms)) {
+    return std::min({highest, rung, ladder_->highest_within(*least)});
+  }
+  if (has_outlier()) return std::min(highest, rung);
+  const double aimed = aim();
+  double area = area_within(aimed, apart_ms);
+  if (area < kLargeMove * now) {
+    area = std::min(area, cost_.cautious_area_for((aimed - apart_ms) / level_.mean_level(), now));
+  }
+  return std::min(highest, move_to(area, rung));
+}
+
+double PredictiveModel::steady_ms() const {
+  if (follows_cpu()) return cpu_target() * (1 - kFollowHeadroom);
+  return has_slack() ? target_ms_ * (1 - kHeadroom) : aim();
+}
+
+int PredictiveModel::steady_rung(double apart_ms) const {
+  if (level_.mean_level() <= 0) return ladder_->top();
+  return ladder_->highest_within(std::min(blur_limit(), area_within(steady_ms(), apart_ms)));
+}
+
+// After an outlier: the area at which the next frame would just be in time if the outlier was a step.
+// Nothing if the present one is.
+std::optional<double> PredictiveModel::area_to_survive(double now, double apart_ms) const {
+  const double target = target_ms_;
+  if (!has_outlier()) return std::nullopt;
+  if (!has_slack() && level_.recurring_excess() >= kLeastExcess * target)
+    return std::nullopt;  // aim() covers it
+  const double worst = std::max(level_.suspect(), level_.level() * (1 + kWorstSigmas * level_.sigma()));
+  const double time =
+      has_slack() ? target + kUsableSlack * backlog_.slack(target) - backlog_then(worst) : target;
+  if (worst * cost_.work(now) + apart_ms <= time) return std::nullopt;
+  return cost_.cautious_area_for((std::max(time, kDeepestCut * target) - apart_ms) / worst, now);
+}
+
+int PredictiveModel::move_to(double area, int rung) const {
+  const double now = ladder_->area_fraction(rung);
+  const double fade = std::exp(-since_change_ / kBandFade);
+  const double noise = kBandSigmas * level_.sigma();
+  const double down = has_slack() ? std::max({kLeastBandDown, noise, kBandDown * fade}) : kTightBandDown;
+  const double up = std::max({kLeastBandUp, noise, kBandUp * fade});
+  if (area < now * (1 - down)) return std::min(rung, ladder_->highest_within(area));
+  if (area > now * (1 + up) && since_change_ >= kRestFrames) return ladder_->highest_within(area);
+  return rung;
+}
+
+bool PredictiveModel::cpu_bound() const {
+  return last_cpu_ms_ > std::max(target_ms_, last_gpu_ms_);
+}
+
+bool PredictiveModel::follows_cpu() const {
+  return cpu_bound() && settings_.cpu_bound == CpuBound::kFollow && cpu_target() > target_ms_;
+}
+
+double PredictiveModel::cpu_target() const {
+  std::array<double, 5> sorted = cpu_ms_;
+  std::sort(sorted.begin(), sorted.end());
+  return std::clamp(sorted[2], target_ms_, 2 * target_ms_);
+}
+
+// Largest area fraction that the blur in view leaves worth drawing.
+double PredictiveModel::blur_limit() const {
+  const BlurAware& blur = settings_.blur_aware;
+  const double top = ladder_->area_fraction(ladder_->top());
+  if (!blur.enabled) return top;
+  const double part = std::clamp((blur_px_ - blur.start_px) / (blur.full_px - blur.start_px), 0.0, 1.0);
+  const double scale = 1 + part * (blur.lowest_scale - 1);
+  return top * scale * scale;
+}
+
+}  // namespace quincunx
