@@ -19,6 +19,8 @@ class CostModel {
 
   // Times of frames in order. Only neighbours whose areas differ enough say something about b.
   void learn(double area, double time);
+  // The next frame's time has an error that those before it had not: it is no neighbour of theirs.
+  void part_from_frames_before() { last_time_ = 0; }
 
   double fixed_part() const { return fixed_part_; }
 

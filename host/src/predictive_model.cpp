@@ -108,11 +108,11 @@ double PredictiveModel::area_within(double ms, double apart_ms) const {
   return cost_.area_for((ms - apart_ms) / level_.mean_level());
 }
 
-int PredictiveModel::wanted_rung(int rung, double apart_ms) const {
+int PredictiveModel::wanted_rung(int rung, double apart_ms, Bands bands) const {
   const double now = ladder_->area_fraction(rung);
   const int highest = ladder_->highest_within(blur_limit());
   if (cpu_bound()) {
-    if (follows_cpu()) return std::min(highest, move_to(area_within(steady_ms(), apart_ms), rung));
+    if (follows_cpu()) return std::min(highest, move_to(area_within(steady_ms(), apart_ms), rung, bands));
     if (level_.level() * cost_.work(now) + apart_ms <= target_ms_) return std::min(highest, rung);
   }
   if (const auto least = area_to_survive(now, apart_ms)) {
@@ -124,7 +124,7 @@ int PredictiveModel::wanted_rung(int rung, double apart_ms) const {
   if (area < kLargeMove * now) {
     area = std::min(area, cost_.cautious_area_for((aimed - apart_ms) / level_.mean_level(), now));
   }
-  return std::min(highest, move_to(area, rung));
+  return std::min(highest, move_to(area, rung, bands));
 }
 
 double PredictiveModel::steady_ms() const {
@@ -151,7 +151,8 @@ std::optional<double> PredictiveModel::area_to_survive(double now, double apart_
   return cost_.cautious_area_for((std::max(time, kDeepestCut * target) - apart_ms) / worst, now);
 }
 
-int PredictiveModel::move_to(double area, int rung) const {
+int PredictiveModel::move_to(double area, int rung, Bands bands) const {
+  if (bands == Bands::kNone) return ladder_->highest_within(area);
   const double now = ladder_->area_fraction(rung);
   const double fade = std::exp(-since_change_ / kBandFade);
   const double noise = kBandSigmas * level_.sigma();

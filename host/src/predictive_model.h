@@ -24,10 +24,16 @@ class PredictiveModel {
 
   // A frame of which `apart_ms`, in [0, timing.gpu_ms), was not drawing.
   void observe(const FrameTiming& timing, double apart_ms, double target_ms);
+  // Before observe(): that frame's `apart_ms` errs otherwise than those before it, so that their difference says
+  // nothing of what scales.
+  void part_from_frames_before() { cost_.part_from_frames_before(); }
 
-  // The rung of the next frame, if the last one was `rung`: within dead bands, never above what blur leaves worth
-  // drawing. `apart_ms`: of the next frame.
-  int wanted_rung(int rung, double apart_ms) const;
+  // What moves the rung: dead bands keep it while a move would gain little. Not where the parts of a frame are others
+  // from now on.
+  enum class Bands : std::uint8_t { kKeep, kNone };
+  // The rung of the next frame, if the last one was `rung`; never above what blur leaves worth drawing. `apart_ms`: of
+  // the next frame.
+  int wanted_rung(int rung, double apart_ms, Bands bands = Bands::kKeep) const;
   // What the next frame was given; has to be told, and once for each observe().
   void choose(int from_rung, int rung, double apart_ms);
 
@@ -39,7 +45,8 @@ class PredictiveModel {
   double draw_ms(double area) const { return level_.mean_level() * cost_.work(area); }
 
   bool has_outlier() const { return level_.suspect() > 0; }  // the last frame may have been a step
-  bool cpu_bound() const;                             // the processor takes longer than target and device
+  // The processor takes longer than target and device, and is not followed.
+  bool held_by_cpu() const { return cpu_bound() && !follows_cpu(); }
   std::uint64_t next_frame() const { return next_; }  // that wanted_rung() is for
 
  private:
@@ -52,8 +59,9 @@ class PredictiveModel {
   double backlog_then(double level) const;
   double aim() const;
   std::optional<double> area_to_survive(double now, double apart_ms) const;
-  int move_to(double area, int rung) const;
+  int move_to(double area, int rung, Bands bands) const;
   double cpu_target() const;
+  bool cpu_bound() const;
   bool follows_cpu() const;
   double blur_limit() const;
   double area_within(double ms, double apart_ms) const;

@@ -7,9 +7,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "quincunx/predictive_controller.h"
+#include "quincunx/quality_controller.h"
 #include "quincunx/resolution_controller.h"
 
 namespace quincunx::testing {
@@ -21,7 +23,8 @@ struct ControllerKind {
   std::function<Result<Controller>(const LadderSettings&, double target_ms)> make;
 };
 
-inline std::vector<ControllerKind> all_controllers() {
+// Those that choose nothing but the resolution.
+inline std::vector<ControllerKind> resolution_controllers() {
   return {
       {"proportional",
        [](const LadderSettings& ladder, double target_ms) {
@@ -44,6 +47,19 @@ inline std::vector<ControllerKind> all_controllers() {
                                             .blur_aware = {.enabled = true}});
        }},
   };
+}
+
+inline std::vector<ControllerKind> all_controllers() {
+  std::vector<ControllerKind> kinds = resolution_controllers();
+  kinds.push_back({"quality", [](const LadderSettings& ladder, double target_ms) -> Result<Controller> {
+                     QualitySettings settings;
+                     settings.pacing.ladder = ladder;
+                     settings.pacing.target_ms = target_ms;
+                     auto made = make_quality_controller(settings);
+                     if (!made.ok()) return made.status();
+                     return Controller(std::move(made).value());
+                   }});
+  return kinds;
 }
 
 }  // namespace quincunx::testing

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// QualityController: chooses each frame's render extent and method, so that the expected error is the least that fits.
+//
+// It knows what each method costs and how wrong it is at each scale (ErrorFront), what the picture shows
+// (ContentStatistics), and, as the predictive controller does, what drawing costs by resolution and how far the device
+// is behind the display. For each method it finds the largest resolution that fits the target beside the method's own
+// passes; the pair with the least expected FLIP is what it goes to. From frame to frame the method stays and the
+// resolution follows the load within the predictive controller's dead bands.
+//
+// A change of method has to be worth it (hysteresis), comes once a second at most, and is faded in over a few frames,
+// in which both methods run. Right after a cut, where no history is worth anything, or in a fast pan it needs no fade.
+// docs/control.md has the rules, the figures and a recipe.
+//
+//   auto made = make_quality_controller({.pacing = {.ladder = {.output = {1920, 1080}}, .target_ms = 1000.0 / 60}});
+//   each frame:  QualityChoice choice = controller.choice();  draw at choice.render;  resolve with choice.method, and
+//                with choice.fading_from where there is one;
+//                for every timer that has come back, oldest first: controller.observe(frame)
+//
+// As every controller it is pure: the same calls give the same choices everywhere. Not thread safe.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "quincunx/content_statistics.h"
+#include "quincunx/error_front.h"
+#include "quincunx/export.h"
+#include "quincunx/predictive_controller.h"
+
+namespace quincunx {
+
+struct QualitySettings {
+  PredictiveSettings pacing =
+      {};  // ladder, target, buffers, and what the predictive controller takes besides
+  ErrorFront front = ErrorFront::built_in();
+  std::vector<FrontMethod> methods =
+      {};                    // to choose from, each with points in `front`; empty: all of the front
+  double hysteresis = 0.03;  // part of the expected error that a change has to save, in [0, 1)
+  double rest_seconds = 1;   // between two changes of method, in [0, 60]
+  int fade_frames = 6;       // over which a change is faded in, in [0, 60]; 0: at once
+};
+
+// What is known of one past frame.
+struct QualityFrame {
+  FrameTiming timing;                             // gpu_ms: with the resolve
+  double resolve_ms = 0;                          // of gpu_ms, what the method's passes took; 0: not known
+  std::optional<ContentStatistics> content = {};  // nothing: as the frame before
+};
+
+// How to draw and resolve the next frame.
+struct QualityChoice {
+  Extent render;  // as ResolutionController::next()
+  FrontMethod method;
+  // Resolve with this, too, and show `weight` of `method` and the rest of this.
+  std::optional<FrontMethod> fading_from = {};
+  double weight = 1;  // in (0, 1]; 1 unless fading
+};
+
+// A method at a scale, and what is expected of it.
+struct QualityPair {
+  FrontMethod method;
+  double scale = 1;  // per axis, the root of the area fraction
+  double flip = 0;
+  double ms = 0;  // of the whole frame
+};
+
+// Why the last choice was made.
+struct QualityReasons {
+  SceneMix mix;                          // what the picture shows, smoothed
+  double budget_ms = 0;                  // that a frame may take while the display's queue is at rest
+  QualityPair chosen;                    // the present method at the resolution that the budget allows
+  std::vector<QualityPair> others = {};  // every other method at its own resolution, by rising error
+  std::optional<QualityPair> next_better =
+      {};  // the cheapest pair that errs 2 % less at least; its ms exceed the budget
+           // unless hysteresis or rest keep the present method
+};
+
+class QUINCUNX_API QualityController : public ResolutionController {
+ public:
+  using ResolutionController::observe;  // of a frame of which neither resolve_ms nor content is known
+
+  // As the base's. Errors, besides: kInvalidArgument for a resolve_ms that is negative or not below gpu_ms, or content
+  // outside its ranges; nothing has changed then.
+  virtual Status observe(const QualityFrame& frame) = 0;
+
+  virtual QualityChoice choice() const = 0;
+  virtual QualityReasons reasons() const = 0;
+
+ protected:
+  using ResolutionController::ResolutionController;
+};
+
+// Before the first frame the choice is the highest resolution with the method that errs least there. Errors:
+// kInvalidArgument for a field outside its range, and for a method that the front does not have.
+QUINCUNX_API Result<std::unique_ptr<QualityController>> make_quality_controller(
+    const QualitySettings& settings);
+
+// The reasons in three or four lines of plain text.
+QUINCUNX_API std::string explain(const QualityReasons& reasons);
+
+}  // namespace quincunx

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "method_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx {
+namespace {
+
+constexpr double kMixRate = 0.2;       // of the smoothed mix, per frame
+constexpr double kNotableGain = 0.02;  // part of the error that a better pair saves at least
+constexpr double kScaleStep = 0.01;    // of the search for one
+
+std::vector<FrontMethod> methods_of(const QualitySettings& settings) {
+  if (!settings.methods.empty()) return settings.methods;
+  const auto all = settings.front.methods();
+  return {all.begin(), all.end()};
+}
+
+}  // namespace
+
+bool better(const MethodPairs::Candidate& a, const MethodPairs::Candidate& b) {
+  if (a.fits != b.fits) return a.fits;
+  return a.fits ? a.flip < b.flip : a.flip * a.ms * a.ms < b.flip * b.ms * b.ms;
+}
+
+MethodPairs::MethodPairs(const QualitySettings& settings, const ResolutionLadder& ladder)
+    : front_(&settings.front),
+      ladder_(&ladder),
+      methods_(methods_of(settings)),
+      costs_(settings.front, methods_, static_cast<double>(ladder.output().area()) * 1e-6),
+      candidates_(methods_.size()) {
+  mix_.share.fill(1.0 / kSceneClasses);
+}
+
+double MethodPairs::scale_of(int rung) const {
+  return std::sqrt(ladder_->area_fraction(rung));
+}
+
+double MethodPairs::flip(std::size_t method, double scale) const {
+  return front_->flip(mix_, methods_[method], scale).value_or(1);
+}
+
+double MethodPairs::frame_ms(const PredictiveModel& model, std::size_t method, double scale) const {
+  return model.draw_ms(scale * scale) + costs_.ms(method, scale);
+}
+
+std::size_t MethodPairs::least_error_at_top() const {
+  const double top = scale_of(ladder_->top());
+  std::size_t best = 0;
+  for (std::size_t method = 1; method < methods_.size(); ++method) {
+    if (flip(method, top) < flip(best, top)) best = method;
+  }
+  return best;
+}
+
+void MethodPairs::follow(const ContentStatistics& content) {
+  const SceneMix now = mix_of(content);
+  const double rate = content.cut || !told_ ? 1 : kMixRate;
+  for (std::size_t i = 0; i < kSceneClasses; ++i)
+    mix_.share[i] += rate * (now.share[i] - mix_.share[i]);
+  told_ = true;
+}
+
+MethodPairs::Candidate MethodPairs::candidate(const PredictiveModel& model, int rung,
+                                              std::size_t method) const {
+  // What the passes take depends on the scale a little: two steps find it.
+  for (int step = 0; step < 2; ++step)
+    rung = model.steady_rung(costs_.ms(method, scale_of(rung)));
+  const double scale = scale_of(rung);
+  const double ms = frame_ms(model, method, scale);
+  return {method, scale, flip(method, scale), ms, rung > 0 || ms <= model.steady_ms()};
+}
+
+std::span<const MethodPairs::Candidate> MethodPairs::evaluate(const PredictiveModel& model, int rung) {
+  for (std::size_t method = 0; method < methods_.size(); ++method)
+    candidates_[method] = candidate(model, rung, method);
+  return candidates_;
+}
+
+bool MethodPairs::both_fit(const PredictiveModel& model, std::size_t one, std::size_t other) const {
+  const double lowest = scale_of(0);
+  return frame_ms(model, one, lowest) + costs_.ms(other, lowest) <= model.steady_ms();
+}
+
+QualityPair MethodPairs::pair_of(const Candidate& candidate) const {
+  return {methods_[candidate.method], candidate.scale, candidate.flip, candidate.ms};
+}
+
+std::optional<QualityPair> MethodPairs::next_better(const PredictiveModel& model, double flip_now) const {
+  std::optional<QualityPair> cheapest;
+  const double top = scale_of(ladder_->top());
+  for (std::size_t method = 0; method < methods_.size(); ++method) {
+    for (double scale = scale_of(0); scale < top + kScaleStep; scale += kScaleStep) {
+      const double at = std::min(scale, top);
+      const double error = flip(method, at);
+      if (error > flip_now * (1 - kNotableGain)) continue;
+      const double ms = frame_ms(model, method, at);
+      if (!cheapest || ms < cheapest->ms) cheapest = {methods_[method], at, error, ms};
+      break;
+    }
+  }
+  return cheapest;
+}
+
+QualityReasons MethodPairs::reasons(const PredictiveModel& model, int rung, std::size_t method) const {
+  QualityReasons reasons = {
+      .mix = mix_, .budget_ms = model.steady_ms(), .chosen = pair_of(candidate(model, rung, method))};
+  std::vector<Candidate> others;
+  for (std::size_t other = 0; other < methods_.size(); ++other) {
+    if (other != method) others.push_back(candidate(model, rung, other));
+  }
+  std::sort(others.begin(), others.end(), better);
+  for (const Candidate& other : others)
+    reasons.others.push_back(pair_of(other));
+  reasons.next_better = next_better(model, reasons.chosen.flip);
+  return reasons;
+}
+
+}  // namespace quincunx
