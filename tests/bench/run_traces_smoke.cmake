@@ -36,3 +36,13 @@ execute_process(COMMAND ${BENCH} --traces --seeds 1 --recorded ${FOLDER}/bad.csv
 if(code EQUAL 0 OR NOT text MATCHES "line 2")
   message(FATAL_ERROR "a bad recording ended with ${code}: ${text}")
 endif()
+
+execute_process(COMMAND ${BENCH} --traces --quality --seeds 1 --out ${FOLDER} RESULT_VARIABLE code OUTPUT_VARIABLE text)
+if(NOT code EQUAL 0 OR NOT text MATCHES "held-out traces, weak machine")
+  message(FATAL_ERROR "quincunx-bench --traces --quality ended with ${code}: ${text}")
+endif()
+file(READ ${FOLDER}/quality.json json)
+string(JSON controller GET "${json}" results 1 controller)
+if(NOT controller STREQUAL "quality" OR NOT EXISTS ${FOLDER}/quality.csv)
+  message(FATAL_ERROR "quality.json has '${controller}' where quality stands, or there is no quality.csv")
+endif()

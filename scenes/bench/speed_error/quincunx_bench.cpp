@@ -134,6 +134,9 @@ int run(int argc, char** argv) {
     scenes::print_scenes();
   } else if (options.list_devices) {
     scenes::print_devices(options);
+  } else if (options.traces.quality) {
+    return tabulate(options, "quality",
+                    [](const BenchOptions& all) { return traces::run_quality(all.traces); });
   } else if (options.traces.wanted) {
     return replay_traces(options);
   } else if (options.resize.wanted) {

@@ -121,10 +121,30 @@ FrameTiming timing_of(const std::vector<ReplayedFrame>& frames, int index, int m
           .missed_vsyncs = missed};
 }
 
+class ControlledProgram final : public ReplayedProgram {
+ public:
+  explicit ControlledProgram(ResolutionController& controller) : controller_(&controller) {}
+  const ResolutionLadder& ladder() const override { return controller_->ladder(); }
+  void observe(const FrameTiming& timing) override {
+    const Status status = controller_->observe(timing);
+    if (!status.ok()) throw std::logic_error(status.message());
+  }
+  Extent next(std::size_t) override { return controller_->next(); }
+  double besides_ms(std::size_t) const override { return 0; }
+
+ private:
+  ResolutionController* controller_;
+};
+
 }  // namespace
 
 std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display,
                                   ResolutionController& controller) {
+  ControlledProgram program(controller);
+  return replay(trace, display, program);
+}
+
+std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display, ReplayedProgram& program) {
   Pipeline pipeline(display);
   std::vector<ReplayedFrame> frames;
   const double target_ms = display.target_ms();
@@ -132,13 +152,12 @@ std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display
     const int known = static_cast<int>(frames.size()) - display.timer_latency;
     if (known >= 0) {
       const int missed = frames[static_cast<std::size_t>(known)].dropped;
-      const Status status = controller.observe(timing_of(frames, known, missed));
-      if (!status.ok()) throw std::logic_error(status.message());
+      program.observe(timing_of(frames, known, missed));
     }
-    ReplayedFrame frame{.render = controller.next()};
-    frame.area = controller.ladder().area_fraction(frame.render);
-    frame.oracle_area = oracle_area(load, controller.ladder());
-    frame.gpu_ms = load.gpu(frame.area) * target_ms;
+    ReplayedFrame frame{.render = program.next(frames.size())};
+    frame.area = program.ladder().area_fraction(frame.render);
+    frame.oracle_area = oracle_area(load, program.ladder());
+    frame.gpu_ms = load.gpu(frame.area) * target_ms + program.besides_ms(frames.size());
     frame.cpu_ms = load.cpu * target_ms;
     pipeline.draw(frame.gpu_ms, frame.cpu_ms);
     frame.interval_ms = pipeline.interval();

@@ -38,6 +38,19 @@ struct ReplayedFrame {
 std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display,
                                   ResolutionController& controller);
 
+// What sizes the frames of a replay, and what they cost besides their load.
+class ReplayedProgram {
+ public:
+  virtual ~ReplayedProgram() = default;
+  virtual const ResolutionLadder& ladder() const = 0;
+  virtual void observe(const FrameTiming& timing) = 0;
+  // Frame `index` is drawn now. Once for each, in order.
+  virtual Extent next(std::size_t index) = 0;
+  // That next() has just sized.
+  virtual double besides_ms(std::size_t index) const = 0;
+};
+std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display, ReplayedProgram& program);
+
 // Every controller starts at the top of the ladder; the first frames, until it has found its level, do not
 // count.
 constexpr int kWarmUp = 60;

@@ -37,6 +37,23 @@ std::vector<Display> displays_of(TraceOptions options) {
   return displays;
 }
 
+void add_quality_options(tools::CommandLine& app, TraceOptions& options) {
+  const auto quality =
+      app.add_flag("--quality", options.quality,
+                   "With --traces: a scripted picture and the passes of each method besides; the "
+                   "quality controller, beside predictive with each method")
+          .needs("--traces")
+          .excludes("--recorded")
+          .excludes("--every-display");
+  app.add_option("--budgets", options.budgets,
+                 "With --quality: multiples of the time that frames are written for (default: 1)")
+      .in_range(0.1, 10.0)
+      .delimiter(',')
+      .needs(quality);
+  app.add_flag("--untimed", options.untimed, "With --quality: the time of the passes is not known apart")
+      .needs(quality);
+}
+
 }  // namespace
 
 void add_trace_options(tools::CommandLine& app, TraceOptions& options) {
@@ -71,6 +88,7 @@ void add_trace_options(tools::CommandLine& app, TraceOptions& options) {
   app.add_option("--recorded-fixed-part", options.recording.fixed_part,
                  "With --traces: part of recorded costs that does not scale")
       .needs(traces);
+  add_quality_options(app, options);
 }
 
 Result<TraceRun> run_traces(const TraceOptions& options) {
@@ -85,6 +103,13 @@ Result<TraceRun> run_traces(const TraceOptions& options) {
     settings.lists.push_back({"recorded", [recorded](std::uint64_t) { return recorded; }});
   }
   return run_traces(settings);
+}
+
+Result<QualityRun> run_quality(const TraceOptions& options) {
+  return run_quality(QualityRunSettings{.display = displays_of(options).front(),
+                                        .seeds = options.seeds,
+                                        .times_passes = !options.untimed,
+                                        .budgets = options.budgets});
 }
 
 Status write_files(const TraceRun& run, const std::string& folder, const std::string& command) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/traces/quality_run.h"
 #include "bench/traces/recorded_trace.h"
 #include "bench/traces/trace_run.h"
 #include "quincunx/status.h"
@@ -25,6 +26,9 @@ struct TraceOptions {
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<std::string> recorded;  // CSV files
   Recording recording;
+  bool quality = false;  // methods are chosen, too
+  std::vector<double> budgets = {1};
+  bool untimed = false;
 };
 
 // --traces, and options that need it.
@@ -32,6 +36,9 @@ void add_trace_options(tools::CommandLine& app, TraceOptions& options);
 
 // Replays everything. Errors: of a recording that cannot be read.
 Result<TraceRun> run_traces(const TraceOptions& options);
+
+// The quality controller instead, on the first of the displays.
+Result<QualityRun> run_quality(const TraceOptions& options);
 
 // traces.json, traces.csv and traces.html in `folder`. Errors: kIoFailure.
 Status write_files(const TraceRun& run, const std::string& folder, const std::string& command);
