@@ -61,6 +61,10 @@ static inline bool any_lane(int8 lanes) {
   return (pairs.x | pairs.y) != 0;
 }
 
+static inline bool all_lanes(int8 lanes) {
+  return !any_lane(~lanes);
+}
+
 static inline int smallest_lane(int8 lanes) {
   const int4 four = min(lanes.lo, lanes.hi);
   const int2 two = min(four.lo, four.hi);

@@ -122,7 +122,8 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     // Rectify and reseed.
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
-      inertia = correct_history(colour, &frame, &sample_motion, &nearest, &known, &known_alpha, &evidence);
+      inertia =
+          correct_history(colour, &frame, &sample_motion, &nearest, (int8)(-1), &known, &known_alpha, &evidence);
 
     // Accumulate.
     float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * held;

@@ -28,36 +28,54 @@ static inline FetchedHistory fetch_far(const LayeredPixels* pixels, const PastLa
   return fetched;
 }
 
+// Reseeds far layers of `lanes` with samples of theirs. Returns their inertia.
+static inline float8 reseed_far(int8 lanes, const LayeredPixels* layered, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
+                                TexelLayout layout, const SourceFrame* frame, const NearestSamples* nearest,
+                                EightTexels* history, float8* alpha, float8* known) {
+  float4 texel[8];
+  float confidence[8], inertia[8], between[8], from_x[8], alphas[8];
+  int is_reseeded[8], x[8];
+  vstore16(history->left, 0, (float*)texel);
+  vstore16(history->right, 1, (float*)texel);
+  vstore8(*known, 0, confidence);
+  vstore8((float8)(0.0f), 0, inertia);
+  vstore8(layered->between, 0, between);
+  vstore8(nearest->from_x, 0, from_x);
+  vstore8(*alpha, 0, alphas);
+  vstore8(nearest->x, 0, x);
+  vstore8(lanes, 0, is_reseeded);
+  for (int i = 0; i < 8; ++i) {
+    if (is_reseeded[i] == 0) continue;
+    const LayerSamples samples = {*frame, layout, between[i]};
+    const NearestSample place = {x[i], nearest->y, from_x[i], nearest->from_y};
+    const Seed seed = seed_of_layer(&samples, colour, depth, kFarLayer, place);
+    if (!seed.any) continue;
+    const float share = 1.0f - confidence[i] / LEAST_CONFIDENCE;
+    texel[i] += (seed.mean - texel[i]) * share;
+    alphas[i] += (seed.mean.w - alphas[i]) * share;
+    inertia[i] = INERTIA * share;
+    confidence[i] = LEAST_CONFIDENCE;
+  }
+  history->left = vload16(0, (const float*)texel);
+  history->right = vload16(1, (const float*)texel);
+  *known = vload8(0, confidence);
+#if ALPHA
+  *alpha = vload8(0, alphas);
+#endif
+  return vload8(0, inertia);
+}
+
 // Rectifies and reseeds, as correct_history. Of a pixel with two layers, only reseeds the far one, with samples of it.
 static inline float8 correct_layers(const LayeredPixels* layered, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
                                     TexelLayout layout, const SourceFrame* frame, const SampleMotion* sample_motion,
                                     const NearestSamples* nearest, EightTexels* history, float8* alpha,
                                     Evidence* evidence) {
-  EightPixels pixels = load_pixels(nearest, history, *alpha, evidence);
-  int is_split[8];
-  float between[8];
-  vstore8(layered->is_split, 0, is_split);
-  vstore8(layered->between, 0, between);
-  for (int i = 0; i < 8; ++i) {
-    if (is_split[i] == 0) {
-      correct_pixel(colour, frame, sample_motion, &pixels, i, nearest->y, nearest->from_y);
-      continue;
-    }
-    pixels.inertia[i] = 0.0f;
-    if (pixels.confidence[i] >= LEAST_CONFIDENCE) continue;
-    const LayerSamples samples = {*frame, layout, between[i]};
-    const NearestSample place = {pixels.x[i], nearest->y, pixels.from_x[i], nearest->from_y};
-    const Seed seed = seed_of_layer(&samples, colour, depth, kFarLayer, place);
-    if (!seed.any) continue;
-    const float share = 1.0f - pixels.confidence[i] / LEAST_CONFIDENCE;
-    pixels.history[i] += (seed.mean - pixels.history[i]) * share;
-#if ALPHA
-    pixels.alpha[i] += (seed.mean.w - pixels.alpha[i]) * share;
-#endif
-    pixels.inertia[i] = INERTIA * share;
-    pixels.confidence[i] = LEAST_CONFIDENCE;
-  }
-  return take_pixels(&pixels, history, alpha, evidence);
+  const float8 inertia = correct_history(colour, frame, sample_motion, nearest, ~layered->is_split, history, alpha,
+                                         evidence);
+  const int8 unknown = layered->is_split & (evidence->confidence < LEAST_CONFIDENCE);
+  if (!any_lane(unknown)) return inertia;
+  return select(inertia, reseed_far(unknown, layered, colour, depth, layout, frame, nearest, history, alpha,
+                                    &evidence->confidence), unknown);
 }
 
 // 1 of samples that are added to the far, or only, layer, else 0.

@@ -28,6 +28,11 @@ static inline float4 covered_sample(float4 sample) {
 #endif
 }
 
+typedef struct Seed {
+  float4 mean;  // alpha in w
+  bool any;     // whether any sample is the layer's and valid; else the mean is 0
+} Seed;
+
 // The Gaussian of the 3x3 samples, clamped to the edge: of the far layer's, or of all valid ones as the near layer has
 // them, in which one of the far layer's says that nothing of the near one is there.
 static inline Seed seed_of_layer(const LayerSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth, LayerKind kind,

@@ -67,6 +67,5 @@ static inline float4 alpha_of_row(AlphaPlane plane, TexelWindow window, int row)
 }
 
 static inline float16 with_coverage(float16 colours, float coverage) {
-  const int16 last = (int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1);
-  return select(colours, (float16)(coverage), last);
+  return select(colours, (float16)(coverage), LAST_CHANNELS);
 }

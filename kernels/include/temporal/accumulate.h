@@ -72,8 +72,7 @@ static inline float8 hold_back(EightTexels history, float8 confidence, EightTexe
 // m + (s - m) part, and in w their confidence.
 static inline float16 add_samples(float16 m, float16 s, float4 part, float4 confidence) {
   const float16 sum = m + (s - m) * to_four_texels(part);
-  const int16 last = (int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1);
-  return select(sum, to_four_texels(confidence), last);
+  return select(sum, to_four_texels(confidence), LAST_CHANNELS);
 }
 
 // How far each sample moves its pixel's history: weight / (confidence + weight), less by the inertia of what was

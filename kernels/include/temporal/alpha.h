@@ -48,6 +48,20 @@ static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame
   return alpha + (clamp(alpha, middle - deviation, middle + deviation) - alpha) * rejection;
 }
 
+// The same of eight pixels.
+static inline float8 rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y, float8 alphas,
+                                    float8 rejection) {
+  float alpha[8], share[8];
+  int column[8];
+  vstore8(alphas, 0, alpha);
+  vstore8(rejection, 0, share);
+  vstore8(x, 0, column);
+  for (int i = 0; i < 8; ++i) {
+    if (share[i] > 0.0f) alpha[i] = rectify_alpha(texels, frame, column[i], y, alpha[i], share[i]);
+  }
+  return vload8(0, alpha);
+}
+
 // The alphas of eight samples.
 static inline float8 alphas(EightTexels samples) {
   return (float8)(samples.left.s37bf, samples.right.s37bf);

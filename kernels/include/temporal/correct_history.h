@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rectification and reseeding of eight output pixels, one by one: slow, and seldom needed.
+// Rectification and reseeding of eight output pixels of a row.
 #pragma once
 
 #include "temporal/alpha.h"
@@ -11,79 +11,47 @@
 // in first frames (docs/temporal.md).
 #define INERTIA 0.85f
 
-// Eight pixels as arrays.
-typedef struct EightPixels {
-  float4 history[8];
-  float confidence[8], rejection[8], from_x[8];
-  float inertia[8];
-  float alpha[8];
-  int x[8];
-} EightPixels;
-
-static inline void correct_pixel(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                 EightPixels* pixels, int i, int y, float from_y) {
-  float4 m = pixels->history[i];
-  float w = pixels->confidence[i];
-  pixels->inertia[i] = 0.0f;
-  if (pixels->rejection[i] > 0.0f) {
-    const ToneBox box = tone_box(colour, frame, pixels->x[i], y);
-    m = rectify(m, w, pixels->rejection[i], &box);
-    w = m.w;
-#if ALPHA
-    pixels->alpha[i] = rectify_alpha(colour, frame, pixels->x[i], y, pixels->alpha[i], pixels->rejection[i]);
-#endif
-  }
-  if (w < LEAST_CONFIDENCE) {
-    const Seed seed = seed_of(colour, frame, motion, pixels->x[i], y, pixels->from_x[i], from_y);
-    const float share = 1.0f - w / LEAST_CONFIDENCE;
-    m += (seed.mean - m) * share;
-#if ALPHA
-    pixels->alpha[i] += (seed.mean.w - pixels->alpha[i]) * share;
-#endif
-    pixels->inertia[i] = INERTIA * share;
-    w = seed.any ? LEAST_CONFIDENCE : 0.0f;
-  }
-  pixels->history[i] = m;
-  pixels->confidence[i] = w;
-}
-
 static inline bool needs_correction(const Evidence* evidence) {
   return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < LEAST_CONFIDENCE));
 }
 
-static inline EightPixels load_pixels(const NearestSamples* nearest, const EightTexels* history, float8 alpha,
-                                      const Evidence* evidence) {
-  EightPixels pixels;
-  vstore16(history->left, 0, (float*)pixels.history);
-  vstore16(history->right, 1, (float*)pixels.history);
-  vstore8(evidence->confidence, 0, pixels.confidence);
-  vstore8(evidence->rejection, 0, pixels.rejection);
-  vstore8(nearest->from_x, 0, pixels.from_x);
-  vstore8(nearest->x, 0, pixels.x);
+// Brings history into the range of the samples around it by its rejection, where it has any.
+static inline void rectify_history(COLOUR_TEXELS colour, const SourceFrame* frame, const NearestSamples* nearest,
+                                   EightTexels* history, float8* alpha, Evidence* evidence) {
+  const EightBoxes boxes = boxes_around(colour, frame, nearest->x, nearest->y);
+  const Rectified left = rectify4(history->left, evidence->rejection.lo, &boxes.left);
+  const Rectified right = rectify4(history->right, evidence->rejection.hi, &boxes.right);
+  history->left = left.history;
+  history->right = right.history;
+  evidence->confidence *= (float8)(left.part, right.part);
 #if ALPHA
-  vstore8(alpha, 0, pixels.alpha);
+  *alpha = rectify_alphas(colour, frame, nearest->x, nearest->y, *alpha, evidence->rejection);
 #endif
-  return pixels;
 }
 
-// Returns their inertia.
-static inline float8 take_pixels(const EightPixels* pixels, EightTexels* history, float8* alpha, Evidence* evidence) {
-  history->left = vload16(0, (const float*)pixels->history);
-  history->right = vload16(1, (const float*)pixels->history);
-  evidence->confidence = vload8(0, pixels->confidence);
+// Reseeds the history of `lanes`. Returns its inertia.
+static inline float8 reseed_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                    const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
+                                    float8* confidence) {
+  const EightSeeds seeds = seeds_of(colour, frame, motion, nearest);
+  const float8 none = (float8)(0.0f);
+  const float8 share = select(none, 1.0f - *confidence / LEAST_CONFIDENCE, lanes);
+  history->left += (seeds.mean.left - history->left) * to_four_texels(share.lo);
+  history->right += (seeds.mean.right - history->right) * to_four_texels(share.hi);
 #if ALPHA
-  *alpha = vload8(0, pixels->alpha);
+  *alpha += (confidences(seeds.mean) - *alpha) * share;
 #endif
-  return vload8(0, pixels->inertia);
+  *confidence = select(*confidence, select(none, (float8)(LEAST_CONFIDENCE), seeds.known), lanes);
+  return INERTIA * share;
 }
 
-// Rectifies history where it is rejected, and reseeds it where its confidence is less than the least; with ALPHA its
-// alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
+// Rectifies history where it is rejected, and reseeds that of `lanes` where its confidence is less than the least; with
+// ALPHA its alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
 static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
-                                     const NearestSamples* nearest, EightTexels* history, float8* alpha,
+                                     const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
                                      Evidence* evidence) {
-  EightPixels pixels = load_pixels(nearest, history, *alpha, evidence);
-  for (int i = 0; i < 8; ++i)
-    correct_pixel(colour, frame, motion, &pixels, i, nearest->y, nearest->from_y);
-  return take_pixels(&pixels, history, alpha, evidence);
+  if (any_lane(evidence->rejection > 0.0f)) rectify_history(colour, frame, nearest, history, alpha, evidence);
+  const int8 unknown = lanes & (evidence->confidence < LEAST_CONFIDENCE);
+  if (!any_lane(unknown)) return (float8)(0.0f);
+  return reseed_history(colour, frame, motion, nearest, unknown, history, alpha, &evidence->confidence);
 }

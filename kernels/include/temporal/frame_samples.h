@@ -13,6 +13,13 @@ static inline bool is_valid(float4 sample) {
   return (hits.x | hits.y) == 0;
 }
 
+// To each channel of four samples whether that sample is.
+static inline int16 are_valid(float16 samples) {
+  const int16 magnitude = as_int16(samples) & 0x7fffffff;
+  const int16 pairs = max(magnitude, magnitude.s1032547698badcfe);
+  return max(pairs, pairs.s23016745ab89efcd) < INVALID_BITS;
+}
+
 static inline float largest_colour(float4 colour) {
   return max(max(colour.x, colour.y), max(colour.z, 0.0f));
 }

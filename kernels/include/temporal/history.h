@@ -80,6 +80,9 @@ static inline float16 to_four_texels(float4 value) {
   return (float16)((float4)(value.x), (float4)(value.y), (float4)(value.z), (float4)(value.w));
 }
 
+// The lanes of four texels that hold their last channel.
+#define LAST_CHANNELS ((int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1))
+
 // The confidences of eight texels.
 static inline float8 confidences(EightTexels texels) {
   return (float8)(texels.left.s37bf, texels.right.s37bf);

@@ -12,50 +12,107 @@
 #define BOX_SIZE 0.75f    // standard deviations on each side of the mean
 #define BOX_MARGIN 0.02f  // tone: a distance from the box that takes all confidence where the samples are all alike
 
-static inline float4 to_tone(float4 colour) {
-  return (float4)((colour / (1.0f + largest_colour(colour))).xyz, 0.0f);
+// To each channel of four texels the largest of that texel's channels, or of what the last of them holds.
+static inline float16 largest_channels(float16 texels) {
+  const float16 pairs = max(texels, texels.s1032547698badcfe);
+  return max(pairs, pairs.s23016745ab89efcd);
 }
 
-static inline float4 from_tone(float4 tone) {
-  return tone / max(1.0f - largest_colour(tone), DARKEST_REST);
+// To each channel of four texels the sum of that texel's channels.
+static inline float16 channel_sums(float16 texels) {
+  const float16 pairs = texels + texels.s1032547698badcfe;
+  return pairs + pairs.s23016745ab89efcd;
 }
 
-// The range that a pixel's surroundings allow, in tone space: the mean of red, green and blue, and how far from it.
-typedef struct ToneBox {
-  float4 mean, deviation;
-  bool any;  // false: no sample is valid, and nothing is known
-} ToneBox;
-
-// Of the sample (x, y) and its four neighbours.
-static inline ToneBox tone_box(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
-  float4 first = (float4)(0.0f), sum = (float4)(0.0f), squares = (float4)(0.0f);
-  float count = 0.0f;
-  for (int i = 0; i < 5; ++i) {
-    const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
-    const float4 sample = sample_at(texels, frame, x + column, y + row);
-    if (!is_valid(sample)) continue;
-    const float4 tone = to_tone(sample);
-    if (count == 0.0f) first = tone;
-    const float4 difference = tone - first;  // of these squares no digits are lost
-    sum += difference;
-    squares += difference * difference;
-    count += 1.0f;
-  }
-  const float4 mean = sum / max(count, 1.0f);
-  const float4 variance = squares / max(count, 1.0f) - mean * mean;
-  const ToneBox box = {first + mean, BOX_SIZE * sqrt(max(variance, (float4)(0.0f))), count > 0.0f};
-  return box;
+static inline float16 without_alpha(float16 texels) {
+  return select(texels, (float16)(0.0f), LAST_CHANNELS);
 }
 
-// Moves history to the box by `rejection` of the way. Its confidence, in w, falls by how far it lay outside.
-static inline float4 rectify(float4 history, float confidence, float rejection, const ToneBox* box) {
-  if (!box->any) return (float4)(history.xyz, confidence);
-  const float4 tone = to_tone(history);
-  const float4 step = clamp(tone, box->mean - box->deviation, box->mean + box->deviation) - tone;
-  const float distance = fabs(step.x) + fabs(step.y) + fabs(step.z);
-  const float spread = box->deviation.x + box->deviation.y + box->deviation.z;
-  float4 result = history;
-  if (distance > 0.0f) result = from_tone(tone + step * rejection);
-  result.w = confidence * (1.0f - rejection * min(1.0f, distance / (spread + BOX_MARGIN)));
-  return result;
+static inline float16 to_tone(float16 colours) {
+  const float16 light = without_alpha(colours);
+  return light / (1.0f + largest_channels(light));
+}
+
+static inline float16 from_tone(float16 tone) {
+  return tone / max(1.0f - largest_channels(without_alpha(tone)), DARKEST_REST);
+}
+
+// Sums over the valid ones of a cross of samples around four pixels, in tone space.
+typedef struct CrossSums {
+  float16 first, sum, squares, count;
+} CrossSums;
+
+static inline CrossSums add_to_cross(CrossSums cross, float16 samples) {
+  const int16 valid = are_valid(samples);
+  const float16 tone = to_tone(samples), none = (float16)(0.0f);
+  cross.first = select(cross.first, tone, valid & (cross.count == none));
+  const float16 difference = select(none, tone - cross.first, valid);  // of these squares no digits are lost
+  cross.sum += difference;
+  cross.squares += difference * difference;
+  cross.count += select(none, (float16)(1.0f), valid);
+  return cross;
+}
+
+typedef struct EightCrosses {
+  CrossSums left, right;
+} EightCrosses;
+
+static inline EightCrosses add_to_crosses(EightCrosses crosses, EightTexels samples) {
+  const EightCrosses sums = {add_to_cross(crosses.left, samples.left), add_to_cross(crosses.right, samples.right)};
+  return sums;
+}
+
+// The ranges that the surroundings of four pixels allow, in tone space: the mean of red, green and blue, and how far
+// from it. Without a valid sample nothing is known.
+typedef struct ToneBoxes {
+  float16 mean, deviation;
+  int16 known;
+} ToneBoxes;
+
+static inline ToneBoxes boxes_of(CrossSums cross) {
+  const float16 count = max(cross.count, 1.0f);
+  const float16 mean = cross.sum / count;
+  const float16 variance = cross.squares / count - mean * mean;
+  const ToneBoxes boxes = {cross.first + mean, BOX_SIZE * sqrt(max(variance, 0.0f)), cross.count > 0.0f};
+  return boxes;
+}
+
+// Of the samples nearest to eight pixels and the four beside each.
+typedef struct EightBoxes {
+  ToneBoxes left, right;
+} EightBoxes;
+
+static inline EightBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y) {
+  const TexelLayout layout = frame->colour;
+  const int above = max(y - 1, 0), below = min(y + 1, frame->height - 1);
+  const int8 before = max(x - 1, (int8)(0)), after = min(x + 1, (int8)(frame->width - 1));
+  const float16 none = (float16)(0.0f);
+  const CrossSums empty = {none, none, none, none};
+  EightCrosses crosses = {empty, empty};
+  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, y));
+  crosses = add_to_crosses(crosses, load_samples(texels, layout, after, y));
+  crosses = add_to_crosses(crosses, load_samples(texels, layout, before, y));
+  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, below));
+  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, above));
+  const EightBoxes boxes = {boxes_of(crosses.left), boxes_of(crosses.right)};
+  return boxes;
+}
+
+// Four texels of history moved to their boxes by `rejection` of the way, and the parts of their confidence that are
+// left: it falls by how far they lay outside.
+typedef struct Rectified {
+  float16 history;
+  float4 part;
+} Rectified;
+
+static inline Rectified rectify4(float16 history, float4 rejection, const ToneBoxes* boxes) {
+  const float16 share = to_four_texels(rejection);
+  const float16 tone = to_tone(history);
+  const float16 step = clamp(tone, boxes->mean - boxes->deviation, boxes->mean + boxes->deviation) - tone;
+  const float16 distance = channel_sums(fabs(step)), spread = channel_sums(boxes->deviation);
+  const float16 part = 1.0f - share * min(1.0f, distance / (spread + BOX_MARGIN));
+  const int16 moved = boxes->known & (share > 0.0f);
+  const Rectified rectified = {select(history, from_tone(tone + step * share), moved & (distance > 0.0f)),
+                               select((float16)(1.0f), part, moved).s048c};
+  return rectified;
 }

@@ -5,7 +5,9 @@
 
 #include "motion/motion_options.h"
 #include "temporal/bell.h"
+#include "temporal/accumulate.h"
 #include "temporal/frame_samples.h"
+#include "temporal/nearest_samples.h"
 
 #define SEED_FALLOFF 2.5f    // 1 / (2 sigma^2), sigma .45 samples, as in the laboratory of docs/temporal.md
 #define SAME_MOTION 0.15f    // output pixels a frame: surfaces whose motion differs by more are not the same. Ghosts
@@ -20,17 +22,26 @@ typedef struct SampleMotion {
   float scale_x, scale_y;
 } SampleMotion;
 
-// How far sample (other_x, other_y), clamped to the edge, may show the same surface as (x, y), by its motion: 1 to 0.
-static inline float similarity(const SampleMotion* motion, const SourceFrame* frame, int x, int y, int other_x,
-                               int other_y) {
+// The motions of the samples of row y nearest to eight pixels, x and y in turn; 0 where nothing moves.
+static inline float16 motions_of(const SampleMotion* motion, int8 x, int y) {
 #if MOTION
-  const int column = clamp(other_x, 0, frame->width - 1), row = clamp(other_y, 0, frame->height - 1);
-  const float2 own = vload2(2 * texel_index(motion->layout, x, y), motion->reprojection);
-  const float2 other = vload2(2 * texel_index(motion->layout, column, row), motion->reprojection);
-  const float2 apart = (other - own) * (float2)(motion->scale_x, motion->scale_y) * (1.0f / SAME_MOTION);
-  return max(1.0f - apart.x * apart.x - apart.y * apart.y, LEAST_SIMILARITY);
+  __global const float* row = motion->reprojection + 4 * row_index(motion->layout, y);
+  return (float16)(vload2(2 * x.s0, row), vload2(2 * x.s1, row), vload2(2 * x.s2, row), vload2(2 * x.s3, row),
+                   vload2(2 * x.s4, row), vload2(2 * x.s5, row), vload2(2 * x.s6, row), vload2(2 * x.s7, row));
 #else
-  return 1.0f;
+  return (float16)(0.0f);
+#endif
+}
+
+// How far samples of one motion may show the same surfaces as those of the other, by their motions: 1 to 0.
+static inline float8 similarity(const SampleMotion* motion, float16 own, float16 other) {
+#if MOTION
+  const float16 apart = other - own;
+  const float8 x = apart.even * motion->scale_x * (1.0f / SAME_MOTION);
+  const float8 y = apart.odd * motion->scale_y * (1.0f / SAME_MOTION);
+  return max(1.0f - x * x - y * y, LEAST_SIMILARITY);
+#else
+  return (float8)(1.0f);
 #endif
 }
 
@@ -53,31 +64,58 @@ static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* fra
   return weights > 0.0f ? sum / weights : sum;
 }
 
-typedef struct Seed {
-  float4 mean;  // alpha in w
-  bool any;     // whether any sample is valid; where none is, the mean is what stands in for the seed
-} Seed;
+// The seeds of eight pixels.
+typedef struct EightSeeds {
+  EightTexels mean;  // alpha in the last channel
+  int8 known;        // lanes with a valid sample; of the others the mean is what stands in for the seed
+} EightSeeds;
 
-// The seed of a pixel: the mean of the 3x3 samples around (x, y), the nearest one, each weighted by a Gaussian of its
-// distance, its luma weight and its similarity to the nearest. The pixel's picture lies (from_x, from_y) samples from
-// (x, y).
-static inline Seed seed_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion, int x, int y,
-                           float from_x, float from_y) {
-  float4 sum = (float4)(0.0f);
-  float weights = 0.0f;
+static inline void add_to_seeds(EightTexels* sum, float8* weights, EightTexels samples, float8 weight) {
+  if (may_be_bright(samples)) weigh_by_luma(&samples, &weight, 0);
+  sum->left += samples.left * to_four_texels(weight.lo);
+  sum->right += samples.right * to_four_texels(weight.hi);
+  *weights += weight;
+}
+
+// Replaces the means of the pixels without a valid sample near. The slow path.
+static inline EightTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, EightTexels means,
+                                          int8 known, int8 x, int y) {
+  float4 mean[8];
+  int is_known[8], column[8];
+  vstore16(means.left, 0, (float*)mean);
+  vstore16(means.right, 1, (float*)mean);
+  vstore8(known, 0, is_known);
+  vstore8(x, 0, column);
+  for (int i = 0; i < 8; ++i) {
+    if (is_known[i] == 0) mean[i] = seed_from_afar(texels, frame, column[i], y);
+  }
+  const EightTexels all = {vload16(0, (const float*)mean), vload16(1, (const float*)mean)};
+  return all;
+}
+
+// The means of the 3x3 samples around the nearest ones, each weighted by a Gaussian of its distance, its luma weight
+// and its similarity to the nearest.
+static inline EightSeeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame, const SampleMotion* motion,
+                                  const NearestSamples* nearest) {
+  const float16 none = (float16)(0.0f);
+  const float16 own = motions_of(motion, nearest->x, nearest->y);
+  EightTexels sum = {none, none};
+  float8 weights = (float8)(0.0f);
   for (int row = -1; row <= 1; ++row) {
-    const float away_y = (float)row - from_y;
+    const int y = clamp(nearest->y + row, 0, frame->height - 1);
+    const float away_y = (float)row - nearest->from_y;
     for (int column = -1; column <= 1; ++column) {
-      const float away_x = (float)column - from_x;
-      const float4 sample = sample_at(texels, frame, x + column, y + row);
-      const float near = bell((float8)((away_x * away_x + away_y * away_y) * SEED_FALLOFF)).s0;
-      if (!is_valid(sample)) continue;
-      const float weight = near * luma_weight(sample) * similarity(motion, frame, x, y, x + column, y + row);
-      sum += sample * weight;
-      weights += weight;
+      const int8 x = clamp(nearest->x + column, (int8)(0), (int8)(frame->width - 1));
+      const float8 away_x = (float)column - nearest->from_x;
+      const float8 near = bell((away_x * away_x + away_y * away_y) * SEED_FALLOFF);
+      const float8 alike = similarity(motion, own, motions_of(motion, x, y));
+      add_to_seeds(&sum, &weights, load_samples(texels, frame->colour, x, y), near * alike);
     }
   }
-  const bool any = weights > 0.0f;
-  const Seed seed = {any ? sum / weights : seed_from_afar(texels, frame, x, y), any};
-  return seed;
+  const int8 known = weights > 0.0f;
+  const float8 divisor = select((float8)(1.0f), weights, known);
+  const EightTexels mean = {sum.left / to_four_texels(divisor.lo), sum.right / to_four_texels(divisor.hi)};
+  const EightSeeds seeds = {
+      all_lanes(known) ? mean : seeds_from_afar(texels, frame, mean, known, nearest->x, nearest->y), known};
+  return seeds;
 }
