@@ -15,7 +15,7 @@ class TemporalLightPass : public Pass {
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
     bind(tiles.width, tiles.height, frame[Resource::kTileReprojection], frame[Resource::kTileEvidence],
          frame[Resource::kTotalLight], frame[Resource::kPreviousTileLight], frame[Resource::kTileLight]);
-    launch(frame, tiles, 1, event);
+    launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
 

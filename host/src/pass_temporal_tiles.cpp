@@ -61,7 +61,7 @@ class TemporalTilesPass : public Pass {
          view_or(frame, Resource::kPreviousLayerTiles, Resource::kTileReprojection),
          view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
          frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
-    launch(frame, tiles, 1, event);
+    launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
 

@@ -89,12 +89,10 @@ static inline float confirm(float suspected, float before) {
   return max(min(suspected, before) - CONFIRMING_COST, suspected - SURE_ALONE);
 }
 
-__kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
-                             __global const TileEvidence* evidence, __global const TotalLight* total,
-                             __global const TileLight* previous, __global TileLight* light) {
-  const int x = get_global_id(0), y = get_global_id(1);
-  if (x >= tiles_x || y >= tiles_y) return;
-
+// That of tile (x, y).
+static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
+                                 __global const TileEvidence* evidence, __global const TotalLight* total,
+                                 __global const TileLight* previous, int x, int y) {
   const int i = y * tiles_x + x;
   const TileEvidence own = evidence[i];
   const TileLight before = previous[i];
@@ -149,5 +147,14 @@ __kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReproj
     tile.rejection = 0.0f;
     tile.gain = 1.0f;
   }
-  light[i] = tile;
+  return tile;
+}
+
+__kernel void temporal_light(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
+                             __global const TileEvidence* evidence, __global const TotalLight* total,
+                             __global const TileLight* previous, __global TileLight* light) {
+  const int y = get_global_id(1);
+  if (y >= tiles_y) return;
+  for (int x = get_global_id(0); x < tiles_x; x += (int)get_global_size(0))
+    light[y * tiles_x + x] = light_of(tiles_x, tiles_y, tiles, evidence, total, previous, x, y);
 }

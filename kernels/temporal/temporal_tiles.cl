@@ -31,6 +31,7 @@
 #include "temporal/reproject_tile.h"
 #include "temporal/startling.h"
 #include "temporal/temporal_params.h"
+#include "temporal/total_light.h"
 #include "texel.h"
 
 #ifndef LAYERS
@@ -46,7 +47,6 @@
 // Found by search on the development scenes.
 #define KNOWN_CONFIDENCE 0.1f  // from which a texel of history is asked: less than one reseeded in the last frame has
 #define SURE_TRUST 0.9f        // from which a sample is asked
-#define LEAST_CHANGED 0.03f    // of a tile's light: less error is no change of the picture
 #define LUMA_NOISE 0.01f       // relative change of luma that says nothing. +.03 dB, together with no gain at edges
 
 enum { kJudgedAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
@@ -160,50 +160,41 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS de
   return evidence;
 }
 
-// Adds the means of a tile to those of the picture, in units that leave no total beyond an int.
-static inline void add_to_total(__global TotalLight* total, const TemporalTileParams* params, TileEvidence tile) {
-  const float most = min((float)kLightUnits, 0x1p30f / ((float)params->tiles_x * (float)params->tiles_y));
-  const float units = most / max(tile.count, 1.0f);
-  atomic_add(&total->brightening, convert_int(tile.brightening * units));
-  atomic_add(&total->change, convert_int(fabs(tile.brightening) * units));
-  atomic_add(&total->light, convert_int(tile.light * units));
-  atomic_add(&total->history_error, convert_int(tile.history_error * units));
-  atomic_add(&total->neighbour_error, convert_int(tile.neighbour_error * units));
-  if (tile.history_error > LEAST_CHANGED * tile.light) atomic_inc(&total->changed);
-}
-
 __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colour, __global const float* reprojection,
                              HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
                              DEPTH_TEXELS depth, TexelLayout depth_layout, __global const LayerSplit* splits,
                              __global const int* marks, __global const LayerTile* previous_layers,
                              __global LayerTile* layers, __global TileReprojection* tiles,
                              __global TileEvidence* evidence, __global TotalLight* total) {
-  const int tile_x = get_global_id(0), tile_y = get_global_id(1);
-  if (tile_x >= params.tiles_x || tile_y >= params.tiles_y) return;
+  const int first = get_global_id(0), tile_y = get_global_id(1);
+  if (first >= params.tiles_x || tile_y >= params.tiles_y) return;
 
-  const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
-  const SampleRange samples = samples_in_tile(&params, corner);
+  TotalLight sum = {0, 0, 0, 0, 0, 0};
+  for (int tile_x = first; tile_x < params.tiles_x; tile_x += (int)get_global_size(0)) {
+    const float2 corner = (float2)((float)(tile_x * kTemporalTile), (float)(tile_y * kTemporalTile));
+    const SampleRange samples = samples_in_tile(&params, corner);
 #if MOTION
-  const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
-  TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
+    const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
+    TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
 #else
-  const TileReprojection tile = {.is_rigid = 1, .is_copyable = 1};
+    const TileReprojection tile = {.is_rigid = 1, .is_copyable = 1};
 #endif
-  const int i = tile_y * params.tiles_x + tile_x;
-  bool hidden = false;
-  bool is_split = false;
+    const int i = tile_y * params.tiles_x + tile_x;
+    bool hidden = false, is_split = false;
 #if LAYERS
-  const LayerInputs in = {depth_layout, splits, marks, previous_layers};
-  const LayerTile own = layer_tile(&params, depth, &in, samples, found, (int2)(tile_x, tile_y), corner, previous_tiles,
-                                   &tile, &hidden);
-  layers[i] = own;
-  is_split = own.is_split;
+    const LayerInputs in = {depth_layout, splits, marks, previous_layers};
+    const LayerTile own = layer_tile(&params, depth, &in, samples, found, (int2)(tile_x, tile_y), corner,
+                                     previous_tiles, &tile, &hidden);
+    layers[i] = own;
+    is_split = own.is_split;
 #endif
-  const HistoryLayer known = {history, params.output_width, params.output_height};
-  const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
-  TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
-  if (!hidden) found_evidence = gather_evidence(colour, depth, depth_layout, &past, &params, tile, samples);
-  add_to_total(total, &params, found_evidence);
-  tiles[i] = tile;
-  evidence[i] = found_evidence;
+    const HistoryLayer known = {history, params.output_width, params.output_height};
+    const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
+    TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    if (!hidden) found_evidence = gather_evidence(colour, depth, depth_layout, &past, &params, tile, samples);
+    add_means(&sum, &params, found_evidence);
+    tiles[i] = tile;
+    evidence[i] = found_evidence;
+  }
+  add_to_total(total, sum);
 }

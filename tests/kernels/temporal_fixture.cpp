@@ -238,7 +238,8 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   tiles.setArg(11, now);
   tiles.setArg(12, evidence);
   tiles.setArg(13, total);
-  enqueue_rows(impl().profile.shape, impl().queue, tiles, count, 1, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, tiles, count,
+               columns_per_item(impl().profile.shape, count.width, 1), nullptr);
   const auto reprojections = from_device<TileReprojection>(now, r.before.size());
   const auto found = from_device<TileEvidence>(evidence, r.before.size());
   Tiles made{{}, from_device<LayerTile>(layers, r.before.size()), from_device<TotalLight>(total, 1).front()};
@@ -263,7 +264,8 @@ std::vector<TileLight> TemporalStages::run_light(Extent tiles, const std::vector
   light.setArg(4, sums);
   light.setArg(5, previous);
   light.setArg(6, changed);
-  enqueue_rows(impl().profile.shape, impl().queue, light, tiles, 1, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, light, tiles,
+               columns_per_item(impl().profile.shape, tiles.width, 1), nullptr);
   return from_device<TileLight>(changed, now.size());
 }
 

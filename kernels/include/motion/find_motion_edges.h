@@ -13,7 +13,8 @@ static inline float4 larger_difference(const ReprojectParams* params, float4 lar
                                        float8 neighbour) {
   const float4 x = (neighbour.even - velocity.even) * params->motion_edge_x;
   const float4 y = (neighbour.odd - velocity.odd) * params->motion_edge_y;
-  return fmax(largest, x * x + y * y);
+  const float4 difference = x * x + y * y;
+  return select(largest, difference, difference > largest);
 }
 
 // The motion edge at each of the four samples from (x, y) on, whose velocities are given: the largest difference to the
