@@ -5,12 +5,12 @@
 #include <memory>
 #include <utility>
 
-#include "bench/harness/process_clock.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_options.h"
 #include "bench/tune/tune_cases.h"
 #include "bench/tune/tune_storages.h"
 #include "tools/program/command_line.h"
+#include "tools/program/date.h"
 #include "tools/program/progress.h"
 
 namespace quincunx::bench {
@@ -132,7 +132,7 @@ Result<TuneResult> run_tune(const BenchOptions& options) {
   if (!profile_path(device)) return keep_profile(device, {});
   TuneResult result{.version = QUINCUNX_VERSION,
                     .command = options.command_line,
-                    .date = date_now(),
+                    .date = tools::date_now(),
                     .output = options.output,
                     .clock = name_of(pass_timer(device)),
                     .machine = {},
