@@ -20,8 +20,7 @@ namespace quincunx::scenes {
 namespace {
 
 // Which figures a controller that chooses methods would go by. Nothing where there is no OpenCL device.
-std::string front_text(const RenderOptions& options, const Scene& scene) {
-  const auto device = Device::open(options.device);
+std::string front_text(const Result<Device>& device, const Scene& scene) {
   if (!device.ok()) return {};
   return fmt::format("Error front    {}\n", find_front(front_key(device->info(), scene.name)).explanation);
 }
@@ -46,8 +45,9 @@ int explain(const RenderOptions& options) {
   }
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
+  const Result<Device> device = Device::open(options.device);
   fmt::print("Scene          {}: {}\n{}{}{}{}", scene->name, scene->summary,
-             front_text(options, scene.value()), tools::device_lines(options.device),
+             front_text(device, scene.value()), tools::device_lines(device),
              explain(source->parts, has_particles), plan->explain());
   return tools::kDone;
 }

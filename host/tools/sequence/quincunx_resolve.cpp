@@ -120,7 +120,7 @@ int run(int argc, char** argv) {
   if (options.dry_run) return print_listing(options, task.value());
   if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
   if (options.explain) {
-    fmt::print("{}{}", device_lines(options.device), task->plan.explain());
+    fmt::print("{}{}", device_lines(Device::open(options.device)), task->plan.explain());
     return kDone;
   }
   if (task->scan.frames.empty()) {
