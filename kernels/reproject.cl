@@ -4,9 +4,11 @@
 //   trust = (1 - reactive0) (1 - reactive1) inside visible / (1 + K |v0 - v1|^2)
 //   inside   falls from 1 at the previous frame's edge to 0 a pixel beyond it
 //   visible  1 if at least one of the 2x2 previous depths at that place does not lie in front of the sample's surface,
-//            else 0. A depth d1 lies in front of d0 if d1 > 1.02 d0 + 2 slope, d being reversed depth, near / distance;
-//            slope is the smaller difference of d0 to left and right + that to above and below. The test is one-sided,
-//            so that thin things that fall between samples are not lost
+//            else 0. A depth d1 lies in front of d0 if d1 > (1.02 d0 + 2 slope) nearer, d being reversed depth, near /
+//            distance; slope is the smaller difference of d0 to left and right + that to above and below. nearer is how
+//            many times nearer a surface at rest was before the camera's last step, 1 if it was farther away; a camera
+//            that is not known stands still. The test is one-sided, so that thin things that fall between samples are
+//            not lost
 //   v0, v1, reactive0, 1: of the sample, and of the previous sample nearest to the place where it was; v in render
 //            pixels a frame. With MOTION_EDGE reactive is the largest of 3x3 and, in the previous frame, of 5x5
 //
@@ -60,6 +62,7 @@
 // What counts as in front, found by search on the development scenes.
 #define DEPTH_TOLERANCE 1.02f     // ratio of reversed depths
 #define SLOPE_TOLERANCE 2.0f      // steps of depth from a sample to the next
+#define LEAST_APPROACH 0.25f      // of the distances before and after the camera's step
 #define NAN_BITS 0x7fc00000
 
 // The depths of four neighbours of a row, from x on, which may be -1. Beyond the edges they are mirrored, so that a
@@ -82,6 +85,13 @@ static inline float4 slope_of(const ReprojectParams* params, DEPTH_TEXELS depth,
   const float4 upper = load_depth_block(depth, params->depth0, x, above, params->width);
   const float4 lower = load_depth_block(depth, params->depth0, x, below, params->width);
   return fmin(fabs(left - centre), fabs(right - centre)) + fmin(fabs(upper - centre), fabs(lower - centre));
+}
+
+// How many times nearer surfaces of these depths in columns x to x + 3 were if they stand still: 1 to 4.
+static inline float4 nearer_before(const ReprojectParams* params, int x, int y, float4 depth) {
+  const float4 columns = convert_float4(x + (int4)(0, 1, 2, 3));
+  const float row = (float)y * params->distance_y + params->distance_start;
+  return 1.0f / clamp(columns * params->distance_x + depth * params->distance_depth + row, LEAST_APPROACH, 1.0f);
 }
 
 static inline DepthRange previous_depths(const ReprojectParams* params, DEPTH_TEXELS depth, int4 x, int4 y) {
@@ -163,7 +173,8 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
     const float4 at_y = row + found.y;
 
     // Compare depths.
-    const float4 limit = depth * DEPTH_TOLERANCE + slope_of(&params, depth0, x, y, depth) * SLOPE_TOLERANCE;
+    const float4 tolerated = depth * DEPTH_TOLERANCE + slope_of(&params, depth0, x, y, depth) * SLOPE_TOLERANCE;
+    const float4 limit = tolerated * nearer_before(&params, x, y, depth);
     const DepthRange before = previous_depths(&params, depth1, clamp(floor_of(at_x), (int4)(0), last_x),
                                               clamp(floor_of(at_y), (int4)(0), last_y));
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "camera_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
@@ -41,6 +42,19 @@ void set_speeds(ReprojectParams& params, const FrameInputs& current, const Frame
   params.speed1_y = static_cast<float>(root * before.y);
 }
 
+// From the fourth row of the camera's matrix, which gives the previous clip coordinates' w over the present one. The
+// third makes the depth of the previous frame of the same: both may have a common factor, which is taken out.
+void set_distances(ReprojectParams& params, const FrameInputs& frame) {
+  const auto& m = frame.camera.clip_to_previous_clip;
+  const CameraVelocity camera = camera_params(frame);
+  const double unit = m[10] > 0 && std::isfinite(m[10]) ? m[10] : 1;
+  params.distance_x = static_cast<float>(m[3] / unit * camera.step_x);
+  params.distance_y = static_cast<float>(m[7] / unit * camera.step_y);
+  params.distance_depth = static_cast<float>(m[11] / unit);
+  params.distance_start =
+      static_cast<float>((m[15] + double{m[3]} * camera.start_x + double{m[7]} * camera.start_y) / unit);
+}
+
 class ReprojectPass : public Pass {
  public:
   using Pass::Pass;
@@ -64,6 +78,7 @@ class ReprojectPass : public Pass {
     params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
     set_positions(params, current, previous);
     set_motion_edge(params, current, frame.output);
+    set_distances(params, current);
     if (facts().weighs_residual()) set_speeds(params, current, previous, settings().quincunx.residual_weight);
     bind(params, frame[Resource::kVelocity], view_or(frame, Resource::kPreviousVelocity, Resource::kVelocity),
          frame[Resource::kDepth], frame[Resource::kPreviousDepth],

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "frame_check.h"
+#include "plan_facts.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {
@@ -125,7 +126,8 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
     check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);
     check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
   }
-  if (plan.reads_camera()) check_camera(check, inputs.camera);
+  if (plan.reads_camera() || PlanFacts(plan.needs, plan.settings).reprojects())
+    check_camera(check, inputs.camera);
   if (plan.settings.shading == Shading::kCheckerboard) check_parity(check, inputs);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);

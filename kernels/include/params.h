@@ -230,8 +230,11 @@ typedef struct ReprojectParams {
   float speed0_x, speed0_y;
   float speed1_x, speed1_y;
   float motion_edge_x, motion_edge_y;  // from velocity0 to output pixels
+  // The distance, over that in this frame, that what sample (i, j) shows had in the previous frame if it stands still
+  // and has the depth d: i * distance_x + j * distance_y + d * distance_depth + distance_start.
+  float distance_x, distance_y, distance_depth, distance_start;
 } ReprojectParams;
-QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 64 + 4 + 56);
+QUINCUNX_CHECK_SIZE(ReprojectParams, 16 + 64 + 4 + 72);
 
 typedef struct ReprojectedParams {
   int output_width;

@@ -151,6 +151,36 @@ TEST(TemporalReproject, AnEarlierMotionEdgeAndReactiveValuesAroundTakeTrust) {
   EXPECT_GT(dimmed, compared / 8);
 }
 
+// A wall that the camera leaves by 4 % of its distance a frame: too much for the test of depths, unless the camera's
+// matrix tells of it. Walking towards it makes the test no harder.
+TEST(TemporalReproject, HistoryOutlivesACameraThatWalksBackwards) {
+  constexpr Extent kRender{24, 12};
+  const ResolveSettings settings = settings_for({48, 24});
+  const auto trust_of_wall = [&](float last_row_depth, float last_row_one, double depth_before) {
+    Rig rig;
+    const auto count = static_cast<std::size_t>(kRender.area());
+    TestFrame before = make_frame(rig, {.with_velocity = true, .with_depth = true}, {.render = kRender});
+    const auto depth = [&](double value) {
+      return rig.image(PixelFormat::kR32F, Storage::kBuffer, kRender,
+                       std::vector<Pixel>(count, {value, 0, 0, 1}), 0);
+    };
+    before.inputs.velocity =
+        rig.image(PixelFormat::kRG16F, Storage::kBuffer, kRender, std::vector<Pixel>(count, {0, 0, 0, 1}), 0);
+    before.inputs.depth = depth(depth_before);
+    FrameInputs now = before.inputs;
+    now.depth = depth(.1);
+    now.camera.clip_to_previous_clip[11] = last_row_depth;
+    now.camera.clip_to_previous_clip[15] = last_row_one;
+    PassChain chain(testing::device(), PlanFacts({.transparents = false}, settings));
+    reproject(rig, chain, before.inputs, nullptr);
+    return reproject(rig, chain, now, &before.inputs)[7 * kRender.width + 11][2];
+  };
+  EXPECT_EQ(trust_of_wall(0, 1, .1 / .96), 0) << "no camera is known";
+  EXPECT_EQ(trust_of_wall(-.4f, 1, .1 / .96), 1);
+  EXPECT_EQ(trust_of_wall(-.4f, 1, .1 / .9), 0) << "that is another surface";
+  EXPECT_EQ(trust_of_wall(.4f, 1, .1), 1) << "what moves along with the camera";
+}
+
 // The open trust of the newest frame, where the plan has layers.
 std::vector<float> open_trust(const PassChain& chain, Extent render) {
   std::vector<float> trust(static_cast<std::size_t>(render.area()));

@@ -113,9 +113,13 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     return with_motion(make_frame(rig, formats_, spec, colour));
   }
 
+  // The camera walks backwards and turns; its matrix is not normalised.
   TestFrame with_motion(TestFrame made) const {
     made.inputs.velocity_scale = {-.5f, .75f};
     made.reference.velocity_scale = {-.5, .75};
+    auto& camera = made.inputs.camera.clip_to_previous_clip;
+    camera = {1, 0, 0, .05f, 0, 1, 0, -.04f, .1f, .2f, 1.25f, -.6f, 0, 0, 0, 1.22f};
+    std::copy(camera.begin(), camera.end(), made.reference.clip_to_previous_clip.begin());
     return made;
   }
 

@@ -5,10 +5,12 @@
 //   trust        1 inside the previous viewport, 0 a pixel away from it ...
 //                ... times (1 - reactive) of both frames
 //                ... / (1 + K |v - v'|^2), v' the velocity of the previous frame there, both in render pixels
-//                ... 0 if all 2 x 2 previous depths are nearer than the sample: > 1.02 z + 2 |dz|
+//                ... 0 if all 2 x 2 previous depths are nearer than the sample: > (1.02 z + 2 |dz|) nearer
 //                ... times 1 - strength of the previous frame's motion edge there, if one of them is
 //   open trust   trust before depths and the previous motion edge take from it
 //   motion edge  the largest |v - v_neighbour| in 3 x 3, or the previous frame's there if that is larger
+// nearer: how many times nearer the camera's matrix puts the sample in the previous frame, 1 to 4; with a sample's clip
+// coordinates c, as in velocity_from_depth.cpp, and p = clip_to_previous_clip c: 1 / (p.w / matrix(2, 2)).
 // A depth is 1 / distance: the larger the nearer. |dz| takes on each axis the gentler side, so that thin
 // features hide nothing.
 // Source: found by measuring (docs/pipeline.md, tables of `reproject` and of the temporal upscaler).
@@ -56,6 +58,23 @@ Real depth_slope(const Frame& frame, int x, int y) {
   const Real across = std::fmin(difference(-1, 0), difference(1, 0));
   const Real down = std::fmin(difference(0, -1), difference(0, 1));
   return across + down;
+}
+
+// How many times nearer what a sample shows was if it stands still, at least 1.
+template <typename Real>
+Real nearer_before(const Frame& frame, int x, int y) {
+  constexpr double kLeastApproach = .25;  // of the distances before and after the camera's step
+  const auto& matrix = frame.clip_to_previous_clip;
+  const auto last_row = [&](int column) {
+    return matrix[static_cast<std::size_t>(column) * 4 + 3] / matrix[10];
+  };
+  const double right = 2. / frame.width * last_row(0);
+  const double down = -2. / frame.height * last_row(1);
+  const double start = last_row(3) + last_row(0) * ((1 + 2 * frame.jitter_x) / frame.width - 1) +
+                       last_row(1) * (1 - (1 + 2 * frame.jitter_y) / frame.height);
+  const Real distance =
+      x * Real(right) + depth_at(frame, x, y) * Real(last_row(2)) + (y * Real(down) + Real(start));
+  return 1 / clamp(distance, kLeastApproach, 1);
 }
 
 struct DepthRange {
@@ -197,7 +216,8 @@ ReprojectionOf<Real> reproject(const Frame& current, const Frame& previous, cons
   result.open_trust = result.trust;
 
   // Depths that are larger are nearer than the sample.
-  const Real limit = kDepthTolerance * Real(depth) + kSlopeTolerance * depth_slope<Real>(current, x, y);
+  const Real tolerated = kDepthTolerance * Real(depth) + kSlopeTolerance * depth_slope<Real>(current, x, y);
+  const Real limit = tolerated * nearer_before<Real>(current, x, y);
   const DepthRange depths = depths_around(previous, at);
   const double edge_before =
       options.motion_edges_before.empty()

@@ -137,6 +137,8 @@ TEST_F(Validate, ACameraThatIsNotFiniteIsRefusedWhereItIsRead) {
   EXPECT_TRUE(check().ok());
   const Status status = check({.moving_objects = false});
   EXPECT_NE(status.message().find("camera"), std::string::npos);
+  settings_.quincunx.form = TwoFrameForm::kReprojected;
+  EXPECT_NE(check().message().find("camera"), std::string::npos);
 }
 
 TEST_F(Validate, APresentedPictureNeedsAPresentPass) {

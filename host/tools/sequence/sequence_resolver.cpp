@@ -77,10 +77,12 @@ Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& t
 }
 
 Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inputs) const {
-  const bool moves = service_.plan().reads_camera() && !inputs.reset;
+  const ResolvePlan& plan = service_.plan();
+  const bool moves = (plan.reads_camera() || plan.keeps_previous_frame()) && !inputs.reset;
   if (!moves || !frame.world_to_ndc || !last_world_to_ndc_) return {};
   const auto motion = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, job_.format.near_plane);
   if (!motion) {
+    if (!plan.reads_camera()) return {};  // it would only have bettered the picture
     return Status::io(fmt::format("'{}' has an attribute 'worldToNDC' that cannot be inverted",
                                   job_.input.expand(frame.number)));
   }
