@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# On a fresh Debian: installs what is missing, builds, and runs all checks and tests. About 11 minutes on two cores,
-# about 6 when it is built already.
+# On a fresh Debian: installs what is missing, builds, and runs all checks and tests. About 20 minutes on two cores,
+# about 14 when it is built already.
 #
 #   ./test.sh                everything
 #   ./test.sh -R service     anything else is handed to ctest; the format check is then left out
