@@ -17,8 +17,8 @@ namespace quincunx {
 
 struct ResolvePlan;
 
-// Where the camera was, for velocity that is derived from depth. Column-major: takes (ndc.x, ndc.y, depth, 1)
-// of this frame, jitter excluded, to homogeneous clip coordinates of the previous frame, jitter excluded;
+// Where the camera was: for velocity from depth, and to know surfaces again. Column-major: (ndc.x, ndc.y, depth, 1)
+// of this frame, jitter excluded, becomes homogeneous clip coordinates of the previous frame, jitter excluded;
 // ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
 // target holds: reversed, infinite, 1 at the near plane and 0 at infinity.
 struct CameraMotion {
