@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 
+#include "../tools/own_cache.h"
 #include "device_profile_file.h"
 #include "pass.h"
 #include "quincunx/resolve_service.h"
@@ -28,20 +28,9 @@ class DeviceProfiles : public ::testing::Test {
  protected:
   DeviceProfiles()
       : folder_(fs::temp_directory_path() / ("quincunx-profile-test-" + std::to_string(getpid()))) {
-    if (const char* before = std::getenv("QUINCUNX_CACHE_DIR")) before_ = before;
     fs::remove_all(folder_);
-    use(folder_.string());
   }
-  ~DeviceProfiles() override {
-    fs::remove_all(folder_);
-    if (before_) {
-      setenv("QUINCUNX_CACHE_DIR", before_->c_str(), 1);
-    } else {
-      unsetenv("QUINCUNX_CACHE_DIR");
-    }
-  }
-
-  static void use(const std::string& folder) { setenv("QUINCUNX_CACHE_DIR", folder.c_str(), 1); }
+  ~DeviceProfiles() override { fs::remove_all(folder_); }
 
   static Device open() { return Device::open().value(); }
 
@@ -68,7 +57,7 @@ class DeviceProfiles : public ::testing::Test {
   }
 
   fs::path folder_;
-  std::optional<std::string> before_;
+  testing::OwnCache cache_{folder_.string()};
 };
 
 TEST_F(DeviceProfiles, WhatWasKeptIsUsedFromThenOn) {
@@ -89,7 +78,7 @@ TEST_F(DeviceProfiles, WhatWasKeptIsUsedFromThenOn) {
 }
 
 TEST_F(DeviceProfiles, WithoutACacheFolderNoneIsKept) {
-  use("");
+  cache_.use("");
   EXPECT_FALSE(profile_path(open()).has_value());
   const Status kept = keep_profile(open(), tuned());
   EXPECT_EQ(kept.code(), StatusCode::kUnsupported);

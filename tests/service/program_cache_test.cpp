@@ -4,10 +4,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <vector>
+
+#include "../tools/own_cache.h"
 
 namespace quincunx {
 namespace {
@@ -21,18 +22,8 @@ class ProgramCache : public ::testing::Test {
  protected:
   ProgramCache() : folder_(fs::temp_directory_path() / ("quincunx-cache-test-" + std::to_string(getpid()))) {
     fs::remove_all(folder_);
-    use(folder_.string());
   }
-  ~ProgramCache() override {
-    fs::remove_all(folder_);
-    if (before_) {
-      setenv("QUINCUNX_CACHE_DIR", before_->c_str(), 1);
-    } else {
-      unsetenv("QUINCUNX_CACHE_DIR");
-    }
-  }
-
-  static void use(const std::string& folder) { setenv("QUINCUNX_CACHE_DIR", folder.c_str(), 1); }
+  ~ProgramCache() override { fs::remove_all(folder_); }
 
   std::vector<fs::path> entries() const {
     std::vector<fs::path> found;
@@ -51,9 +42,7 @@ class ProgramCache : public ::testing::Test {
   }
 
   fs::path folder_;
-  std::optional<std::string> before_ = std::getenv("QUINCUNX_CACHE_DIR")
-                                           ? std::optional<std::string>(std::getenv("QUINCUNX_CACHE_DIR"))
-                                           : std::nullopt;
+  testing::OwnCache cache_{folder_.string()};
   Device device_ = Device::open().value();
 };
 
@@ -94,14 +83,14 @@ TEST_F(ProgramCache, ADamagedEntryIsRebuiltAndReplaced) {
 TEST_F(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
   const fs::path file = folder_.string() + "-file";
   std::ofstream(file) << "not a folder";
-  use((file / "below").string());
+  cache_.use((file / "below").string());
   EXPECT_EQ(build().compiled, 1);
   EXPECT_EQ(build().compiled, 1);
   fs::remove(file);
 }
 
 TEST_F(ProgramCache, AnEmptyNameTurnsItOff) {
-  use("");
+  cache_.use("");
   EXPECT_EQ(build().compiled, 1);
   EXPECT_EQ(build().compiled, 1);
   EXPECT_TRUE(entries().empty());

@@ -13,7 +13,7 @@ class OwnCache {
   // An empty `folder`: there is none.
   explicit OwnCache(const std::string& folder) {
     if (const char* before = std::getenv(kName)) before_ = before;
-    setenv(kName, folder.c_str(), 1);
+    use(folder);
   }
   ~OwnCache() {
     if (before_) {
@@ -24,6 +24,8 @@ class OwnCache {
   }
   OwnCache(const OwnCache&) = delete;
   OwnCache& operator=(const OwnCache&) = delete;
+
+  void use(const std::string& folder) { setenv(kName, folder.c_str(), 1); }
 
  private:
   static constexpr const char* kName = "QUINCUNX_CACHE_DIR";
