@@ -45,6 +45,12 @@ int image_pitch_texels(const cl::Device& device) {
   return known ? static_cast<int>(texels) : 0;
 }
 
+// PoCL keeps a kernel for each size of group that it ran with. Asked for a program's binary it compiles each
+// kernel once more, for any size (docs/pipeline.md).
+bool keeps_programs(const DeviceInfo& info) {
+  return info.platform == "Portable Computing Language";
+}
+
 DeviceInfo info_of(const cl::Device& device) {
   DeviceInfo info;
   info.kind = kind_of(device.getInfo<CL_DEVICE_TYPE>());
@@ -69,6 +75,15 @@ bool lists_format(const cl::Context& context, const cl::ImageFormat& wanted) {
     return format.image_channel_order == wanted.image_channel_order &&
            format.image_channel_data_type == wanted.image_channel_data_type;
   });
+}
+
+// All that follows from the device, the context and the queue.
+void learn(Device::Impl& impl) {
+  impl.info.two_channel_images =
+      impl.info.images && lists_format(impl.context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
+  impl.keeps_programs = keeps_programs(impl.info);
+  impl.timer = validated_timer(impl);
+  impl.profile = find_profile(impl);
 }
 
 std::vector<cl::Device> all_devices() {
@@ -240,10 +255,7 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     all.push_back(0);
     impl->context = cl::Context(impl->device, all.data());
     impl->queue = cl::CommandQueue(impl->context, impl->device, CL_QUEUE_PROFILING_ENABLE);
-    impl->info.two_channel_images =
-        impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
-    impl->timer = validated_timer(*impl);
-    impl->profile = find_profile(*impl);
+    learn(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::open", infos[*chosen].name);
@@ -263,10 +275,7 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
       return Status::invalid("the queue given to Device::borrow is out-of-order; it must be in-order");
     }
     impl->info = info_of(impl->device);
-    impl->info.two_channel_images =
-        impl->info.images && lists_format(impl->context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
-    impl->timer = validated_timer(*impl);
-    impl->profile = find_profile(*impl);
+    learn(*impl);
     return Device(std::move(impl));
   } catch (const cl::Error& error) {
     return describe(error, "Device::borrow", "a borrowed device");

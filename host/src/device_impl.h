@@ -15,6 +15,8 @@ struct Device::Impl {
   cl::CommandQueue queue;
   PassTimer timer = PassTimer::kNone;
   DeviceProfile profile;
+  // The driver itself keeps what it compiles from one run to the next, so the program cache leaves kernels to it.
+  bool keeps_programs = false;
 };
 
 }  // namespace quincunx

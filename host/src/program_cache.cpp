@@ -100,7 +100,7 @@ std::string kernel_source(const std::string& name) {
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options) {
   const std::string source = kernel_source(name);
   const std::string all_options = fmt::format("{} {}", kCommonBuildOptions, options);
-  const std::optional<fs::path> folder = cache_folder();
+  const std::optional<fs::path> folder = device.keeps_programs ? std::nullopt : cache_folder();
   const fs::path path =
       folder ? *folder / fmt::format("{}-{}.bin", name, cache_key(device, source, all_options)) : fs::path();
   if (folder) {

@@ -3,7 +3,7 @@
 //
 // Binaries lie in cache_folder(), keyed by source with all its includes, options, device and driver; an
 // unusable or damaged entry is rebuilt and replaced, a folder that cannot be written only costs time. Without
-// a folder every kernel is compiled each time.
+// a folder every kernel is compiled each time. A driver that keeps its programs itself is handed the source each time.
 #pragma once
 
 #include <stdexcept>

@@ -36,7 +36,7 @@ class ProgramCache : public ::testing::Test {
   // What one build did: {compiled, loaded}.
   CacheCounts build(const std::string& options = kOptions) const {
     const CacheCounts before = cache_counts();
-    EXPECT_NE(build_kernel(*device_.impl(), kKernel, options)(), nullptr);
+    EXPECT_NE(build_kernel(impl_, kKernel, options)(), nullptr);
     const CacheCounts after = cache_counts();
     return {after.compiled - before.compiled, after.loaded - before.loaded};
   }
@@ -44,6 +44,14 @@ class ProgramCache : public ::testing::Test {
   fs::path folder_;
   testing::OwnCache cache_{folder_.string()};
   Device device_ = Device::open().value();
+  Device::Impl impl_ = keeping_no_programs();
+
+ private:
+  Device::Impl keeping_no_programs() const {
+    Device::Impl impl = *device_.impl();
+    impl.keeps_programs = false;
+    return impl;
+  }
 };
 
 TEST_F(ProgramCache, CompilesOnceThenLoads) {
@@ -91,6 +99,13 @@ TEST_F(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
 
 TEST_F(ProgramCache, AnEmptyNameTurnsItOff) {
   cache_.use("");
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(ProgramCache, ADriverThatKeepsItsProgramsGetsTheSource) {
+  impl_.keeps_programs = true;
   EXPECT_EQ(build().compiled, 1);
   EXPECT_EQ(build().compiled, 1);
   EXPECT_TRUE(entries().empty());
