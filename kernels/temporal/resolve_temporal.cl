@@ -94,7 +94,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     // Reproject.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
     const bool copied = is_copied(previous_tiles, &params, tile, x, y);
-    const bool whole = is_taken_whole(tile, copied);
+    const bool whole = is_taken_whole(&params, reactive0, reactive1, &nearest, tile, copied);
     EightReprojections motion = no_motion();
     if (!whole) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
 

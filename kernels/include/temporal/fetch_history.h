@@ -29,6 +29,28 @@ static inline float2 phase_at(__global const TileReprojection* tiles, const Temp
   return (float2)(tile->phase_x, tile->phase_y);
 }
 
+// The same around eight texels.
+typedef struct SourcePhases {
+  float8 x, y;
+} SourcePhases;
+
+static inline SourcePhases phases_at(__global const TileReprojection* tiles, const TemporalParams* params, int8 x,
+                                     int8 y) {
+  const uint8 tile_x = as_uint8(clamp(x, 0, params->output_width - 1)) / (uint)kTemporalTile;
+  const uint8 tile_y = as_uint8(clamp(y, 0, params->output_height - 1)) / (uint)kTemporalTile;
+  const int8 at = as_int8(tile_y) * params->tiles_x + as_int8(tile_x);
+  if (!any_lane(at ^ at.s0)) {  // most often it is one tile
+    const SourcePhases one = {(float8)(tiles[at.s0].phase_x), (float8)(tiles[at.s0].phase_y)};
+    return one;
+  }
+  const SourcePhases phases = {
+      (float8)(tiles[at.s0].phase_x, tiles[at.s1].phase_x, tiles[at.s2].phase_x, tiles[at.s3].phase_x,
+               tiles[at.s4].phase_x, tiles[at.s5].phase_x, tiles[at.s6].phase_x, tiles[at.s7].phase_x),
+      (float8)(tiles[at.s0].phase_y, tiles[at.s1].phase_y, tiles[at.s2].phase_y, tiles[at.s3].phase_y,
+               tiles[at.s4].phase_y, tiles[at.s5].phase_y, tiles[at.s6].phase_y, tiles[at.s7].phase_y)};
+  return phases;
+}
+
 // Whether the tile's pixels from (x, y) on are copied: it is rigid, and the eight texels that it takes are all inside
 // and have the phase that it takes them for.
 static inline bool is_copied(__global const TileReprojection* previous, const TemporalParams* params,
@@ -56,12 +78,9 @@ static inline SourcePlaces source_places(__global const TileReprojection* previo
   float8 at_y = clamp(motion->y, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_y;
   // Less the phase of the texels there.
   const int8 i = columns + convert_int8(at_x + 0.5f), j = y + convert_int8(at_y + 0.5f);
-  const float2 p0 = phase_at(previous, params, i.s0, j.s0), p1 = phase_at(previous, params, i.s1, j.s1);
-  const float2 p2 = phase_at(previous, params, i.s2, j.s2), p3 = phase_at(previous, params, i.s3, j.s3);
-  const float2 p4 = phase_at(previous, params, i.s4, j.s4), p5 = phase_at(previous, params, i.s5, j.s5);
-  const float2 p6 = phase_at(previous, params, i.s6, j.s6), p7 = phase_at(previous, params, i.s7, j.s7);
-  at_x -= (float8)(p0.x, p1.x, p2.x, p3.x, p4.x, p5.x, p6.x, p7.x);
-  at_y -= (float8)(p0.y, p1.y, p2.y, p3.y, p4.y, p5.y, p6.y, p7.y);
+  const SourcePhases phase = phases_at(previous, params, i, j);
+  at_x -= phase.x;
+  at_y -= phase.y;
   int8 whole_x = convert_int8(at_x), whole_y = convert_int8(at_y);
   whole_x += convert_float8(whole_x) > at_x;  // towards minus infinity
   whole_y += convert_float8(whole_y) > at_y;

@@ -40,8 +40,11 @@ static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams*
 static inline NearestSamples find_nearest_samples(const TemporalParams* params, __global const int* positions, int x,
                                                   Positions row, TileReprojection tile) {
   const Positions column = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
-  const Positions place_x = shifted_positions(column, (float8)(tile.phase_x / params->spacing_x));
-  const Positions place_y = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+  Positions place_x = column, place_y = row;
+  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f) {
+    place_x = shifted_positions(column, (float8)(tile.phase_x / params->spacing_x));
+    place_y = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+  }
   NearestSamples nearest;
   nearest.between_x = held_positions(place_x, params->frame0.width - 1);
   nearest.between_y = held_positions(place_y, params->frame0.height - 1);

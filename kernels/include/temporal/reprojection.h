@@ -32,27 +32,51 @@ static inline EightReprojections load_reprojections(const TemporalParams* params
   return found;
 }
 #elif REACTIVE
-// Where nothing moves: what the reactive values of both frames leave of trust.
+// Where nothing moves: the columns of the previous frame that show what eight samples do.
+static inline int8 previous_columns(const TemporalParams* params, int8 x) {
+  const float ratio = (float)params->frame1.width / (float)params->frame0.width;
+  return min(convert_int8((convert_float8(x) + 0.5f) * ratio), (int8)(params->frame1.width - 1));
+}
+
+static inline int previous_row(const TemporalParams* params, int y) {
+  const float ratio = (float)params->frame1.height / (float)params->frame0.height;
+  return min((int)(((float)y + 0.5f) * ratio), params->frame1.height - 1);
+}
+
+// What the reactive values of both frames leave of trust.
 static inline float8 trust_of_reactive(const TemporalParams* params, REACTIVE_TEXELS reactive0,
                                        REACTIVE_TEXELS reactive1, const NearestSamples* nearest) {
-  const SourceFrame now = params->frame0, before = params->frame1;
-  const float ratio_x = (float)before.width / (float)now.width, ratio_y = (float)before.height / (float)now.height;
-  const int8 x = min(convert_int8((convert_float8(nearest->x) + 0.5f) * ratio_x), (int8)(before.width - 1));
-  const int y = min((int)(((float)nearest->y + 0.5f) * ratio_y), before.height - 1);
-  return (1.0f - (float8)(load_reactive4(reactive0, now.reactive, nearest->x.lo, nearest->y),
-                          load_reactive4(reactive0, now.reactive, nearest->x.hi, nearest->y))) *
-         (1.0f - (float8)(load_reactive4(reactive1, before.reactive, x.lo, y),
-                          load_reactive4(reactive1, before.reactive, x.hi, y)));
+  const TexelLayout now = params->frame0.reactive, before = params->frame1.reactive;
+  const int8 x = previous_columns(params, nearest->x);
+  const int y = previous_row(params, nearest->y);
+  return (1.0f - (float8)(load_reactive4(reactive0, now, nearest->x.lo, nearest->y),
+                          load_reactive4(reactive0, now, nearest->x.hi, nearest->y))) *
+         (1.0f - (float8)(load_reactive4(reactive1, before, x.lo, y), load_reactive4(reactive1, before, x.hi, y)));
+}
+
+// True only if none of the samples of a row in rising columns x is reactive: eight are looked at together, in a buffer.
+static inline bool none_is_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int width, int8 x, int y) {
+#if SOURCE_STORAGE == BUFFER
+  const int first = min(x.s0, width - 8);
+  if (first < 0 || x.s7 - first >= 8) return false;
+  return as_long(vload8(0, texels + texel_index(layout, first, y))) == 0;
+#else
+  return false;
+#endif
 }
 #endif
 
 // Whether history may be taken as it is, without a look at the pixels' reprojection: their texels are `copied`, and all
 // their samples trust them.
-static inline bool is_taken_whole(TileReprojection tile, bool copied) {
+static inline bool is_taken_whole(const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                                  const NearestSamples* nearest, TileReprojection tile, bool copied) {
+  if (!copied || !tile.is_copyable) return false;
 #if REACTIVE && !MOTION
-  return false;
+  return none_is_reactive(reactive0, params->frame0.reactive, params->frame0.width, nearest->x, nearest->y) &&
+         none_is_reactive(reactive1, params->frame1.reactive, params->frame1.width,
+                          previous_columns(params, nearest->x), previous_row(params, nearest->y));
 #else
-  return copied && tile.is_copyable;
+  return true;
 #endif
 }
 
