@@ -33,12 +33,15 @@ static inline float4 motion_edges_at(const ReprojectParams* params, VELOCITY_TEX
   return sqrt(min(largest, LARGEST_SQUARED_EDGE));
 }
 
+enum { kEdgesAhead = 32 };  // samples to prefetch
+
 // That of the previous frame at four of its samples. What that frame took over from the one before it, and NaN, count
 // as 0.
 static inline float4 previous_motion_edges(const ReprojectParams* params, __global const float* reprojection, int4 x,
                                            int4 y) {
   const TexelLayout layout = params->previous_reprojection;
   const int4 at = 4 * (layout.offset + y * layout.pitch + x) + 3;
+  WILL_READ(reprojection + at.s0 + 4 * kEdgesAhead);
   const float4 edges = (float4)(reprojection[at.s0], reprojection[at.s1], reprojection[at.s2], reprojection[at.s3]);
   return fmax(edges, (float4)(0.0f));
 }
