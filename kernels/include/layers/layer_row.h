@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Twelve texels of a row of history by channel: those that eight neighbouring pixels see which all come from as far.
+// Texels of a row of history by channel: those that eight neighbouring pixels see which all come from as far. On texels
+// these are eight, between texels twelve.
 #pragma once
 
 #include "layers/layer_window.h"
@@ -60,9 +61,54 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
   return loaded;
 }
 
-// Eight of the twelve, from `column`, 0 to 3, on.
+// Eight texels, as a LayerRow has them: one for each pixel.
+typedef struct EightLayers {
+  float8 red, green, blue, confidence;
+  float8 near_red, near_green, near_blue, coverage;
+  float8 far_depth, near_depth, near_confidence;
+  float8 alpha;
+} EightLayers;
+
 static inline float8 eight_from(float16 row, int column) {
   if (column == 0) return row.s01234567;
   if (column == 1) return row.s12345678;
   return column == 2 ? row.s23456789 : row.s3456789a;
+}
+
+// Eight of the twelve, from `column`, 0 to 3, on.
+static inline EightLayers eight_of_row(const LayerRow* row, int column) {
+  const EightLayers eight = {eight_from(row->red, column),        eight_from(row->green, column),
+                             eight_from(row->blue, column),       eight_from(row->confidence, column),
+                             eight_from(row->near_red, column),   eight_from(row->near_green, column),
+                             eight_from(row->near_blue, column),  eight_from(row->coverage, column),
+                             eight_from(row->far_depth, column),  eight_from(row->near_depth, column),
+                             eight_from(row->near_confidence, column), eight_from(row->alpha, column)};
+  return eight;
+}
+
+// The eight from (x, y) on.
+static inline EightLayers load_eight_layers(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout, int x,
+                                            int y) {
+  const TexelWindow left = window_at(past, x, y, 1), right = window_at(past, x + 4, y, 1);
+  const float16 far0 = load_row(past->far, left, 0), far1 = load_row(past->far, right, 0);
+  EightLayers loaded;
+  loaded.red = (float8)(far0.s048c, far1.s048c);
+  loaded.green = (float8)(far0.s159d, far1.s159d);
+  loaded.blue = (float8)(far0.s26ae, far1.s26ae);
+  loaded.confidence = (float8)(far0.s37bf, far1.s37bf);
+  loaded.near_red = loaded.near_green = loaded.near_blue = loaded.coverage = (float8)(0.0f);
+  if (any_lane(as_int8(loaded.confidence) >> 31)) {
+    const float16 near0 = load_row(past->near, left, 0), near1 = load_row(past->near, right, 0);
+    loaded.near_red = (float8)(near0.s048c, near1.s048c);
+    loaded.near_green = (float8)(near0.s159d, near1.s159d);
+    loaded.near_blue = (float8)(near0.s26ae, near1.s26ae);
+    loaded.coverage = (float8)(near0.s37bf, near1.s37bf);
+  }
+  const LayerStates states0 = states_of_row(past, depth, layout, left, 0);
+  const LayerStates states1 = states_of_row(past, depth, layout, right, 0);
+  loaded.far_depth = (float8)(states0.far_depth, states1.far_depth);
+  loaded.near_depth = (float8)(states0.near_depth, states1.near_depth);
+  loaded.near_confidence = (float8)(states0.near_confidence, states1.near_confidence);
+  loaded.alpha = (float8)(alpha_of_row(past->alpha, left, 0), alpha_of_row(past->alpha, right, 0));
+  return loaded;
 }

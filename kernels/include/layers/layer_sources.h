@@ -20,11 +20,15 @@ typedef struct LayerSources {
   int8 was_split;   // lanes whose texel at their place has two layers
 } LayerSources;
 
-// Of the far layers of tiles, or of their near ones.
+// Of the far layers of tiles, or of their near ones. Most often it is one tile.
 static inline LayerPlaces phases_of(const PastLayers* past, int8 tile, LayerKind kind) {
   const bool near = kind == kNearLayer;
   __global const float* phases = near ? &past->layer_tiles->phase_x : &past->tiles->phase_x;
   const int8 at = tile * (int)((near ? sizeof(LayerTile) : sizeof(TileReprojection)) / sizeof(float));
+  if (!any_lane(tile ^ tile.s0)) {
+    const LayerPlaces phase = {(float8)(phases[at.s0]), (float8)(phases[at.s0 + 1])};
+    return phase;
+  }
   const LayerPlaces phase = {(float8)(phases[at.s0], phases[at.s1], phases[at.s2], phases[at.s3], phases[at.s4],
                                       phases[at.s5], phases[at.s6], phases[at.s7]),
                              (float8)(phases[at.s0 + 1], phases[at.s1 + 1], phases[at.s2 + 1], phases[at.s3 + 1],
@@ -34,11 +38,11 @@ static inline LayerPlaces phases_of(const PastLayers* past, int8 tile, LayerKind
 
 // Lanes whose texel has two layers.
 static inline int8 have_two(HistoryLayer layer, int8 at) {
-  const float8 stored = (float8)(load_confidence(layer, at.s0), load_confidence(layer, at.s1),
-                                 load_confidence(layer, at.s2), load_confidence(layer, at.s3),
-                                 load_confidence(layer, at.s4), load_confidence(layer, at.s5),
-                                 load_confidence(layer, at.s6), load_confidence(layer, at.s7));
-  return as_int8(stored) >> 31;
+  const int8 signs = (int8)(confidence_sign(layer, at.s0), confidence_sign(layer, at.s1),
+                            confidence_sign(layer, at.s2), confidence_sign(layer, at.s3),
+                            confidence_sign(layer, at.s4), confidence_sign(layer, at.s5),
+                            confidence_sign(layer, at.s6), confidence_sign(layer, at.s7));
+  return signs >> 31;
 }
 
 // Those of `lanes` whose surface was the near layer of texel (x, y).
@@ -65,7 +69,8 @@ static inline LayerSources find_sources(const PastLayers* past, DEPTH_TEXELS dep
   const float8 at_x = clamp(place.x, -FARTHEST_SOURCE, FARTHEST_SOURCE);
   const float8 at_y = clamp(place.y, -FARTHEST_SOURCE, FARTHEST_SOURCE);
   const int8 column = convert_int8(clamp(at_x, 0.0f, last_x)), row = convert_int8(clamp(at_y, 0.0f, last_y));
-  const int8 tile = row / kTemporalTile * past->tiles_x + column / kTemporalTile;
+  const uint8 tile_x = as_uint8(column) / (uint)kTemporalTile, tile_y = as_uint8(row) / (uint)kTemporalTile;
+  const int8 tile = as_int8(tile_y) * past->tiles_x + as_int8(tile_x);
   LayerPlaces phase = phases_of(past, tile, wishes->kind);
   const int8 there_x = convert_int8(clamp(at_x - phase.x, 0.0f, last_x));
   const int8 there_y = convert_int8(clamp(at_y - phase.y, 0.0f, last_y));
@@ -73,7 +78,7 @@ static inline LayerSources find_sources(const PastLayers* past, DEPTH_TEXELS dep
   LayerSources from;
   from.was_split = have_two(past->far, there_y * past->far.width + there_x);
   const bool near = wishes->kind == kNearLayer;
-  int8 is_other = near ? ~from.was_split : from.was_split & ~wishes->is_split;
+  int8 is_other = near ? wishes->is_split & ~from.was_split : from.was_split & ~wishes->is_split;
   if (any_lane(is_other)) {
     if (!near) is_other = were_near(past, depth, layout, wishes->near_depth, there_x, there_y, is_other);
     const LayerPlaces other = phases_of(past, tile, near ? kFarLayer : kNearLayer);

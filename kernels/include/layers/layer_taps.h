@@ -34,11 +34,11 @@ static inline int8 are_alike(float8 a, float8 b, float tolerance) {
   return fabs(a - b) <= tolerance * max(a, b);
 }
 
-// Of a texel for each pixel, `column` behind the row's first. `tests_depth`: lanes of surfaces alone whose texels of
-// one layer must not be nearer, as no trust tells.
-static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, int8 tests_depth) {
-  const float8 far_depth = eight_from(row->far_depth, column), near_depth = eight_from(row->near_depth, column);
-  const float8 stored = eight_from(row->confidence, column), coverage = eight_from(row->coverage, column);
+// Of a texel for each pixel. `tests_depth`: lanes of surfaces alone whose texels of one layer must not be nearer, as no
+// trust tells.
+static inline LayerTaps far_taps(const EightLayers* texels, const LayerWishes* wishes, int8 tests_depth) {
+  const float8 far_depth = texels->far_depth, near_depth = texels->near_depth;
+  const float8 stored = texels->confidence, coverage = texels->coverage;
   const float8 confidence = min(fabs(stored), MOST_CONFIDENCE);
   const int8 split = wishes->is_split, two = as_int8(stored) >> 31;
   const float8 wanted = select(wishes->near_depth, wishes->far_depth, split);
@@ -55,20 +55,20 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
 
   const float8 solid = select((float8)(1.0f), 1.0f / max(coverage, (float8)(SOLID)), split);
   LayerTaps taps;
-  taps.red = select(eight_from(row->red, column), eight_from(row->near_red, column) * solid, is_near);
-  taps.green = select(eight_from(row->green, column), eight_from(row->near_green, column) * solid, is_near);
-  taps.blue = select(eight_from(row->blue, column), eight_from(row->near_blue, column) * solid, is_near);
+  taps.red = select(texels->red, texels->near_red * solid, is_near);
+  taps.green = select(texels->green, texels->near_green * solid, is_near);
+  taps.blue = select(texels->blue, texels->near_blue * solid, is_near);
   taps.coverage = select((float8)(1.0f), coverage, is_near & ~split);
-  taps.confidence = select(confidence, eight_from(row->near_confidence, column) * coverage, is_near);
-  taps.alpha = select(eight_from(row->alpha, column), (float8)(1.0f), is_near);
+  taps.confidence = select(confidence, texels->near_confidence * coverage, is_near);
+  taps.alpha = select(texels->alpha, (float8)(1.0f), is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
   return taps;
 }
 
-static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWishes* wishes) {
-  const float8 far_depth = eight_from(row->far_depth, column), near_depth = eight_from(row->near_depth, column);
-  const float8 stored = eight_from(row->confidence, column);
+static inline LayerTaps near_taps(const EightLayers* texels, const LayerWishes* wishes) {
+  const float8 far_depth = texels->far_depth, near_depth = texels->near_depth;
+  const float8 stored = texels->confidence;
   const float8 confidence = min(fabs(stored), MOST_CONFIDENCE);
   const int8 two = as_int8(stored) >> 31;
   const int8 is_near = two & (wishes->near_depth > 0.5f * (far_depth + near_depth));
@@ -78,13 +78,13 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
   const float8 little = min(confidence, EMPTY_CONFIDENCE);
 
   LayerTaps taps;
-  taps.red = select(nothing, select(eight_from(row->red, column), eight_from(row->near_red, column), is_near), is_ours);
+  taps.red = select(nothing, select(texels->red, texels->near_red, is_near), is_ours);
   taps.green =
-      select(nothing, select(eight_from(row->green, column), eight_from(row->near_green, column), is_near), is_ours);
+      select(nothing, select(texels->green, texels->near_green, is_near), is_ours);
   taps.blue =
-      select(nothing, select(eight_from(row->blue, column), eight_from(row->near_blue, column), is_near), is_ours);
-  taps.coverage = select(nothing, select((float8)(1.0f), eight_from(row->coverage, column), is_near), is_ours);
-  taps.confidence = select(select(little, confidence, is_ours & ~two), eight_from(row->near_confidence, column),
+      select(nothing, select(texels->blue, texels->near_blue, is_near), is_ours);
+  taps.coverage = select(nothing, select((float8)(1.0f), texels->coverage, is_near), is_ours);
+  taps.confidence = select(select(little, confidence, is_ours & ~two), texels->near_confidence,
                            is_ours & is_near);
   taps.alpha = (float8)(1.0f);
   taps.has_two = two;

@@ -45,6 +45,15 @@ static inline float load_confidence(HistoryLayer layer, int index) {
 #endif
 }
 
+// Less than 0 if the confidence is stored with a minus sign, even -0.
+static inline int confidence_sign(HistoryLayer layer, int index) {
+#if HISTORY_FORMAT == HALF
+  return ((__global const short*)layer.texels)[4 * index + 3];
+#else
+  return ((__global const int*)layer.texels)[4 * index + 3];
+#endif
+}
+
 // Eight texels of a row, in fours. Not an array: PoCL keeps those in memory.
 typedef struct EightTexels {
   float16 left, right;
