@@ -30,38 +30,84 @@
 #error "VIEW must be PICTURE, LAYERS, COVERAGE or NEAR"
 #endif
 
-static inline float4 load_output(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y) {
-#if OUTPUT_FORMAT == HALF
-  return vload_half4(texel_index(layout, x, y), texels);
-#else
-  return vload4(texel_index(layout, x, y), texels);
-#endif
+// To each channel of four pixels whether there are two layers.
+static inline int16 two_layers(float4 confidence) {
+  return to_four_masks(as_int4(confidence) >> 31);
 }
 
 #if VIEW == PICTURE
 #define UNKNOWN_FAR 0.15f     // confidence of the far layer below which the near one's colour stands in for it
 #define LEAST_COVERAGE 0.02f  // from which the near layer has a colour
 
-// `confidence`: of the far layer.
-static inline float4 compose(float4 far, float4 near, float confidence) {
-  const float coverage = clamp(near.w, 0.0f, 1.0f);
-  const float unknown = clamp(1.0f - confidence / UNKNOWN_FAR, 0.0f, 1.0f);
-  if (unknown > 0.0f && coverage > LEAST_COVERAGE) far += (near / near.w - far) * unknown;
-  return (float4)((near + (1.0f - coverage) * far).xyz, coverage + (1.0f - coverage) * far.w);
+// Four pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether there
+// are two layers. Where there is one, `near` is 0.
+static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
+  const float16 covered = to_four_texels(near.s37bf), coverage = clamp(covered, 0.0f, 1.0f);
+  const float16 unknown = to_four_texels(clamp(1.0f - fabs(confidence) / UNKNOWN_FAR, 0.0f, 1.0f));
+  const int16 is_stood_in = (unknown > 0.0f) & (coverage > LEAST_COVERAGE);
+  const float16 behind = select(far, far + (near / covered - far) * unknown, is_stood_in);
+  const float16 composed = select(near, coverage, LAST_CHANNELS) + (1.0f - coverage) * behind;
+  return select(far, composed, two_layers(confidence));
 }
-#endif
-
-// One pixel as the option has it, `shown` being the picture so far. `near` is 0 where there is one layer.
-static inline float4 view_of(float4 shown, float4 near, float confidence) {
+#else
+static inline float4 view_of(float4 near, float confidence) {
 #if VIEW == LAYERS
   return (float4)(as_int(confidence) < 0 ? 1.0f : 0.0f, near.w, fabs(confidence) * (1.0f / MOST_CONFIDENCE), 1.0f);
 #elif VIEW == COVERAGE
   return (float4)(near.w, near.w, near.w, 1.0f);
-#elif VIEW == NEAR
-  return (float4)(near.xyz, 1.0f);
 #else
-  return as_int(confidence) < 0 ? compose(shown, near, fabs(confidence)) : shown;
+  return (float4)(near.xyz, 1.0f);
 #endif
+}
+
+static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
+  return (float16)(view_of(near.s0123, confidence.x), view_of(near.s4567, confidence.y),
+                   view_of(near.s89ab, confidence.z), view_of(near.scdef, confidence.w));
+}
+#endif
+
+// The first `count` of the four pixels from `index` on; the others are 0.
+static inline float16 load_pixels(OUTPUT_TEXELS texels, int index, int count) {
+#if OUTPUT_FORMAT == HALF
+  if (count >= 4) return load_half_texels4(texels, index);
+  float4 texel[4] = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};
+  for (int i = 0; i < count; ++i) texel[i] = vload_half4(index + i, texels);
+#else
+  if (count >= 4) return vload16(0, texels + 4 * index);
+  float4 texel[4] = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};
+  for (int i = 0; i < count; ++i) texel[i] = vload4(index + i, texels);
+#endif
+  return vload16(0, (const float*)texel);
+}
+
+// Finite values only; half saturates instead of becoming infinite.
+static inline void store_pixels(OUTPUT_TEXELS texels, int index, int count, float16 pixels) {
+#if OUTPUT_FORMAT == HALF
+  const float16 held = clamp(pixels, -65504.0f, 65504.0f);
+  if (count >= 4) {
+    store_half_texels4(texels, index, held);
+    return;
+  }
+  float4 texel[4];
+  vstore16(held, 0, (float*)texel);
+  for (int i = 0; i < count; ++i) vstore_half4_rte(texel[i], index + i, texels);
+#else
+  if (count >= 4) {
+    vstore16(pixels, 0, texels + 4 * index);
+    return;
+  }
+  float4 texel[4];
+  vstore16(pixels, 0, (float*)texel);
+  for (int i = 0; i < count; ++i) vstore4(texel[i], index + i, texels);
+#endif
+}
+
+// Shows the first `count` of four pixels with what the near layer has of them.
+static inline void show_pixels(OUTPUT_TEXELS output, int index, int count, float16 near, float4 confidence) {
+  if (count < 1) return;
+  const float16 far = load_pixels(output, index, count);
+  const float16 known = select((float16)(0.0f), near, two_layers(confidence));
+  store_pixels(output, index, count, shown_of(far, known, confidence));
 }
 
 __kernel void display_layers(const TemporalDisplayParams params, const LayerPastParams now, DEPTH_TEXELS depth,
@@ -96,17 +142,8 @@ __kernel void display_layers(const TemporalDisplayParams params, const LayerPast
     const Display display = display_of(layer.phase_x, layer.phase_y);
     EightTexels near = {(float16)(0.0f), (float16)(0.0f)};
     if (any_split) near = show_near(&known, depth, now.depth0, layer.between, display, x, y);
-    float4 near_texel[8];
-    float far_confidence[8];
-    vstore16(near.left, 0, (float*)near_texel);
-    vstore16(near.right, 1, (float*)near_texel);
-    vstore8(confidence, 0, far_confidence);
-    for (int i = 0; i < min(end - x, kTemporalTile); ++i) {
-      const bool split = as_int(far_confidence[i]) < 0;
-      if (VIEW == PICTURE && !split) continue;
-      const float4 far = load_output(output, params.output, x + i, y);
-      const float4 shown = view_of(far, split ? near_texel[i] : (float4)(0.0f), far_confidence[i]);
-      store_output(output, params.output, x + i, y, shown);
-    }
+    const int index = texel_index(params.output, x, y);
+    show_pixels(output, index, end - x, near.left, confidence.lo);
+    show_pixels(output, index + 4, end - x - 4, near.right, confidence.hi);
   }
 }

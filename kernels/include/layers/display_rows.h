@@ -2,7 +2,7 @@
 // The near layer of the texels around eight pixels of a row, as a picture that can be resampled.
 #pragma once
 
-#include "layers/layer_window.h"
+#include "layers/layer_row.h"
 #include "temporal/display_place.h"
 
 static inline int16 to_four_masks(int4 lanes) {
@@ -24,23 +24,26 @@ static inline float16 near_of_row(const PastLayers* known, DEPTH_TEXELS depth, T
   return near;
 }
 
-// Twelve texels from (x, y) on, clamped to the edge.
-static inline TwelveTexels near_row_at(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
-                                       int x, int y) {
-  const TwelveTexels row = {near_of_row(known, depth, layout, between, window_at(known, x, y, 1), 0),
-                            near_of_row(known, depth, layout, between, window_at(known, x + 4, y, 1), 0),
-                            near_of_row(known, depth, layout, between, window_at(known, x + 8, y, 1), 0)};
-  return row;
+// Twelve texels of a row of windows side by side.
+static inline TwelveTexels near_row_of(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
+                                       const RowWindows* windows, int row) {
+  const TwelveTexels texels = {near_of_row(known, depth, layout, between, windows->first, row),
+                               near_of_row(known, depth, layout, between, windows->second, row),
+                               near_of_row(known, depth, layout, between, windows->third, row)};
+  return texels;
 }
 
-// The near layer's picture at the pixels from (x, y) on.
+// The near layer's picture at the pixels from (x, y) on; of those of one layer anything.
 static inline EightTexels show_near(const PastLayers* known, DEPTH_TEXELS depth, TexelLayout layout, float between,
                                     Display display, int x, int y) {
-  const int left = x - display.step_x, top = y - display.step_y;
-  const TwelveTexels row1 = near_row_at(known, depth, layout, between, left, top + 1);
-  if (!display.has_phase) return next_texels(row1);
-  const TwelveTexels row0 = near_row_at(known, depth, layout, between, left, top);
-  const TwelveTexels row2 = near_row_at(known, depth, layout, between, left, top + 2);
-  const TwelveTexels row3 = near_row_at(known, depth, layout, between, left, top + 3);
-  return blend_rows(row0, row1, row2, row3, display.wx, display.wy);
+  if (!display.has_phase) {
+    const EightTexels own = {load_row(known->near, window_at(known, x, y, 1), 0),
+                             load_row(known->near, window_at(known, x + 4, y, 1), 0)};
+    return own;
+  }
+  const RowWindows windows = windows_from(known, x - display.step_x, y - display.step_y, 4);
+  return blend_rows(near_row_of(known, depth, layout, between, &windows, 0),
+                    near_row_of(known, depth, layout, between, &windows, 1),
+                    near_row_of(known, depth, layout, between, &windows, 2),
+                    near_row_of(known, depth, layout, between, &windows, 3), display.wx, display.wy);
 }

@@ -43,6 +43,37 @@ static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
   return around;
 }
 
+// Four texels, each replaced by the pixel's own where it is of the other kind.
+static inline float16 of_own_kind(float16 texels, float16 own) {
+  const int16 signs = (as_int16(texels) ^ as_int16(own)).s33337777bbbbffff;
+  return select(texels, own, signs);
+}
+
+static inline EightTexels add_own_kind(EightTexels sum, EightTexels texels, EightTexels own) {
+  const EightTexels more = {sum.left + of_own_kind(texels.left, own.left),
+                            sum.right + of_own_kind(texels.right, own.right)};
+  return more;
+}
+
+static inline EightTexels first_texels(TwelveTexels row) {
+  const EightTexels first = {row.first, row.second};
+  return first;
+}
+
+// The sums of the neighbours of the middle eight of three rows of ten texels.
+static inline EightTexels sum_around(TwelveTexels above, TwelveTexels same, TwelveTexels below) {
+  const EightTexels own = next_texels(same);
+  EightTexels sum = {(float16)(0.0f), (float16)(0.0f)};
+  sum = add_own_kind(sum, first_texels(above), own);
+  sum = add_own_kind(sum, next_texels(above), own);
+  sum = add_own_kind(sum, second_texels(above), own);
+  sum = add_own_kind(sum, first_texels(same), own);
+  sum = add_own_kind(sum, second_texels(same), own);
+  sum = add_own_kind(sum, first_texels(below), own);
+  sum = add_own_kind(sum, next_texels(below), own);
+  return add_own_kind(sum, second_texels(below), own);
+}
+
 static inline int4 signs_of(TwelveTexels row) {
   return as_int4(row.first.s37bf) | as_int4(row.second.s37bf) | as_int4(row.third.s37bf);
 }
@@ -58,7 +89,7 @@ static inline EightTexels load_around(HistoryLayer layer, int x, int y) {
   const TwelveTexels below = load_history12(layer, index + layer.width);
   const bool kinds_meet = any(signs_of(above) | signs_of(same) | signs_of(below)) &&
                           !all(common_signs_of(above) & common_signs_of(same) & common_signs_of(below));
-  if (kinds_meet) return gather_around(layer, x, y);
+  if (kinds_meet) return sum_around(above, same, below);
   const TwelveTexels both = {above.first + below.first, above.second + below.second, above.third + below.third};
   const EightTexels middle = next_texels(both), right = second_texels(both), beside = second_texels(same);
   const EightTexels around = {both.first + right.left + middle.left + (same.first + beside.left),
