@@ -28,4 +28,8 @@ CameraVelocity camera_params(const FrameInputs& frame) {
   return camera;
 }
 
+float inverse_scale(double scale) {
+  return scale != 0 ? static_cast<float>(1 / scale) : 0.0f;
+}
+
 }  // namespace quincunx

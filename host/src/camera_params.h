@@ -12,4 +12,7 @@ FarPlaces far_places(const FrameInputs& frame, Extent output);
 
 CameraVelocity camera_params(const FrameInputs& frame);
 
+// From uv to the units of a velocity that this scale takes to uv; a scale of 0 takes all motion away.
+float inverse_scale(double scale);
+
 }  // namespace quincunx

@@ -150,6 +150,10 @@ const char* name_of(FarMotion motion) {
   return "unknown";
 }
 
+const char* name_of(DrawnVelocity drawn) {
+  return drawn == DrawnVelocity::kDilated ? "dilated" : "own";
+}
+
 const char* name_of(ToneMap tone_map) {
   switch (tone_map) {
     case ToneMap::kClamp:

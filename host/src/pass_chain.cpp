@@ -134,6 +134,7 @@ void bind_inputs(PassFrame& frame) {
   frame[Resource::kVelocity] = frame.current.velocity;
   frame[Resource::kDepth] = frame.current.depth;
   frame[Resource::kReactive] = frame.current.reactive;
+  frame[Resource::kDilatedVelocity] = frame.current.velocity;
   frame[Resource::kDrawnVelocity] = frame.current.velocity;
   frame[Resource::kShadedColour] = frame.current.colour;
   frame[Resource::kShadedVelocity] = frame.current.velocity;

@@ -10,11 +10,6 @@
 namespace quincunx {
 namespace {
 
-// A scale of 0 takes all motion away, whatever stands in the target.
-float inverse(double scale) {
-  return scale != 0 ? static_cast<float>(1 / scale) : 0.0f;
-}
-
 class FarVelocityPass : public Pass {
  public:
   using Pass::Pass;
@@ -32,8 +27,8 @@ class FarVelocityPass : public Pass {
                                              .camera = camera_params(frame.current)},
                                    .drawn = layout_of(frame[Resource::kDrawnVelocity]),
                                    .places = far_places(frame.current, frame.output),
-                                   .to_drawn_x = inverse(fitted ? to_uv.x * aspect : to_uv.x),
-                                   .to_drawn_y = inverse(to_uv.y)};
+                                   .to_drawn_x = inverse_scale(fitted ? to_uv.x * aspect : to_uv.x),
+                                   .to_drawn_y = inverse_scale(to_uv.y)};
     // With the camera's own motion there is no other: their memory is null, which OpenCL allows for a buffer.
     bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity], frame[Resource::kFarMotion],
          frame[Resource::kFarMatch], frame[Resource::kVelocity]);

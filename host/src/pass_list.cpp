@@ -15,6 +15,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_overlay_particles,
     plan_resolve_checkerboard,
     plan_velocity_from_depth,
+    plan_undilate_velocity,
     plan_far_motion,
     plan_far_velocity,
     plan_reproject,

@@ -9,6 +9,7 @@ namespace quincunx {
 void plan_overlay_particles(const PlanFacts& facts, PassList& list);
 void plan_resolve_checkerboard(const PlanFacts& facts, PassList& list);
 void plan_velocity_from_depth(const PlanFacts& facts, PassList& list);
+void plan_undilate_velocity(const PlanFacts& facts, PassList& list);
 void plan_far_motion(const PlanFacts& facts, PassList& list);
 void plan_far_velocity(const PlanFacts& facts, PassList& list);
 void plan_reproject(const PlanFacts& facts, PassList& list);

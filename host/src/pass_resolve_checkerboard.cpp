@@ -19,7 +19,7 @@ struct Target {
 };
 
 Target velocity_target(const PlanFacts& facts) {
-  return {Resource::kShadedVelocity, facts.moves_far() ? Resource::kDrawnVelocity : Resource::kVelocity};
+  return {Resource::kShadedVelocity, filled_velocity_of(facts)};
 }
 
 class ResolveCheckerboardPass : public Pass {

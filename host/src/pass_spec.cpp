@@ -51,6 +51,8 @@ const char* name_of(Resource resource) {
       return "depth";
     case Resource::kReactive:
       return "reactive";
+    case Resource::kDilatedVelocity:
+      return "dilated velocity";
     case Resource::kDrawnVelocity:
       return "drawn velocity";
     case Resource::kShadedColour:

@@ -29,7 +29,9 @@ enum class Resource : std::uint8_t {
   kVelocity,
   kDepth,
   kReactive,
-  kDrawnVelocity,  // the caller's, where kVelocity is what the service makes of it
+  // The caller's, where kVelocity is what the service makes of it; the first is made into the second where both are.
+  kDilatedVelocity,
+  kDrawnVelocity,
   // The caller's where half of the pixels are shaded; the ones above are then what the service fills.
   kShadedColour,
   kShadedVelocity,
@@ -87,6 +89,14 @@ enum class Resource : std::uint8_t {
   kPresented,
 };
 constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
+
+// The velocity that undilate_velocity writes, and that resolve_checkerboard does.
+inline Resource drawn_velocity_of(const PlanFacts& facts) {
+  return facts.moves_far() ? Resource::kDrawnVelocity : Resource::kVelocity;
+}
+inline Resource filled_velocity_of(const PlanFacts& facts) {
+  return facts.undilates_velocity() ? Resource::kDilatedVelocity : drawn_velocity_of(facts);
+}
 
 // The picture that the method makes, before sharpening.
 inline Resource picture_of(const PlanFacts& facts) {

@@ -31,6 +31,10 @@ struct PlanFacts {
   bool weighs_residual() const {
     return reprojects() && !accumulates() && settings.quincunx.residual_weight > 0;
   }
+  bool undilates_velocity() const {
+    return settings.drawn_velocity == DrawnVelocity::kDilated && velocity == VelocitySource::kTarget &&
+           reads_velocity();
+  }
   bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
     const bool possible = settings.far != FarMotion::kEvidence || keeps_previous_frame();
     return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && reads_velocity() &&

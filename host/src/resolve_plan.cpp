@@ -211,6 +211,10 @@ std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
 }
 
+bool ResolvePlan::undilates_velocity() const {
+  return PlanFacts(needs, settings).undilates_velocity();
+}
+
 bool ResolvePlan::moves_far() const {
   return PlanFacts(needs, settings).moves_far();
 }

@@ -180,6 +180,14 @@ typedef struct FarVelocityParams {
 } FarVelocityParams;
 QUINCUNX_CHECK_SIZE(FarVelocityParams, 108 + 8 + 16 + 8);
 
+typedef struct UndilateParams {
+  VelocityParams frame;
+  TexelLayout dilated;
+  float to_drawn_x, to_drawn_y;  // from uv to the units of the drawn velocity
+  int has_camera;                // the camera's motion is known
+} UndilateParams;
+QUINCUNX_CHECK_SIZE(UndilateParams, 108 + 8 + 8 + 4);
+
 typedef struct ResolveParams {
   int output_width;
   int output_height;

@@ -67,6 +67,10 @@ void add_stage_options(tools::CommandLine& app, DumpOptions& options) {
   app.add_flag("--device-depth", options.device_depth,
                "With --sequence: Z is near / distance as drawn, not distance")
       .needs(sequence);
+  app.add_flag(
+         "--dilate-velocity", options.dilate_velocity,
+         "With --sequence: each pixel has the motion of the nearest of its 3x3, as other renderers write it")
+      .needs(sequence);
 }
 
 }  // namespace

@@ -21,8 +21,9 @@ struct DumpOptions : PictureOptions {
   int truth = 0;             // N: N x N samples a pixel; 0: no truth, 8 where a stage needs it
   std::int64_t warm_up = 1;  // frames drawn and resolved before `frame`, for its history
 
-  std::string sequence;       // pattern: the whole run in the exchange format instead
-  bool device_depth = false;  // of --sequence
+  std::string sequence;          // pattern: the whole run in the exchange format instead
+  bool device_depth = false;     // of --sequence
+  bool dilate_velocity = false;  // the same
 };
 
 // Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)

@@ -44,6 +44,7 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
   json["exposure"] = encoded ? 1 : source.exposure();
   if (encoded) json["tone_map"] = name_of(options.resolve.tone_map);
   if (dump.truth > 0) json["truth_samples"] = dump.truth * dump.truth;
+  json["drawn_velocity"] = name_of(dump.dilates_velocity ? DrawnVelocity::kDilated : DrawnVelocity::kOwn);
   json["conventions"] = {
       {"pixels",
        "rows top-down; pixel (x, y) covers [x, x + 1] x [y, y + 1]; data and display window are the "
@@ -101,6 +102,7 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
   for (std::int64_t index = 0; index < options.frames; ++index) {
     if (Status status = frames.draw(index, true); !status.ok()) return status;
     DrawnFrame& frame = frames.oldest();
+    if (dump.dilates_velocity) dilate_velocity(frame.targets);
     TargetFile file = {.pixels = std::move(frame.targets),
                        .view = frame.view,
                        .camera = frames.scene().camera(frame.view.seconds),

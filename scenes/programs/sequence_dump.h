@@ -10,9 +10,10 @@
 namespace quincunx::scenes {
 
 struct SequenceDump {
-  std::string pattern;       // of the frames: "seq/courtyard.%04d.exr"
-  bool linear_depth = true;  // else Z is the reversed device depth as it was drawn: nothing is rounded
-  int truth = 0;             // N: N x N samples a pixel into truth.%04d.exr beside the frames; 0: none
+  std::string pattern;            // of the frames: "seq/courtyard.%04d.exr"
+  bool linear_depth = true;       // else Z is the reversed device depth as it was drawn: nothing is rounded
+  bool dilates_velocity = false;  // dilate_velocity()
+  int truth = 0;                  // N: N x N samples a pixel into truth.%04d.exr beside the frames; 0: none
 };
 
 // Draws every frame of the options and writes it with all its targets, and sequence.json with what is

@@ -95,6 +95,23 @@ std::vector<float> reactive_mask(const TargetFile& file) {
   return mask;
 }
 
+void dilate_velocity(gl::TargetPixels& pixels) {
+  const std::vector<std::uint16_t> own = pixels.velocity;
+  const int width = pixels.render.width, height = pixels.render.height;
+  const auto index = [width](int x, int y) { return static_cast<std::size_t>(y) * width + x; };
+  for (int y = 0; y < height && !own.empty(); ++y) {
+    for (int x = 0; x < width; ++x) {
+      std::size_t nearest = index(x, y);
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, height - 1); ++j) {
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, width - 1); ++i)
+          if (pixels.depth[index(i, j)] > pixels.depth[nearest]) nearest = index(i, j);
+      }
+      std::copy_n(own.begin() + static_cast<std::ptrdiff_t>(2 * nearest), 2,
+                  pixels.velocity.begin() + static_cast<std::ptrdiff_t>(2 * index(x, y)));
+    }
+  }
+}
+
 Status write_targets(const std::string& path, const TargetFile& file) {
   std::vector<Channel> channels;
   const std::vector<float> colour = colour_of(file.pixels);

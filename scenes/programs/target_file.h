@@ -29,6 +29,9 @@ std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels);  // uv, as drawn
 std::vector<Vec2> backward_motion(const TargetFile& file);
 std::vector<float> reactive_mask(const TargetFile& file);
 
+// Gives each pixel the velocity of the nearest of its 3x3, as other renderers write it.
+void dilate_velocity(gl::TargetPixels& pixels);
+
 // R G B A and reactive.mask half, Z and backward.u/.v float, render extent. Errors: kIoFailure.
 Status write_targets(const std::string& path, const TargetFile& file);
 

@@ -59,9 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
                       "layer_records", "advect_records", "layer_split", "temporal_tiles", "temporal_light",
                       "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
                       "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "lay_focus", "present",
-                      "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "far_velocity",
-                      "far_surroundings", "far_fit", "far_match", "resize_history", "resize_tiles",
-                      "resize_layers", "resize_records"),
+                      "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "undilate_velocity",
+                      "far_velocity", "far_surroundings", "far_fit", "far_match", "resize_history",
+                      "resize_tiles", "resize_layers", "resize_records"),
     [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -107,6 +107,9 @@ std::vector<PlanFacts> all_facts() {
       add_needs(settings);
     }
     settings.far = FarMotion::kAsDrawn;
+    settings.drawn_velocity = DrawnVelocity::kDilated;
+    add_needs(settings);
+    settings.drawn_velocity = DrawnVelocity::kOwn;
     for (const TwoFrameForm form :
          {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected}) {
       for (const Sampling sampling : {Sampling::kPoint, Sampling::kBilinear}) {

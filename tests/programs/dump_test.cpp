@@ -244,6 +244,33 @@ TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {
   }
 }
 
+TEST_F(Dump, ADilatedVelocityIsThatOfTheNearestOfNine) {
+  const std::string run = "-q --scene spokes --output 64x36 --frames 1 --start 1 --device-depth ";
+  expect_done(dump(run + "--sequence '{}/a/f.%04d.exr'"));
+  expect_done(dump(run + "--dilate-velocity --sequence '{}/b/f.%04d.exr'"));
+  const auto own = image("a/f.0000.exr");
+  const auto dilated = image("b/f.0000.exr");
+  int changed = 0;
+  for (int y = 0; y < 36; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      int near_x = x, near_y = y;
+      for (int j = std::max(y - 1, 0); j <= std::min(y + 1, 35); ++j) {
+        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, 63); ++i) {
+          if (own.at(i, j, own.channel("Z")) <= own.at(near_x, near_y, own.channel("Z"))) continue;
+          near_x = i;
+          near_y = j;
+        }
+      }
+      for (const char* name : {"backward.u", "backward.v"})
+        ASSERT_EQ(dilated.at(x, y, dilated.channel(name)), own.at(near_x, near_y, own.channel(name)));
+      changed += dilated.at(x, y, dilated.channel("backward.u")) != own.at(x, y, own.channel("backward.u"));
+    }
+  }
+  EXPECT_GT(changed, 100);
+  const auto json = nlohmann::json::parse(read_file(folder_.file("b/sequence.json")));
+  EXPECT_EQ(json["drawn_velocity"], "dilated");
+}
+
 TEST_F(Dump, MistakesAreAnswered) {
   expect_refused("--scene chart", "--out");
   expect_refused("--scene chart --stages colour,colours --out '{}/d'", "'colours' is none of colour, depth");

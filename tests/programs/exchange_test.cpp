@@ -111,6 +111,28 @@ TEST_F(Exchange, PresentedAndBlurredFramesComeBack) {
   EXPECT_NE(channel(image("sharp.0004.exr"), "G"), channel(image("r/f.0004.exr"), "G"));
 }
 
+// Wheels before a wall: where each sample has the velocity of the nearest of its 3x3 the picture is another, and almost
+// what it was once that is said.
+TEST_F(Exchange, ADilatedVelocityIsTakenBack) {
+  const std::string scene =
+      "--scene spokes --output 160x90 --scale 0.5 --start 1 --jitter halton --frames 12";
+  run(QUINCUNX_DUMP, scene + " --sequence '{}/a/f.%04d.exr'");
+  run(QUINCUNX_DUMP, scene + " --dilate-velocity --sequence '{}/b/f.%04d.exr'");
+  const std::string resolving = " --method temporal --store float --out";
+  run(QUINCUNX_RESOLVE, "'{}/a/f.%04d.exr'" + resolving + " '{}/own.%04d.exr'");
+  run(QUINCUNX_RESOLVE, "'{}/b/f.%04d.exr'" + resolving + " '{}/kept.%04d.exr'");
+  run(QUINCUNX_RESOLVE, "'{}/b/f.%04d.exr' --drawn-velocity dilated" + resolving + " '{}/taken.%04d.exr'");
+  const auto own = channel(image("own.0011.exr"), "G");
+  const auto error = [&](const std::string& name) {
+    const auto other = channel(image(name), "G");
+    double sum = 0;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      sum += static_cast<double>(own[i] - other[i]) * static_cast<double>(own[i] - other[i]);
+    return sum;
+  };
+  EXPECT_LT(error("taken.0011.exr"), .2 * error("kept.0011.exr"));
+}
+
 // The first frame of a shot knows nothing of the shot before: it is what a run that begins with it shows.
 // Times are sums of powers of two, so that both runs draw the same moment.
 TEST_F(Exchange, ACutTravelsWithItsFrame) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// velocity_from_depth, far_velocity, resolve_quincunx, sharpen and present: the specification, in double precision.
+// velocity_from_depth, far_velocity, undilate_velocity, resolve_quincunx, sharpen and present: the specification, in
+// double precision.
 #pragma once
 
 #include <array>
@@ -19,12 +20,19 @@ struct CameraVelocity {
 // (w <= 0) has a velocity of 65504 on both axes.
 std::vector<CameraVelocity> velocity_from_depth(const Frame& frame);
 
-struct FarVelocity : CameraVelocity {  // in the units of the drawn one; `condition` is in uv
+struct CompletedVelocity : CameraVelocity {  // in the units of the drawn one; `condition` is in uv
   bool is_from_camera;
 };
 
 // far_velocity: the drawn velocity, and the camera's where a sample is infinitely far away and has none.
-std::vector<FarVelocity> far_velocity(const Frame& frame);
+std::vector<CompletedVelocity> far_velocity(const Frame& frame);
+
+// undilate_velocity: each sample's own velocity, from that of the nearest of its 3x3. D being the nearest depth of a
+// sample's 3x3, a sample of another D than its own depth d gets the velocity of the sample k whose D(k) is closest to
+// d, if that is d exactly or, where D exceeds d by more than d / 32, within d / 32. It is looked for among the eight
+// neighbours; in the latter case then two away, and so on to 8, until there is one. Where there is none the camera
+// gives the velocity if it is known, that is, not the identity. Of those as close the first counts, row by row.
+std::vector<CompletedVelocity> undilate_velocity(const Frame& frame);
 
 enum class Weight { kMean, kVelocity };
 

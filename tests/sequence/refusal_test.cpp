@@ -154,6 +154,14 @@ TEST_F(Refusal, FarMotionNeedsMatricesAndDepth) {
   expect_refused(kRun + "--far camera", 1, "--far camera reads depth here");
 }
 
+TEST_F(Refusal, ADilatedVelocityNeedsDepth) {
+  write_frames(1, 2);
+  const std::string dilated = kRun + "--drawn-velocity dilated ";
+  expect_refused(dilated + "--method quincunx", 1, "--drawn-velocity dilated reads depth here");
+  resolve_to("u", "--drawn-velocity dilated --method bilinear");
+  expect_refused(kRun + "--drawn-velocity spread", 2, "'spread' is none of dilated, own");
+}
+
 TEST_F(Refusal, CameraMotionNeedsItsMatrices) {
   testing::FrameFile file = frame(1);
   file.depth = true;

@@ -24,8 +24,8 @@ SceneNeeds other_needs() {
 ResolveSettings other_settings() {
   ResolveSettings settings;
   auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, storage, targets,
-         shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, far, quincunx,
-         temporal, blur, sharpness, focus] = settings;
+         shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, drawn_velocity, far,
+         quincunx, temporal, blur, sharpness, focus] = settings;
   method = Method::kTemporal;
   output = {3, 4};
   target = {5, 6};
@@ -39,6 +39,7 @@ ResolveSettings other_settings() {
   clear = true;
   tone_map = ToneMap::kReinhard;
   grain = 0.125f;
+  drawn_velocity = DrawnVelocity::kDilated;
   far = FarMotion::kEvidence;
   sharpness = 0.75f;
   auto& [form, sampling, velocity_weight, residual_weight] = quincunx;

@@ -65,10 +65,12 @@ void shake_depth(HostFrame& frame) {
 }
 
 // The mean over frames 16 to 31.
-double error_of(TemporalPreset preset, const std::function<void(HostFrame&)>& apply) {
+double error_of(TemporalPreset preset, const std::function<void(HostFrame&)>& apply,
+                DrawnVelocity drawn = DrawnVelocity::kOwn) {
   constexpr Extent kRender{80, 48};
   ResolveSettings settings{.method = Method::kTemporal};
   settings.temporal.preset = preset;
+  settings.drawn_velocity = drawn;
   TemporalRun run(testing::wires_before_a_wall(), settings);
   double sum = 0;
   for (int i = 0; i < 32; ++i) {
@@ -95,6 +97,16 @@ INSTANTIATE_TEST_SUITE_P(Faults, InexactLayers,
                                            Fault{"spread_velocity", spread_velocity},
                                            Fault{"velocity_noise", shake_velocity}),
                          [](const auto& instance) { return instance.param.name; });
+
+// What is spread can be taken back: most of what two layers gain is there again.
+TEST(SpreadLayers, GainAlmostAsMuchOnceVelocityIsTakenBack) {
+  const auto keep = [](HostFrame&) {};
+  const double one = error_of(TemporalPreset::kFast, keep);
+  const double two = error_of(TemporalPreset::kBalanced, keep);
+  const double taken_back = error_of(TemporalPreset::kBalanced, spread_velocity, DrawnVelocity::kDilated);
+  EXPECT_LT(taken_back - two, .2 * (one - two)) << one << " " << two << " " << taken_back;
+  EXPECT_LE(error_of(TemporalPreset::kFast, spread_velocity, DrawnVelocity::kDilated), 1.02 * one);
+}
 
 TEST(ExactLayers, NoiseInDepthTakesNothing) {
   const double exact = error_of(TemporalPreset::kBalanced, [](HostFrame&) {});

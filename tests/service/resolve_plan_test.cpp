@@ -103,6 +103,37 @@ TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
   EXPECT_FALSE(leaves_out(plan({}, settings(Method::kQuincunx)), "far_velocity")) << "nobody asked for it";
 }
 
+TEST(ResolvePlan, ADilatedVelocityIsTakenBackFirst) {
+  ResolveSettings wanted = settings(Method::kQuincunx);
+  wanted.drawn_velocity = DrawnVelocity::kDilated;
+  const ResolvePlan p = plan({}, wanted);
+  EXPECT_EQ(p.passes.front().kernel, "undilate_velocity");
+  EXPECT_TRUE(p.undilates_velocity());
+  EXPECT_TRUE(p.reads_depth);
+  EXPECT_FALSE(p.reads_camera()) << "it is of use, not needed";
+  EXPECT_TRUE(has_buffer(p, "dilated velocity"));
+  EXPECT_FALSE(has_buffer(p, "drawn velocity"));
+  wanted.far = FarMotion::kCamera;
+  wanted.shading = Shading::kCheckerboard;
+  const ResolvePlan all = plan({}, wanted);
+  ASSERT_GE(all.passes.size(), 3u);
+  EXPECT_EQ(all.passes[0].kernel, "resolve_checkerboard");
+  EXPECT_EQ(all.passes[1].kernel, "undilate_velocity");
+  EXPECT_EQ(all.passes[2].kernel, "far_velocity");
+  for (const char* velocity : {"shaded velocity", "dilated velocity", "drawn velocity", "velocity"})
+    EXPECT_TRUE(has_buffer(all, velocity)) << velocity;
+}
+
+TEST(ResolvePlan, ADilatedVelocityIsLeftOutWhereNoneIsDrawnOrRead) {
+  ResolveSettings wanted = settings(Method::kTemporal);
+  wanted.drawn_velocity = DrawnVelocity::kDilated;
+  EXPECT_TRUE(leaves_out(plan({.moving_objects = false}, wanted), "undilate_velocity"));
+  wanted.method = Method::kBilinear;
+  EXPECT_TRUE(leaves_out(plan({}, wanted), "undilate_velocity"));
+  EXPECT_FALSE(leaves_out(plan({}, settings(Method::kTemporal)), "undilate_velocity"))
+      << "nobody asked for it";
+}
+
 TEST(ResolvePlan, NothingMovingReadsNeitherVelocityNorDepth) {
   const ResolvePlan p = plan({.moving_objects = false, .camera_motion = false, .transparents = false},
                              settings(Method::kQuincunx));

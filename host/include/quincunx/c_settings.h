@@ -28,6 +28,7 @@ enum { QUINCUNX_MEAN = 0, QUINCUNX_BY_VELOCITY = 1, QUINCUNX_REPROJECTED = 2 };
 enum { QUINCUNX_SAMPLE_POINT = 0, QUINCUNX_SAMPLE_BILINEAR = 1 };                 /* sampling */
 enum { QUINCUNX_FAST = 0, QUINCUNX_BALANCED = 1, QUINCUNX_QUALITY = 2 };          /* temporal_preset */
 enum { QUINCUNX_AS_DRAWN = 0, QUINCUNX_BY_CAMERA = 1, QUINCUNX_BY_EVIDENCE = 2 }; /* far_motion */
+enum { QUINCUNX_OWN_VELOCITY = 0, QUINCUNX_DILATED_VELOCITY = 1 };                /* drawn_velocity */
 enum { QUINCUNX_CLAMP = 0, QUINCUNX_REINHARD = 1, QUINCUNX_ACES = 2 };            /* tone_map */
 enum { QUINCUNX_FULL = 0, QUINCUNX_CHECKERBOARD = 1 };                            /* shading */
 enum { QUINCUNX_VIEWPORT = 0, QUINCUNX_PLACED = 1 };                              /* targets */
@@ -90,7 +91,7 @@ typedef struct quincunx_settings {
   float grain;                         /* of QUINCUNX_NOISE, in [0, 1]; default 0.25 */
   float velocity_weight;               /* of QUINCUNX_BY_VELOCITY; default 1 */
   float residual_weight;               /* of QUINCUNX_REPROJECTED; default 0 */
-  int32_t padding;
+  int32_t drawn_velocity;              /* default QUINCUNX_OWN_VELOCITY */
 } quincunx_settings;
 
 /* What follows from a plan for those who bring the images: 0 no, 1 yes. */

@@ -89,6 +89,12 @@ enum class FarMotion : std::uint8_t {
   kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
 };
 
+// Whose velocity a drawn sample has.
+enum class DrawnVelocity : std::uint8_t {
+  kOwn,      // that of the surface that it shows
+  kDilated,  // that of the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
+};
+
 enum class ToneMap { kClamp, kReinhard, kAces };
 
 // Which pixels of the viewport a frame has.
@@ -103,6 +109,7 @@ QUINCUNX_API const char* name_of(Sampling sampling);      // "point"
 QUINCUNX_API const char* name_of(TemporalPreset preset);  // "balanced"
 QUINCUNX_API const char* name_of(TemporalView view);      // "confidence"
 QUINCUNX_API const char* name_of(FarMotion motion);       // "camera"
+QUINCUNX_API const char* name_of(DrawnVelocity drawn);    // "dilated"
 QUINCUNX_API const char* name_of(ToneMap tone_map);       // "aces"
 QUINCUNX_API const char* name_of(Shading shading);        // "checkerboard"
 

@@ -100,8 +100,9 @@ struct ResolveSettings {
   // Of filters that ring (SeparableFilter::rings): stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
-  bool noise_moves = true;              // kNoise, kNoiseOffset: another pattern every frame
-  FarMotion far = FarMotion::kAsDrawn;  // where velocity is drawn
+  bool noise_moves = true;                             // kNoise, kNoiseOffset: another pattern every frame
+  DrawnVelocity drawn_velocity = DrawnVelocity::kOwn;  // where velocity is drawn
+  FarMotion far = FarMotion::kAsDrawn;                 // the same
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
@@ -174,6 +175,7 @@ struct QUINCUNX_API ResolvePlan {
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool has_focus() const;             // dispatch() takes FocusInputs
   bool is_dual() const;               // the output is dynamic: settings.least_output
+  bool undilates_velocity() const;    // settings.drawn_velocity counts: velocity is drawn and read
   bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
   // Of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an image of that

@@ -62,6 +62,7 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.dither = resolve.dither;
   to.clamp_ringing = resolve.clamp_ringing;
   to.noise_moves = resolve.noise_moves;
+  to.drawn_velocity = static_cast<int>(resolve.drawn_velocity);
   to.far_motion = static_cast<int>(resolve.far);
   to.two_frame_form = static_cast<int>(resolve.quincunx.form);
   to.sampling = static_cast<int>(resolve.quincunx.sampling);
@@ -102,6 +103,7 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
   resolve.dither = from.dither != 0;
   resolve.clamp_ringing = from.clamp_ringing != 0;
   resolve.noise_moves = from.noise_moves != 0;
+  read.value("drawn_velocity", from.drawn_velocity, DrawnVelocity::kDilated, resolve.drawn_velocity);
   read.value("far_motion", from.far_motion, FarMotion::kEvidence, resolve.far);
   read.value("two_frame_form", from.two_frame_form, TwoFrameForm::kReprojected, resolve.quincunx.form);
   read.value("sampling", from.sampling, Sampling::kBilinear, resolve.quincunx.sampling);

@@ -78,12 +78,13 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
   return fmt::format(
-      "{}, view {}, far {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness {}, blur {} of {} "
+      "{}, view {}, far {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness "
+      "{}, blur {} of {} "
       "samples",
       method_name(settings), name_of(settings.temporal.view), name_of(settings.far),
-      settings.quincunx.velocity_weight, settings.clamp_ringing ? "clamped" : "free", settings.grain,
-      settings.noise_moves ? "moves" : "still", settings.sharpness, settings.blur.shutter,
-      settings.blur.samples);
+      name_of(settings.drawn_velocity), settings.quincunx.velocity_weight,
+      settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
+      settings.sharpness, settings.blur.shutter, settings.blur.samples);
 }
 
 }  // namespace quincunx::tools

@@ -22,7 +22,7 @@ METHODS = {}  # name: number, as the library has them
 CHOICES = {  # settings that are names here and numbers there
     "two_frame_form": ("mean", "velocity", "reprojected"), "sampling": ("point", "bilinear"),
     "temporal_preset": ("fast", "balanced", "quality"), "far_motion": ("as-drawn", "camera", "evidence"),
-    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard")}
+    "drawn_velocity": ("own", "dilated"), "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard")}
 # Channels and type of an array's pixels, and the number of their format.
 FORMATS = {(1, "uint8"): 1, (1, "float32"): 2, (2, "float16"): 3, (2, "float32"): 4, (4, "uint8"): 5,
            (4, "float16"): 6, (4, "float32"): 7}
@@ -55,7 +55,7 @@ Settings = sized(
         "target_height colour_format velocity_format resolved_format storage targets shading present clear tone_map "
         "dither clamp_ringing noise_moves far_motion two_frame_form sampling temporal_preset temporal_view "
         "history_format blur_samples", c_int32),
-    ("shutter sharpness grain velocity_weight residual_weight", c_float), ("padding", c_int32))
+    ("shutter sharpness grain velocity_weight residual_weight", c_float), ("drawn_velocity", c_int32))
 Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame blurs "
                         "presented_storage accumulates", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))

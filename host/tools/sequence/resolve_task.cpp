@@ -60,7 +60,7 @@ void settle_method(const ResolveOptions& options, ResolveTask& task) {
   task.resolve = options.resolve;
   if (options.method_named) return;
   const JitterKind jitter = kind_of(jitters_about(task.input, task.format, task.asked.front()));
-  const MethodDefault suited = default_method(task.format, jitter, task.resolve.far);
+  const MethodDefault suited = default_method(task.format, jitter, task.resolve);
   choose(task.resolve, method_choices().at(suited.name));
   task.method_reason = suited.why;
 }

@@ -76,7 +76,8 @@ SceneNeeds needs_of(const SequenceFormat& format) {
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   ChannelNames& channels = format.channels;
   if (plan.reads_depth && !channels.has_depth()) {
-    const std::string reader = plan.blurs()       ? "motion blur"
+    const std::string reader = plan.blurs()                ? "motion blur"
+                               : plan.undilates_velocity() ? "--drawn-velocity dilated"
                                : plan.moves_far() ? fmt::format("--far {}", name_of(plan.settings.far))
                                                   : fmt::format("method {}", name_of(plan.settings.method));
     return Status::io(fmt::format("{} reads depth here, but the frames have no channel '{}'; say --depth",

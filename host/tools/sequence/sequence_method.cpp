@@ -59,10 +59,12 @@ std::vector<Vec2> jitters_about(const FramePattern& pattern, const SequenceForma
   return jitters;
 }
 
-MethodDefault default_method(const SequenceFormat& format, JitterKind jitter, FarMotion far) {
+MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
+                             const ResolveSettings& settings) {
   const bool moves = format.motion != MotionSource::kNone;
   if (!moves) return {"catmull-rom", "no motion is known, so frames stay apart"};
-  const bool needs_depth = format.motion == MotionSource::kCamera || far != FarMotion::kAsDrawn;
+  const bool needs_depth = format.motion == MotionSource::kCamera || settings.far != FarMotion::kAsDrawn ||
+                           settings.drawn_velocity == DrawnVelocity::kDilated;
   if (format.channels.has_depth() || needs_depth) {
     if (jitter == JitterKind::kNone)
       return {"quincunx:reprojected", "motion and depth are known, but no jitter"};

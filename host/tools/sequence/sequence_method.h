@@ -34,8 +34,9 @@ struct MethodDefault {
   std::string why;   // "motion, depth and a jitter are known"
 };
 
-// What is taken where nobody names a method. A camera's motion and `far` are made from depth: where it is missing that
-// is for the plan to refuse, not to be passed over.
-MethodDefault default_method(const SequenceFormat& format, JitterKind jitter, FarMotion far);
+// What is taken where nobody names a method. A camera's motion, `far` and `drawn_velocity` need depth: where it is
+// missing that is for the plan to refuse, not to be passed over.
+MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
+                             const ResolveSettings& settings);
 
 }  // namespace quincunx::tools

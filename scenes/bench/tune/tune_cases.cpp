@@ -56,6 +56,7 @@ std::vector<TuneCase> tune_cases() {
   cases[6].resolve.quincunx.form = TwoFrameForm::kReprojected;
   cases[7].only_camera_moves = true;
   cases[8].resolve.far = FarMotion::kEvidence;
+  cases[8].resolve.drawn_velocity = DrawnVelocity::kDilated;  // it is not, but that costs about the same
   cases[9].resolve.temporal.preset = TemporalPreset::kFast;
   cases[9].resolve.shading = Shading::kCheckerboard;
   cases[9].has_parts = true;
