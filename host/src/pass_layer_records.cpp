@@ -24,7 +24,14 @@ class LayerRecordsPass : public Pass {
 }  // namespace
 
 void plan_layer_records(const PlanFacts& facts, PassList& list) {
-  if (!facts.has_layers()) return;
+  if (!facts.has_layers()) {
+    if (!facts.accumulates() || !facts.reprojects()) return;
+    const bool is_fast = facts.settings.temporal.preset == TemporalPreset::kFast;
+    list.left_out.push_back({"second layer of history",
+                             is_fast ? "the preset fast has one layer"
+                                     : "the view shows one layer; layers, coverage, near and far show both"});
+    return;
+  }
   list.passes.push_back(
       {.kernel = "layer_records",
        .options = velocity_options(facts.settings),

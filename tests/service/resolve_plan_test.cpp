@@ -199,6 +199,25 @@ TEST(ResolvePlan, SharpenIsThereOnlyWhenWanted) {
   EXPECT_TRUE(leaves_out(plan({}, wanted), "sharpen"));
 }
 
+// The views of one layer are true of one layer: the plan has no second one then, and says so.
+TEST(ResolvePlan, ViewsOfOneLayerSayThatTheSecondIsLeftOut) {
+  ResolveSettings wanted = settings(Method::kTemporal);
+  using enum TemporalView;
+  for (const TemporalView view : {kPicture, kLayers, kCoverage, kNear, kFar}) {
+    wanted.temporal.view = view;
+    EXPECT_TRUE(has_pass(plan({}, wanted), "resolve_layers")) << name_of(view);
+    EXPECT_FALSE(leaves_out(plan({}, wanted), "second layer of history")) << name_of(view);
+  }
+  for (const TemporalView view : {kConfidence, kRejection, kPhase}) {
+    wanted.temporal.view = view;
+    EXPECT_FALSE(has_pass(plan({}, wanted), "resolve_layers")) << name_of(view);
+    EXPECT_TRUE(leaves_out(plan({}, wanted), "second layer of history")) << name_of(view);
+  }
+  wanted.temporal = {.preset = TemporalPreset::kFast};
+  EXPECT_TRUE(leaves_out(plan({}, wanted), "second layer of history"));
+  EXPECT_FALSE(leaves_out(plan({}, settings(Method::kQuincunx)), "second layer of history"));
+}
+
 TEST(ResolvePlan, SharpnessBeyondZeroToOneIsRefused) {
   for (const float bad : {-.01f, 1.01f, std::nanf(""), INFINITY}) {
     ResolveSettings wanted = settings(Method::kBilinear);
