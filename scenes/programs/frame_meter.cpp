@@ -2,22 +2,27 @@
 #include "programs/frame_meter.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace quincunx::scenes {
 namespace {
 
-// -1 where a pass's time is not known.
-double time_of_passes(const FrameReport& report) {
-  double sum = 0;
-  for (int i = 0; i < report.pass_count; ++i) {
-    const double ms = report.passes[static_cast<std::size_t>(i)].ms;
-    if (ms < 0) return -1;
-    sum += ms;
-  }
-  return sum;
+bool is_of_method(std::string_view kernel) {
+  return kernel != "present" && !kernel.starts_with("motion_");
 }
 
 }  // namespace
+
+PassTimes pass_times(const FrameReport& report) {
+  PassTimes times;
+  for (int i = 0; i < report.pass_count; ++i) {
+    const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
+    if (pass.ms < 0) return {};
+    times.all_ms += pass.ms;
+    if (is_of_method(pass.kernel)) times.method_ms += pass.ms;
+  }
+  return times;
+}
 
 Result<FrameMeter> FrameMeter::create(FrameCost cost, PassTimer passes) {
   const bool events = passes == PassTimer::kEvents;
@@ -49,20 +54,20 @@ void FrameMeter::end() {
 }
 
 void FrameMeter::add(const FrameReport& report) {
-  const double ms = time_of_passes(report);
-  if (timer_ && ms >= 0) cl_.push_back({report.frame_index, ms});
+  const PassTimes times = pass_times(report);
+  if (timer_ && times.all_ms > 0) cl_.push_back({report.frame_index, times.all_ms, times.method_ms});
 }
 
 std::optional<FrameMeter::Cost> FrameMeter::next() {
   if (!timer_) return std::nullopt;
   while (auto timed = timer_->poll())
-    gl_.push_back({timed->frame, timed->gpu_ms});
+    gl_.push_back({timed->frame, timed->gpu_ms, 0});
   while (!gl_.empty() && !cl_.empty() && gl_.front().frame != cl_.front().frame) {
     std::deque<Cost>& older = gl_.front().frame < cl_.front().frame ? gl_ : cl_;
     older.pop_front();
   }
   if (gl_.empty() || cl_.empty()) return std::nullopt;
-  const Cost cost = {gl_.front().frame, gl_.front().ms + cl_.front().ms};
+  const Cost cost = {gl_.front().frame, gl_.front().ms + cl_.front().ms, cl_.front().method_ms};
   gl_.pop_front();
   cl_.pop_front();
   return cost;

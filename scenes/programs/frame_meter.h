@@ -18,6 +18,14 @@
 
 namespace quincunx::scenes {
 
+// Milliseconds of all passes together, and of those that a method has and others have not: without motion blur and the
+// present pass. 0 where one's time is not known.
+struct PassTimes {
+  double all_ms = 0;
+  double method_ms = 0;
+};
+PassTimes pass_times(const FrameReport& report);
+
 enum class FrameCost : std::uint8_t {
   kAuto,    // kDevice where the timers can be trusted, else kSpan
   kDevice,  // what the devices worked, whatever the timers are worth
@@ -43,6 +51,7 @@ class FrameMeter {
   struct Cost {
     std::uint64_t frame = 0;
     double ms = 0;
+    double method_ms = 0;  // of `ms`: see PassTimes
   };
   // The oldest frame of which both times have come back, once each. Call until it says nothing. Frames of
   // which one time was lost are left out. Never any with kSpan.

@@ -34,20 +34,28 @@ Status check(const PacingSettings& settings) {
   return {};
 }
 
-Result<std::unique_ptr<ResolutionController>> make_controller(const PacingSettings& settings) {
-  const double target_ms = 1000 / settings.target_fps * (1 - settings.headroom);
+double target_ms(const PacingSettings& settings) {
+  return 1000 / settings.target_fps * (1 - settings.headroom);
+}
+
+PredictiveSettings predictive(const PacingSettings& settings) {
+  return {.ladder = settings.ladder,
+          .target_ms = target_ms(settings),
+          .buffers = settings.buffers,
+          .calibration = settings.calibration,
+          .cpu_bound = settings.cpu_bound,
+          .blur_aware = settings.blur_aware};
+}
+
+Result<std::unique_ptr<ResolutionController>> make_resolution_controller(const PacingSettings& settings) {
   switch (settings.controller) {
     case ControllerKind::kPredictive:
-      return make_predictive_controller({.ladder = settings.ladder,
-                                         .target_ms = target_ms,
-                                         .buffers = settings.buffers,
-                                         .calibration = settings.calibration,
-                                         .cpu_bound = settings.cpu_bound,
-                                         .blur_aware = settings.blur_aware});
+      return make_predictive_controller(predictive(settings));
     case ControllerKind::kProportional:
-      return make_proportional_controller({.ladder = settings.ladder, .target_ms = target_ms});
+      return make_proportional_controller({.ladder = settings.ladder, .target_ms = target_ms(settings)});
     case ControllerKind::kMinimumOfN:
-      return make_minimum_of_n_controller({.ladder = settings.ladder, .target_ms = target_ms});
+      return make_minimum_of_n_controller({.ladder = settings.ladder, .target_ms = target_ms(settings)});
+    case ControllerKind::kQuality:
     case ControllerKind::kFixed:
       break;
   }
@@ -64,6 +72,8 @@ const char* name_of(ControllerKind kind) {
       return "proportional";
     case ControllerKind::kMinimumOfN:
       return "minimum-of-n";
+    case ControllerKind::kQuality:
+      return "quality";
     case ControllerKind::kFixed:
       return "fixed";
   }
@@ -72,13 +82,30 @@ const char* name_of(ControllerKind kind) {
 
 Result<FramePacing> FramePacing::create(const PacingSettings& settings) {
   if (Status status = check(settings); !status.ok()) return status;
-  auto controller = make_controller(settings);
-  if (!controller.ok()) return controller.status();
-  return FramePacing(settings, std::move(controller).value());
+  auto controllers = make_controller(settings);
+  if (!controllers.ok()) return controllers.status();
+  return FramePacing(settings, std::move(controllers).value());
 }
 
-FramePacing::FramePacing(const PacingSettings& settings, std::unique_ptr<ResolutionController> controller)
-    : controller_(std::move(controller)), refresh_ms_(1000 / settings.target_fps) {
+Result<FramePacing::Controllers> FramePacing::make_controller(const PacingSettings& settings) {
+  Controllers made;
+  if (settings.controller == ControllerKind::kQuality) {
+    auto quality = make_quality_controller({.pacing = predictive(settings), .front = settings.front});
+    if (!quality.ok()) return quality.status();
+    made.quality = quality.value().get();
+    made.controller = std::move(quality).value();
+    return made;
+  }
+  auto controller = make_resolution_controller(settings);
+  if (!controller.ok()) return controller.status();
+  made.controller = std::move(controller).value();
+  return made;
+}
+
+FramePacing::FramePacing(const PacingSettings& settings, Controllers controllers)
+    : controller_(std::move(controllers.controller)),
+      quality_(controllers.quality),
+      refresh_ms_(1000 / settings.target_fps) {
   run_.controller = name_of(settings.controller);
   run_.target_fps = settings.target_fps;
   run_.buffers = settings.buffers;
@@ -88,6 +115,23 @@ FramePacing::FramePacing(const PacingSettings& settings, std::unique_ptr<Resolut
 std::optional<Extent> FramePacing::next() const {
   if (!controller_) return std::nullopt;
   return controller_->next();
+}
+
+std::optional<QualityChoice> FramePacing::choice() const {
+  if (quality_ == nullptr) return std::nullopt;
+  return quality_->choice();
+}
+
+std::string FramePacing::reasons() const {
+  return quality_ == nullptr ? std::string() : explain(quality_->reasons());
+}
+
+void FramePacing::note_method(std::uint64_t frame, const QualityChoice& choice) {
+  if (method_ && !(*method_ == choice.method)) {
+    run_.method_changes.push_back(
+        {static_cast<std::int64_t>(frame), name_of(*method_), name_of(choice.method), reasons()});
+  }
+  method_ = choice.method;
 }
 
 std::optional<double> FramePacing::free_at() const {
@@ -100,8 +144,10 @@ std::optional<double> FramePacing::free_at() const {
 }
 
 std::uint64_t FramePacing::begin(double now_ms, Extent render, double blur_px, int detail) {
-  under_way_.push_back({now_ms, render, blur_px, detail});
-  return run_.frames.size() + under_way_.size() - 1;
+  const std::uint64_t frame = run_.frames.size() + under_way_.size();
+  under_way_.push_back({now_ms, render, blur_px, detail, choice()});
+  if (quality_ != nullptr) note_method(frame, *under_way_.back().choice);
+  return frame;
 }
 
 void FramePacing::finish(std::uint64_t frame, double now_ms, double cpu_ms) {
@@ -113,6 +159,11 @@ void FramePacing::finish(std::uint64_t frame, double now_ms, double cpu_ms) {
       .index = static_cast<std::int64_t>(frame), .render = begun.render, .cpu_ms = cpu_ms};
   paced.blur_px = begun.blur_px;
   paced.detail = begun.detail;
+  if (begun.choice) {
+    paced.method = name_of(begun.choice->method);
+    if (begun.choice->fading_from) paced.fading_from = name_of(*begun.choice->fading_from);
+    paced.weight = begun.choice->weight;
+  }
   paced.finished_ms = now_ms - origin_ms_;
   paced.start_ms = begun.begin_ms - origin_ms_;
   if (frame > 0) {
@@ -135,7 +186,8 @@ double FramePacing::busy_ms(std::uint64_t frame) const {
   return frame < run_.frames.size() ? run_.frames[frame].finished_ms - run_.frames[frame].start_ms : 0;
 }
 
-void FramePacing::observe(std::uint64_t frame, double gpu_ms) {
+void FramePacing::observe(std::uint64_t frame, const FrameCosts& costs) {
+  const double gpu_ms = costs.gpu_ms;
   if (frame >= run_.frames.size() || !(gpu_ms > 0 && gpu_ms <= ResolutionController::kLongestMs)) return;
   tools::PacedFrame& paced = run_.frames[frame];
   FrameTiming timing = {.frame = frame,
@@ -147,8 +199,18 @@ void FramePacing::observe(std::uint64_t frame, double gpu_ms) {
                         .missed_vsyncs = paced.missed,
                         .blur_px = paced.blur_px};
   if (frame > 0) timing.interval_ms = paced.start_ms - run_.frames[frame - 1].start_ms;
+  // Passes cannot take all of a frame.
+  const double resolve_ms = costs.resolve_ms > 0 && costs.resolve_ms < gpu_ms ? costs.resolve_ms : 0;
+  Status told;
+  if (quality_ != nullptr) {
+    told = quality_->observe(QualityFrame{timing, resolve_ms, costs.content});
+  } else if (controller_) {
+    told = controller_->observe(timing);
+  }
   // The report has what the controller was told; without one, what it would have been told.
-  if (!controller_ || controller_->observe(timing).ok()) paced.busy_ms = gpu_ms;
+  if (!told.ok()) return;
+  paced.busy_ms = gpu_ms;
+  paced.resolve_ms = resolve_ms;
 }
 
 }  // namespace quincunx::scenes

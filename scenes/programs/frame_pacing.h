@@ -21,15 +21,15 @@
 #include <optional>
 #include <string>
 
-#include "quincunx/predictive_controller.h"
+#include "quincunx/quality_controller.h"
 #include "quincunx/status.h"
 #include "tools/program/pacing_report.h"
 
 namespace quincunx::scenes {
 
-enum class ControllerKind : std::uint8_t { kPredictive, kProportional, kMinimumOfN, kFixed };
+enum class ControllerKind : std::uint8_t { kPredictive, kProportional, kMinimumOfN, kQuality, kFixed };
 
-const char* name_of(ControllerKind kind);  // "predictive", "proportional", "minimum-of-n", "fixed"
+const char* name_of(ControllerKind kind);  // "predictive", "proportional", "minimum-of-n", "quality", "fixed"
 
 struct PacingSettings {
   ControllerKind controller = ControllerKind::kPredictive;
@@ -37,9 +37,17 @@ struct PacingSettings {
   double target_fps = 60;
   int buffers = 3;      // in [2, 8]
   double headroom = 0;  // part of the refresh interval that frames shall leave free, in [0, 0.5]
-  std::optional<CostTable> calibration = std::nullopt;  // this and the next two: for kPredictive only
+  std::optional<CostTable> calibration = std::nullopt;  // this and the next two: for kPredictive and kQuality
   CpuBound cpu_bound = CpuBound::kHold;
   BlurAware blur_aware = {};
+  ErrorFront front = ErrorFront::built_in();  // for kQuality: what its methods err and cost
+};
+
+// What a finished frame cost, and what it shows.
+struct FrameCosts {
+  double gpu_ms = 0;
+  double resolve_ms = 0;                          // of gpu_ms, the passes; 0: not known
+  std::optional<ContentStatistics> content = {};  // nothing: not known
 };
 
 class FramePacing {
@@ -50,6 +58,8 @@ class FramePacing {
 
   // The extent of the frame that begins next; nothing where the controller is kFixed and the caller chooses.
   std::optional<Extent> next() const;
+  // How that frame is resolved; nothing unless the controller is kQuality.
+  std::optional<QualityChoice> choice() const;
   // Null where the controller is kFixed.
   const ResolutionController* controller() const { return controller_.get(); }
 
@@ -59,7 +69,8 @@ class FramePacing {
   // always was one. Nothing where that depends on a frame that is not finished yet: finish it first.
   std::optional<double> free_at() const;
 
-  // Work on the next frame starts. Returns its number. blur_px: see FrameTiming. detail: for the report only.
+  // Work on the next frame starts, which is resolved as choice() says. Returns its number. blur_px: see FrameTiming.
+  // detail: for the report only.
   std::uint64_t begin(double now_ms, Extent render, double blur_px = 0, int detail = 0);
 
   // Its picture is complete. Frames finish in order; cpu_ms 0: not known.
@@ -71,23 +82,34 @@ class FramePacing {
 
   // Tells the controller what a finished frame cost. Late times and lost ones do no harm; a frame that is not
   // finished, or a time that is none, changes nothing.
-  void observe(std::uint64_t frame, double gpu_ms);
+  void observe(std::uint64_t frame, const FrameCosts& costs);
+  void observe(std::uint64_t frame, double gpu_ms) { observe(frame, FrameCosts{gpu_ms}); }
 
-  // Every finished frame so far. `measured_by` is the caller's to fill in.
+  // Every finished frame so far. `measured_by` and `reasons` are the caller's to fill in.
   const tools::PacingRun& run() const { return run_; }
+  // Why the present pair: of a controller that chooses the method; else empty.
+  std::string reasons() const;
 
  private:
-  FramePacing(const PacingSettings& settings, std::unique_ptr<ResolutionController> controller);
-  const tools::PacedFrame* finished(std::uint64_t frame) const;
+  struct Controllers {
+    std::unique_ptr<ResolutionController> controller;  // null: kFixed
+    QualityController* quality = nullptr;              // the same, where it is one
+  };
+  static Result<Controllers> make_controller(const PacingSettings& settings);
+  FramePacing(const PacingSettings& settings, Controllers controllers);
+  void note_method(std::uint64_t frame, const QualityChoice& choice);
 
   struct Begun {
     double begin_ms = 0;
     Extent render = {};
     double blur_px = 0;
     int detail = 0;
+    std::optional<QualityChoice> choice;
   };
 
   std::unique_ptr<ResolutionController> controller_;
+  QualityController* quality_;
+  std::optional<FrontMethod> method_;  // of the frame begun last
   double refresh_ms_;
   double origin_ms_ = 0;          // the caller's time of the first refresh
   std::vector<Begun> under_way_;  // begun and not finished, oldest first

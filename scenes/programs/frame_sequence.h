@@ -39,6 +39,12 @@ class FrameSequence {
   Extent target() const { return viewport_.target(); }  // holds the largest viewport
   Extent output() const { return settings_.output; }
 
+  // From the next frame on.
+  void set_sampling(Jitter jitter, float lod_bias) {
+    settings_.jitter = jitter;
+    settings_.lod_bias = lod_bias;
+  }
+
   // Frame `index` in [0, size()). Its previous_seconds is one frame earlier, also for frame 0.
   FrameView at(std::int64_t index);
 

@@ -54,18 +54,22 @@ void PacedLoop::finish_frame() {
   const std::uint64_t frame = pacing_.run().frames.size();
   pacing_.finish(frame, now_ms(), cpu_ms_.empty() ? 0 : cpu_ms_.front());
   if (!cpu_ms_.empty()) cpu_ms_.pop_front();
-  if (!meter_.measures_device()) pacing_.observe(frame, pacing_.busy_ms(frame));
 }
 
 void PacedLoop::add(const FrameReport& report) {
+  if (!meter_.measures_device()) {
+    pacing_.observe(report.frame_index, {pacing_.busy_ms(report.frame_index), pass_times(report).method_ms});
+    return;
+  }
   meter_.add(report);
   while (const auto cost = meter_.next())
-    pacing_.observe(cost->frame, cost->ms);
+    pacing_.observe(cost->frame, {cost->ms, cost->method_ms});
 }
 
 tools::PacingRun PacedLoop::run() const {
   tools::PacingRun run = pacing_.run();
   run.measured_by = meter_.method();
+  run.reasons = pacing_.reasons();
   return run;
 }
 

@@ -33,12 +33,17 @@ class PacedLoop {
   void wait() const;   // sleeps until ready(); not where that depends on a frame that is not finished
 
   std::optional<Extent> next() const { return pacing_.next(); }  // nothing: the caller chooses
+  std::optional<QualityChoice> choice() const { return pacing_.choice(); }
 
   // blur_px: see FrameTiming. detail: for the report only.
   void begin_frame(Extent render, double blur_px = 0, int detail = 0);
-  void end_draw();      // after the OpenGL calls of the frame begun last
-  void finish_frame();  // the picture of the oldest unfinished frame is complete
-  void add(const FrameReport& report);
+  void end_draw();                      // after the OpenGL calls of the frame begun last
+  void finish_frame();                  // the picture of the oldest unfinished frame is complete
+  void add(const FrameReport& report);  // its frame_index: the frame's number in this loop
+
+  // What happens between these is no part of the run: the display stands still. While no frame is under way.
+  void stop_clock() { stopped_ = tools::Clock::now(); }
+  void start_clock() { start_ += tools::Clock::now() - stopped_; }
 
   const FramePacing& pacing() const { return pacing_; }
   tools::PacingRun run() const;
@@ -50,6 +55,7 @@ class PacedLoop {
   FramePacing pacing_;
   FrameMeter meter_;
   tools::Clock::time_point start_ = tools::Clock::now();
+  tools::Clock::time_point stopped_;
   double cpu_at_begin_ms_ = 0;
   std::deque<double> cpu_ms_;  // of the frames that are not finished
 };

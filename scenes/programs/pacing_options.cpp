@@ -43,21 +43,22 @@ void add_controller_options(tools::CommandLine& app, PacingOptions& options) {
       {"predictive", ControllerKind::kPredictive},
       {"proportional", ControllerKind::kProportional},
       {"minimum-of-n", ControllerKind::kMinimumOfN},
+      {"quality", ControllerKind::kQuality},
       {"fixed", ControllerKind::kFixed}};
-  tools::add_choice(
-      app, "--controller", options.controller, kControllers,
-      "With --target-fps: predictive (default), proportional, minimum-of-n, or fixed: none, only "
-      "the report");
+  tools::add_choice(app, "--controller", options.controller, kControllers,
+                    "With --target-fps: predictive (default), proportional, minimum-of-n, quality (chooses "
+                    "the method, too), "
+                    "or fixed: none, only the report");
   app.add_option("--calibration", options.calibration,
-                 "For the predictive controller: what --calibrate wrote")
+                 "For the predictive and the quality controller: what --calibrate wrote")
       .type_name("FILE");
   app.add_flag_callback(
       "--follow-cpu", [&options] { options.cpu_bound = CpuBound::kFollow; },
-      "Where the processor takes longer than the target, the predictive controller makes its time the "
-      "target");
+      "Where the processor takes longer than the target, the predictive or quality controller makes its time "
+      "the target");
   app.add_flag("--blur-aware", options.blur_aware,
                "The longer the streaks that the camera's motion draws, the lower the highest resolution "
-               "(predictive)")
+               "(predictive, quality)")
       .needs("--blur");
   app.add_flag(
       "--detail-follows", options.detail_follows,
@@ -124,9 +125,21 @@ void check_together(tools::CommandLine& app, const PacingOptions& options) {
     refuse_given(app, {"--ladder", "--min-scale", "--max-scale"},
                  "nothing chooses the resolution; give --target-fps with a controller, or --calibrate");
   }
-  if (options.controller != ControllerKind::kPredictive) {
+  if (options.controller != ControllerKind::kPredictive && options.controller != ControllerKind::kQuality) {
     refuse_given(app, {"--calibration", "--follow-cpu", "--blur-aware"},
-                 "only the predictive controller makes use of it");
+                 "only the predictive and the quality controller make use of it");
+  }
+  if (options.chooses_method()) {
+    refuse_given(
+        app, {"--method", "--view", "--jitter"},
+        "here the method is chosen for you, and with it the jitter; ask for --controller predictive");
+    refuse_given(app, {"--focus", "--dual"},
+                 "--controller quality works without it: no front has its errors and its times; ask for "
+                 "--controller predictive");
+    refuse_given(app, {"--window"},
+                 "it has no controller that chooses the method; ask for --controller predictive");
+    refuse_given(app, {"--compare-fixed"},
+                 "runs at fixed scales have one method; ask for --controller predictive with that --method");
   }
 }
 
@@ -159,7 +172,8 @@ Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output) {
                         .order = options.order};
 }
 
-Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output) {
+Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output,
+                                                    const ErrorFront& front) {
   if (!options.on()) return std::optional<FramePacing>();
   const auto ladder = ladder_for(options, output);
   if (!ladder.ok()) return ladder.status();
@@ -171,6 +185,7 @@ Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options
   settings.headroom = options.headroom;
   settings.cpu_bound = options.cpu_bound;
   settings.blur_aware.enabled = options.blur_aware;
+  settings.front = front;
   if (!options.calibration.empty()) {
     auto table = read_calibration(options.calibration);
     if (!table.ok()) return table.status();

@@ -34,6 +34,7 @@ struct PacingOptions {
 
   bool on() const { return target_fps > 0; }
   bool controls() const { return on() && controller != ControllerKind::kFixed; }
+  bool chooses_method() const { return on() && controller == ControllerKind::kQuality; }
   bool has_ladder() const { return controls() || !calibrate.empty(); }  // else the scale is given
 };
 
@@ -43,8 +44,9 @@ void add_pacing_options(tools::CommandLine& app, PacingOptions& options);
 // Errors: kInvalidArgument, naming the option.
 Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output);
 
-// Nothing where no rate is asked for. Errors: kInvalidArgument, naming the option; kIoFailure for a
-// calibration file that cannot be read.
-Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output);
+// Nothing where no rate is asked for. `front`: for a controller that chooses the method. Errors: kInvalidArgument,
+// naming the option; kIoFailure for a calibration file that cannot be read.
+Result<std::optional<FramePacing>> frame_pacing_for(const PacingOptions& options, Extent output,
+                                                    const ErrorFront& front = ErrorFront::built_in());
 
 }  // namespace quincunx::scenes

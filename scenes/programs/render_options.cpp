@@ -36,7 +36,6 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
                  "Score each frame against a truth of N x N samples a pixel; --report shows some beside it")
       .in_range(1, 64)
       .excludes("--truth")
-      .excludes("--target-fps")
       .excludes("--calibrate")
       .type_name("N");
   app.add_option("--out", options.out,

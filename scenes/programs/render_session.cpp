@@ -34,13 +34,11 @@ Result<std::unique_ptr<RenderSession>> RenderSession::create(const RenderOptions
     return Status::invalid(
         "--focus pointer is for a window; give it with --window, or an object or a rectangle");
   // What can be said against the options is said before a device is opened.
-  auto pacing = frame_pacing_for(options.pacing, options.output);
-  if (!pacing.ok()) return pacing.status();
+  if (const auto pacing = frame_pacing_for(options.pacing, options.output); !pacing.ok())
+    return pacing.status();
   auto source = FrameSource::create(settings.value());
   if (!source.ok()) return source.status();
-  if (Status status = session->open(std::move(source).value(), std::move(pacing).value()); !status.ok()) {
-    return status;
-  }
+  if (Status status = session->open(std::move(source).value()); !status.ok()) return status;
   return session;
 }
 
@@ -58,23 +56,28 @@ Result<std::unique_ptr<RenderSession>> RenderSession::at_fixed_scale(float scale
   options.score = 0;
   auto settings = source_settings_for(options);
   if (!settings.ok()) return settings.status();
-  auto pacing = frame_pacing_for(options.pacing, options.output);
-  if (!pacing.ok()) return pacing.status();
   auto source = source_->another(settings.value().sequence);
   if (!source.ok()) return source.status();
   auto session = std::unique_ptr<RenderSession>(new RenderSession(options));
-  if (Status status = session->open(std::move(source).value(), std::move(pacing).value()); !status.ok()) {
-    return status;
-  }
+  if (Status status = session->open(std::move(source).value()); !status.ok()) return status;
   return session;
 }
 
-Status RenderSession::open(std::unique_ptr<FrameSource> source, std::optional<FramePacing> pacing) {
+Status RenderSession::open(std::unique_ptr<FrameSource> source) {
   source_ = std::move(source);
-  if (Status status = open_service(); !status.ok()) return status;
-  service_->allow_timing_waits(!pacing);
-  if (!pacing) return {};
-  auto paced = PacedLoop::create(std::move(*pacing), options_.pacing.cost, pass_timer(source_->device()));
+  if (options_.pacing.chooses_method())
+    front_ = find_front(front_key(source_->device().info(), source_->scene().name));
+  if (Status status = open_resolves(); !status.ok()) return status;
+  resolves_->allow_timing_waits(!options_.pacing.on());
+  return options_.pacing.on() ? open_pacing() : Status();
+}
+
+Status RenderSession::open_pacing() {
+  auto pacing =
+      frame_pacing_for(options_.pacing, options_.output, front_ ? front_->front : ErrorFront::built_in());
+  if (!pacing.ok()) return pacing.status();
+  auto paced =
+      PacedLoop::create(*std::move(pacing).value(), options_.pacing.cost, pass_timer(source_->device()));
   if (!paced.ok()) return paced.status();
   paced_ = std::move(paced).value();
   if (!options_.pacing.detail_follows) return {};
@@ -106,17 +109,16 @@ Status RenderSession::check_outputs() {
   return {};
 }
 
-Status RenderSession::open_service() {
-  auto plan = source_->connect(options_.resolve);
-  if (!plan.ok()) return plan.status();
-  auto service = ResolveService::create(source_->device(), plan.value());
-  if (!service.ok()) return service.status();
-  service_.emplace(std::move(service).value());
-  if (wants_resolved()) {
-    auto image = source_->device().allocate(options_.output, plan->settings.resolved);
-    if (!image.ok()) return image.status();
-    resolved_ = std::move(image).value();
-  }
+Status RenderSession::open_resolves() {
+  std::vector<FrontMethod> methods;
+  if (front_) methods.assign(front_->front.methods().begin(), front_->front.methods().end());
+  auto resolves = MethodResolves::create(*source_, options_.resolve, std::move(methods));
+  if (!resolves.ok()) return resolves.status();
+  resolves_.emplace(std::move(resolves).value());
+  if (!wants_resolved()) return {};
+  auto image = source_->device().allocate(options_.output, plan().settings.resolved);
+  if (!image.ok()) return image.status();
+  resolved_ = std::move(image).value();
   return {};
 }
 
@@ -126,6 +128,11 @@ bool RenderSession::wants_resolved() const {
 
 // The view as the controller wants it.
 FrameView RenderSession::begin_paced(std::int64_t index) {
+  if (const auto choice = paced_->choice()) {
+    const MethodSampling sampling = sampling_for(*choice);
+    source_->sequence().set_sampling(sampling.jitter, sampling.lod_bias);
+  }
+  choices_.push_back(paced_->choice());
   FrameView view = source_->sequence().at(index);
   if (const auto render = paced_->next()) view = source_->sequence().at(index, *render);
   const auto area = static_cast<double>(view.render.area()) / static_cast<double>(options_.output.area());
@@ -155,9 +162,14 @@ Status RenderSession::dispatch() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
+  std::optional<QualityChoice> choice;
+  if (paced_) {
+    choice = choices_.front();
+    choices_.pop_front();
+  }
   // The files hold the picture as it is before the tone map.
-  const FrameReport report =
-      source_->dispatch(*service_, inputs.value(), outputs_for(plan(), resolved_.view(), presented.value()));
+  const FrameOutputs outputs = outputs_for(plan(), resolved_.view(), presented.value());
+  const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice);
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bytes_in());
   return report.status;
@@ -169,6 +181,7 @@ Status RenderSession::deliver(std::int64_t index) {
   present_ms_.push_back(source_->bridge().traffic().present_ms);
   bytes_out_.push_back(source_->bridge().traffic().bytes_out);
   const Clock::time_point start = Clock::now();
+  if (stops_clock()) paced_->stop_clock();
   if (Status status = write_frame(index); !status.ok()) return status;
   if (index == options_.exr_frame) {
     if (Status status = write_exr_frame(index); !status.ok()) return status;
@@ -182,6 +195,10 @@ Status RenderSession::deliver(std::int64_t index) {
                    .frame_ms = tools::ms_since(last_delivery_)});
   if (scores_) {
     if (Status status = score_frame(); !status.ok()) return status;
+  }
+  if (stops_clock()) {
+    if (Status status = finish_files(); !status.ok()) return status;
+    paced_->start_clock();
   }
   last_delivery_ = Clock::now();
   source_->release();
@@ -248,8 +265,13 @@ Result<std::vector<float>> RenderSession::download_resolved() const {
   return rgba;
 }
 
+Status RenderSession::finish_files() {
+  if (Status status = writer_.finish(); !status.ok()) return status;
+  return scores_ ? scores_->finish() : Status();
+}
+
 void RenderSession::collect_reports() {
-  while (auto report = service_->next_completed()) {
+  while (auto report = resolves_->next_completed()) {
     if (paced_) paced_->add(*report);
     reports_.push_back(*report);
   }
@@ -267,7 +289,12 @@ void RenderSession::begin_contact_sheet() {
 
 // With overlap, GL draws the next frame while OpenCL works on this one.
 bool RenderSession::draws_ahead() const {
+  if (stops_clock()) return false;
   return options_.overlap && (!paced_ || (paced_->overlaps() && paced_->ready()));
+}
+
+bool RenderSession::stops_clock() const {
+  return paced_ && (scores_ || !paced_->overlaps());
 }
 
 bool RenderSession::times_by_waiting() const {
@@ -302,12 +329,9 @@ Status RenderSession::run() {
       progress.update(index + 1, fmt::format("{}x{}", rows_.back().render.width, rows_.back().render.height));
     }
   }
-  if (Status status = service_->finish(); !status.ok()) return status;
+  if (Status status = resolves_->finish(); !status.ok()) return status;
   collect_reports();
-  if (Status status = writer_.finish(); !status.ok()) return status;
-  if (scores_) {
-    if (Status status = scores_->finish(); !status.ok()) return status;
-  }
+  if (Status status = finish_files(); !status.ok()) return status;
   if (sheet_) {
     if (Status status = sheet_->write(options_.contact_sheet); !status.ok()) return status;
     files_.push_back(options_.contact_sheet);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,8 +12,10 @@
 #include "programs/frame_detail.h"
 #include "programs/frame_scores.h"
 #include "programs/frame_source.h"
+#include "programs/method_resolves.h"
 #include "programs/paced_loop.h"
 #include "programs/render_options.h"
+#include "quincunx/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "tools/image/contact_sheet.h"
 #include "tools/program/run_report.h"
@@ -33,7 +36,7 @@ class RenderSession {
   RenderSession(const RenderSession&) = delete;
   RenderSession& operator=(const RenderSession&) = delete;
 
-  const ResolvePlan& plan() const { return service_->plan(); }
+  const ResolvePlan& plan() const { return resolves_->plan(); }
 
   Status run();  // draws, resolves and writes every frame
 
@@ -42,8 +45,9 @@ class RenderSession {
 
  private:
   explicit RenderSession(const RenderOptions& options);
-  Status open(std::unique_ptr<FrameSource> source, std::optional<FramePacing> pacing);
-  Status open_service();
+  Status open(std::unique_ptr<FrameSource> source);
+  Status open_resolves();
+  Status open_pacing();
   Status check_outputs();
 
   void begin_contact_sheet();
@@ -51,6 +55,9 @@ class RenderSession {
   Status draw(std::int64_t index);
   FrameView begin_paced(std::int64_t index);
   bool draws_ahead() const;
+  // Writing and scoring a frame is no part of a paced run: the display waits.
+  bool stops_clock() const;
+  Status finish_files();
   // Each pass is waited for and timed by the host's clock: not in a paced run, whose frames that would slow.
   bool times_by_waiting() const;
   std::string overlap_text() const;  // for the report
@@ -65,8 +72,10 @@ class RenderSession {
 
   RenderOptions options_;
   std::unique_ptr<FrameSource> source_;
-  std::optional<ResolveService> service_;
+  std::optional<FoundFront> front_;  // where the controller chooses the method
+  std::optional<MethodResolves> resolves_;
   std::optional<PacedLoop> paced_;
+  std::deque<std::optional<QualityChoice>> choices_;  // of the frames that are drawn and not dispatched
   std::optional<FrameDetail> detail_;
   std::optional<FrameScores> scores_;
   Image resolved_;  // only where an EXR or a score is wanted

@@ -53,12 +53,12 @@ tools::RunReport RenderSession::report() const {
   report.seed = options_.seed;
   report.output = options_.output;
   report.target = source_->sequence().target();
-  report.method = tools::method_name(options_.resolve);
+  report.method = front_ ? "chosen by frame" : tools::method_name(options_.resolve);
   report.settings = {
       {"scale", scale_text(options_)},
       {"parts", source_->parts().summary()},
       {"output's resolution", dual_text(options_.dual)},
-      {"jitter", name_of(jitter_for(options_))},
+      {"jitter", front_ ? "that of the method" : name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"colour", name_of(options_.resolve.colour)},
       {"tone map", name_of(options_.resolve.tone_map)},

@@ -217,8 +217,10 @@ Status WindowSession::show_next() {
   paced_->end_draw();
   if (Status status = picture_->resolve(); !status.ok()) return status;
   paced_->finish_frame();
-  paced_->add(picture_->times().report);
   const std::vector<tools::PacedFrame>& paced = paced_->pacing().run().frames;
+  FrameReport report = picture_->times().report;
+  report.frame_index = static_cast<std::uint64_t>(paced.back().index);
+  paced_->add(report);
   const double interval_ms = paced.size() < 2 ? 0 : paced.back().shown_ms - paced[paced.size() - 2].shown_ms;
   trace_.add(picture_->times(), picture_->output(), interval_ms, paced.back().missed);
   return {};

@@ -121,7 +121,6 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--fps -3", 2, "--fps");
   expect_refused("--shutter 0.5", 2, "--truth");
   expect_refused("--score 0", 2, "--score");
-  expect_refused("--score 2 --target-fps 30", 2, "--target-fps");
   expect_refused("--score 2 --truth 2 --out x.png", 2, "--truth");
   expect_refused("--score 2 --output 640x10", 2,
                  "--score needs an output of at least 11x11 pixels; this is 640x10");
@@ -157,6 +156,13 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused("--target-fps 30 --controller fixed --min-scale 0.5", 2, "--min-scale");
   expect_refused("--target-fps 30 --blur-aware", 2, "--blur");
   expect_refused("--target-fps 30 --controller proportional --follow-cpu", 2, "--follow-cpu");
+  const std::string quality = "--target-fps 30 --controller quality ";
+  expect_refused(quality + "--method bilinear", 2, "--method");
+  expect_refused(quality + "--jitter halton", 2, "the method is chosen for you");
+  expect_refused(quality + "--dual auto", 2, "--dual");
+  expect_refused(quality + "--scene wheel --focus tyre", 2, "--focus");
+  expect_refused(quality + "--compare-fixed 1", 2, "have one method");
+  expect_refused(quality + "--window", 2, "--window");
   for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2",
                             "--calibration c.json", "--follow-cpu", "--detail-follows"}) {
     expect_refused(alone, 2, "--target-fps");

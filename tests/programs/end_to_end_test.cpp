@@ -255,6 +255,34 @@ TEST_F(EndToEnd, APacedRunReportsEveryFrame) {
   }
 }
 
+TEST_F(EndToEnd, AControllerOfQualityReportsTheMethodOfEveryFrame) {
+  const testing::OwnCache cache(path("cache"));
+  render("--scene wires --target-fps 50 --controller quality --frames 12 --score 1 --report '{}/r'");
+  const auto json = nlohmann::json::parse(read_file(path("r.json")));
+  const auto& run = json.at("pacing")[0];
+  EXPECT_EQ(run.at("controller"), "quality");
+  EXPECT_NE(run.at("reasons").get<std::string>().find("Chosen"), std::string::npos);
+  EXPECT_EQ(json.at("scores").at("frames").size(), 12u) << "a paced run can be scored";
+  std::string method;
+  std::size_t changes = 0;
+  for (const auto& frame : run.at("frames")) {
+    EXPECT_EQ(frame.at("render"), json.at("frames")[frame.at("index").get<std::size_t>()].at("render"));
+    EXPECT_EQ(frame.at("fading_from").is_null(), frame.at("weight") == 1);
+    const std::string now = frame.at("method");
+    if (!method.empty() && now != method) {
+      ASSERT_LT(changes, run.at("method_changes").size());
+      const auto& change = run.at("method_changes")[changes++];
+      EXPECT_EQ(change.at("frame"), frame.at("index"));
+      EXPECT_EQ(change.at("from"), method);
+      EXPECT_EQ(change.at("to"), now);
+      EXPECT_NE(change.at("why").get<std::string>().find(now), std::string::npos);
+    }
+    method = now;
+  }
+  EXPECT_EQ(changes, run.at("method_changes").size());
+  EXPECT_NE(read_file(path("r.txt")).find("Methods: frames shown of each"), std::string::npos);
+}
+
 TEST_F(EndToEnd, AControllerStartsAtItsTopAndAFixedOneStaysAtTheScale) {
   render("--scene pan --target-fps 50 --max-scale 1.5 --frames 2 --report '{}/r'");
   auto json = nlohmann::json::parse(read_file(path("r.json")));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "tools/program/report_graph.h"
 #include "tools/program/run_report.h"
@@ -48,6 +49,22 @@ void add_graphs(std::string& text, const PacingRun& run) {
   text += "\nBusy time over the frames, ms\n" + ratio_graph(busy);
 }
 
+// Of a controller that chooses the method: how many frames had which, and when it changed.
+void add_methods(std::string& text, const PacingRun& run) {
+  std::map<std::string, int> frames;
+  for (const PacedFrame& frame : run.frames) {
+    if (!frame.method.empty()) ++frames[frame.method];
+  }
+  if (frames.empty()) return;
+  text += "\nMethods: frames shown of each\n";
+  for (const auto& [method, count] : frames)
+    text += fmt::format("  {:<22} {:>6}\n", method, count);
+  text += fmt::format("Changes of method: {}\n", run.method_changes.size());
+  for (const MethodChange& change : run.method_changes)
+    text += fmt::format("  frame {:>5}: {} -> {}\n", change.frame, change.from, change.to);
+  text += "At the end of the run\n" + run.reasons;
+}
+
 }  // namespace
 
 PacingSummary summary_of(const PacingRun& run) {
@@ -75,6 +92,7 @@ PacingSummary summary_of(const PacingRun& run) {
   if (seconds > 0) {
     summary.achieved_fps = (count - 1) / seconds;
     summary.changes_per_second = changes / seconds;
+    summary.method_changes_per_second = static_cast<double>(run.method_changes.size()) / seconds;
   }
   return summary;
 }
@@ -90,6 +108,7 @@ std::string pacing_text(const std::vector<PacingRun>& runs) {
   const PacingSummary first = summary_of(run);
   for (const PacingRun& each : runs)
     add_row(text, each, first);
+  add_methods(text, run);
   add_graphs(text, run);
   return text;
 }

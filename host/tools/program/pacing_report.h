@@ -25,6 +25,19 @@ struct PacedFrame {
   double cpu_ms = 0;       // what the processor needed to prepare it; 0: not known
   int queued = 0;          // frames finished and not yet shown when it was finished, itself included
   int missed = 0;          // refreshes without a new frame just before it was shown: dropped frames
+  // Where a controller chooses the method, too; else empty.
+  std::string method = {};       // the picture was made with
+  std::string fading_from = {};  // and with this, of which the picture has the rest; empty: nothing
+  double weight = 1;             // of `method` in the picture, [0, 1]
+  double resolve_ms = 0;         // of busy_ms, what the passes took; 0: not known
+};
+
+// A frame before which the controller has changed the method.
+struct MethodChange {
+  std::int64_t frame = 0;
+  std::string from;
+  std::string to;
+  std::string why;  // lines of text
 };
 
 struct PacingRun {
@@ -34,6 +47,9 @@ struct PacingRun {
   int buffers = 3;
   Extent output = {};
   std::vector<PacedFrame> frames = {};  // in order
+  // Where the controller chooses the method, too: in order, and why it keeps the last one.
+  std::vector<MethodChange> method_changes = {};
+  std::string reasons = {};
 };
 
 struct PacingSummary {
@@ -48,6 +64,7 @@ struct PacingSummary {
   double least_area = 0;
   double largest_area = 0;
   double changes_per_second = 0;  // of the render extent, in display time
+  double method_changes_per_second = 0;
 };
 
 PacingSummary summary_of(const PacingRun& run);

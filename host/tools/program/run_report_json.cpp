@@ -68,7 +68,8 @@ Json summary_json(const PacingRun& run) {
           {"mean_area", summary.mean_area},
           {"least_area", summary.least_area},
           {"largest_area", summary.largest_area},
-          {"changes_per_second", summary.changes_per_second}};
+          {"changes_per_second", summary.changes_per_second},
+          {"method_changes_per_second", summary.method_changes_per_second}};
 }
 
 Json pacing_json(const PacingRun& run) {
@@ -84,11 +85,21 @@ Json pacing_json(const PacingRun& run) {
                       {"blur_px", frame.blur_px},
                       {"detail", frame.detail},
                       {"queued", frame.queued},
-                      {"missed", frame.missed}});
+                      {"missed", frame.missed},
+                      {"method", known(frame.method)},
+                      {"fading_from", known(frame.fading_from)},
+                      {"weight", frame.weight},
+                      {"resolve_ms", frame.resolve_ms > 0 ? Json(frame.resolve_ms) : Json(nullptr)}});
   }
-  return {{"controller", run.controller}, {"measured_by", known(run.measured_by)},
-          {"target_fps", run.target_fps}, {"buffers", run.buffers},
-          {"summary", summary_json(run)}, {"frames", frames}};
+  Json changes = Json::array();
+  for (const MethodChange& change : run.method_changes) {
+    changes.push_back(
+        {{"frame", change.frame}, {"from", change.from}, {"to", change.to}, {"why", change.why}});
+  }
+  return {{"controller", run.controller},  {"measured_by", known(run.measured_by)},
+          {"target_fps", run.target_fps},  {"buffers", run.buffers},
+          {"summary", summary_json(run)},  {"method_changes", changes},
+          {"reasons", known(run.reasons)}, {"frames", frames}};
 }
 
 Json score_json(const ScoreRow& row) {
