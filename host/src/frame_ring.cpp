@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "content_sums.h"
+
 namespace quincunx {
 namespace {
 
@@ -45,6 +47,7 @@ FrameRing::Slot& FrameRing::begin() {
   slot.passes.fill({});
   slot.done = {};
   slot.non_finite = 0;
+  slot.content = {};
   return slot;
 }
 
@@ -61,6 +64,7 @@ std::optional<FrameReport> FrameRing::next_completed() {
     for (int i = 0; events_have_times_ && i < report.pass_count; ++i)
       report.passes[i].ms = milliseconds(slot.passes[i]);
     report.non_finite_pixels = slot.non_finite;
+    if (slot.measures_content) report.content = statistics_of(slot.content, report.output);
   }
   ++taken_;
   return report;

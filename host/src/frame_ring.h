@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "opencl.h"
+#include "params.h"
 #include "quincunx/frame.h"
 
 namespace quincunx {
@@ -21,7 +22,9 @@ class FrameRing {
     FrameReport report;
     std::array<cl::Event, FrameReport::kMaxPasses> passes;
     cl::Event done;                // of the last command of the frame
-    std::uint32_t non_finite = 0;  // written by a non-blocking read that `done` covers
+    std::uint32_t non_finite = 0;  // this and the next: written by non-blocking reads that `done` covers
+    ContentSums content = {};
+    bool measures_content = false;
   };
 
   // Whether the passes' events have their times; where not, reports keep those that they have.

@@ -54,6 +54,8 @@ bool Pass::takes_part(const PassFrame& frame) const {
         return dense;
       case Frames::kWithFocus:
         return frame.focus != nullptr;
+      case Frames::kFading:
+        return static_cast<bool>(frame.current.fading_from);
       case Frames::kResized:
         return !dense && frame.resizes_history();
       case Frames::kScaledOutput:

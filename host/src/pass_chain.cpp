@@ -176,6 +176,7 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
     place(frame[owned.resource], owned.area, frame.current.render);
     if (paired) place(frame[previous_of(owned.resource)], owned.area, frame.previous.render);
   }
+  frame[Resource::kFadingFrom] = current.fading_from;
   if (outputs.resolved) frame[Resource::kResolved] = outputs.resolved;
   if (outputs.blurred) frame[Resource::kBlurred] = outputs.blurred;
   frame[Resource::kPresented] = outputs.presented;
@@ -217,6 +218,7 @@ void PassChain::forget(const PassFrame& frame) {
 void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs) {
   std::array<bool, kResources> wanted = kept_;
   wanted[index_of(Resource::kResolved)] = true;
+  wanted[index_of(Resource::kContentSums)] = true;
   wanted[index_of(Resource::kBlurred)] = static_cast<bool>(outputs.blurred);
   wanted[index_of(Resource::kDisplayed)] = static_cast<bool>(outputs.displayed);
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);

@@ -18,6 +18,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_undilate_velocity,
     plan_far_motion,
     plan_far_velocity,
+    plan_measure_content,
     plan_reproject,
     // The picture: from many frames, from two, or from one.
     plan_layer_records,
@@ -40,6 +41,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_motion_blur,
     plan_scale_to_display,
     plan_lay_focus,
+    plan_cross_fade,
     plan_present,
     plan_clear_region,
 };

@@ -81,6 +81,8 @@ const char* name_of(Resource resource) {
       return "depth of the previous frame";
     case Resource::kPreviousReactive:
       return "reactive of the previous frame";
+    case Resource::kContentSums:
+      return "content sums";
     case Resource::kFarSums:
       return "far sums";
     case Resource::kFarMotion:
@@ -157,6 +159,8 @@ const char* name_of(Resource resource) {
       return "focus";
     case Resource::kFocusMask:
       return "focus mask";
+    case Resource::kFadingFrom:
+      return "fading from";
     case Resource::kPresented:
       return "presented";
   }

@@ -47,6 +47,7 @@ enum class Resource : std::uint8_t {
   kPreviousVelocity,
   kPreviousDepth,
   kPreviousReactive,
+  kContentSums,
   kFarSums,
   kFarMotion,
   kPreviousFarMotion,
@@ -86,6 +87,7 @@ enum class Resource : std::uint8_t {
   kDisplayed,
   kFocus,
   kFocusMask,
+  kFadingFrom,
   kPresented,
 };
 constexpr int kResources = static_cast<int>(Resource::kPresented) + 1;
@@ -159,6 +161,7 @@ enum class Frames : std::uint8_t {
   kResized,       // kSparse, with a history of another size than the output
   kScaledOutput,  // the picture is not shown in the size in which it is made
   kWithFocus,     // a focus is given
+  kFading,        // a picture to fade from is given
   kOnRequest,     // none: a call of its own runs it
 };
 

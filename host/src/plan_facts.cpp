@@ -11,7 +11,8 @@ bool method_reads_velocity(const ResolveSettings& settings) {
 
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
   const bool fills = settings.shading == Shading::kCheckerboard;
-  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills) return VelocitySource::kNone;
+  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills && !settings.measures_content)
+    return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
 }
@@ -32,7 +33,8 @@ bool PlanFacts::may_be_dense() const {
 }
 
 bool PlanFacts::reads_velocity() const {
-  return has_velocity() && (method_reads_velocity(settings) || settings.blur.shutter > 0);
+  return has_velocity() &&
+         (method_reads_velocity(settings) || settings.blur.shutter > 0 || settings.measures_content);
 }
 
 bool is_dense(Extent render, Extent output) {

@@ -41,7 +41,8 @@ struct PlanFacts {
            needs.camera_motion && possible;
   }
   bool fits_far() const { return moves_far() && settings.far == FarMotion::kEvidence; }
-  bool reads_reactive() const { return keeps_previous_frame() && needs.transparents; }
+  bool reads_reactive() const { return (keeps_previous_frame() || measures_content()) && needs.transparents; }
+  bool measures_content() const { return settings.measures_content && has_velocity(); }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;
   }

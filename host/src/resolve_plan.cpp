@@ -208,6 +208,7 @@ std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   region.clear = false;
   region.particle_target = {};  // those of the region are drawn with the rest of it
   region.focus = {};
+  region.measures_content = region.fades = false;
   return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
 }
 

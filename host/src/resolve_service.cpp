@@ -97,6 +97,12 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
     focus->forget();
   }
   picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.pass_count);
+  // Where nothing moves there are no sums, and nothing is what there is to tell.
+  slot.measures_content = picture.plan().settings.measures_content;
+  if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
+    queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.content),
+                            &slot.content);
+  }
   queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
                           &slot.done);
   queue.flush();

@@ -93,6 +93,17 @@ void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutput
   check_apart("displayed", outputs.displayed, "blurred", outputs.blurred);
 }
 
+void check_fade(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
+  if (!inputs.fading_from) return;
+  if (!plan.settings.fades) {
+    check.complain("fading_from is given, but the plan has no cross-fade; set settings.fades");
+    return;
+  }
+  check.output("fading_from", inputs.fading_from, plan.settings.resolved, Storage::kBuffer,
+               plan.settings.output, "output");
+  check.finite("fade_weight", inputs.fade_weight, 0, 1);
+}
+
 void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent output) {
   const Extent most = plan.settings.output;
   const Extent least = plan.is_dual() ? plan.settings.least_output : most;
@@ -132,6 +143,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);
+  check_fade(check, plan, inputs);
 }
 
 Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {

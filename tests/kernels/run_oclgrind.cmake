@@ -35,7 +35,8 @@ check("" "AxisTables.*" "Clear*"
   "*Resolve.ANon*/velocity_reactive_buffer_RGBA16F_RG16F_to_RGBA32F"
   "*Scale.ATight*/point_*_RGBA8_to_RGBA32F" "*Scale.ATight*/bilinear_*_RGBA8_to_RGBA32F"
   "*Resolve.ATight*/velocity_reactive_buffer_RGBA8_*_to_RGBA32F"
-  "*Velocity.ATight*" "*Velocity.Poison*" "*UndilateVelocityPass.ATight*" "*UndilateVelocityPass.Poison*")
+  "*Velocity.ATight*" "*Velocity.Poison*" "*UndilateVelocityPass.ATight*" "*UndilateVelocityPass.Poison*"
+  "*CrossFade.Poison*" "*MeasureContent.Poison*")
 # These run without optimisation. Optimised, the first stops oclgrind at hints about memory that its compiler puts in
 # where it inlines, and of the other it computes the minimum of int8 wrongly. The macros keep headers from
 # inlining.

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
                       "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "lay_focus", "present",
                       "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "undilate_velocity",
                       "far_velocity", "far_surroundings", "far_fit", "far_match", "resize_history",
-                      "resize_tiles", "resize_layers", "resize_records"),
+                      "resize_tiles", "resize_layers", "resize_records", "measure_content", "cross_fade"),
     [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {
@@ -164,6 +164,13 @@ std::vector<PlanFacts> all_facts() {
             add_needs(settings);
           }
           settings.shading = Shading::kFull;
+          settings.measures_content = settings.fades = true;
+          for (const Method method : {Method::kBilinear, Method::kTemporal}) {
+            settings.method = method;
+            add_needs(settings);
+          }
+          settings.measures_content = settings.fades = false;
+          settings.method = Method::kBilinear;
           if (colour != kRGBA8) {
             settings.particle_target = output;
             for (const Method method : {Method::kBilinear, Method::kQuincunx, Method::kTemporal}) {

@@ -49,6 +49,9 @@ Picture resolve_quincunx(const Frame& current, const Frame& previous, Weight wei
 // Source: the cross of Lottes, AMD FidelityFX Contrast Adaptive Sharpening, 2019.
 Picture sharpen(const Picture& picture, double sharpness);
 
+// cross_fade: other + weight (picture - other), of sanitised values; `largest` is of both.
+Picture cross_fade(const Picture& picture, const Picture& other, double weight);
+
 enum class Curve { kClamp, kReinhard, kAces };
 
 // present: 255 * the sRGB encoding of exposed, tone-mapped colour, and 255 * alpha, before it is rounded. kAces:

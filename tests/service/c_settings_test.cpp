@@ -13,7 +13,7 @@ namespace {
 using testing::COwner;
 
 // Does not compile once a struct has a field more: c_settings.h then wants it at its end, too, and here.
-// It knows nothing of particles of their own viewport, of a dynamic output, and of no focus.
+// It knows nothing of particles of their own viewport, of a dynamic output, of a focus, and of changes of method.
 SceneNeeds other_needs() {
   SceneNeeds needs;
   auto& [moving_objects, camera_motion, transparents, background] = needs;
@@ -25,7 +25,7 @@ ResolveSettings other_settings() {
   ResolveSettings settings;
   auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, storage, targets,
          shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, drawn_velocity, far,
-         quincunx, temporal, blur, sharpness, focus] = settings;
+         quincunx, temporal, blur, sharpness, focus, measures_content, fades] = settings;
   method = Method::kTemporal;
   output = {3, 4};
   target = {5, 6};

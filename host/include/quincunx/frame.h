@@ -7,8 +7,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
+#include "quincunx/content_statistics.h"
 #include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
@@ -55,6 +57,11 @@ struct FrameInputs {
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
   int parity = 0;
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
+  // Where ResolveSettings::fades, another picture of this frame, as another method's service made it: format and
+  // extent of the resolved picture, a buffer, other memory. The finished picture has `fade_weight` of its own, in
+  // [0, 1], and the rest of this one.
+  ImageView fading_from = {};
+  float fade_weight = 1;
 };
 
 // Where the results go. At least one is needed; each has the plan's output extent. Of `resolved` and `blurred` a frame
@@ -85,7 +92,7 @@ struct PassReport {
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 56;  // 28 of the picture and 28 of its focus
+  static constexpr int kMaxPasses = 60;  // 30 of the picture and 30 of its focus
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
@@ -98,6 +105,9 @@ struct FrameReport {
   bool focused = false;  // a focus was laid over the picture
   // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;
+  // With ResolveSettings::measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
+  // known yet. Moving light has no velocity: it is seen by reactive values alone.
+  std::optional<ContentStatistics> content = {};
 
   bool ok() const { return status.ok(); }
 };

@@ -108,6 +108,8 @@ struct ResolveSettings {
   MotionBlurSettings blur = {};
   float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
   FocusSettings focus = {};
+  bool measures_content = false;  // FrameReport::content is wanted
+  bool fades = false;             // FrameInputs::fading_from may be given
 
   friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };

@@ -16,7 +16,7 @@ from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int
 
 import numpy as np
 
-API_VERSION, MOST_PASSES = 1, 24
+API_VERSION, MOST_PASSES = 1, 60
 HOST = 2  # images lie in host memory
 METHODS = {}  # name: number, as the library has them
 CHOICES = {  # settings that are names here and numbers there

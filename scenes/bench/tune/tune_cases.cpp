@@ -52,6 +52,7 @@ std::vector<TuneCase> tune_cases() {
                                  {"checkerboard", settings_of(Method::kTemporal)}};
   cases[0].resolve.present = true;
   cases[1].resolve.sharpness = 0.5f;
+  cases[1].resolve.measures_content = cases[1].resolve.fades = true;
   cases[5].resolve.blur.shutter = 0.5f;
   cases[6].resolve.quincunx.form = TwoFrameForm::kReprojected;
   cases[7].only_camera_moves = true;

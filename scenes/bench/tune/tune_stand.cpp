@@ -83,6 +83,7 @@ Status TuneStand::allocate() {
   };
   Status status = make(resolved_, settings.resolved, Storage::kBuffer);
   if (status.ok() && plan_.blurs()) status = make(blurred_, settings.resolved, Storage::kBuffer);
+  if (status.ok() && settings.fades) status = make(other_, settings.resolved, Storage::kBuffer);
   if (status.ok() && settings.present)
     status = make(presented_, PixelFormat::kRGBA8, plan_.presented_storage());
   return status;
@@ -95,7 +96,8 @@ Result<double> TuneStand::time_copy() {
   return clock.elapsed().ms;
 }
 
-Status TuneStand::resolve(ResolveService& service, const FrameInputs& inputs, PassTimes* times) {
+Status TuneStand::resolve(ResolveService& service, FrameInputs inputs, PassTimes* times) {
+  if (plan_.settings.fades) inputs.fading_from = other_.view();
   const FrameOutputs outputs{
       .resolved = resolved_.view(), .presented = presented_.view(), .blurred = blurred_.view()};
   const FocusInputs* focus = feed_.focus();

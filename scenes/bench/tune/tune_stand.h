@@ -41,7 +41,7 @@ class TuneStand {
   Result<double> time_copy();
 
   // Resolves a frame of the feed and waits. Adds the time of each pass to `times`, if not null.
-  Status resolve(ResolveService& service, const FrameInputs& inputs, PassTimes* times);
+  Status resolve(ResolveService& service, FrameInputs inputs, PassTimes* times);
 
  private:
   TuneStand(Device device, FrameFeed feed, ResolvePlan plan, CopyKernel copy)
@@ -53,6 +53,7 @@ class TuneStand {
   ResolvePlan plan_;
   CopyKernel copy_;
   Image resolved_, blurred_, presented_;
+  Image other_;  // that is faded from
 };
 
 }  // namespace quincunx::bench
