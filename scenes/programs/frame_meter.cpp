@@ -8,7 +8,7 @@ namespace quincunx::scenes {
 namespace {
 
 bool is_of_method(std::string_view kernel) {
-  return kernel != "present" && !kernel.starts_with("motion_");
+  return kernel != "present" && kernel != "measure_content" && !kernel.starts_with("motion_");
 }
 
 }  // namespace
@@ -55,19 +55,21 @@ void FrameMeter::end() {
 
 void FrameMeter::add(const FrameReport& report) {
   const PassTimes times = pass_times(report);
-  if (timer_ && times.all_ms > 0) cl_.push_back({report.frame_index, times.all_ms, times.method_ms});
+  if (timer_ && times.all_ms > 0)
+    cl_.push_back({report.frame_index, times.all_ms, times.method_ms, report.content});
 }
 
 std::optional<FrameMeter::Cost> FrameMeter::next() {
   if (!timer_) return std::nullopt;
   while (auto timed = timer_->poll())
-    gl_.push_back({timed->frame, timed->gpu_ms, 0});
+    gl_.push_back({timed->frame, timed->gpu_ms, 0, {}});
   while (!gl_.empty() && !cl_.empty() && gl_.front().frame != cl_.front().frame) {
     std::deque<Cost>& older = gl_.front().frame < cl_.front().frame ? gl_ : cl_;
     older.pop_front();
   }
   if (gl_.empty() || cl_.empty()) return std::nullopt;
-  const Cost cost = {gl_.front().frame, gl_.front().ms + cl_.front().ms, cl_.front().method_ms};
+  Cost cost = cl_.front();
+  cost.ms += gl_.front().ms;
   gl_.pop_front();
   cl_.pop_front();
   return cost;

@@ -18,8 +18,8 @@
 
 namespace quincunx::scenes {
 
-// Milliseconds of all passes together, and of those that a method has and others have not: without motion blur and the
-// present pass. 0 where one's time is not known.
+// Milliseconds of all passes together, and of those that a method has and others have not: without motion blur, the
+// present pass and that which measures content. 0 where one's time is not known.
 struct PassTimes {
   double all_ms = 0;
   double method_ms = 0;
@@ -52,6 +52,7 @@ class FrameMeter {
     std::uint64_t frame = 0;
     double ms = 0;
     double method_ms = 0;  // of `ms`: see PassTimes
+    std::optional<ContentStatistics> content = {};
   };
   // The oldest frame of which both times have come back, once each. Call until it says nothing. Frames of
   // which one time was lost are left out. Never any with kSpan.

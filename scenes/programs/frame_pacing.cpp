@@ -211,6 +211,7 @@ void FramePacing::observe(std::uint64_t frame, const FrameCosts& costs) {
   if (!told.ok()) return;
   paced.busy_ms = gpu_ms;
   paced.resolve_ms = resolve_ms;
+  paced.content = costs.content;
 }
 
 }  // namespace quincunx::scenes

@@ -19,49 +19,56 @@ void add_passes(FrameReport& report, const FrameReport& other) {
 
 }  // namespace
 
-ResolveSettings with_method(const ResolveSettings& settings, const FrontMethod& method) {
+ResolveSettings method_settings(const ResolveSettings& settings, const FrontMethod& method) {
   ResolveSettings chosen = settings;
   tools::choose(chosen, tools::method_choices().at(name_of(method)));
+  chosen.measures_content = chosen.fades = true;
   return chosen;
 }
 
-// As long as the old method is shown, the new one takes what suits that.
 MethodSampling sampling_for(const QualityChoice& choice) {
-  const Method shown = choice.fading_from.value_or(choice.method).method;
-  const tools::Jitter jitter = jitter_for(shown);
-  return {jitter, lod_bias_for(shown, jitter)};
+  const Method method = choice.method.method;
+  const Method from = choice.fading_from.value_or(choice.method).method;
+  const tools::Jitter jitter = std::max(jitter_for(method), jitter_for(from));
+  const auto weight = static_cast<float>(choice.weight);
+  return {jitter, weight * lod_bias_for(method, jitter) + (1 - weight) * lod_bias_for(from, jitter)};
 }
 
 Result<MethodResolves> MethodResolves::create(FrameSource& source, const ResolveSettings& settings,
-                                              std::vector<FrontMethod> methods) {
+                                              std::vector<FrontMethod> methods,
+                                              std::vector<ResolveSettings> beside) {
   std::vector<ResolveSettings> resolves;
   for (const FrontMethod& method : methods)
-    resolves.push_back(with_method(settings, method));
+    resolves.push_back(method_settings(settings, method));
   if (methods.empty()) resolves.push_back(settings);
+  const std::size_t own = resolves.size();
+  resolves.insert(resolves.end(), beside.begin(), beside.end());
   const auto plans = source.connect_all(std::move(resolves));
   if (!plans.ok()) return plans.status();
   std::vector<ResolveService> services;
-  for (const ResolvePlan& plan : plans.value()) {
-    auto service = ResolveService::create(source.device(), plan);
+  for (std::size_t i = 0; i < own; ++i) {
+    auto service = ResolveService::create(source.device(), plans.value()[i]);
     if (!service.ok()) return service.status();
     services.push_back(std::move(service).value());
   }
-  Image unseen;
+  Image fading;
   if (services.size() > 1) {
     const ResolveSettings& planned = plans->front().settings;
     auto image = source.device().allocate(planned.output, planned.resolved);
     if (!image.ok()) return image.status();
-    unseen = std::move(image).value();
+    fading = std::move(image).value();
   }
-  return MethodResolves(std::move(methods), std::move(services), std::move(unseen));
+  MethodResolves made(std::move(methods), std::move(services), std::move(fading));
+  made.plans_beside_.assign(plans->begin() + static_cast<std::ptrdiff_t>(own), plans->end());
+  return made;
 }
 
 MethodResolves::MethodResolves(std::vector<FrontMethod> methods, std::vector<ResolveService> services,
-                               Image unseen)
+                               Image fading)
     : methods_(std::move(methods)),
       services_(std::move(services)),
       last_frame_(services_.size()),
-      unseen_(std::move(unseen)) {}
+      fading_(std::move(fading)) {}
 
 std::size_t MethodResolves::index_of(const FrontMethod& method) const {
   return static_cast<std::size_t>(std::find(methods_.begin(), methods_.end(), method) - methods_.begin());
@@ -78,28 +85,31 @@ FrameReport MethodResolves::dispatch(const FrameSource& source, std::size_t meth
 FrameReport MethodResolves::dispatch(const FrameSource& source, const FrameInputs& inputs,
                                      const FrameOutputs& outputs,
                                      const std::optional<QualityChoice>& choice) {
-  Running frame;
-  if (choice) frame.shown = index_of(choice->fading_from.value_or(choice->method));
-  if (choice && choice->fading_from) frame.unseen = index_of(choice->method);
-  FrameReport report = dispatch(source, frame.shown, inputs, outputs);
-  if (!report.ok()) return report;
-  if (frame.unseen) {
-    const FrameReport unseen = dispatch(source, *frame.unseen, inputs, {.resolved = unseen_.view()});
-    if (!unseen.ok()) return unseen;
+  Running frame{.method = choice ? index_of(choice->method) : 0, .fading_from = {}, .cut = inputs.reset};
+  FrameInputs faded = inputs;
+  if (choice && choice->fading_from) {
+    frame.fading_from = index_of(*choice->fading_from);
+    const FrameOutputs other = outputs_for(services_[*frame.fading_from].plan(), fading_.view(), {});
+    const FrameReport report = dispatch(source, *frame.fading_from, inputs, other);
+    if (!report.ok()) return report;
+    faded.fading_from = fading_.view();
+    faded.fade_weight = static_cast<float>(choice->weight);
   }
-  running_.push_back(frame);
+  const FrameReport report = dispatch(source, frame.method, faded, outputs);
+  if (report.ok()) running_.push_back(frame);
   return report;
 }
 
 std::optional<FrameReport> MethodResolves::next_completed() {
   if (running_.empty()) return std::nullopt;
   Running& oldest = running_.front();
-  if (!oldest.shown_report) oldest.shown_report = services_[oldest.shown].next_completed();
-  if (oldest.unseen && !oldest.unseen_report)
-    oldest.unseen_report = services_[*oldest.unseen].next_completed();
-  if (!oldest.shown_report || (oldest.unseen && !oldest.unseen_report)) return std::nullopt;
-  FrameReport report = *oldest.shown_report;
-  if (oldest.unseen_report) add_passes(report, *oldest.unseen_report);
+  if (!oldest.report) oldest.report = services_[oldest.method].next_completed();
+  if (oldest.fading_from && !oldest.fading_report)
+    oldest.fading_report = services_[*oldest.fading_from].next_completed();
+  if (!oldest.report || (oldest.fading_from && !oldest.fading_report)) return std::nullopt;
+  FrameReport report = *oldest.report;
+  if (report.content) report.content->cut = oldest.cut;
+  if (oldest.fading_report) add_passes(report, *oldest.fading_report);
   running_.pop_front();
   return report;
 }

@@ -2,8 +2,8 @@
 // MethodResolves: frames of one source, each resolved by the method that a controller chooses for it.
 //
 // Each method has a ResolveService of its own, so a change allocates and compiles nothing. A method that has not
-// resolved the frame before begins without history. While a choice fades, both methods resolve the frame: the one that
-// is left is shown until the other one's history has grown.
+// resolved the frame before begins without history. While a choice fades, both methods resolve the frame, and the
+// pictures are mixed.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@
 
 namespace quincunx::scenes {
 
-// The settings with a method's own in their place.
-ResolveSettings with_method(const ResolveSettings& settings, const FrontMethod& method);
+// The settings with a method's own in their place, for a service among others that a controller chooses between.
+ResolveSettings method_settings(const ResolveSettings& settings, const FrontMethod& method);
 
-// How a frame is drawn for the method that it is shown by.
+// How a frame is drawn for a choice: while it fades, with the jitter of the method that makes more of it.
 struct MethodSampling {
   tools::Jitter jitter = tools::Jitter::kNone;
   float lod_bias = 0;
@@ -31,40 +31,46 @@ MethodSampling sampling_for(const QualityChoice& choice);
 
 class MethodResolves {
  public:
-  // Connects the source. `methods`: to choose from; empty: the one of the settings. Errors: of any part, as that part
-  // words them.
+  // Connects the source. `methods`: to choose from; empty: the one of the settings. `beside`: further settings that the
+  // source is connected for. Errors: of any part, as that part words them.
   static Result<MethodResolves> create(FrameSource& source, const ResolveSettings& settings,
-                                       std::vector<FrontMethod> methods);
+                                       std::vector<FrontMethod> methods,
+                                       std::vector<ResolveSettings> beside = {});
 
   // Of the first method; which targets, formats and storage there are is the same in all.
   const ResolvePlan& plan() const { return services_.front().plan(); }
+  // Of the further settings, in their order.
+  const std::vector<ResolvePlan>& plans_beside() const { return plans_beside_; }
 
   // As FrameSource::dispatch(). `choice`: of these methods; nothing where there is one.
   FrameReport dispatch(const FrameSource& source, const FrameInputs& inputs, const FrameOutputs& outputs,
                        const std::optional<QualityChoice>& choice);
 
-  // As of ResolveService. The report of a frame with two methods has the passes of both.
+  // As of ResolveService. The report of a frame with two methods has the passes of both. Its content tells of cuts,
+  // too: `inputs.reset` of dispatch().
   std::optional<FrameReport> next_completed();
   void allow_timing_waits(bool allow);
   Status finish();
 
  private:
   struct Running {
-    std::size_t shown = 0;
-    std::optional<std::size_t> unseen;
-    std::optional<FrameReport> shown_report = {};
-    std::optional<FrameReport> unseen_report = {};
+    std::size_t method = 0;
+    std::optional<std::size_t> fading_from;
+    bool cut = false;
+    std::optional<FrameReport> report = {};
+    std::optional<FrameReport> fading_report = {};
   };
 
-  MethodResolves(std::vector<FrontMethod> methods, std::vector<ResolveService> services, Image unseen);
+  MethodResolves(std::vector<FrontMethod> methods, std::vector<ResolveService> services, Image fading);
   std::size_t index_of(const FrontMethod& method) const;
   FrameReport dispatch(const FrameSource& source, std::size_t method, const FrameInputs& inputs,
                        const FrameOutputs& outputs);
 
   std::vector<FrontMethod> methods_;
   std::vector<ResolveService> services_;
+  std::vector<ResolvePlan> plans_beside_;
   std::vector<std::optional<std::uint64_t>> last_frame_;  // that each has resolved
-  Image unseen_;                                          // picture of a method that is not shown yet
+  Image fading_;                                          // picture of the method that is left
   std::deque<Running> running_;                           // dispatched and not yet completed, oldest first
 };
 

@@ -58,12 +58,13 @@ void PacedLoop::finish_frame() {
 
 void PacedLoop::add(const FrameReport& report) {
   if (!meter_.measures_device()) {
-    pacing_.observe(report.frame_index, {pacing_.busy_ms(report.frame_index), pass_times(report).method_ms});
+    pacing_.observe(report.frame_index,
+                    {pacing_.busy_ms(report.frame_index), pass_times(report).method_ms, report.content});
     return;
   }
   meter_.add(report);
   while (const auto cost = meter_.next())
-    pacing_.observe(cost->frame, {cost->ms, cost->method_ms});
+    pacing_.observe(cost->frame, {cost->ms, cost->method_ms, cost->content});
 }
 
 tools::PacingRun PacedLoop::run() const {

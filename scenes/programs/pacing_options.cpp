@@ -136,8 +136,6 @@ void check_together(tools::CommandLine& app, const PacingOptions& options) {
     refuse_given(app, {"--focus", "--dual"},
                  "--controller quality works without it: no front has its errors and its times; ask for "
                  "--controller predictive");
-    refuse_given(app, {"--window"},
-                 "it has no controller that chooses the method; ask for --controller predictive");
     refuse_given(app, {"--compare-fixed"},
                  "runs at fixed scales have one method; ask for --controller predictive with that --method");
   }

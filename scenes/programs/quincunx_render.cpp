@@ -4,9 +4,11 @@
 
 #include <cstdio>
 #include <exception>
+#include <optional>
 
 #include "catalog/scene_catalog.h"
 #include "programs/calibration_run.h"
+#include "programs/method_resolves.h"
 #include "programs/render_options.h"
 #include "programs/render_session.h"
 #include "programs/truth_run.h"
@@ -19,10 +21,20 @@
 namespace quincunx::scenes {
 namespace {
 
-// Which figures a controller that chooses methods would go by. Nothing where there is no OpenCL device.
-std::string front_text(const Result<Device>& device, const Scene& scene) {
-  if (!device.ok()) return {};
-  return fmt::format("Error front    {}\n", find_front(front_key(device->info(), scene.name)).explanation);
+// Which figures a controller that chooses methods goes by. Nothing where there is no OpenCL device.
+std::string front_text(const std::optional<FoundFront>& found) {
+  return found ? fmt::format("Error front    {}\n", found->explanation) : std::string();
+}
+
+// What that controller begins with, before it has seen a frame; it becomes the method of `settings`.
+Result<std::string> choose_first(const RenderOptions& options, const std::optional<FoundFront>& found,
+                                 ResolveSettings& settings) {
+  if (!options.pacing.chooses_method()) return std::string();
+  const auto pacing =
+      frame_pacing_for(options.pacing, options.output, found ? found->front : ErrorFront::built_in());
+  if (!pacing.ok()) return pacing.status();
+  settings = method_settings(settings, pacing.value()->choice()->method);
+  return "At the first frame, before any was timed:\n" + pacing.value()->reasons();
 }
 
 int explain(const RenderOptions& options) {
@@ -43,12 +55,16 @@ int explain(const RenderOptions& options) {
     if (!focus.ok()) return tools::fail(focus.status());
     settings.focus = focus.value()->settings();
   }
+  const Result<Device> device = Device::open(options.device);
+  std::optional<FoundFront> found;
+  if (device.ok()) found = find_front(front_key(device->info(), scene->name));
+  const auto first = choose_first(options, found, settings);
+  if (!first.ok()) return tools::fail(first.status());
   auto plan = plan_for(needs_of(scene.value()), settings);
   if (!plan.ok()) return tools::fail(plan.status());
-  const Result<Device> device = Device::open(options.device);
-  fmt::print("Scene          {}: {}\n{}{}{}{}", scene->name, scene->summary,
-             front_text(device, scene.value()), tools::device_lines(device),
-             explain(source->parts, has_particles), plan->explain());
+  fmt::print("Scene          {}: {}\n{}{}{}{}{}", scene->name, scene->summary, front_text(found),
+             first.value(), tools::device_lines(device), explain(source->parts, has_particles),
+             plan->explain());
   return tools::kDone;
 }
 

@@ -83,6 +83,7 @@ tools::RunReport RenderSession::report() const {
   };
   report.frames = rows_;
   tools::add_measured(report.frames, reports_);
+  if (front_) report.settings.push_back({"error front", front_->explanation});
   if (paced_) {
     report.pacing = {paced_->run()};
     if (!options_.pacing.controls()) report.pacing.front().controller += " " + scale_text(options_);

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <vector>
 
 namespace quincunx::scenes {
 namespace {
@@ -25,6 +27,13 @@ constexpr ImU32 kTargetColour = IM_COL32(255, 255, 255, 110);
 constexpr ImU32 kDroppedColour = IM_COL32(235, 80, 80, 255);
 constexpr ImU32 kTextColour = IM_COL32(190, 192, 198, 255);
 
+// Of methods, in the order in which they come up.
+constexpr float kBandHeight = 5;
+constexpr ImU32 kMethodColours[] = {IM_COL32(232, 163, 61, 255),  IM_COL32(90, 160, 235, 255),
+                                    IM_COL32(120, 205, 140, 255), IM_COL32(200, 120, 215, 255),
+                                    IM_COL32(235, 120, 110, 255), IM_COL32(95, 205, 205, 255),
+                                    IM_COL32(205, 205, 110, 255), IM_COL32(160, 160, 170, 255)};
+
 struct Plot {
   ImVec2 corner;
   ImVec2 size;
@@ -37,6 +46,10 @@ struct Plot {
     return corner.y + size.y * (1 - static_cast<float>(std::clamp(value / top, 0.0, 1.0)));
   }
 };
+
+ImU32 method_colour(std::size_t index) {
+  return kMethodColours[index % std::size(kMethodColours)];
+}
 
 void draw_frame(const Plot& plot) {
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -58,6 +71,31 @@ void draw_line(const Plot& plot, const FrameTrace& trace, ImU32 colour, const Va
   for (std::size_t i = 0; i < points.size(); ++i)
     list->PathLineTo({plot.x(i), plot.y(value(points[i]))});
   list->PathStroke(colour, 0, 1.5f);
+}
+
+// The methods of the frames that are shown, each once, by name, so that a colour stays with a method as long as the
+// others do.
+std::vector<std::string> methods_of(const FrameTrace& trace) {
+  std::vector<std::string> methods;
+  for (const TracePoint& point : trace.points()) {
+    if (!point.method.empty() && std::find(methods.begin(), methods.end(), point.method) == methods.end())
+      methods.push_back(point.method);
+  }
+  std::sort(methods.begin(), methods.end());
+  return methods;
+}
+
+// A band along the lower edge, in the colour of each frame's method.
+void draw_methods(const Plot& plot, const FrameTrace& trace, const std::vector<std::string>& methods) {
+  const std::vector<TracePoint>& points = trace.points();
+  const float bottom = plot.corner.y + plot.size.y;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].method.empty()) continue;
+    const auto index = std::find(methods.begin(), methods.end(), points[i].method) - methods.begin();
+    const float left = i == 0 ? plot.x(0) : plot.x(i - 1);
+    ImGui::GetWindowDrawList()->AddRectFilled({left, bottom - kBandHeight}, {plot.x(i) + 1, bottom},
+                                              method_colour(static_cast<std::size_t>(index)));
+  }
 }
 
 // Columns, because the two add up.
@@ -101,6 +139,17 @@ void legend(const char* name, ImU32 colour, const std::string& value) {
   ImGui::TextDisabled("%s", value.c_str());
 }
 
+// How much of the frames that are shown each method had.
+void draw_method_legend(const FrameTrace& trace, const std::vector<std::string>& methods) {
+  const std::vector<TracePoint>& points = trace.points();
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    const auto frames = std::count_if(points.begin(), points.end(),
+                                      [&](const TracePoint& point) { return point.method == methods[i]; });
+    const double share = static_cast<double>(frames) / static_cast<double>(points.size());
+    legend(methods[i].c_str(), method_colour(i), fmt::format("{:.0f} %", 100 * share));
+  }
+}
+
 }  // namespace
 
 void draw_frame_graph(const FrameTrace& trace, double target_ms) {
@@ -114,6 +163,8 @@ void draw_frame_graph(const FrameTrace& trace, double target_ms) {
       {corner.x, corner.y + kAreaHeight + kGap}, {width, kTimeHeight}, rounded_top(trace, target_ms)};
   draw_frame(area);
   draw_line(area, trace, kAreaColour, [](const TracePoint& point) { return point.area; });
+  const std::vector<std::string> methods = methods_of(trace);
+  draw_methods(area, trace, methods);
   draw_label(area, 2, fmt::format("{:.0f} % of the pixels", 100 * largest));
   draw_frame(time);
   draw_times(time, trace);
@@ -140,6 +191,7 @@ void draw_frame_graph(const FrameTrace& trace, double target_ms) {
   ImGui::TextUnformatted("frame");
   ImGui::SameLine();
   ImGui::TextDisabled("%.1f ms", mean.interval_ms);
+  draw_method_legend(trace, methods);
 }
 
 }  // namespace quincunx::scenes

@@ -15,13 +15,15 @@ void follow(double& mean, double value) {
 
 }  // namespace
 
-void FrameTrace::add(const FrameTimes& times, Extent output, double interval_ms, int dropped) {
+void FrameTrace::add(const FrameTimes& times, Extent output, double interval_ms, int dropped,
+                     const std::string& method) {
   const FrameReport& report = times.report;
   TracePoint point = {.area = static_cast<double>(report.render.area()) / static_cast<double>(output.area()),
                       .draw_ms = times.draw_ms,
                       .cpu_ms = times.cpu_ms,
                       .interval_ms = interval_ms,
-                      .dropped = dropped};
+                      .dropped = dropped,
+                      .method = method};
   std::vector<PassTime> passes;
   for (int i = 0; i < report.pass_count; ++i) {
     const PassReport& pass = report.passes[static_cast<std::size_t>(i)];

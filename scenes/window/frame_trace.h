@@ -11,12 +11,13 @@
 namespace quincunx::scenes {
 
 struct TracePoint {
-  double area = 0;         // pixels drawn, part of the output's
-  double draw_ms = 0;      // OpenGL
-  double opencl_ms = 0;    // all passes
-  double cpu_ms = 0;       // the processor's part of drawing
-  double interval_ms = 0;  // since the frame before
-  int dropped = 0;         // refreshes that this frame missed
+  double area = 0;          // pixels drawn, part of the output's
+  double draw_ms = 0;       // OpenGL
+  double opencl_ms = 0;     // all passes
+  double cpu_ms = 0;        // the processor's part of drawing
+  double interval_ms = 0;   // since the frame before
+  int dropped = 0;          // refreshes that this frame missed
+  std::string method = {};  // that a controller chose; empty: none did
 };
 
 struct PassTime {
@@ -28,7 +29,9 @@ class FrameTrace {
  public:
   static constexpr std::size_t kLength = 240;
 
-  void add(const FrameTimes& times, Extent output, double interval_ms, int dropped);
+  // `method`: that a controller chose; empty: none did.
+  void add(const FrameTimes& times, Extent output, double interval_ms, int dropped,
+           const std::string& method = {});
 
   const std::vector<TracePoint>& points() const { return points_; }  // oldest first
   const std::vector<PassTime>& passes() const { return passes_; }    // of the last frame's passes, in order

@@ -89,8 +89,8 @@ Status LivePicture::configure(const LookSettings& look, const ResolutionSettings
       source_->sequence().target() == sequence_->target()) {
     return {};
   }
-  if (service_) {
-    if (Status status = service_->finish(); !status.ok()) return status;
+  if (resolves_) {
+    if (Status status = resolves_->finish(); !status.ok()) return status;
   }
   if (source_ && look.scene != look_.scene) source_.reset();
   look_ = look;
@@ -107,19 +107,21 @@ Status LivePicture::open_source(const FrameSourceSettings& settings) {
 }
 
 Status LivePicture::open_services(const ResolveSettings& wanted) {
-  std::vector<ResolveSettings> resolves = {wanted};
-  if (look_.compares_methods()) {
-    resolves.push_back(wanted);
-    choose_method(resolves.back(), look_.compared);
+  std::vector<FrontMethod> methods;
+  front_.reset();
+  choice_.reset();
+  if (look_.chooses_method) {
+    front_ = find_front(front_key(source_->device().info(), source_->scene().name));
+    methods.assign(front_->front.methods().begin(), front_->front.methods().end());
   }
-  auto plans = source_->connect_all(resolves);
-  if (!plans.ok()) return plans.status();
-  auto service = ResolveService::create(source_->device(), plans->front());
-  if (!service.ok()) return service.status();
-  service_.emplace(std::move(service).value());
-  service_->allow_timing_waits(true);  // each picture is waited for anyway
+  std::vector<ResolveSettings> compared;
+  if (look_.compares_methods()) choose_method(compared.emplace_back(wanted), look_.compared);
+  auto resolves = MethodResolves::create(*source_, wanted, std::move(methods), std::move(compared));
+  if (!resolves.ok()) return resolves.status();
+  resolves_.emplace(std::move(resolves).value());
+  resolves_->allow_timing_waits(true);  // each picture is waited for anyway
   resolved_ = Image();
-  return open_compared(plans->back());
+  return open_compared(look_.compares_methods() ? resolves_->plans_beside().front() : plan());
 }
 
 Status LivePicture::open_compared(const ResolvePlan& plan) {
@@ -145,7 +147,18 @@ Status LivePicture::open_compared(const ResolvePlan& plan) {
   return {};
 }
 
-FrameView LivePicture::view_of(std::int64_t index, Extent chosen) {
+FrameView LivePicture::view_of(std::int64_t index, Extent chosen,
+                               const std::optional<QualityChoice>& choice) {
+  if (choice) {
+    choice_ = choice;
+  } else if (choice_) {
+    choice_->fading_from.reset();
+    choice_->weight = 1;
+  }
+  if (choice_) {
+    const MethodSampling sampling = sampling_for(*choice_);
+    sequence_->set_sampling(sampling.jitter, sampling.lod_bias);
+  }
   Vec2 scale;
   switch (resolution_.mode) {
     case ResolutionMode::kFixed:
@@ -206,7 +219,8 @@ Status LivePicture::dispatch(bool reset) {
   }
   const ImageView linear = keep_ == Keep::kForFiles ? resolved_.view() : ImageView();
   const FrameOutputs outputs = outputs_for(plan(), linear, presented.value());
-  if (const FrameReport report = source_->dispatch(*service_, inputs.value(), outputs); !report.ok())
+  if (const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice_);
+      !report.ok())
     return report.status;
   if (other_service_) {
     const FrameReport report =
@@ -214,7 +228,7 @@ Status LivePicture::dispatch(bool reset) {
     if (!report.ok()) return report.status;
   }
   if (Status status = source_->bridge().present(); !status.ok()) return status;
-  return service_->finish();
+  return resolves_->finish();
 }
 
 // What the split view shows beside the picture.
@@ -247,7 +261,7 @@ void LivePicture::poll_timer() {
 
 void LivePicture::collect_times() {
   poll_timer();
-  while (auto report = service_->next_completed())
+  while (auto report = resolves_->next_completed())
     times_.report = *report;
 }
 

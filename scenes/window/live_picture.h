@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "programs/frame_source.h"
+#include "programs/method_resolves.h"
 #include "programs/picture_options.h"
 #include "programs/presenter.h"
+#include "quincunx/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx_gl/frame_timer.h"
 #include "quincunx_gl/handle.h"
@@ -35,8 +37,12 @@ class LivePicture {
   // From the next draw() on. Makes anew what has to be; nothing where nothing has changed.
   Status configure(const LookSettings& look, const ResolutionSettings& resolution, Extent output);
 
-  // What frame `index` is by these settings. `chosen`: by a controller, for ResolutionMode::kController.
-  FrameView view_of(std::int64_t index, Extent chosen);
+  // What methods err and cost, where LookSettings::chooses_method; else null.
+  const ErrorFront* front() const { return front_ ? &front_->front : nullptr; }
+
+  // What frame `index` is by these settings. `chosen`: by a controller, for ResolutionMode::kController. `choice`: of
+  // the method; where there is none, a frame has the one that was chosen last.
+  FrameView view_of(std::int64_t index, Extent chosen, const std::optional<QualityChoice>& choice = {});
 
   enum class Keep : std::uint8_t { kNothing, kForFiles };
 
@@ -59,7 +65,9 @@ class LivePicture {
   Status write(const std::string& base) const;
 
   Extent output() const { return source_->sequence().output(); }
-  const ResolvePlan& plan() const { return service_->plan(); }
+  const ResolvePlan& plan() const { return resolves_->plan(); }
+  // Of the last frame; nothing where no controller chooses methods.
+  const std::optional<QualityChoice>& choice() const { return choice_; }
   const FrameSource& source() const { return *source_; }
 
  private:
@@ -84,7 +92,9 @@ class LivePicture {
   ResolutionSettings resolution_;
   std::unique_ptr<FrameSource> source_;
   std::optional<FrameSequence> sequence_;  // of the views; its target is the source's
-  std::optional<ResolveService> service_;
+  std::optional<FoundFront> front_;
+  std::optional<MethodResolves> resolves_;
+  std::optional<QualityChoice> choice_;
   Image resolved_;  // made when the first file wants it
 
   std::optional<ResolveService> other_service_;

@@ -90,14 +90,25 @@ std::vector<std::string> focus_choices(const LookSettings& look) {
   return choices;
 }
 
+// Chosen here, or for each frame by the controller, which then tells why.
+void draw_method(LookSettings& look, const PanelFacts& facts) {
+  if (facts.method.empty()) {
+    choose_text("method", method_names(), look.method);
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
+    return;
+  }
+  label("method");
+  ImGui::TextUnformatted(facts.method.c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", facts.reasons.c_str());
+}
+
 void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   LookSettings& look = settings.look;
   const std::string scene = look.scene;
   choose_text("scene", facts.scenes, look.scene);
   if (look.scene != scene && look.focus != kFocusPointer) look.focus.clear();  // that was in the other scene
-  choose_text("method", method_names(), look.method);
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
+  draw_method(look, facts);
   choose_value("targets", kTargetKinds, look.targets);
   choose_text("shadow map", kShadowScales, look.shadow_scale);
   choose_text("particles", kParticleScales, look.particle_scale, "in the frame");
@@ -185,13 +196,14 @@ void plate(float x, float y, const std::string& text) {
   list->AddText(corner, IM_COL32(235, 235, 237, 255), text.c_str());
 }
 
-void draw_split_labels(const WindowSettings& settings, const ImVec2& size) {
+void draw_split_labels(const WindowSettings& settings, const PanelFacts& facts, const ImVec2& size) {
   if (settings.look.compared == kCompareNothing) return;
   const float x = std::round(settings.split * size.x);
   ImGui::GetBackgroundDrawList()->AddLine({x, 0}, {x, size.y}, IM_COL32(232, 163, 61, 255), 2);
-  const float left = ImGui::CalcTextSize(settings.look.method.c_str()).x / 2 + 18;
+  const std::string& method = facts.method.empty() ? settings.look.method : facts.method;
+  const float left = ImGui::CalcTextSize(method.c_str()).x / 2 + 18;
   const float right = ImGui::CalcTextSize(settings.look.compared.c_str()).x / 2 + 18;
-  plate(x - left, size.y - 40, settings.look.method);
+  plate(x - left, size.y - 40, method);
   plate(x + right, size.y - 40, settings.look.compared);
 }
 
@@ -225,7 +237,7 @@ void draw_help(const ImVec2& size) {
 
 void draw_panel(WindowSettings& settings, const FrameTrace& trace, const PanelFacts& facts) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
-  draw_split_labels(settings, size);
+  draw_split_labels(settings, facts, size);
   draw_pixel(settings, facts, size);
   const float width = std::min(kWidth, size.x - 2 * kMargin);
   ImGui::SetNextWindowPos({size.x - width - kMargin, kMargin});

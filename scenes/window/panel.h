@@ -28,6 +28,8 @@ struct PanelFacts {
   Extent made = {};  // the picture's, before it is scaled to `output`
   Extent output = {};
   double target_ms = 0;  // 0: none
+  std::string method;    // that a controller chose; empty: that of the settings
+  std::string reasons;   // why, lines of text; empty: no controller chose it
   std::string opengl;
   std::string opencl;
   std::optional<PickedPixel> pixel;  // under the cursor, where the picture is enlarged

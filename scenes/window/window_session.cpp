@@ -31,7 +31,7 @@ std::int64_t frames_before(const LookSettings& look) {
   const bool compared = look.compares_methods();
   const Method other = compared ? tools::method_choices().at(look.compared).method : method;
   const Method most = std::max(method, other);
-  if (most == Method::kTemporal) return static_cast<std::int64_t>(kWarmUp);
+  if (most == Method::kTemporal || look.chooses_method) return static_cast<std::int64_t>(kWarmUp);
   return most == Method::kQuincunx || look.shading == Shading::kCheckerboard ? 1 : 0;
 }
 
@@ -158,6 +158,7 @@ void WindowSession::move_view() {
 
 Status WindowSession::update_picture() {
   const Extent output = window_->framebuffer();
+  settings_.look.chooses_method = settings_.chooses_method();
   const bool same =
       settings_.look == shown_.look && settings_.resolution == shown_.resolution && output == shown_output_;
   if (Status status = picture_->configure(settings_.look, settings_.resolution, output); !status.ok())
@@ -178,14 +179,19 @@ Status WindowSession::update_pacing() {
     return {};
   }
   const bool same = paced_ && settings_.rate == shown_.rate && shown_output_ == picture_->output() &&
-                    settings_.resolution.mode == shown_.resolution.mode;
+                    settings_.resolution.mode == shown_.resolution.mode &&
+                    settings_.look.chooses_method == shown_.look.chooses_method;
   if (same) return {};
   PacingOptions wanted = options_.pacing;
   wanted.target_fps = settings_.rate.target_fps;
   const bool controls = settings_.resolution.mode == ResolutionMode::kController;
   wanted.controller = controls ? settings_.rate.controller : ControllerKind::kFixed;
+  const ErrorFront* front = picture_->front();
+  if (wanted.controller == ControllerKind::kQuality && front == nullptr)
+    wanted.controller = ControllerKind::kPredictive;
   if (picture_->output() != options_.output) wanted.calibration.clear();  // that is for another size
-  auto pacing = frame_pacing_for(wanted, picture_->output());
+  auto pacing =
+      frame_pacing_for(wanted, picture_->output(), front != nullptr ? *front : ErrorFront::built_in());
   if (!pacing.ok()) return pacing.status();
   auto paced = PacedLoop::create(*std::move(pacing).value(), options_.pacing.cost,
                                  pass_timer(picture_->source().device()));
@@ -195,7 +201,7 @@ Status WindowSession::update_pacing() {
 }
 
 FrameView WindowSession::next_view() {
-  FrameView view = picture_->view_of(frame_, paced_->next().value_or(picture_->output()));
+  FrameView view = picture_->view_of(frame_, paced_->next().value_or(picture_->output()), paced_->choice());
   if (!settings_.real_time || recent_.empty()) return view;
   // As far as the display has come: as many refreshes as it took until the last frame was shown.
   const std::vector<tools::PacedFrame>& frames = paced_->pacing().run().frames;
@@ -222,7 +228,7 @@ Status WindowSession::show_next() {
   report.frame_index = static_cast<std::uint64_t>(paced.back().index);
   paced_->add(report);
   const double interval_ms = paced.size() < 2 ? 0 : paced.back().shown_ms - paced[paced.size() - 2].shown_ms;
-  trace_.add(picture_->times(), picture_->output(), interval_ms, paced.back().missed);
+  trace_.add(picture_->times(), picture_->output(), interval_ms, paced.back().missed, paced.back().method);
   return {};
 }
 
@@ -277,6 +283,8 @@ PanelFacts WindowSession::facts() {
   facts.output = picture_->output();
   facts.made = picture_->times().report.output;
   facts.target_ms = 1000 / settings_.rate.target_fps;
+  if (picture_->choice()) facts.method = name_of(picture_->choice()->method);
+  if (paced_ && picture_->choice()) facts.reasons = paced_->pacing().reasons();
   if (tools::ms_since(said_) < 1000 * kMessageSeconds) facts.message = message_;
   if (settings_.zoom.factor > 1) {
     const Vec2 pixel = pointed_pixel();

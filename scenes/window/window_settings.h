@@ -46,7 +46,7 @@ struct RateSettings {
   friend bool operator==(const RateSettings&, const RateSettings&) = default;
 };
 
-constexpr int kControllers = 3;  // all but ControllerKind::kFixed
+constexpr int kControllers = 4;  // all but ControllerKind::kFixed
 
 // The right part of a split view.
 inline const std::string kCompareNothing = "";
@@ -64,6 +64,7 @@ inline const std::vector<std::string> kParticleScales = {kParticlesInFrame, "1",
 struct LookSettings {
   std::string scene;                       // as open_scene() takes it
   std::string method;                      // a name of tools::method_choices()
+  bool chooses_method = false;             // a controller does, for each frame; follows from other settings
   std::string compared = kCompareNothing;  // that, "truth", or another method
   float shutter = 0;                       // motion blur, part of a frame's time
   int blur_samples = 8;
@@ -123,6 +124,12 @@ struct WindowSettings {
   bool dump = false;
   bool close = false;
   int step = 0;  // frames to go forward or back while frozen
+
+  // The controller `quality` does, in pictures of one size and without a focus; else it chooses the resolution alone.
+  bool chooses_method() const {
+    return resolution.mode == ResolutionMode::kController && rate.controller == ControllerKind::kQuality &&
+           look.focus.empty() && look.dual.empty();
+  }
 };
 
 }  // namespace quincunx::scenes

@@ -162,7 +162,6 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused(quality + "--dual auto", 2, "--dual");
   expect_refused(quality + "--scene wheel --focus tyre", 2, "--focus");
   expect_refused(quality + "--compare-fixed 1", 2, "have one method");
-  expect_refused(quality + "--window", 2, "--window");
   for (const char* alone : {"--controller predictive", "--min-scale 0.5", "--ladder both", "--buffers 2",
                             "--calibration c.json", "--follow-cpu", "--detail-follows"}) {
     expect_refused(alone, 2, "--target-fps");

@@ -73,6 +73,35 @@ TEST(FramePacing, BadSettingsAreNamed) {
   }
 }
 
+// Of light alone `quincunx:reprojected` errs least, of a still picture the temporal methods do.
+TEST(FramePacing, AChangeOfMethodIsNotedWithTheFrameThatBeginsIt) {
+  FramePacing pacing = made(settings(ControllerKind::kQuality));
+  double now = 0;
+  for (int i = 0; i < 300; ++i) {
+    now = std::max(now, pacing.free_at().value());
+    const QualityChoice choice = pacing.choice().value();
+    EXPECT_EQ(choice.render, pacing.next());
+    const std::uint64_t frame = pacing.begin(now, choice.render);
+    FrameCosts costs{.gpu_ms = 1 + 38 * area(choice.render), .resolve_ms = 1};
+    pacing.finish(frame, now += costs.gpu_ms);
+    costs.content.emplace().light = i < 150 ? 0 : 1;
+    pacing.observe(frame, costs);
+    const tools::PacedFrame& noted = pacing.run().frames.back();
+    EXPECT_EQ(noted.method, name_of(choice.method));
+    EXPECT_EQ(noted.fading_from.empty(), !choice.fading_from.has_value());
+    EXPECT_EQ(noted.weight, choice.weight);
+    EXPECT_EQ(noted.content->light, i < 150 ? 0 : 1);
+  }
+  ASSERT_FALSE(pacing.run().method_changes.empty());
+  const tools::MethodChange& change = pacing.run().method_changes.back();
+  EXPECT_GE(change.frame, 150);
+  EXPECT_EQ(change.to, "quincunx:reprojected");
+  EXPECT_NE(change.why.find("light"), std::string::npos) << change.why;
+  EXPECT_EQ(pacing.run().frames[static_cast<std::size_t>(change.frame)].fading_from, change.from);
+  EXPECT_NE(pacing.reasons().find("Chosen         quincunx:reprojected"), std::string::npos);
+  EXPECT_FALSE(made(settings()).choice().has_value());
+}
+
 TEST(FramePacing, ThreeBuffersHoldTwoFinishedFramesAndTheThirdWaits) {
   Player player(settings(ControllerKind::kFixed));
   player.play(3, [](Extent) { return 5; });

@@ -248,5 +248,14 @@ TEST_F(Window, FollowsAController) {
   EXPECT_EQ(said(), "");
 }
 
+// Frozen, one frame on, beside truth and another method, with a focus, of which no front knows, and without it again.
+TEST_F(Window, FollowsAControllerThatChoosesTheMethod) {
+  write_script(
+      "10 key space\n14 key period\n18 key space\n22 key v\n26 key v\n30 key shift+v\n32 key shift+v\n"
+      "36 key g\n42 key g\n46 key c\n50 key shift+c\n");
+  EXPECT_EQ(run_window("--scene wheel --target-fps 60 --controller quality --frames 60 -q"), 0) << said();
+  EXPECT_EQ(said(), "");
+}
+
 }  // namespace
 }  // namespace quincunx::testing

@@ -6,9 +6,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "quincunx/content_statistics.h"
 #include "quincunx/extent.h"
 
 namespace quincunx::tools {
@@ -29,7 +31,8 @@ struct PacedFrame {
   std::string method = {};       // the picture was made with
   std::string fading_from = {};  // and with this, of which the picture has the rest; empty: nothing
   double weight = 1;             // of `method` in the picture, [0, 1]
-  double resolve_ms = 0;         // of busy_ms, what the passes took; 0: not known
+  double resolve_ms = 0;         // of busy_ms, what the method's passes took; 0: not known
+  std::optional<ContentStatistics> content = {};  // what the frame showed, as the controller was told
 };
 
 // A frame before which the controller has changed the method.

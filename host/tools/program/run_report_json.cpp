@@ -72,6 +72,13 @@ Json summary_json(const PacingRun& run) {
           {"method_changes_per_second", summary.method_changes_per_second}};
 }
 
+Json content_json(const std::optional<ContentStatistics>& content) {
+  if (!content) return nullptr;
+  return {{"moving", content->moving}, {"speed_px", content->speed_px}, {"apart", content->apart},
+          {"thin", content->thin},     {"light", content->light},       {"zoom", content->zoom},
+          {"cut", content->cut}};
+}
+
 Json pacing_json(const PacingRun& run) {
   Json frames = Json::array();
   for (const PacedFrame& frame : run.frames) {
@@ -89,7 +96,8 @@ Json pacing_json(const PacingRun& run) {
                       {"method", known(frame.method)},
                       {"fading_from", known(frame.fading_from)},
                       {"weight", frame.weight},
-                      {"resolve_ms", frame.resolve_ms > 0 ? Json(frame.resolve_ms) : Json(nullptr)}});
+                      {"resolve_ms", frame.resolve_ms > 0 ? Json(frame.resolve_ms) : Json(nullptr)},
+                      {"content", content_json(frame.content)}});
   }
   Json changes = Json::array();
   for (const MethodChange& change : run.method_changes) {
