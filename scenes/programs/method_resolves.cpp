@@ -29,7 +29,7 @@ ResolveSettings method_settings(const ResolveSettings& settings, const FrontMeth
 MethodSampling sampling_for(const QualityChoice& choice) {
   const Method method = choice.method.method;
   const Method from = choice.fading_from.value_or(choice.method).method;
-  const tools::Jitter jitter = std::max(jitter_for(method), jitter_for(from));
+  const tools::Jitter jitter = std::min(jitter_for(method), jitter_for(from));
   const auto weight = static_cast<float>(choice.weight);
   return {jitter, weight * lod_bias_for(method, jitter) + (1 - weight) * lod_bias_for(from, jitter)};
 }

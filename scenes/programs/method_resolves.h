@@ -22,7 +22,8 @@ namespace quincunx::scenes {
 // The settings with a method's own in their place, for a service among others that a controller chooses between.
 ResolveSettings method_settings(const ResolveSettings& settings, const FrontMethod& method);
 
-// How a frame is drawn for a choice: while it fades, with the jitter of the method that makes more of it.
+// How a frame is drawn for a choice: while it fades, with the jitter of the method that bears less of it, which would
+// flicker by the other's. One that accumulates keeps what it has.
 struct MethodSampling {
   tools::Jitter jitter = tools::Jitter::kNone;
   float lod_bias = 0;
