@@ -62,6 +62,7 @@ Status FocusFeed::begin(Renderer& renderer, std::int64_t index, const FrameView&
   const FrameView own = sequence_.at(index);
   frame.view.render = own.render;
   frame.view.jitter = own.jitter;
+  frame.view.lod_bias = own.lod_bias;
   frame.view.parity = {};
   frame.view.least_size = 0;
   frame.view.particles = {};  // with everything else

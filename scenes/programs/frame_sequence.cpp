@@ -19,6 +19,10 @@ std::int64_t jitter_index(const SequenceSettings& settings, std::int64_t index) 
   return pairs ? index / 2 : index;
 }
 
+float lod_bias_of(const TextureDetail& detail, Vec2 scale) {
+  return detail.lod_bias + detail.follows_scale * 0.5f * std::log2(scale.x * scale.y);
+}
+
 }  // namespace
 
 Result<FrameSequence> FrameSequence::create(const SequenceSettings& settings) {
@@ -54,7 +58,7 @@ FrameView FrameSequence::at(std::int64_t index, Extent render) {
   view.seconds = settings_.start_seconds + static_cast<double>(index) / settings_.fps;
   view.previous_seconds = settings_.start_seconds + static_cast<double>(index - 1) / settings_.fps;
   view.aspect = static_cast<float>(settings_.output.width) / static_cast<float>(settings_.output.height);
-  view.lod_bias = settings_.lod_bias;
+  view.lod_bias = lod_bias_of(settings_.detail, viewport_.ratio());
   return view;
 }
 

@@ -18,6 +18,14 @@ namespace quincunx::scenes {
 using tools::Jitter;
 using tools::jitter_of;
 
+// How much sharper textures are sampled than a pixel of one frame alone would bear.
+struct TextureDetail {
+  float lod_bias = 0;       // levels
+  float follows_scale = 0;  // times log2 of the frame's scale is added
+
+  friend auto operator<=>(const TextureDetail&, const TextureDetail&) = default;
+};
+
 struct SequenceSettings {
   Extent output;
   ScalePath scale_path;
@@ -27,7 +35,7 @@ struct SequenceSettings {
   std::int64_t frames = 1;
   double fps = 60;
   double start_seconds = 0;  // scene time of frame 0
-  float lod_bias = 0;
+  TextureDetail detail = {};
 };
 
 class FrameSequence {
@@ -40,9 +48,9 @@ class FrameSequence {
   Extent output() const { return settings_.output; }
 
   // From the next frame on.
-  void set_sampling(Jitter jitter, float lod_bias) {
+  void set_sampling(Jitter jitter, TextureDetail detail) {
     settings_.jitter = jitter;
-    settings_.lod_bias = lod_bias;
+    settings_.detail = detail;
   }
 
   // Frame `index` in [0, size()). Its previous_seconds is one frame earlier, also for frame 0.

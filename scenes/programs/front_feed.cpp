@@ -28,7 +28,7 @@ Result<SequenceSettings> sequence_of(const FrontFeed& feed, Method method) {
   sequence.frames = feed.warm_up + feed.frames;
   sequence.fps = feed.fps;
   sequence.start_seconds = feed.seconds - feed.warm_up / feed.fps;
-  sequence.lod_bias = lod_bias_for(method, sequence.jitter);
+  sequence.detail = texture_detail_for(method, sequence.jitter);
   return sequence;
 }
 

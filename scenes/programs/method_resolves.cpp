@@ -2,6 +2,7 @@
 #include "programs/method_resolves.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "programs/picture_options.h"
@@ -31,7 +32,10 @@ MethodSampling sampling_for(const QualityChoice& choice) {
   const Method from = choice.fading_from.value_or(choice.method).method;
   const tools::Jitter jitter = std::min(jitter_for(method), jitter_for(from));
   const auto weight = static_cast<float>(choice.weight);
-  return {jitter, weight * lod_bias_for(method, jitter) + (1 - weight) * lod_bias_for(from, jitter)};
+  const TextureDetail to = texture_detail_for(method, jitter), left = texture_detail_for(from, jitter);
+  return {.jitter = jitter,
+          .detail = {.lod_bias = std::lerp(left.lod_bias, to.lod_bias, weight),
+                     .follows_scale = std::lerp(left.follows_scale, to.follows_scale, weight)}};
 }
 
 Result<MethodResolves> MethodResolves::create(FrameSource& source, const ResolveSettings& settings,

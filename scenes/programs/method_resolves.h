@@ -26,7 +26,7 @@ ResolveSettings method_settings(const ResolveSettings& settings, const FrontMeth
 // flicker by the other's. One that accumulates keeps what it has.
 struct MethodSampling {
   tools::Jitter jitter = tools::Jitter::kNone;
-  float lod_bias = 0;
+  TextureDetail detail = {};
 };
 MethodSampling sampling_for(const QualityChoice& choice);
 

@@ -138,11 +138,13 @@ Jitter jitter_for(Method method) {
   return method == Method::kQuincunx ? Jitter::kQuincunx : Jitter::kNone;
 }
 
-// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012); more frames
-// bear more, but what moves is known from few.
-float lod_bias_for(Method method, Jitter jitter) {
+// Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012). All frames together hold
+// what the output's own pixels can show, and a level more that their sum filters (AMD FSR 2: log2(scale) - 1).
+TextureDetail texture_detail_for(Method method, Jitter jitter) {
   const bool several = method == Method::kQuincunx || method == Method::kTemporal;
-  return several && jitter != Jitter::kNone ? -0.5f : 0.0f;
+  if (!several || jitter == Jitter::kNone) return {};
+  if (jitter == Jitter::kHalton) return {.lod_bias = -1, .follows_scale = 1};
+  return {.lod_bias = -0.5f};
 }
 
 Jitter jitter_for(const PictureOptions& options) {
@@ -193,7 +195,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   settings.frames = options.frames;
   settings.fps = options.fps;
   settings.start_seconds = options.start;
-  settings.lod_bias = lod_bias_for(options.resolve.method, settings.jitter);
+  settings.detail = texture_detail_for(options.resolve.method, settings.jitter);
   return source;
 }
 

@@ -57,9 +57,9 @@ void add_machine_options(tools::CommandLine& app, PictureOptions& options);
 void print_scenes();
 void print_devices(const PictureOptions& options);
 
-// The jitter that suits a method, and the bias of texture detail that suits both.
+// The jitter that suits a method, and the texture detail that suits both.
 Jitter jitter_for(Method method);
-float lod_bias_for(Method method, Jitter jitter);
+TextureDetail texture_detail_for(Method method, Jitter jitter);
 
 Jitter jitter_for(const PictureOptions& options);
 

@@ -130,7 +130,7 @@ bool RenderSession::wants_resolved() const {
 FrameView RenderSession::begin_paced(std::int64_t index) {
   if (const auto choice = paced_->choice()) {
     const MethodSampling sampling = sampling_for(*choice);
-    source_->sequence().set_sampling(sampling.jitter, sampling.lod_bias);
+    source_->sequence().set_sampling(sampling.jitter, sampling.detail);
   }
   choices_.push_back(paced_->choice());
   FrameView view = source_->sequence().at(index);

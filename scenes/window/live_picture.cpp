@@ -157,7 +157,7 @@ FrameView LivePicture::view_of(std::int64_t index, Extent chosen,
   }
   if (choice_) {
     const MethodSampling sampling = sampling_for(*choice_);
-    sequence_->set_sampling(sampling.jitter, sampling.lod_bias);
+    sequence_->set_sampling(sampling.jitter, sampling.detail);
   }
   Vec2 scale;
   switch (resolution_.mode) {

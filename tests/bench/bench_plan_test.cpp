@@ -119,7 +119,7 @@ TEST(Plan, KeepsTheGivenMethodsAndSortsScales) {
   EXPECT_EQ(plan->frame_method, 1u);  // the default is not there: the last
   const auto sequence = sequence_for(plan.value(), 0.5, plan->methods[0]);
   EXPECT_EQ(sequence.jitter, scenes::Jitter::kQuincunx);
-  EXPECT_EQ(sequence.lod_bias, -0.5f);
+  EXPECT_EQ(sequence.detail, (scenes::TextureDetail{.lod_bias = -0.5f}));
 }
 
 TEST(Plan, ShortNamesStandForTheUsualForm) {

@@ -48,6 +48,18 @@ TEST(FrameSequence, AViewportOfTheLadderAndTheAspectOfThePicture) {
   EXPECT_EQ(FrameSequence::create(settings("ramp:0.5,1.5")).value().target(), (Extent{1920, 1080}));
 }
 
+TEST(FrameSequence, TextureDetailFollowsTheScaleOfEachFrame) {
+  SequenceSettings fixed = settings(), following = settings();
+  fixed.detail = {.lod_bias = -0.5f};
+  following.detail = {.lod_bias = -1, .follows_scale = 1};
+  FrameSequence same = FrameSequence::create(fixed).value(), other = FrameSequence::create(following).value();
+  for (const Extent render : {Extent{640, 360}, {1280, 720}, {1280, 180}}) {
+    EXPECT_EQ(same.at(0, render).lod_bias, -0.5f);
+    const float area = static_cast<float>(render.area()) / (1280.0f * 720.0f);
+    EXPECT_FLOAT_EQ(other.at(0, render).lod_bias, std::log2(std::sqrt(area)) - 1);
+  }
+}
+
 TEST(FrameSequence, AnotherViewportThanThePaths) {
   FrameSequence sequence = FrameSequence::create(settings()).value();
   const FrameView view = sequence.at(30, {1001, 555});

@@ -68,7 +68,7 @@ Played play(const FrontMethod& from, const FrontMethod& to, bool fades) {
   for (int index = 0; index < kFrames; ++index) {
     const QualityChoice choice = choice_at(index, from, to, fades);
     const MethodSampling sampling = sampling_for(choice);
-    frames.sequence().set_sampling(sampling.jitter, sampling.lod_bias);
+    frames.sequence().set_sampling(sampling.jitter, sampling.detail);
     EXPECT_TRUE(frames.draw(index, frames.sequence().at(index, choice.render)).ok());
     const auto inputs = frames.acquire();
     EXPECT_TRUE(inputs.ok()) << inputs.status().message();

@@ -88,7 +88,7 @@ Result<scenes::SequenceSettings> sequence_of(const TargetFramesSettings& setting
   sequence.jitter = settings.method.jitter;
   sequence.frames = settings.warm_up + settings.frames;
   sequence.fps = settings.fps;
-  sequence.lod_bias = settings.method.lod_bias;
+  sequence.detail = settings.method.detail;
   return sequence;
 }
 

@@ -18,7 +18,7 @@ std::vector<BenchMethod> all_methods() {
     tools::choose(method.resolve, choice);
     if (tools::method_name(method.resolve) != name) continue;
     method.jitter = scenes::jitter_for(choice.method);
-    method.lod_bias = scenes::lod_bias_for(choice.method, method.jitter);
+    method.detail = scenes::texture_detail_for(choice.method, method.jitter);
     method.accumulates = choice.method == Method::kTemporal;
     method.is_default = name == usual;
     methods.push_back(std::move(method));

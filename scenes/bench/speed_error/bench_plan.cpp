@@ -235,7 +235,7 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);
   sequence.fps = conditions.fps;
   sequence.start_seconds = seconds_of(conditions, first_frame_for(conditions, method));
-  sequence.lod_bias = method.lod_bias;
+  sequence.detail = method.detail;
   return sequence;
 }
 

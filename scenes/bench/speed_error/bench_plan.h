@@ -20,7 +20,7 @@ struct BenchMethod {
   std::string summary;
   ResolveSettings resolve;
   scenes::Jitter jitter = scenes::Jitter::kNone;  // of the frames that it gets
-  float lod_bias = 0;
+  scenes::TextureDetail detail = {};
   bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
   bool focuses = false;      // its frames have the focus of the conditions
   bool is_default = false;   // what the programs take where no --method is given

@@ -109,7 +109,8 @@ Result<BenchRun> run_bench(const BenchPlan& plan, const BenchOptions& options) {
   result.date = tools::date_now();
   result.conditions = plan.conditions;
   for (const BenchMethod& method : plan.methods) {
-    result.methods.push_back({method.name, method.summary, tools::name_of(method.jitter), method.lod_bias});
+    result.methods.push_back(
+        {method.name, method.summary, tools::name_of(method.jitter), method.detail.lod_bias});
   }
   result.machine.load_before = load_of_last_minute();
   if (Status status = runner.run(); !status.ok()) return status;

@@ -52,11 +52,12 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   if (!copy.ok()) return copy.status();
   copy_.emplace(std::move(copy).value());
 
-  using Feeding = std::tuple<Shading, scenes::Jitter, float, bool, PixelFormat, bool, std::string>;
+  using Feeding =
+      std::tuple<Shading, scenes::Jitter, scenes::TextureDetail, bool, PixelFormat, bool, std::string>;
   std::map<Feeding, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.resolve.shading, method.jitter, method.lod_bias, method.accumulates, method.resolve.colour,
+    feeds[{method.resolve.shading, method.jitter, method.detail, method.accumulates, method.resolve.colour,
            method.focuses, method.dual}]
         .push_back(i);
   }
