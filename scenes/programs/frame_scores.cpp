@@ -37,27 +37,45 @@ Result<std::vector<Vec2>> FrameScores::motion_of(Renderer& renderer, FrameView v
   return velocity_of(gl::read_targets(targets, options_.output));
 }
 
-Status FrameScores::add(FrameSource& source, std::int64_t index, const FrameView& view,
-                        std::vector<float> resolved) {
+Result<std::vector<float>> FrameScores::truth_at(FrameSource& source, double seconds) const {
   const TruthSettings settings = {.output = options_.output,
                                   .samples = options_.score,
                                   .shutter_seconds = options_.resolve.blur.shutter / options_.fps};
-  auto truth = render_truth(source.renderer(), settings, view.seconds);
+  return render_truth(source.renderer(), settings, seconds);
+}
+
+tools::MeasuredPicture FrameScores::measured_truth(std::vector<float> truth, float exposure) const {
+  if (options_.resolve.colour == PixelFormat::kRGBA8)
+    return {options_.output, tools::display_light(truth, options_.resolve.tone_map, exposure)};
+  return {options_.output, exposed(std::move(truth), exposure)};
+}
+
+Status FrameScores::add_repeat(FrameSource& source, double seconds) {
+  auto truth = truth_at(source, seconds);
+  if (!truth.ok()) return truth.status();
+  return queue_.push([this, exposure = source.exposure(), truth = std::move(truth).value()] {
+    scored_.repeat(measured_truth(truth, exposure));
+    return Status();
+  });
+}
+
+Status FrameScores::add(FrameSource& source, std::int64_t index, const FrameView& view,
+                        std::vector<float> resolved, int repeats) {
+  for (int refresh = 1; refresh <= repeats; ++refresh) {
+    const double seconds = view.seconds + (refresh - 1) / options_.fps;
+    if (Status status = add_repeat(source, seconds); !status.ok()) return status;
+  }
+  auto truth = truth_at(source, view.seconds);
   if (!truth.ok()) return truth.status();
   Result<std::vector<Vec2>> motion = std::vector<Vec2>();
   if (scored_.keeps(index)) motion = motion_of(source.renderer(), view);
   if (!motion.ok()) return motion.status();
-  // Colour of 8 bits went through exposure and tone map before it was resolved.
-  const bool displayed = options_.resolve.colour == PixelFormat::kRGBA8;
-  return queue_.push([this, displayed, index, exposure = source.exposure(),
-                      velocity = std::move(motion).value(), resolved = std::move(resolved),
-                      truth = std::move(truth).value()] {
-    const auto lit = [&](const std::vector<float>& rgba) { return exposed(rgba, exposure); };
-    return scored_.add(
-        index, {options_.output, displayed ? resolved : lit(resolved)},
-        {options_.output,
-         displayed ? tools::display_light(truth, options_.resolve.tone_map, exposure) : lit(truth)},
-        {options_.output, velocity});
+  return queue_.push([this, index, exposure = source.exposure(), velocity = std::move(motion).value(),
+                      resolved = std::move(resolved), truth = std::move(truth).value()] {
+    // Colour of 8 bits went through exposure before it was resolved.
+    const bool displayed = options_.resolve.colour == PixelFormat::kRGBA8;
+    return scored_.add(index, {options_.output, displayed ? resolved : exposed(resolved, exposure)},
+                       measured_truth(truth, exposure), {options_.output, velocity});
   });
 }
 

@@ -19,14 +19,20 @@ class FrameScores {
 
   // Draws the truth of a frame, and of those whose pictures are kept the motion, as the run itself may have drawn none;
   // measures on a thread of its own. In ascending order, on the thread of the GL context. `resolved`: linear RGBA of
-  // the output's extent. Errors: of Renderer::draw, and of an earlier frame.
-  Status add(FrameSource& source, std::int64_t index, const FrameView& view, std::vector<float> resolved);
+  // the output's extent. `repeats`: for how many further refreshes of 1/fps the frame before was shown; it is measured
+  // against the truth of each. Errors: of Renderer::draw, and of an earlier frame.
+  Status add(FrameSource& source, std::int64_t index, const FrameView& view, std::vector<float> resolved,
+             int repeats = 0);
   Status finish();
 
   const std::vector<tools::ScoreRow>& rows() const { return scored_.rows(); }   // after finish()
   const tools::ReportPictures& pictures() const { return scored_.pictures(); }  // after finish()
 
  private:
+  Status add_repeat(FrameSource& source, double seconds);
+  Result<std::vector<float>> truth_at(FrameSource& source, double seconds) const;
+  // Exposed and, where colour is of 8 bits and was so before it was resolved, tone mapped.
+  tools::MeasuredPicture measured_truth(std::vector<float> truth, float exposure) const;
   Result<std::vector<Vec2>> motion_of(Renderer& renderer,
                                       FrameView view) const;  // uv, of the output's extent
 

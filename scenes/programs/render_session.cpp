@@ -208,7 +208,9 @@ Status RenderSession::deliver(std::int64_t index) {
 Status RenderSession::score_frame() {
   auto resolved = download_resolved();
   if (!resolved.ok()) return resolved.status();
-  return scores_->add(*source_, source_->oldest().index, source_->oldest().view, std::move(resolved).value());
+  const int repeats = paced_ ? paced_->pacing().run().frames.back().missed : 0;
+  return scores_->add(*source_, source_->oldest().index, source_->oldest().view, std::move(resolved).value(),
+                      repeats);
 }
 
 Status RenderSession::write_frame(std::int64_t index) {

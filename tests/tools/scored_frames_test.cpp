@@ -48,6 +48,23 @@ TEST(ScoredFrames, FlickerIsKnownAfterTheFrameBefore) {
   EXPECT_EQ(scored.pictures().kinds.back().name, "ghosts");
 }
 
+TEST(ScoredFrames, ARepeatedFrameIsMeasuredAgainstTheTruthOfEachRefresh) {
+  ScoredFrames scored(std::vector<std::int64_t>{0, 1}, false);
+  scored.repeat(flat(1));
+  EXPECT_TRUE(scored.rows().empty()) << "nothing was shown before the first frame";
+  ASSERT_TRUE(scored.add(0, flat(1), flat(1), {}).ok());
+  scored.repeat(flat(1));
+  scored.repeat(flat(2));
+  ASSERT_TRUE(scored.add(1, flat(2), flat(2), {}).ok());
+  const std::vector<double>& repeated = scored.rows()[0].repeated_flip;
+  ASSERT_EQ(repeated.size(), 2u);
+  EXPECT_EQ(repeated[0], 0) << "the truth rests";
+  EXPECT_GT(repeated[1], 0) << "it went on";
+  const ShownError shown = shown_error(scored.rows());
+  EXPECT_EQ(shown.refreshes, 4);
+  EXPECT_EQ(shown.flip, repeated[1] / 4);
+}
+
 TEST(ScoredFrames, SmallPicturesAreRefusedByTheOptionsName) {
   EXPECT_TRUE(ScoredFrames::check({11, 11}, "--score").ok());
   EXPECT_EQ(ScoredFrames::check({640, 10}, "--score").message(),

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "tools/image/flip.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -52,6 +54,13 @@ Status ScoredFrames::add(std::int64_t frame, MeasuredPicture picture, MeasuredPi
   }
   before_ = std::move(now);
   return {};
+}
+
+void ScoredFrames::repeat(const MeasuredPicture& truth) {
+  if (!before_) return;
+  const std::vector<float> map =
+      flip_map(truth.extent(), before_->picture.tone_mapped(), truth.tone_mapped());
+  rows_.back().repeated_flip.push_back(flip_mean(map));
 }
 
 }  // namespace quincunx::tools

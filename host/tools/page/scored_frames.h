@@ -33,6 +33,9 @@ class ScoredFrames {
   // the frame before it. Errors: of add_frame().
   Status add(std::int64_t frame, MeasuredPicture picture, MeasuredPicture truth, const MotionField& motion);
 
+  // The frame added last was shown for one more refresh, whose truth this is; nothing where there is none.
+  void repeat(const MeasuredPicture& truth);
+
   const std::vector<ScoreRow>& rows() const { return rows_; }
   const ReportPictures& pictures() const { return pictures_; }
 

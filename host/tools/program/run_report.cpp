@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -137,6 +138,13 @@ void add_scores(std::string& text, const std::vector<ScoreRow>& rows) {
     add_score(text, fmt::format("{}", row.index), row);
   }
   add_score(text, "mean", mean_of(rows));
+  const auto frames = static_cast<std::int64_t>(rows.size());
+  const ShownError error = shown_error(rows);
+  if (error.refreshes > frames) {
+    add_line(text, "as shown",
+             fmt::format("mean FLIP {:.4f} over {} refreshes, {} of which repeat a frame", error.flip,
+                         error.refreshes, error.refreshes - frames));
+  }
 }
 
 void add_list(std::string& text, const std::string& heading, const std::vector<std::string>& lines) {
@@ -185,6 +193,16 @@ ScoreRow mean_of(std::span<const ScoreRow> rows) {
   }
   if (with_flicker > 0) mean.flicker = flicker / with_flicker;
   return mean;
+}
+
+ShownError shown_error(std::span<const ScoreRow> rows) {
+  ShownError shown;
+  for (const ScoreRow& row : rows) {
+    shown.refreshes += 1 + static_cast<std::int64_t>(row.repeated_flip.size());
+    shown.flip += std::accumulate(row.repeated_flip.begin(), row.repeated_flip.end(), row.flip);
+  }
+  shown.flip /= static_cast<double>(std::max<std::int64_t>(shown.refreshes, 1));
+  return shown;
 }
 
 PassStatistics statistics_of(std::string name, std::string clock, std::span<const double> samples_ms,

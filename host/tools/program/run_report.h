@@ -56,10 +56,19 @@ struct ScoreRow {
   double flip = 0;
   double error_p99 = 0;
   double flicker = -1;  // against the frame before; -1: that one has no truth
+  // Of a paced run: FLIP at each further refresh that showed it, against the truth of that refresh's time.
+  std::vector<double> repeated_flip = {};
 };
 
 // The mean of each column over the rows that know it; -1 for a flicker that none knows.
 ScoreRow mean_of(std::span<const ScoreRow> rows);
+
+// What a display showed: the mean FLIP over its refreshes, frames that were shown again included.
+struct ShownError {
+  std::int64_t refreshes = 0;
+  double flip = 0;
+};
+ShownError shown_error(std::span<const ScoreRow> rows);
 
 // How long the threads of one kind of work were at it, summed over them.
 struct BusyTime {

@@ -124,9 +124,13 @@ Json scores_json(const std::vector<ScoreRow>& rows) {
   for (const ScoreRow& row : rows) {
     Json json = {{"index", row.index}};
     json.update(score_json(row));
+    json["repeated_flip"] = row.repeated_flip;
     frames.push_back(std::move(json));
   }
-  return {{"mean", rows.empty() ? Json(nullptr) : score_json(mean_of(rows))}, {"frames", frames}};
+  const ShownError shown = shown_error(rows);
+  return {{"mean", rows.empty() ? Json(nullptr) : score_json(mean_of(rows))},
+          {"shown", {{"refreshes", shown.refreshes}, {"flip", shown.flip}}},
+          {"frames", frames}};
 }
 
 }  // namespace
