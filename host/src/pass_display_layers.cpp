@@ -28,12 +28,13 @@ class DisplayLayersPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const TemporalDisplayParams params = temporal_display_params(frame, shape(), picture());
+    const Resource shown = shown_history_of(facts());
+    const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     const LayerPastParams now =
         layer_past_params(frame.current, frame.output, layout_of(frame[Resource::kDepth]), {});
     bind(params, now, frame[Resource::kDepth], frame[Resource::kTileReprojection],
          frame[Resource::kLayerTiles], frame[Resource::kHistory], frame[Resource::kNearHistory],
-         frame[Resource::kLayerStates], frame[picture()]);
+         frame[Resource::kLayerStates], frame[shown]);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -55,7 +56,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
                 {Resource::kHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kNearHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});
 }

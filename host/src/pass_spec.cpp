@@ -141,6 +141,8 @@ const char* name_of(Resource resource) {
       return "history alpha";
     case Resource::kPreviousHistoryAlpha:
       return "history alpha of the previous frame";
+    case Resource::kUnrefined:
+      return "unrefined";
     case Resource::kUnsharpened:
       return "unsharpened";
     case Resource::kResolved:

@@ -78,6 +78,7 @@ enum class Resource : std::uint8_t {
   kPreviousLayerStates,
   kHistoryAlpha,
   kPreviousHistoryAlpha,
+  kUnrefined,
   kUnsharpened,
   kResolved,
   kStreaks,
@@ -103,6 +104,11 @@ inline Resource filled_velocity_of(const PlanFacts& facts) {
 // The picture that the method makes, before sharpening.
 inline Resource picture_of(const PlanFacts& facts) {
   return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+}
+
+// The picture of the history, before the preset `quality` refines it.
+inline Resource shown_history_of(const PlanFacts& facts) {
+  return facts.refines() ? Resource::kUnrefined : picture_of(facts);
 }
 
 // The picture with all that is made of it, in the output's size, and the one that is shown.

@@ -15,9 +15,10 @@ class TemporalDisplayPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const TemporalDisplayParams params = temporal_display_params(frame, shape(), picture());
+    const Resource shown = shown_history_of(facts());
+    const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
-         view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[picture()]);
+         view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown]);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -36,7 +37,7 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
       .reason = "the method: the history's picture",
       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
       .make = make_pass<TemporalDisplayPass>,
       .frames = Frames::kSparse};
   if (alpha)

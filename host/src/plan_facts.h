@@ -55,6 +55,9 @@ struct PlanFacts {
   bool has_layers() const {  // a second layer of history where surfaces move apart
     return displays_history() && reprojects() && settings.temporal.preset != TemporalPreset::kFast;
   }
+  bool refines() const {  // the picture of history: sharpened, and smoothed along edges
+    return accumulates() && shows_picture() && settings.temporal.preset == TemporalPreset::kQuality;
+  }
   bool resizes_history() const { return is_dual() && accumulates(); }
   bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }

@@ -42,6 +42,7 @@ check("" "AxisTables.*" "Clear*"
 # inlining.
 check("--build-options;-cl-opt-disable -D inline=inline -D IN_REGISTERS="
   "*MotionBlur.ATight*" "*Sharpen.ATight*" "*Sharpen.ANonFinite*"
+  "*TemporalRefine.ATight*" "*TemporalRefine.ANonFinite*"
   "*Overlay.ATight*/reactive_*" "*Overlay.Poison*/reactive_buffer_RGBA16F"
   "*LayFocus.TightImages*" "*LayFocus.ANonFinite*"
   "*Checkerboard.ATight*/camera_buffer_*" "*Checkerboard.ATight*/moving_velocity_reactive_buffer_*"

@@ -58,10 +58,11 @@ INSTANTIATE_TEST_SUITE_P(
                       "scale_noise_offset", "resolve_quincunx", "reproject", "resolve_reprojected",
                       "layer_records", "advect_records", "layer_split", "temporal_tiles", "temporal_light",
                       "resolve_temporal", "resolve_layers", "temporal_display", "display_layers",
-                      "motion_tiles", "motion_neighbours", "motion_blur", "sharpen", "lay_focus", "present",
-                      "resolve_checkerboard", "overlay_particles", "velocity_from_depth", "undilate_velocity",
-                      "far_velocity", "far_surroundings", "far_fit", "far_match", "resize_history",
-                      "resize_tiles", "resize_layers", "resize_records", "measure_content", "cross_fade"),
+                      "temporal_refine", "motion_tiles", "motion_neighbours", "motion_blur", "sharpen",
+                      "lay_focus", "present", "resolve_checkerboard", "overlay_particles",
+                      "velocity_from_depth", "undilate_velocity", "far_velocity", "far_surroundings",
+                      "far_fit", "far_match", "resize_history", "resize_tiles", "resize_layers",
+                      "resize_records", "measure_content", "cross_fade"),
     [](const auto& instance) { return instance.param; });
 
 TEST(Variants, EveryEmbeddedKernelHasRows) {

@@ -56,6 +56,7 @@ std::vector<TuneCase> tune_cases() {
   cases[5].resolve.blur.shutter = 0.5f;
   cases[6].resolve.quincunx.form = TwoFrameForm::kReprojected;
   cases[7].only_camera_moves = true;
+  cases[8].resolve.temporal.preset = TemporalPreset::kQuality;
   cases[8].resolve.far = FarMotion::kEvidence;
   cases[8].resolve.drawn_velocity = DrawnVelocity::kDilated;  // it is not, but that costs about the same
   cases[9].resolve.temporal.preset = TemporalPreset::kFast;

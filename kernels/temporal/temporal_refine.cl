@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// temporal_refine: the picture of a history sharpened, and smoothed along its edges. It is not fed back.
+//   t      a channel in tone space, c / (1 + max(red, green, blue, 0))
+//   mean   of the 3x3 pixels
+//   D_n, D_t  second derivatives of t across and along the edge that luma of tone has around the pixel
+//   K      how much of an edge it is, 0 to 1: the coherence of luma's gradients
+//   t <- clamp(t + .03 (t - mean) + K (.21 D_t - .03 D_n), range of the 3x3 pixels)
+//   A pixel of which no channel moves keeps its colour bit by bit.
+//
+//   params  in   extents, layouts
+//   source  in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer. NaN counts as 0, what is larger
+//                than 65504 as that
+//   output  out  as source, alpha unchanged; another buffer
+// Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
+// Beyond the picture its outermost pixels repeat.
+// Source: the structure tensor after Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987; the
+// three weights were found by least squares against truth (docs/temporal.md).
+// Reference: tests/reference/temporal_refine.cpp
+#include "temporal/tone_rows.h"
+
+#if SOURCE_FORMAT != OUTPUT_FORMAT
+#error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
+#endif
+
+#define SHARPENING 0.03f      // of the difference from the mean; more would show the rest of a fault
+#define ALONG 0.21f           // of the second derivative along an edge
+#define ACROSS (-0.03f)       // of that across it
+#define GRADIENT_FLOOR 1e-3f  // squared tone: much weaker gradients make no edge
+
+// Of eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
+typedef struct EightEdges {
+  float8 cosine, sine, coherence;
+} EightEdges;
+
+// The sum over 3x3 texels, weighted (1 2 1) by (1 2 1) / 16.
+static inline float8 around_pixels(float16 above, float16 same, float16 below) {
+  const float16 column = above + 2.0f * same + below;
+  return (on_the_left(column) + 2.0f * at_pixels(column) + on_the_right(column)) * 0.0625f;
+}
+
+static inline float16 slope_x(float16 luma) {
+  return 0.5f * (to_the_right(luma) - to_the_left(luma));
+}
+
+// Of the five rows of luma around the pixels.
+static inline EightEdges edges_of(const ToneRow* rows) {
+  const float16 x0 = slope_x(rows[1].luma), x1 = slope_x(rows[2].luma), x2 = slope_x(rows[3].luma);
+  const float16 y0 = 0.5f * (rows[2].luma - rows[0].luma), y1 = 0.5f * (rows[3].luma - rows[1].luma);
+  const float16 y2 = 0.5f * (rows[4].luma - rows[2].luma);
+  const float8 xx = around_pixels(x0 * x0, x1 * x1, x2 * x2);
+  const float8 yy = around_pixels(y0 * y0, y1 * y1, y2 * y2);
+  const float8 xy = around_pixels(x0 * y0, x1 * y1, x2 * y2);
+  const float8 scale = 1.0f / (xx + yy + GRADIENT_FLOOR);
+  const float8 cosine = (xx - yy) * scale, sine = 2.0f * xy * scale;
+  const EightEdges edges = {cosine, sine, sqrt(cosine * cosine + sine * sine)};
+  return edges;
+}
+
+// One channel of the pixels.
+static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges) {
+  const float16 beside = above + below, apart = below - above, column = beside + same;
+  const float16 low = min(min(above, below), same), high = max(max(above, below), same);
+  const float8 own = at_pixels(same);
+  const float8 mean = (on_the_left(column) + at_pixels(column) + on_the_right(column)) * (1.0f / 9.0f);
+  const float8 xx = on_the_left(same) + on_the_right(same) - 2.0f * own;
+  const float8 yy = at_pixels(beside) - 2.0f * own;
+  const float8 xy = 0.25f * (on_the_right(apart) - on_the_left(apart));
+  // K (D_n + D_t) and K (D_n - D_t).
+  const float8 sum = edges.coherence * (xx + yy);
+  const float8 difference = edges.cosine * (xx - yy) + 2.0f * edges.sine * xy;
+  const float8 moved =
+      own + SHARPENING * (own - mean) + 0.5f * (ALONG + ACROSS) * sum - 0.5f * (ALONG - ACROSS) * difference;
+  const float8 least = min(min(on_the_left(low), on_the_right(low)), at_pixels(low));
+  const float8 most = max(max(on_the_left(high), on_the_right(high)), at_pixels(high));
+  return min(max(moved, least), most);
+}
+
+// Light of eight values in tone space; of those that stay, as it was.
+static inline float8 light_of(float8 tone, float8 scale, float8 before, int8 stays) {
+  return select(min(max(tone * scale, -INFINITY_STAND_IN), INFINITY_STAND_IN), before, stays);
+}
+
+// The first `count` pixels of a row.
+static inline void store_refined(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
+                                 int x, int y, int count, float8 red, float8 green, float8 blue) {
+  float reds[8], greens[8], blues[8];
+  vstore8(red, 0, reds);
+  vstore8(green, 0, greens);
+  vstore8(blue, 0, blues);
+  for (int i = 0; i < count; ++i) {
+    const float alpha = load_resolved(source, params->source, x + i, y).w;
+    store_output(output, params->output, x + i, y, (float4)(reds[i], greens[i], blues[i], alpha));
+  }
+}
+
+// Of the pixels from (x, y) on, with the five rows around theirs.
+static inline void refine_row(const ToneRow* rows, LightRow light, RESOLVED_TEXELS source,
+                              OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
+  const EightEdges edges = edges_of(rows);
+  const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges);
+  const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges);
+  const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges);
+  const int8 stays = (red == at_pixels(rows[2].red)) & (green == at_pixels(rows[2].green)) &
+                     (blue == at_pixels(rows[2].blue));
+  const float8 brightest = max(max(max(red, green), blue), 0.0f);
+  const float8 scale = 1.0f / max(1.0f - brightest, DARKEST_REFINED);
+  store_refined(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
+                light_of(red, scale, at_pixels(light.red), stays),
+                light_of(green, scale, at_pixels(light.green), stays),
+                light_of(blue, scale, at_pixels(light.blue), stays));
+}
+
+__kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output) {
+  const int top = get_global_id(1) * kRefineBlock;
+  if (top >= params.height) return;
+
+  const int stride = (int)get_global_size(0) * kRefineBlock;
+  const int bottom = min(top + kRefineBlock, params.height);
+  for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
+    ToneRow rows[5];
+    LightRow own = light_row(source, &params, x, top), next = light_row(source, &params, x, top + 1);
+    rows[1] = tone_of(light_row(source, &params, x, top - 2));
+    rows[2] = tone_of(light_row(source, &params, x, top - 1));
+    rows[3] = tone_of(own);
+    rows[4] = tone_of(next);
+    for (int y = top; y < bottom; ++y) {
+      const LightRow after = light_row(source, &params, x, y + 2);
+      for (int i = 0; i < 4; ++i)
+        rows[i] = rows[i + 1];
+      rows[4] = tone_of(after);
+      refine_row(rows, own, source, output, &params, x, y);
+      own = next;
+      next = after;
+    }
+  }
+}

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT
+// temporal_refine against its reference. The bound follows from running error analysis beside the reference.
+#include "../reference/temporal_refine.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "expected.h"
+#include "kernel_fixture.h"
+#include "pass_rig.h"
+
+namespace quincunx {
+namespace {
+
+using testing::PassRig;
+using testing::Pattern;
+using testing::Pixel;
+using testing::Rig;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::size_t index_of(Extent extent, int x, int y) {
+  return static_cast<std::size_t>(std::clamp(y, 0, extent.height - 1) * extent.width +
+                                  std::clamp(x, 0, extent.width - 1));
+}
+
+class TemporalRefine : public ::testing::TestWithParam<PixelFormat> {
+ protected:
+  std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent, double outside = 1e30,
+                                 bool tight = false) {
+    Rig rig;
+    const ResolveSettings settings = {
+        .method = Method::kTemporal, .resolved = GetParam(), .temporal = {TemporalPreset::kQuality}};
+    PassRig pass({}, settings, "temporal_refine");
+    const ImageView source = rig.image(GetParam(), Storage::kBuffer, extent, pixels, outside, tight);
+    const ImageView view = rig.output(GetParam(), extent);
+    pass.run({}, {}, extent, {}, {{Resource::kUnrefined, source}, {Resource::kResolved, view}});
+    return rig.bytes(view, extent);
+  }
+
+  std::vector<Pixel> refined(const std::vector<Pixel>& pixels, Extent extent) {
+    return testing::decode(GetParam(), run(pixels, extent));
+  }
+
+  reference::Picture stored(const std::vector<Pixel>& pixels, Extent extent) const {
+    reference::Picture picture{extent.width, extent.height, pixels, {}, 0};
+    for (Pixel& pixel : picture.pixels) {
+      for (double& value : pixel)
+        value = testing::stored_value(GetParam(), value);
+    }
+    return picture;
+  }
+
+  void compare(const std::vector<Pixel>& pixels, Extent extent, const std::string& what) {
+    const reference::Picture picture = stored(pixels, extent);
+    const auto expected = testing::expected_pixels(
+        extent.width, extent.height,
+        [&]<typename Real>(Real, int x, int y) { return reference::temporal_refine<Real>(picture, x, y); });
+    const std::vector<Pixel> actual = refined(pixels, extent);
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+      ASSERT_FALSE(expected[i].undecided);
+      for (std::size_t c = 0; c < 4; ++c) {
+        testing::expect_near(expected[i].value[c], expected[i].bound[c], actual[i][c],
+                             fmt::format("{}: value {} of pixel {}", what, c, i), GetParam());
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+};
+
+TEST_P(TemporalRefine, MatchesTheReferenceOnEveryPatternAndSize) {
+  for (const Extent extent : {Extent{1, 1}, {7, 5}, {8, 8}, {9, 17}, {67, 41}}) {
+    for (const Pattern pattern : testing::all_patterns()) {
+      const std::string what =
+          fmt::format("{} {}x{}", testing::name_of(pattern), extent.width, extent.height);
+      std::vector<Pixel> pixels = testing::pattern_pixels(pattern, extent, 5);
+      // The alpha of what is not finite is not this pass's to clean.
+      for (Pixel& pixel : pixels)
+        pixel[3] = std::isfinite(pixel[3]) ? pixel[3] : 1;
+      compare(pixels, extent, what);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+TEST_P(TemporalRefine, ConstantsAndAlphaKeepEveryBit) {
+  for (const Extent extent : {Extent{1, 1}, {7, 5}, {65, 33}}) {
+    for (const double value : {0.0, .3, -2.0, 1e-7, 65504.0}) {
+      const std::vector<Pixel> flat(static_cast<std::size_t>(extent.area()),
+                                    Pixel{value, value, value / 3, .7});
+      EXPECT_EQ(run(flat, extent), testing::encode(GetParam(), flat)) << value;
+    }
+    const std::vector<Pixel> noise = testing::pattern_pixels(Pattern::kNoise, extent, 3);
+    const reference::Picture before = stored(noise, extent);
+    const std::vector<Pixel> after = refined(noise, extent);
+    for (std::size_t i = 0; i < after.size(); ++i)
+      ASSERT_EQ(after[i][3], before.pixels[i][3]) << "alpha of pixel " << i;
+  }
+}
+
+// Stairs of a slanted edge, half a pixel high and wide, get flatter; a level edge that is blurred gets steeper.
+TEST_P(TemporalRefine, SlantedEdgesAreSmoothedAndBlurredOnesSharpened) {
+  const Extent extent{24, 24};
+  const auto picture_of = [&](auto light) {
+    std::vector<Pixel> pixels;
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        const double value = light(x, y);
+        pixels.push_back({value, value, value, 1});
+      }
+    }
+    return pixels;
+  };
+  // What is left of the stairs: how far the pixels of a slanted line are from their mean.
+  const auto stairs = [&](const std::vector<Pixel>& pixels) {
+    double sum = 0;
+    for (int y = 6; y < 16; y += 2)
+      sum += std::abs(pixels[index_of(extent, y + 2, y)][0] - pixels[index_of(extent, y + 3, y + 1)][0]);
+    return sum;
+  };
+  const auto jagged = picture_of([](int x, int y) { return x - y / 2 * 2 > 2 ? .8 : .1; });
+  EXPECT_LT(stairs(refined(jagged, extent)), .9 * stairs(jagged));
+
+  const auto blurred = picture_of([](int x, int) { return .1 + .7 * std::clamp((x - 9) / 6.0, 0.0, 1.0); });
+  const std::vector<Pixel> sharp = refined(blurred, extent);
+  EXPECT_LT(sharp[index_of(extent, 9, 12)][0], blurred[index_of(extent, 9, 12)][0] + 1e-3);
+  EXPECT_GT(sharp[index_of(extent, 14, 12)][0], blurred[index_of(extent, 14, 12)][0]);
+}
+
+TEST_P(TemporalRefine, ANonFinitePixelCountsAsItsStandInAndReachesTwoPixelsFar) {
+  const Extent extent{22, 9};
+  const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 9);
+  const std::vector<Pixel> without = refined(pixels, extent);
+  for (const auto& [bad, stand_in] : {std::pair{kNan, 0.0}, {kInfinity, 65504.0}, {-kInfinity, -65504.0}}) {
+    const std::size_t place = index_of(extent, 12, 4);
+    std::vector<Pixel> stood = pixels;
+    std::vector<Pixel> spoilt = pixels;
+    stood[place] = {stand_in, stand_in, stand_in, 1};
+    spoilt[place] = {bad, bad, bad, 1};
+    const std::vector<Pixel> with = refined(spoilt, extent);
+    EXPECT_EQ(with, refined(stood, extent)) << bad;
+    for (int y = 0; y < extent.height; ++y) {
+      for (int x = 0; x < extent.width; ++x) {
+        if (std::max(std::abs(x - 12), std::abs(y - 4)) <= 2) continue;
+        ASSERT_EQ(with[index_of(extent, x, y)], without[index_of(extent, x, y)]) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST_P(TemporalRefine, PoisonOutsideThePictureChangesNoBit) {
+  for (const Extent extent : {Extent{1, 1}, {5, 3}, {33, 21}}) {
+    const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
+    const std::vector<unsigned char> clean = run(pixels, extent, 0);
+    for (const double poison : {kNan, kInfinity, 1e30})
+      EXPECT_EQ(clean, run(pixels, extent, poison)) << poison;
+  }
+}
+
+// Under a memory checker this also shows that nothing beyond the picture is read.
+TEST_P(TemporalRefine, ATightImageGivesTheSameBits) {
+  for (const Extent extent : {Extent{1, 1}, {1, 6}, {4, 2}, {5, 1}, {8, 3}, {13, 11}}) {
+    const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
+    EXPECT_EQ(run(pixels, extent, 0), run(pixels, extent, 0, true)) << extent.width;
+  }
+}
+
+TEST_P(TemporalRefine, TwoRunsAgreeBitForBit) {
+  const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kExtremes, {100, 70}, 4);
+  EXPECT_EQ(run(pixels, {100, 70}), run(pixels, {100, 70}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine,
+                         ::testing::Values(PixelFormat::kRGBA32F, PixelFormat::kRGBA16F),
+                         [](const auto& variant) { return quincunx::name_of(variant.param); });
+
+}  // namespace
+}  // namespace quincunx
