@@ -10,7 +10,7 @@ A budget of 1 is the time that a frame at scale 1 takes, drawn and shown as it i
 Every run draws the same moments of a scene. Its error is the mean FLIP against supersampled truth over the display's
 refreshes: a frame that is shown again is compared with the truth of that refresh's time. The first frames do not
 count, while all controllers come down from the highest scale. Controllers:
-  quality                  scale and method, by a front measured on this machine for the scene (--calibrate)
+  quality                  scale and method, by a front measured on this machine for the scene at that rate (--calibrate)
   quality, built-in front  the same without that measurement
   predictive, METHOD       scale alone
   fixed scale 1            nothing: what is drawn is shown
@@ -42,19 +42,20 @@ def cache(args, name):
     return {**os.environ, "QUINCUNX_CACHE_DIR": str((args.out / f"cache-{name}").resolve())}
 
 
-def calibrate(args, scene):
-    costs = args.out / f"{scene}-costs.json"
+def calibrate(args, scene, fps):
+    costs = args.out / f"{scene}-{fps}-costs.json"
     if not costs.exists():
-        command = [RENDER, "--scene", scene, "--output", args.output, "--calibrate", str(costs), "--quiet"]
-        subprocess.run(command, check=True, env=cache(args, "measured"), stdout=subprocess.DEVNULL)
+        command = [RENDER, "--scene", scene, "--output", args.output, "--fps", str(fps), "--calibrate", str(costs),
+                   "--quiet"]
+        subprocess.run(command, check=True, env=cache(args, f"{scene}-{fps}"), stdout=subprocess.DEVNULL)
 
 
 PLAIN = ("fixed scale 1", ["--controller", "fixed", "--scale", "1", "--method", "bilinear"], "empty")
 
 
-def controllers(methods):
+def controllers(scene, fps, methods):
     """Name, options and cache of each."""
-    yield "quality", ["--controller", "quality"], "measured"
+    yield "quality", ["--controller", "quality"], f"{scene}-{fps}"
     yield "quality, built-in front", ["--controller", "quality"], "empty"
     for method in methods:
         jitter = ["--jitter", "halton"] if method.startswith("temporal") else []
@@ -115,10 +116,10 @@ def main():
     args.out.mkdir(parents=True, exist_ok=True)
     rows = []
     for scene in args.scenes.split(","):
-        calibrate(args, scene)
         whole = time_at_scale_1(args, scene)
         for fps in (round(1000 / (float(budget) * whole), 1) for budget in args.budgets.split(",")):
-            for name, options, cache_name in controllers(args.methods.split(",")):
+            calibrate(args, scene, fps)
+            for name, options, cache_name in controllers(scene, fps, args.methods.split(",")):
                 rows.append(row_of(scene, fps, name, run(args, scene, fps, name, options, cache_name)))
                 print(*rows[-1].values(), sep="  ", flush=True)
     with open(args.out / "quality.csv", "w", newline="", encoding="utf-8") as file:

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <span>
 
+#include "programs/frame_meter.h"
 #include "programs/front_feed.h"
 #include "programs/front_methods.h"
 #include "programs/front_reference.h"
@@ -23,6 +23,7 @@ constexpr Extent kMostCrop = {320, 180};
 constexpr int kMeasuredFrames = 2;
 constexpr int kTimedFrames = 4;
 constexpr int kTimedWarmUp = 2;
+constexpr double kMostStill = 0.8;  // of the picture: what moves is to be measured, too
 
 // What is known of one method at one scale.
 struct Measured {
@@ -44,14 +45,8 @@ double deviation_of(const std::vector<double>& values) {
   return values.size() < 2 ? 0 : std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
-// Of all passes; nothing where one of them has no time.
-std::optional<double> resolve_ms_of(const FrameReport& report) {
-  double ms = 0;
-  for (int i = 0; i < report.pass_count; ++i) {
-    if (report.passes[static_cast<std::size_t>(i)].ms < 0) return std::nullopt;
-    ms += report.passes[static_cast<std::size_t>(i)].ms;
-  }
-  return ms > 0 ? std::optional<double>(ms) : std::nullopt;
+double squared_error(double psnr_db) {
+  return std::pow(10, -psnr_db / 10);
 }
 
 class Calibration {
@@ -111,6 +106,10 @@ class Calibration {
         Measured& measured = held ? cells[frame.method].held : cells[frame.method].moving;
         measured.flip.push_back(scores.flip);
         measured.psnr.push_back(std::min(scores.psnr_tone_mapped, FrontPoint::kHighestPsnr));
+        if (!held && frame.report.content) {
+          const SceneMix mix = mix_of(*frame.report.content);
+          still_share_ = std::min(mix.share[static_cast<std::size_t>(SceneClass::kStill)], kMostStill);
+        }
         return {};
       });
       if (!status.ok()) return status;
@@ -126,9 +125,10 @@ class Calibration {
     feed.frames = kTimedFrames;
     return run_feed(stage_, feed, methods, [&](const FrontFrame& frame) -> Status {
       if (frame.index < 0) return {};
-      const auto ms = resolve_ms_of(frame.report);
-      if (!ms) return Status::unsupported(fmt::format("'{}' gives no times", stage_.device().info().name));
-      cells[frame.method].ms.push_back(*ms / (static_cast<double>(settings_.output.area()) * 1e-6));
+      const double ms = pass_times(frame.report).method_ms;
+      if (!(ms > 0))
+        return Status::unsupported(fmt::format("'{}' gives no times", stage_.device().info().name));
+      cells[frame.method].ms.push_back(ms / (static_cast<double>(settings_.output.area()) * 1e-6));
       return {};
     });
   }
@@ -136,17 +136,29 @@ class Calibration {
   void add_points(double scale, const FrontMethod& method, const Cell& cell) {
     for (std::size_t i = 0; i < kSceneClasses; ++i) {
       const auto scene_class = static_cast<SceneClass>(i);
-      const Measured& measured = scene_class == SceneClass::kStill ? cell.held : cell.moving;
-      points_.push_back({.scene_class = scene_class,
-                         .method = method,
-                         .scale = scale,
-                         .flip = mean_of(measured.flip),
-                         .flip_spread = deviation_of(measured.flip),
-                         .psnr_db = mean_of(measured.psnr),
-                         .psnr_spread = deviation_of(measured.psnr),
-                         .ms_per_megapixel = *std::min_element(cell.ms.begin(), cell.ms.end()),
-                         .ms_spread = deviation_of(cell.ms)});
+      points_.push_back(scene_class == SceneClass::kStill ? held_point(cell) : moving_point(cell));
+      points_.back().scene_class = scene_class;
+      points_.back().method = method;
+      points_.back().scale = scale;
+      points_.back().ms_per_megapixel = *std::min_element(cell.ms.begin(), cell.ms.end());
+      points_.back().ms_spread = deviation_of(cell.ms);
     }
+  }
+
+  static FrontPoint held_point(const Cell& cell) {
+    return {.flip = mean_of(cell.held.flip),
+            .flip_spread = deviation_of(cell.held.flip),
+            .psnr_db = mean_of(cell.held.psnr),
+            .psnr_spread = deviation_of(cell.held.psnr)};
+  }
+
+  FrontPoint moving_point(const Cell& cell) const {
+    const double squared = error_of_moving(squared_error(mean_of(cell.moving.psnr)),
+                                           squared_error(mean_of(cell.held.psnr)), still_share_);
+    return {.flip = error_of_moving(mean_of(cell.moving.flip), mean_of(cell.held.flip), still_share_),
+            .flip_spread = deviation_of(cell.moving.flip) / (1 - still_share_),
+            .psnr_db = std::min(-10 * std::log10(squared), FrontPoint::kHighestPsnr),
+            .psnr_spread = deviation_of(cell.moving.psnr) / (1 - still_share_)};
   }
 
   FrontSource source() const {
@@ -164,6 +176,7 @@ class Calibration {
   const FrontCalibration& settings_;
   FrontFeed feed_;
   FrontReference reference_;
+  double still_share_ = 0;  // of the moments that are measured as the scene goes on
   std::vector<FrontPoint> points_;
 };
 
@@ -171,6 +184,10 @@ class Calibration {
 
 Result<ErrorFront> calibrate_front(FrameSource& stage, const FrontCalibration& calibration) {
   return Calibration(stage, calibration).run();
+}
+
+double error_of_moving(double whole, double held, double still_share) {
+  return std::max((whole - still_share * held) / (1 - still_share), whole / 2);
 }
 
 std::string text_of_scene(const ErrorFront& front) {

@@ -14,6 +14,7 @@ std::vector<ResolveSettings> resolves_of(std::span<const std::string> methods) {
   for (const std::string& name : methods) {
     tools::choose(resolves.emplace_back(), tools::method_choices().at(name));
     resolves.back().present = false;
+    resolves.back().measures_content = true;
   }
   return resolves;
 }

@@ -93,6 +93,13 @@ TEST_F(FrontCalibrationRun, KeepsTheScenesFrontAndExplainsIt) {
   EXPECT_NE(other.find("Error front    built in"), std::string::npos) << other;
 }
 
+TEST(FrontCalibration, TheErrorOfWhatMovesIsThatOfTheRest) {
+  EXPECT_DOUBLE_EQ(error_of_moving(0.05, 0.03, 0), 0.05) << "nothing stands still";
+  EXPECT_DOUBLE_EQ(error_of_moving(0.05, 0.03, 0.5), 0.07) << "half of 0.03 and half of 0.07";
+  EXPECT_DOUBLE_EQ(error_of_moving(0.05, 0.05, 0.8), 0.05) << "all errs alike";
+  EXPECT_DOUBLE_EQ(error_of_moving(0.05, 0.09, 0.5), 0.025) << "0.01 would be noise";
+}
+
 TEST_F(FrontCalibrationRun, WhereTruthIsTooDearTheBestMethodStandsForIt) {
   const ProgramResult calibrated =
       run("--output 64x36 --scene pan --calibrate '{}/costs.json' --truth-seconds 0 --min-scale 1");

@@ -61,7 +61,7 @@ QUINCUNX_API Result<FrontMethod> front_method(const std::string& name);
 // standard deviation between what a mean was taken over: the scenes of the class, or the frames of one scene.
 struct FrontPoint {
   SceneClass scene_class = SceneClass::kStill;
-  FrontMethod method;
+  FrontMethod method = {};
   double scale = 1;  // per axis, in (0, 1]
   double flip = 0;   // mean FLIP, [0, 1]
   double flip_spread = 0;
