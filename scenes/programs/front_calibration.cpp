@@ -176,7 +176,7 @@ class Calibration {
   const FrontCalibration& settings_;
   FrontFeed feed_;
   FrontReference reference_;
-  double still_share_ = 0;  // of the moments that are measured as the scene goes on
+  double still_share_ = 0;  // of the last moment that was measured as the scene goes on
   std::vector<FrontPoint> points_;
 };
 
