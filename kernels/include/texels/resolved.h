@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Loads and stores of resolved pictures, which are always buffers.
+#pragma once
+
+#include "sanitise.h"
+#include "texels/storage.h"
+
+#if OUTPUT_FORMAT == HALF
+#define OUTPUT_TEXELS __global half*
+#else
+#define OUTPUT_TEXELS __global float*
+#endif
+
+// Finite values only; half saturates instead of becoming infinite.
+static inline void store_output(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, float4 value) {
+#if OUTPUT_FORMAT == HALF
+  vstore_half4(clamp(value, -65504.0f, 65504.0f), texel_index(layout, x, y), texels);
+#else
+  vstore4(value, texel_index(layout, x, y), texels);
+#endif
+}
+
+// kBlock neighbours of a row. Not an array: PoCL keeps those in memory.
+typedef struct FourPixels {
+  float4 p0, p1, p2, p3;
+} FourPixels;
+
+static inline int4 largest_of(int4 largest, FourPixels pixels) {
+  largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
+  return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
+}
+
+// Sanitises each; bit i of the result is set where pixel i was NaN or infinite.
+static inline uint sanitise_four(FourPixels* pixels) {
+  if (!any_reached_infinity(largest_of((int4)(0), *pixels))) return 0;
+  const uint bits = (uint)any_non_finite4(pixels->p0) | (uint)any_non_finite4(pixels->p1) << 1 |
+                    (uint)any_non_finite4(pixels->p2) << 2 | (uint)any_non_finite4(pixels->p3) << 3;
+  pixels->p0 = sanitise4(pixels->p0);
+  pixels->p1 = sanitise4(pixels->p1);
+  pixels->p2 = sanitise4(pixels->p2);
+  pixels->p3 = sanitise4(pixels->p3);
+  return bits;
+}
+
+enum { kOutputAhead = 512 };  // pixels: two pages of memory
+
+// Those of four pixels, from x on, that lie before `end`.
+static inline void store_four(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, int end, FourPixels pixels) {
+  WILL_WRITE(texels + 4 * (texel_index(layout, x, y) + kOutputAhead));
+  store_output(texels, layout, x, y, pixels.p0);
+  if (x + 3 < end) {
+    store_output(texels, layout, x + 1, y, pixels.p1);
+    store_output(texels, layout, x + 2, y, pixels.p2);
+    store_output(texels, layout, x + 3, y, pixels.p3);
+  } else {
+    if (x + 1 < end) store_output(texels, layout, x + 1, y, pixels.p1);
+    if (x + 2 < end) store_output(texels, layout, x + 2, y, pixels.p2);
+  }
+}
+
+// A resolved picture being read back: always a buffer, in SOURCE_FORMAT.
+#if SOURCE_FORMAT == HALF
+#define RESOLVED_TEXELS __global const half*
+#else
+#define RESOLVED_TEXELS __global const float*
+#endif
+
+static inline float4 load_resolved(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_FORMAT == HALF
+  return vload_half4(texel_index(layout, x, y), texels);
+#else
+  return vload4(texel_index(layout, x, y), texels);
+#endif
+}
+
+// The 16 texels from `x` on, which may lie anywhere, are read soon. Worth a quarter of the time of a kernel with too
+// much to compute between its loads for the processor to look far enough ahead. Halves, two lines of a cache instead of
+// four, arrive in time without.
+static inline void will_read_resolved16(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+#if SOURCE_FORMAT == FLOAT
+  RESOLVED_TEXELS first = texels + 4 * texel_index(layout, x, y);
+  WILL_READ(first);
+  WILL_READ(first + 16);
+  WILL_READ(first + 32);
+  WILL_READ(first + 48);
+#endif
+}
+
+// The four-channel texels index to index + 3, through private memory, as in load_colour_pair.
+static inline float16 load_half_texels4(__global const half* texels, int index) {
+  __global const uint* words = (__global const uint*)texels + 2 * index;
+  const uint4 lower = vload4(0, words);
+  const uint4 upper = vload4(1, words);
+  return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
+}
+
+// The texels (x, y) to (x + 3, y).
+static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
+  const int index = texel_index(layout, x, y);
+#if SOURCE_FORMAT == HALF
+  return load_half_texels4(texels, index);
+#else
+  return vload16(0, texels + 4 * index);
+#endif
+}
+
+// Rounds to the nearest.
+static inline void store_half_texels4(__global half* texels, int index, float16 value) {
+  uint4 lower, upper;
+  vstore_half8_rte(value.lo, 0, (__private half*)&lower);
+  vstore_half8_rte(value.hi, 0, (__private half*)&upper);
+  __global uint* words = (__global uint*)texels + 2 * index;
+  vstore4(lower, 0, words);
+  vstore4(upper, 1, words);
+}
+
+// Four texels of an output, from (x, y) on; none beyond the largest half.
+static inline void store_output4(OUTPUT_TEXELS texels, TexelLayout layout, int x, int y, float16 value) {
+  const int index = texel_index(layout, x, y);
+  WILL_WRITE(texels + 4 * (index + kOutputAhead));
+#if OUTPUT_FORMAT == HALF
+  store_half_texels4(texels, index, value);
+#else
+  vstore16(value, 0, texels + 4 * index);
+#endif
+}
