@@ -5,37 +5,22 @@
 #   scripts/filter_pictures.sh     about two minutes
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/packages.sh
+source scripts/pictures.sh
 
-ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick
-configure_and_build release quincunx-dump
+begin_pictures
 
 methods=(point bilinear b-spline catmull-rom mitchell lanczos2 lanczos3 noise noise-offset quincunx:mean quincunx:velocity
   quincunx:reprojected)
-work=build/filters
-rm -rf "$work"
-mkdir -p "$work" docs/images
 
-# draw SCENE SCALE CROP: one row of crops, three times as large, each with its name.
+# draw SCENE SCALE GEOMETRY: a crop for each method, three times as large.
 draw() {
-  local scene=$1 scale=$2 crop=$3 method tiles=()
-  for method in "${methods[@]}" truth; do
-    local stage=presented name=${method/:/-}
-    if [[ $method == truth ]]; then
-      stage=truth
-      build/release/bin/quincunx-dump -q --scene "$scene" --output 640x360 --scale "$scale" --start 1 --frames 8 --frame 6 \
-        --truth 8 --stages truth --format png --out "$work/$name"
-    else
-      build/release/bin/quincunx-dump -q --scene "$scene" --output 640x360 --scale "$scale" --start 1 --frames 8 --frame 6 \
-        --method "$method" --stages presented --format png --out "$work/$name"
-    fi
-    convert "$work/$name/frame.0006.$stage.png" -crop "$crop" +repage -filter point -resize 300% \
-      "$work/$scene-$scale-$name.png"
-    tiles+=(-label "$method" "$work/$scene-$scale-$name.png")
+  local scene=$1 scale=$2 geometry=$3 method
+  local frame=(--scene "$scene" --scale "$scale" --start 1 --frames 8 --frame 6)
+  for method in "${methods[@]}"; do
+    add_crop "$method" presented "$geometry" 300 "${frame[@]}" --method "$method"
   done
-  montage "${tiles[@]}" -tile 4x -geometry +4+4 -font DejaVu-Sans -pointsize 14 -depth 8 \
-    "docs/images/filters_${scene}_${scale/./}.png"
-  say "docs/images/filters_${scene}_${scale/./}.png"
+  add_crop truth truth "$geometry" 300 "${frame[@]}" --truth 8
+  sheet "filters_${scene}_${scale/./}.png" 4
 }
 
 for scale in 0.5 0.71; do

@@ -5,32 +5,23 @@
 #   scripts/mobile_pictures.sh     under a minute
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/packages.sh
+source scripts/pictures.sh
 
-ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick
-configure_and_build release quincunx-dump
-
-work=build/mobile
-rm -rf "$work"
-mkdir -p "$work" docs/images
+begin_pictures
 
 # draw SCENE METHOD GEOMETRY: crops of both, twice as large, and 16 times their difference.
 draw() {
   local scene=$1 method=$2 geometry=$3 colour
   for colour in rgba16f rgba8; do
-    build/release/bin/quincunx-dump -q --scene "$scene" --output 640x360 --scale 0.71 --frames 30 --frame 26 --no-dither \
-      --method "$method" --colour "$colour" --stages presented --format png --out "$work/$scene-$colour"
-    convert "$work/$scene-$colour/frame.0026.presented.png" -crop "$geometry" +repage -filter point -resize 200% \
-      "$work/$scene-$colour.png"
-    tiles+=(-label "$scene, $method, $colour" "$work/$scene-$colour.png")
+    dump "$scene-$colour" --scene "$scene" --scale 0.71 --frames 30 --frame 26 --no-dither --method "$method" \
+      --colour "$colour" --stages presented
+    add_tile "$scene, $method, $colour" "$work/$scene-$colour/frame.0026.presented.png" "$geometry" 200
   done
-  convert "$work/$scene-rgba16f.png" "$work/$scene-rgba8.png" -compose difference -composite -evaluate multiply 16 \
-    "$work/$scene-difference.png"
-  tiles+=(-label "16 x the difference" "$work/$scene-difference.png")
+  convert "$work/$scene-rgba16f/frame.0026.presented.png" "$work/$scene-rgba8/frame.0026.presented.png" \
+    -compose difference -composite -evaluate multiply 16 "$work/$scene-difference.png"
+  add_tile "16 x the difference" "$work/$scene-difference.png" "$geometry" 200
 }
 
-tiles=()
 draw courtyard bilinear 192x120+160+120
 draw sparkles temporal 192x120+220+120
-montage "${tiles[@]}" -tile 3x -geometry +4+4 -font DejaVu-Sans -pointsize 14 -depth 8 docs/images/mobile.png
-say "docs/images/mobile.png"
+sheet mobile.png 3

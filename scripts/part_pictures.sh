@@ -6,40 +6,24 @@
 #   scripts/part_pictures.sh     about a minute
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/packages.sh
+source scripts/pictures.sh
 
-ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick
-configure_and_build release quincunx-dump
+begin_pictures
 
-work=build/parts
-rm -rf "$work"
-mkdir -p "$work" docs/images
-
-# crop LABEL STAGE GEOMETRY OPTION ...: adds one crop, three times as large.
+# crop LABEL STAGE GEOMETRY OPTION ...
 crop() {
   local label=$1 stage=$2 geometry=$3
-  local name=$work/${#tiles[@]}
   shift 3
-  build/release/bin/quincunx-dump -q --output 640x360 --frames 32 --frame 30 --method bilinear --stages "$stage" \
-    --format png --out "$name" "$@"
-  convert "$name/frame.0030.$stage.png" -crop "$geometry" +repage -filter point -resize 300% "$name.png"
-  tiles+=(-label "$label" "$name.png")
+  add_crop "$label" "$stage" "$geometry" 300 --frames 32 --frame 30 --method bilinear "$@"
 }
 
-sheet() {
-  montage "${tiles[@]}" -tile 4x -geometry +4+4 -font DejaVu-Sans -pointsize 14 -depth 8 "docs/images/$1"
-  say "docs/images/$1"
-}
-
-tiles=()
 floor=(presented 112x72+340+272 --scene shadows)
 crop "shadow map 1: 2048 texels" "${floor[@]}"
 crop "0.5: 1024" "${floor[@]}" --shadow-scale 0.5
 crop "0.25: 512" "${floor[@]}" --shadow-scale 0.25
 crop "0.125: 256" "${floor[@]}" --shadow-scale 0.125
-sheet part_scales.png
+sheet part_scales.png 4
 
-tiles=()
 smoke=(112x72+365+30 --scene flight --start 8.3)
 spray=(112x72+285+230 --scene flight --start 8.3)
 for where in smoke spray; do
@@ -49,4 +33,4 @@ for where in smoke spray; do
   crop "0.25" presented "${place[@]}" --particle-scale 0.25
   crop "0.125" presented "${place[@]}" --particle-scale 0.125
 done
-sheet part_scales_particles.png
+sheet part_scales_particles.png 4

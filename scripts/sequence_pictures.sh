@@ -5,42 +5,34 @@
 #   scripts/sequence_pictures.sh     less than a minute
 set -euo pipefail
 cd "$(dirname "$0")/.."
-source scripts/packages.sh
+source scripts/pictures.sh
 
-ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick
-configure_and_build release quincunx-dump quincunx-resolve
+begin_pictures quincunx-resolve
 
-work=build/sequence
-rm -rf "$work"
-mkdir -p "$work" docs/images
-bin=build/release/bin
-run=(-q --scene backdrop --output 640x360 --scale 0.5 --start 1 --frames 25)
 sun=96x72+430+120      # of the picture, three times as large
 wheel=288x216+340+50   # of the errors
-tiles=()
+run=(--scene backdrop --scale 0.5 --start 1 --frames 25)
 
-# tile FILE GEOMETRY ZOOM LABEL: adds a labelled crop to `tiles`; captions below a picture are cut off first.
-tile() {
-  local file="$work/tile-${#tiles[@]}.png"
-  convert "$1" -crop 640x360+0+0 +repage -crop "$2" +repage -filter point -resize "$3" "$file"
-  tiles+=(-label "$4" "$file")
+# resolve NAME OPTION ...: the sequence's last frame, into $work/NAME.0024.png.
+resolve() {
+  local name=$1
+  shift
+  build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 24 -q --out "$work/$name.%04d.png" "$@"
 }
 
-"$bin/quincunx-dump" "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
-"$bin/quincunx-dump" "${run[@]}" --frame 24 --stages truth --truth 8 --exposure 1 --format png --out "$work"
+build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
+dump . "${run[@]}" --frame 24 --stages truth --truth 8 --exposure 1
 truth=$work/frame.0024.truth.png
 for far in drawn camera evidence; do
-  "$bin/quincunx-resolve" "$work/frame.%04d.exr" --frames 24 -q --method temporal --far "$far" \
-    --out "$work/$far.%04d.png"
-  tile "$work/$far.0024.png" "$sun" 300% "--far $far"
+  resolve "$far" --method temporal --far "$far"
+  add_tile "--far $far" "$work/$far.0024.png" "$sun" 300
   convert "$work/$far.0024.png" \( "$truth" -crop 640x360+0+0 +repage \) -compose difference -composite \
     -colorspace gray -level 0,12% "$work/$far.error.png"
 done
-tile "$truth" "$sun" 300% "truth, 64 samples"
+add_tile "truth, 64 samples" "$truth" "$sun" 300
 for far in drawn camera evidence; do
-  tile "$work/$far.error.png" "$wheel" 100% "its error, 8 times"
+  add_tile "its error, 8 times" "$work/$far.error.png" "$wheel" 100
 done
-"$bin/quincunx-resolve" "$work/frame.%04d.exr" --frames 24 -q --method point --out "$work/point.%04d.png"
-tile "$work/point.0024.png" "$sun" 300% "one frame"
-montage "${tiles[@]}" -tile 4x -geometry +4+4 -font DejaVu-Sans -pointsize 16 -depth 8 docs/images/far_motion.png
-say "docs/images/far_motion.png"
+resolve point --method point
+add_tile "one frame" "$work/point.0024.png" "$sun" 300
+sheet far_motion.png 4
