@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <cmath>
 
 #include "builtin/props.h"
 #include "builtin/scenes.h"
@@ -81,16 +80,9 @@ Scene make_cables(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   set_daylight(scene);
-  scene.duration = kDuration;
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float swing = std::sin(phase_at(seconds, kDuration));
-    Camera camera;
-    camera.vertical_fov = 0.75f;
-    camera.world_from_camera =
-        moved_to({2.2f * swing, 1.7f, 0}) * turned(0.12f * swing, {0, 1, 0}) * turned(0.36f, {1, 0, 0});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.75f, [](float swing) {
+    return moved_to({2.2f * swing, 1.7f, 0}) * turned(0.12f * swing, {0, 1, 0}) * turned(0.36f, {1, 0, 0});
+  });
   return assembly.finish();
 }
 

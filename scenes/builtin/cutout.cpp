@@ -54,15 +54,9 @@ Scene make_cutout(std::uint64_t seed) {
   Scene& scene = assembly.scene;
   set_daylight(scene);
   scene.sky.background = Background::kNone;
-  scene.duration = kDuration;
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float swing = std::sin(phase_at(seconds, kDuration));
-    Camera camera;
-    camera.vertical_fov = 0.7f;
-    camera.world_from_camera = moved_to({0.9f * swing, 1.75f, 4.6f}) * turned(0.10f * swing, {0, 1, 0});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.7f, [](float swing) {
+    return moved_to({0.9f * swing, 1.75f, 4.6f}) * turned(0.10f * swing, {0, 1, 0});
+  });
   return assembly.finish();
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cmath>
-
 #include "builtin/architecture.h"
 #include "builtin/props.h"
 #include "builtin/scenes.h"
@@ -45,15 +43,7 @@ Scene make_fence(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   set_daylight(scene);
-  scene.duration = kDuration;
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float swing = std::sin(phase_at(seconds, kDuration));
-    Camera camera;
-    camera.vertical_fov = 0.75f;
-    camera.world_from_camera = moved_to({1.9f * swing, 1.45f, 4.0f});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.75f, [](float swing) { return moved_to({1.9f * swing, 1.45f, 4.0f}); });
   return assembly.finish();
 }
 

@@ -115,4 +115,15 @@ Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles
   return [=](double seconds) { return rest * turned(phase_at(seconds, period, cycles), axis); };
 }
 
+void swing_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(float)> place) {
+  scene.duration = duration;
+  scene.camera_moves = true;
+  scene.camera = [=, place = std::move(place)](double seconds) {
+    Camera camera;
+    camera.vertical_fov = vertical_fov;
+    camera.world_from_camera = place(std::sin(phase_at(seconds, duration)));
+    return camera;
+  };
+}
+
 }  // namespace quincunx::scenes

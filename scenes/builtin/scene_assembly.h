@@ -3,6 +3,7 @@
 // repeat.
 #pragma once
 
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
@@ -60,5 +61,8 @@ Motion swinging(const glm::mat4& rest, glm::vec3 axis, float amplitude, double p
 Motion sliding(const glm::mat4& rest, glm::vec3 way, double period, int cycles, float phase);
 // `rest` turning about `axis` through its origin.
 Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles);
+
+// A camera that swings to and fro once in `duration` seconds, the scene's. `place`: world from camera, of -1 to 1.
+void swing_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(float)> place);
 
 }  // namespace quincunx::scenes

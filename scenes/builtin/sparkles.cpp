@@ -99,15 +99,9 @@ Scene make_sparkles(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   set_evening(scene);
-  scene.duration = kDuration;
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float swing = std::sin(phase_at(seconds, kDuration));
-    Camera camera;
-    camera.vertical_fov = 0.75f;
-    camera.world_from_camera = looking_from({0.35f * swing, 1.7f, 4.4f}, {0.1f * swing, 1.7f, -2});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.75f, [](float swing) {
+    return looking_from({0.35f * swing, 1.7f, 4.4f}, {0.1f * swing, 1.7f, -2});
+  });
   return assembly.finish();
 }
 

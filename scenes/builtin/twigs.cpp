@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <array>
-#include <cmath>
 
 #include "builtin/props.h"
 #include "builtin/scenes.h"
@@ -80,15 +79,9 @@ Scene make_twigs(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   set_daylight(scene);
-  scene.duration = kDuration;
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float swing = std::sin(phase_at(seconds, kDuration));
-    Camera camera;
-    camera.vertical_fov = 0.75f;
-    camera.world_from_camera = moved_to({1.1f * swing, 1.6f, 4.0f}) * turned(-0.10f * swing, {0, 1, 0});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.75f, [](float swing) {
+    return moved_to({1.1f * swing, 1.6f, 4.0f}) * turned(-0.10f * swing, {0, 1, 0});
+  });
   return assembly.finish();
 }
 

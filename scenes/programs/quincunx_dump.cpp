@@ -2,9 +2,6 @@
 // quincunx-dump: every stage of a frame as numbers and as pictures, or a run as a sequence.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <exception>
-
 #include "programs/dump_options.h"
 #include "programs/dump_session.h"
 #include "programs/sequence_dump.h"
@@ -46,10 +43,5 @@ int run(int argc, char** argv) {
 }  // namespace quincunx::scenes
 
 int main(int argc, char** argv) {
-  try {
-    return quincunx::scenes::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "quincunx-dump: internal error: %s\n", error.what());
-    return 1;
-  }
+  return quincunx::tools::run_program("quincunx-dump", quincunx::scenes::run, argc, argv);
 }

@@ -2,8 +2,6 @@
 // quincunx-render: draws a scene at a dynamic resolution and makes the picture from it.
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <exception>
 #include <optional>
 
 #include "catalog/scene_catalog.h"
@@ -129,10 +127,5 @@ int run(int argc, char** argv) {
 }  // namespace quincunx::scenes
 
 int main(int argc, char** argv) {
-  try {
-    return quincunx::scenes::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "quincunx-render: internal error: %s\n", error.what());
-    return 1;
-  }
+  return quincunx::tools::run_program("quincunx-render", quincunx::scenes::run, argc, argv);
 }

@@ -6,6 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include <charconv>
+#include <cstdio>
+#include <exception>
 
 #include "quincunx/device.h"
 
@@ -24,6 +26,15 @@ void set_up_log(bool quiet, int verbosity) {
 int fail(const Status& status) {
   spdlog::error("{}", status.message());
   return status.code() == StatusCode::kInvalidArgument ? kUsage : kFailed;
+}
+
+int run_program(const char* program, int (*run)(int argc, char** argv), int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: internal error: %s\n", program, error.what());
+    return kFailed;
+  }
 }
 
 std::string parse_extent(const std::string& text, Extent& extent) {

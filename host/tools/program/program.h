@@ -20,6 +20,9 @@ void set_up_log(bool quiet, int verbosity);
 // Logs the message; kUsage where the caller asked for what can never work, else kFailed.
 int fail(const Status& status);
 
+// What main() returns: the exit code of `run`. An exception that reaches here is reported as an internal error.
+int run_program(const char* program, int (*run)(int argc, char** argv), int argc, char** argv);
+
 // "1280x720" into `extent`. What is wrong with the text, in one sentence; empty when nothing is.
 std::string parse_extent(const std::string& text, Extent& extent);
 

@@ -5,8 +5,6 @@
 
 #include <atomic>
 #include <csignal>
-#include <cstdio>
-#include <exception>
 
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
@@ -137,10 +135,5 @@ int run(int argc, char** argv) {
 }  // namespace quincunx::tools
 
 int main(int argc, char** argv) {
-  try {
-    return quincunx::tools::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "quincunx-resolve: internal error: %s\n", error.what());
-    return 1;
-  }
+  return quincunx::tools::run_program("quincunx-resolve", quincunx::tools::run, argc, argv);
 }

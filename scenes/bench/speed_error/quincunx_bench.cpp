@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <string>
 
@@ -157,10 +156,5 @@ int run(int argc, char** argv) {
 }  // namespace quincunx::bench
 
 int main(int argc, char** argv) {
-  try {
-    return quincunx::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "quincunx-bench: internal error: %s\n", error.what());
-    return 1;
-  }
+  return quincunx::tools::run_program("quincunx-bench", quincunx::bench::run, argc, argv);
 }
