@@ -114,7 +114,7 @@ std::optional<FrameReport> MethodResolves::next_completed() {
   FrameReport report = *oldest.report;
   if (report.content) report.content->cut = oldest.cut;
   if (oldest.fading_report) add_passes(report, *oldest.fading_report);
-  running_.pop_front();
+  running_.erase(running_.begin());  // a few at most, and its memory stays
   return report;
 }
 

@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -72,7 +71,7 @@ class MethodResolves {
   std::vector<ResolvePlan> plans_beside_;
   std::vector<std::optional<std::uint64_t>> last_frame_;  // that each has resolved
   Image fading_;                                          // picture of the method that is left
-  std::deque<Running> running_;                           // dispatched and not yet completed, oldest first
+  std::vector<Running> running_;                          // dispatched and not yet completed, oldest first
 };
 
 }  // namespace quincunx::scenes
