@@ -11,6 +11,7 @@
 #ifndef TEXEL_BYTES
 #define TEXEL_BYTES 8
 #endif
+#include "picture_params.h"
 #include "texel.h"
 
 #if OUTPUT_STORAGE == IMAGE

@@ -7,8 +7,7 @@
 //   match     in   FarMatch of the frame before
 //   motion    out  FarModel
 // One work-item, so that the order of additions never changes.
-// Reference: tests/reference/far_motion.cpp
-#include "params.h"
+#include "motion/far_params.h"
 
 #define LEAST_PIVOT 1e-7f  // of 1: against the rounding of what nothing is left of
 

@@ -11,6 +11,7 @@
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
 #include "motion/far_motion.h"
+#include "motion/far_params.h"
 #include "texel.h"
 
 static inline float luma_of(float4 colour) {

@@ -12,6 +12,7 @@
 // Options: SOURCE_STORAGE (of depth and drawn), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
 #include "motion/far_motion.h"
+#include "motion/far_params.h"
 #include "texel.h"
 
 #define NEAREST_TO_FAR 1e-6f  // reversed depth: what is farther counts no more than this

@@ -12,6 +12,8 @@
 // Reference: tests/reference/far_velocity.cpp
 #include "motion/camera_velocity.h"
 #include "motion/far_motion.h"
+#include "motion/far_params.h"
+#include "motion/velocity_params.h"
 #include "texel_blocks.h"
 
 #define CAMERA 1

@@ -15,6 +15,7 @@
 #ifndef MASK
 #define MASK 0
 #endif
+#include "picture_params.h"
 #include "texel.h"
 #if MASK != 0 && MASK != 1
 #error "MASK must be 0 or 1"

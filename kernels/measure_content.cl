@@ -19,6 +19,7 @@
 #ifndef REACTIVE
 #define REACTIVE 0
 #endif
+#include "content_params.h"
 #include "texel.h"
 #if REACTIVE != 0 && REACTIVE != 1
 #error "REACTIVE must be 0 or 1"

@@ -19,6 +19,7 @@
 // 2014.
 // Reference: tests/reference/motion_blur.cpp
 #include "hash.h"
+#include "motion/blur_params.h"
 #include "motion/streaks.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT

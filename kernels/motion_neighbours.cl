@@ -8,8 +8,7 @@
 // The number of samples is the power of two that leaves at most a pixel between two of them, within [4, most].
 // Source: McGuire et al. 2012; Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014
 // (classes).
-// Reference: tests/reference/motion_blur.cpp
-#include "params.h"
+#include "motion/blur_params.h"
 
 #define STILL (kStreakUnits / 2)  // half a pixel
 #define ALIKE (kStreakUnits / 4)  // a quarter

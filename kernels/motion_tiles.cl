@@ -10,6 +10,7 @@
 // larger x, then the larger y counts: the order of work does not matter.
 // Source: McGuire, Hennessy, Bukowski, Osman, "A Reconstruction Filter for Plausible Motion Blur", 2012.
 // Reference: tests/reference/motion_blur.cpp
+#include "motion/blur_params.h"
 #include "motion/streaks.h"
 
 // Whether no surface of the tile moves by half a pixel on an axis; NaN and Inf do not count as still here.

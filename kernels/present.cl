@@ -21,6 +21,7 @@
 #define OUTPUT_STORAGE BUFFER
 #endif
 #include "colour.h"
+#include "picture_params.h"
 #include "sanitise.h"
 #include "texel.h"
 #if TONE_MAP != TONE_CLAMP && TONE_MAP != TONE_REINHARD && TONE_MAP != TONE_ACES

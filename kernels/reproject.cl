@@ -58,6 +58,7 @@
 #include "motion/depth_limit.h"
 #include "motion/find_motion_edges.h"
 #include "motion/reactive_around.h"
+#include "motion/reproject_params.h"
 
 #define FARTHEST_MOTION 65504.0f  // pixels of the previous frame: beyond any viewport
 #define NAN_BITS 0x7fc00000

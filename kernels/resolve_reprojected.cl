@@ -28,6 +28,7 @@
 #include "distance_weights.h"
 #include "motion/motion_options.h"
 #include "positions.h"
+#include "resolve_params.h"
 
 #define BRIGHT 2.0f  // see any_at_least_two
 

@@ -14,6 +14,7 @@
 // The table names the source of each filter.   Reference: tests/reference/scale_filter.cpp
 #include "multiply_add.h"
 #include "sanitise.h"
+#include "scale_params.h"
 #include "texel.h"
 
 #ifndef TAPS

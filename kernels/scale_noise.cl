@@ -10,6 +10,7 @@
 // Source: Binks, "Dynamic Resolution Rendering", 2012 (noise filtering).   Reference: tests/reference/noise.cpp
 #include "hash.h"
 #include "sanitise.h"
+#include "scale_params.h"
 #include "texel.h"
 
 static inline float4 grained(float4 colour, float grain) {

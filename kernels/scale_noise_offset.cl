@@ -14,6 +14,7 @@
 // Source: Binks, "Dynamic Resolution Rendering", 2012 (noise offset filtering).   Reference: tests/reference/noise.cpp
 #include "hash.h"
 #include "sanitise.h"
+#include "scale_params.h"
 #include "texel.h"
 
 // The texel of each of four places: `weight` texels right of the centre of `base`, moved by random * reach, random in 0

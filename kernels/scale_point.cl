@@ -8,6 +8,7 @@
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Reference: tests/reference/scale_point.cpp
 #include "sanitise.h"
+#include "scale_params.h"
 #include "texel.h"
 
 __kernel void scale_point(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,

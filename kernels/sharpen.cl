@@ -9,6 +9,7 @@
 // Beyond the picture its outermost pixels repeat.
 // Source: AMD FidelityFX Contrast Adaptive Sharpening, 2019, and RCAS of FSR 1, 2021: a cross whose weight gives way.
 // Reference: tests/reference/sharpen.cpp
+#include "picture_params.h"
 #include "texel.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT

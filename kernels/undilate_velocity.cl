@@ -18,6 +18,7 @@
 // Reference: tests/reference/undilate_velocity.cpp
 #include "motion/camera_velocity.h"
 #include "motion/dilated_depth.h"
+#include "motion/velocity_params.h"
 
 #define REACH 8                      // samples, found by search on the development scenes
 #define SAME_SURFACE (1.0f / 32.0f)  // of a depth; a power of two, so that the product is exact

@@ -8,6 +8,7 @@
 // Options: SOURCE_STORAGE (of both), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/velocity_from_depth.cpp
 #include "motion/camera_velocity.h"
+#include "motion/velocity_params.h"
 #include "sanitise.h"
 #include "texel.h"
 

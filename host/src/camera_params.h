@@ -2,7 +2,8 @@
 // What kernels that derive velocity from the camera know of a frame's camera.
 #pragma once
 
-#include "params.h"
+#include "motion/far_params.h"
+#include "motion/velocity_params.h"
 #include "quincunx/frame.h"
 
 namespace quincunx {

@@ -2,7 +2,7 @@
 // What measure_content counts, and the shares that follow. Pure.
 #pragma once
 
-#include "params.h"
+#include "content_params.h"
 #include "quincunx/content_statistics.h"
 #include "quincunx/extent.h"
 

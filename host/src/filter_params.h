@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pass.h"
+#include "scale_params.h"
 
 namespace quincunx {
 

@@ -13,9 +13,9 @@
 #include <cstddef>
 
 #include "device_impl.h"
-#include "params.h"
 #include "quincunx/image.h"
 #include "quincunx/resolve_plan.h"
+#include "scale_params.h"
 #include "table_ring.h"
 
 namespace quincunx {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "content_params.h"
 #include "opencl.h"
-#include "params.h"
 #include "quincunx/frame.h"
 
 namespace quincunx {

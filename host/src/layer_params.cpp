@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "layer_params.h"
 
+#include "resolve_params.h"
+
 namespace quincunx {
 
 namespace {

@@ -2,6 +2,7 @@
 // What the three kernels of the motion blur share.
 #pragma once
 
+#include "motion/blur_params.h"
 #include "pass.h"
 
 namespace quincunx {

@@ -11,6 +11,7 @@
 
 #include "pass_list.h"
 #include "pass_options.h"
+#include "picture_params.h"
 
 namespace quincunx {
 namespace {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "camera_params.h"
+#include "motion/far_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "content_params.h"
 #include "content_sums.h"
 #include "pass.h"
 #include "pass_list.h"

@@ -2,6 +2,7 @@
 // motion_blur: the mean of the resolved picture along its motion over the shutter's time.
 #include <fmt/format.h>
 
+#include "motion/blur_params.h"
 #include "motion_params.h"
 #include "pass_list.h"
 #include "pass_options.h"

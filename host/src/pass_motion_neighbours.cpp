@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // motion_neighbours: the motion that reaches each tile from those around it.
+#include "motion/blur_params.h"
 #include "motion_params.h"
 #include "pass_list.h"
 

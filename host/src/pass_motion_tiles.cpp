@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // motion_tiles: how far the surfaces of each tile move while the shutter is open.
+#include "motion/blur_params.h"
 #include "motion_params.h"
 #include "pass_list.h"
 #include "pass_options.h"

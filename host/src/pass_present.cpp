@@ -5,6 +5,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "picture_params.h"
 
 namespace quincunx {
 namespace {

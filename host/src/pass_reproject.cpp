@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "camera_params.h"
+#include "motion/reproject_params.h"
+#include "motion/velocity_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"

@@ -7,6 +7,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "resolve_params.h"
 
 namespace quincunx {
 namespace {

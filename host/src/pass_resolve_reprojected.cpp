@@ -5,6 +5,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "resolve_params.h"
 #include "sample_reach.h"
 
 namespace quincunx {

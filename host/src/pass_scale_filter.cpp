@@ -6,6 +6,7 @@
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "scale_params.h"
 
 namespace quincunx {
 namespace {

@@ -5,6 +5,7 @@
 #include "filter_params.h"
 #include "pass_list.h"
 #include "pass_options.h"
+#include "scale_params.h"
 
 namespace quincunx {
 namespace {

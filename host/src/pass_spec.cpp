@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "params.h"
+#include "motion/far_params.h"
 #include "temporal/temporal_params.h"
 
 namespace quincunx {

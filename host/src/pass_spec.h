@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/blur_params.h"
 #include "plan_facts.h"
 #include "quincunx/image.h"
 #include "quincunx/resolve_plan.h"

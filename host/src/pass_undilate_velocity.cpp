@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // undilate_velocity: each sample's own velocity, where the renderer has spread that of the nearest.
 #include "camera_params.h"
+#include "motion/velocity_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"

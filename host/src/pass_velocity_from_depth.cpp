@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // velocity_from_depth: the velocity target of a frame in which only the camera moves.
 #include "camera_params.h"
+#include "motion/velocity_params.h"
 #include "pass.h"
 #include "pass_list.h"
 #include "pass_options.h"

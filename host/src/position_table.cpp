@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "params.h"
+#include "resolve_params.h"
 
 namespace quincunx {
 

@@ -12,6 +12,7 @@
 #include "frame_check.h"
 #include "frame_ring.h"
 #include "frame_stream.h"
+#include "motion/blur_params.h"
 #include "never_freed.h"
 #include "pass_clear_region.h"
 #include "program_cache.h"

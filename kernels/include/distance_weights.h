@@ -3,6 +3,7 @@
 #pragma once
 
 #include "multiply_add.h"
+#include "resolve_params.h"
 #include "sanitise.h"
 
 // Reprojection of eight pixels: pixels of the previous frame, and the trust of what lies there.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scale_fixture.h"
+#include "scale_params.h"
 
 namespace quincunx {
 namespace {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "content_params.h"
 #include "content_sums.h"
 #include "kernel_fixture.h"
 #include "pass_rig.h"

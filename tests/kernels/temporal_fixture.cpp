@@ -8,6 +8,7 @@
 
 #include "pass_rig.h"
 #include "program_cache.h"
+#include "resolve_params.h"
 
 namespace quincunx::testing {
 

@@ -2,6 +2,7 @@
 // The struct that host and resolve_checkerboard share, as in params.h.
 #pragma once
 
+#include "motion/velocity_params.h"
 #include "params.h"
 
 #ifdef __cplusplus

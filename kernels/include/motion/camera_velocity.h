@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The velocity that a moving camera gives what stands still.
 #pragma once
-
-#include "params.h"
+#include "motion/velocity_params.h"
 
 #define LARGEST_VELOCITY 65504.0f  // the largest half
 

@@ -3,6 +3,7 @@
 // seen from one that something hid. Depths are reversed, near / distance.
 #pragma once
 
+#include "motion/reproject_params.h"
 #include "texel_blocks.h"
 
 // What counts as in front, found by search on the development scenes.

@@ -5,8 +5,7 @@
 // where the camera turns (p0 and p1, p2 and p3, p4 the roll), zooms (p5) and walks (p6 to p8), to the first order of a
 // frame's motion: Longuet-Higgins and Prazdny, "The Interpretation of a Moving Retinal Image", 1980.
 #pragma once
-
-#include "params.h"
+#include "motion/far_params.h"
 
 // Reversed depth: what lies beyond is not told from infinity. Files with linear depth have 1e10 where nothing was seen.
 #define FARTHEST_DEPTH 1e-9f

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "motion/motion_edge.h"
+#include "motion/reproject_params.h"
 #include "texel_blocks.h"
 
 #define LARGEST_SQUARED_EDGE 65504.0f  // output pixels, squared: two screens apart is no more of an edge than one

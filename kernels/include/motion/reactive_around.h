@@ -5,6 +5,7 @@
 // sample's own.
 #pragma once
 
+#include "motion/reproject_params.h"
 #include "texel_blocks.h"
 
 #if MOTION_EDGE

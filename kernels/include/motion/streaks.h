@@ -3,6 +3,7 @@
 // pixels, so that every device finds the same samples.
 #pragma once
 
+#include "motion/blur_params.h"
 #include "sanitise.h"
 #include "texel_blocks.h"
 
