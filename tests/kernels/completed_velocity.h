@@ -3,42 +3,27 @@
 // motion where that is needed.
 #pragma once
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <string>
 #include <vector>
 
 #include "error_table.h"
-#include "kernel_fixture.h"
-#include "pass_rig.h"
+#include "velocity_test_base.h"
 
 namespace quincunx::testing {
 
-struct VelocityVariant {
-  Storage storage;
-  PixelFormat velocity;
-};
-
-// A turn with some roll, and one of more than a right angle, which leaves much of the picture behind the camera.
+// A turn with some roll.
 inline constexpr std::array<float, 16> kTurn = {1.0f, 0.01f, 0, 0.02f, -0.01f, 1.0f,  0, 0.005f,
                                                 0.3f, -0.2f, 1, 0.1f,  0.04f,  0.06f, 0, 1.0f};
-inline constexpr std::array<float, 16> kAboutTurn = {-0.2f, 0, 0, -0.98f, 0,     1, 0, 0,
-                                                     0,     0, 1, 0,      0.98f, 0, 0, -0.2f};
 
-class CompletedVelocityTest : public ::testing::TestWithParam<VelocityVariant> {
+class CompletedVelocityTest : public VelocityTest {
  protected:
   // That of velocity_from_depth, whose formula it is, and the product with the units and their own rounding.
   static constexpr double kError = (2 * (12 + 4) + 5 + 2 + 2) * 0x1p-24;
 
-  CompletedVelocityTest(ResolveSettings settings, const char* kernel) : settings_(settings) {
-    settings_.storage = GetParam().storage;
-    settings_.velocity = GetParam().velocity;
-    pass_ = std::make_unique<PassRig>(SceneNeeds{}, settings_, kernel);
-  }
+  CompletedVelocityTest(const ResolveSettings& settings, const char* kernel)
+      : VelocityTest(SceneNeeds{}, settings, kernel) {}
 
   // Puts into a frame what the pass looks for.
   virtual void paint(reference::Frame& frame, const FrameSpec& spec) const = 0;
@@ -70,20 +55,7 @@ class CompletedVelocityTest : public ::testing::TestWithParam<VelocityVariant> {
     return made;
   }
 
-  std::vector<unsigned char> run(Rig& rig, const TestFrame& frame, bool tight = false) {
-    const Extent render = frame.inputs.render;
-    const std::vector<Pixel> before(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
-    const ImageView view = rig.image(settings_.velocity, settings_.storage, render, before, -7, tight);
-    pass_->run(frame.inputs, {}, {1, 1}, {}, {{Resource::kVelocity, view}});
-    const std::vector<Pixel> all = rig.pixels(view, view.extent);
-    for (int y = 0; y < view.extent.height; ++y) {
-      for (int x = 0; x < view.extent.width; ++x) {
-        if (x < render.width && y < render.height) continue;
-        EXPECT_EQ(all[static_cast<std::size_t>(y * view.extent.width + x)][0], -7) << "beyond the viewport";
-      }
-    }
-    return rig.bytes(view, render);
-  }
+  TestFrame turned_frame(Rig& rig, const FrameSpec& spec) const override { return frame(rig, spec); }
 
   // How many samples got the camera's velocity is added to `from_camera`.
   void compare(const FrameSpec& spec, const std::array<float, 16>& camera, Vec2 scale,
@@ -118,39 +90,6 @@ class CompletedVelocityTest : public ::testing::TestWithParam<VelocityVariant> {
       }
     }
   }
-
-  void poison_changes_no_bit(Extent render) {
-    Rig rig;
-    FrameSpec spec{.render = render, .jitter = {-.5f, -.5f}};
-    const auto clean = run(rig, frame(rig, spec));
-    for (const double poison : {std::nan(""), static_cast<double>(INFINITY), 1e30}) {
-      spec.outside = poison;
-      EXPECT_EQ(clean, run(rig, frame(rig, spec)));
-    }
-  }
-
-  // Under a memory checker this also shows that nothing beyond the viewport is read or written.
-  void a_tight_image_gives_the_same_bits(Extent render) {
-    Rig rig;
-    FrameSpec spec{.render = render};
-    const auto roomy = run(rig, frame(rig, spec));
-    spec.tight = true;
-    EXPECT_EQ(roomy, run(rig, frame(rig, spec), true));
-  }
-
-  ResolveSettings settings_;
-  std::unique_ptr<PassRig> pass_;
 };
-
-inline auto velocity_variants() {
-  return ::testing::Values(VelocityVariant{Storage::kBuffer, PixelFormat::kRG16F},
-                           VelocityVariant{Storage::kBuffer, PixelFormat::kRG32F},
-                           VelocityVariant{Storage::kImage, PixelFormat::kRG16F});
-}
-
-inline std::string variant_name(const ::testing::TestParamInfo<VelocityVariant>& instance) {
-  const VelocityVariant& v = instance.param;
-  return fmt::format("{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity));
-}
 
 }  // namespace quincunx::testing

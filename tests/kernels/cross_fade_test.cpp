@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "kernel_fixture.h"
 #include "pass_rig.h"
 
@@ -76,8 +74,7 @@ TEST_P(CrossFade, PoisonOutsideThePictureAndTightImagesChangeNoBit) {
     const std::vector<Pixel> a = testing::pattern_pixels(Pattern::kNoise, extent, 2);
     const std::vector<Pixel> b = testing::pattern_pixels(Pattern::kNoise, extent, 6);
     const std::vector<unsigned char> clean = run(a, b, extent, .5f, 0);
-    for (const double poison :
-         {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e30})
+    for (const double poison : testing::kPoisons)
       EXPECT_EQ(clean, run(a, b, extent, .5f, poison)) << poison;
     EXPECT_EQ(clean, run(a, b, extent, .5f, 0, true));
   }

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "../reference/far_motion.h"
 #include "error_table.h"
 #include "kernel_fixture.h"
+#include "motion/far_params.h"
 #include "pass_rig.h"
 
 namespace quincunx {
@@ -362,7 +362,7 @@ TEST_P(FarMotionPasses, PoisonOutsideTheViewportChangesNoBit) {
       return all;
     };
     const auto clean = bytes(0, false);
-    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30})
+    for (const double poison : testing::kPoisons)
       EXPECT_EQ(clean, bytes(poison, false)) << render.width << "x" << render.height;
     EXPECT_EQ(clean, bytes(0, true)) << render.width << "x" << render.height << ", tight";
     EXPECT_EQ(clean, bytes(0, true)) << render.width << "x" << render.height << ", twice";

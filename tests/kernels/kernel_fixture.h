@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -93,6 +94,25 @@ struct TestFrame {
 TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec);
 TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec,
                      const std::vector<Pixel>& colour);
+
+// What lies where nothing may be read.
+inline constexpr double kPoisons[] = {std::numeric_limits<double>::quiet_NaN(),
+                                      std::numeric_limits<double>::infinity(), 1e30};
+
+// What run() makes of a spec's frames is the same whatever lies outside of them, where they fill their images, and
+// twice. The spec has `outside` and `tight`, as FrameSpec; run() reads it anew each time.
+template <typename Spec, typename Run>
+void expect_same_whatever_is_outside(Spec& spec, const Run& run) {
+  const auto clean = run();
+  for (const double poison : kPoisons) {
+    spec.outside = poison;
+    EXPECT_EQ(clean, run()) << "poison " << poison;
+  }
+  spec.outside = 0;
+  spec.tight = true;
+  EXPECT_EQ(clean, run()) << "tight";
+  EXPECT_EQ(clean, run()) << "twice";
+}
 
 // The rendered extent at a scale: at least one pixel.
 Extent scaled(Extent output, double scale_x, double scale_y);

@@ -199,7 +199,7 @@ TEST_P(LayFocus, PoisonOutsideBothChangesNoBit) {
     const std::vector<Pixel> picture = testing::pattern_pixels(Pattern::kNoise, kOutput, 3);
     const std::vector<Pixel> focus = testing::pattern_pixels(Pattern::kNoise, placed.region, 8);
     const std::vector<unsigned char> clean = run(picture, focus, placed, 0);
-    for (const double poison : {kNan, kInfinity, 1e30})
+    for (const double poison : testing::kPoisons)
       EXPECT_EQ(clean, run(picture, focus, placed, poison)) << placed.name;
   }
 }

@@ -7,6 +7,7 @@
 
 #include "../reference/motion_blur.h"
 #include "kernel_fixture.h"
+#include "motion/blur_params.h"
 #include "pass_chain.h"
 
 namespace quincunx {
@@ -231,7 +232,7 @@ TEST_P(MotionBlur, PoisonOutsideTheViewportChangesNoBit) {
   const std::vector<Pixel> resolved = picture({70, 45}, 3);
   Rig rig;
   const Run clean = run(rig, frame_of(rig, wheel, {33, 21}, {.25f, .25f}, 0), {70, 45}, resolved);
-  for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+  for (const double poison : testing::kPoisons) {
     const Run poisoned = run(rig, frame_of(rig, wheel, {33, 21}, {.25f, .25f}, poison), {70, 45}, resolved);
     EXPECT_EQ(clean.bytes, poisoned.bytes) << poison;
   }

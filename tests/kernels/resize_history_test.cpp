@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "expected.h"
 #include "layer_fixture.h"
@@ -269,7 +268,7 @@ TEST_P(Resize, PoisonOutsideChangesNoBit) {
       spec.outside = 0;
       const auto clean = bytes();
       EXPECT_EQ(clean, bytes()) << "twice";
-      for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+      for (const double poison : testing::kPoisons) {
         spec.outside = poison;
         EXPECT_EQ(clean, bytes()) << from.width << "x" << from.height << ", poison " << poison;
       }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <random>
 
@@ -275,7 +274,7 @@ TEST_P(Checkerboard, PoisonOutsideTheViewportAndInPixelsThatAreNotShadedChangesN
       Rig rig;
       FrameSpec spec{.render = render, .jitter = {-.5f, -.5f}};
       const auto clean = run_bits(rig, frame(rig, spec, parity, false, 0), frame(rig, spec, parity, true));
-      for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+      for (const double poison : testing::kPoisons) {
         spec.outside = poison;
         EXPECT_EQ(clean,
                   run_bits(rig, frame(rig, spec, parity, false, poison), frame(rig, spec, parity, true)));

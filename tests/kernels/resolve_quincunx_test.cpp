@@ -6,13 +6,12 @@
 #include <limits>
 #include <memory>
 
-#include "kernel_fixture.h"
 #include "pass_rig.h"
+#include "two_frame_cases.h"
 
 namespace quincunx {
 namespace {
 
-using testing::FrameFormats;
 using testing::FrameSpec;
 using testing::PassRig;
 using testing::Pattern;
@@ -36,7 +35,7 @@ struct Variant {
   Sampling sampling = Sampling::kBilinear;
 };
 
-class Resolve : public ::testing::TestWithParam<Variant> {
+class Resolve : public ::testing::TestWithParam<Variant>, protected testing::TwoFrameCases {
  protected:
   Resolve() {
     const Variant& v = GetParam();
@@ -53,31 +52,25 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     pass_ = std::make_unique<PassRig>(needs, settings_, "resolve_quincunx");
   }
 
-  struct Run {
-    std::vector<unsigned char> bytes;
-    std::vector<Pixel> pixels;
-    std::int64_t non_finite = 0;
-  };
-
   template <typename Enqueue>
-  Run run(Rig& rig, Extent output, Enqueue enqueue) {
+  Resolved run(Rig& rig, Extent output, Enqueue enqueue) {
     const ImageView view = rig.output(settings_.resolved, output);
     const Counter counter = rig.counter();
     enqueue(view, counter);
-    Run result{rig.bytes(view, output), {}, 0};
+    Resolved result{rig.bytes(view, output), {}, 0};
     result.pixels = testing::decode(settings_.resolved, result.bytes);
     result.non_finite = rig.count(counter);
     return result;
   }
 
-  Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
+  Resolved resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) override {
     return run(rig, output, [&](const ImageView& view, Counter counter) {
       pass_->run(current.inputs, previous.inputs, output, counter, {{Resource::kResolved, view}});
     });
   }
 
   // Of this frame alone.
-  Run single(Rig& rig, const TestFrame& current, Extent output) {
+  Resolved single(Rig& rig, const TestFrame& current, Extent output) {
     ResolveSettings settings = settings_;
     const bool point = GetParam().sampling == Sampling::kPoint;
     settings.method = point ? Method::kPoint : Method::kBilinear;
@@ -87,9 +80,7 @@ class Resolve : public ::testing::TestWithParam<Variant> {
     });
   }
 
-  TestFrame frame(Rig& rig, const FrameSpec& spec) { return with_motion(make_frame(rig, formats_, spec)); }
-
-  TestFrame with_motion(TestFrame made) const {
+  TestFrame with_motion(TestFrame made) const override {
     made.inputs.velocity_scale = {-.5f, .75f};
     made.reference.velocity_scale = {-.5, .75};
     return made;
@@ -103,102 +94,42 @@ class Resolve : public ::testing::TestWithParam<Variant> {
                                        output.width, output.height);
   }
 
-  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) {
+  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) override {
     Rig rig;
     const TestFrame current = frame(rig, now);
     const TestFrame previous = frame(rig, before);
-    const Run actual = resolve(rig, current, previous, output);
+    const Resolved actual = resolve(rig, current, previous, output);
     const reference::Picture picture = expected(current, previous, output);
     const auto bound = [&](std::size_t i) {
       return kResolveError * picture.largest[i] + kDenormal +
              testing::output_rounding(settings_.resolved, picture.largest[i]);
     };
-    const std::string what =
-        fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
-                    before.render.height, output.width, output.height, name_of(now.colour));
+    const std::string what = testing::name_of(now, before, output);
     testing::expect_close(picture, actual.pixels, bound, what, settings_.resolved);
     EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
   }
 
-  ResolveSettings settings_;
-  FrameFormats formats_;
   std::unique_ptr<PassRig> pass_;
 };
 
 TEST_P(Resolve, MatchesTheReferenceAtEverySizeScaleAndInput) {
-  const double scales[][4] = {{.05, .1, .1, .05}, {.5, .71, .5, .71},   {.71, .5, .9, .6},
-                              {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
-  unsigned seed = 0;
-  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
-    for (std::size_t i = 0; i < std::size(scales); ++i) {
-      const auto& scale = scales[i];
-      for (const Pattern pattern : testing::patterns_for(output, i)) {
-        ++seed;
-        const Pattern velocity = pattern == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise;
-        compare({.render = testing::scaled(output, scale[0], scale[1]),
-                 .jitter = {.25f, .25f},
-                 .colour = pattern,
-                 .velocity = velocity,
-                 .seed = seed},
-                {.render = testing::scaled(output, scale[2], scale[3]),
-                 .jitter = {-.25f, -.5f},
-                 .colour = pattern,
-                 .velocity = velocity,
-                 .seed = seed + 50},
-                output);
-        if (HasFatalFailure()) return;
-      }
-    }
-  }
+  compare_at_every_size_scale_and_input({257, 129});
 }
 
-// From nothing over less than a rounding to far beyond the screen; and a row of the widest screens.
 TEST_P(Resolve, AnySpeedAndTheWidestRowsMatchToo) {
-  const Variant& v = GetParam();
-  if (v.storage == Storage::kImage) return;  // images end at 8192 on some devices, the margin included
-  for (const double pixels : {0.0, 1e-6, .5, 400.0, 1e6}) {
-    compare({.render = {45, 23}, .jitter = {.25f, .25f}, .seed = 3, .speed = pixels / 45},
-            {.render = {60, 31}, .jitter = {-.25f, -.25f}, .seed = 4, .speed = pixels / 60}, {64, 33});
-    if (HasFatalFailure()) return;
-  }
-  compare({.render = {5816, 2}, .jitter = {.25f, .25f}, .seed = 5, .speed = 2e-4},
-          {.render = {5600, 3}, .jitter = {-.25f, -.25f}, .seed = 6, .speed = 2e-4}, {8192, 3});
+  compare_at_any_speed_and_with_the_widest_rows();
 }
 
 TEST_P(Resolve, PoisonOutsideTheViewportChangesNoBit) {
-  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
-    Rig rig;
-    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
-    FrameSpec before{.render = {render.width, render.height + 2}, .jitter = {.5f, .5f}, .seed = 4};
-    const Run clean = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
-    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
-      now.outside = before.outside = poison;
-      const Run poisoned = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
-      EXPECT_EQ(clean.bytes, poisoned.bytes) << render.width << "x" << render.height << ", poison " << poison;
-      EXPECT_EQ(poisoned.non_finite, 0);
-    }
-  }
+  poison_outside_the_viewport_changes_no_bit();
 }
 
-// Under a memory checker this also shows that nothing beyond the viewport is read.
 TEST_P(Resolve, ATightImageGivesTheSameBits) {
-  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{13, 7}}) {
-    Rig rig;
-    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
-    FrameSpec before{.render = {render.height, render.width}, .jitter = {.5f, .5f}, .seed = 4};
-    const Run roomy = resolve(rig, frame(rig, now), frame(rig, before), {16, 9});
-    now.tight = before.tight = true;
-    EXPECT_EQ(roomy.bytes, resolve(rig, frame(rig, now), frame(rig, before), {16, 9}).bytes);
-  }
+  a_tight_image_gives_the_same_bits();
 }
 
 TEST_P(Resolve, TwoRunsAgreeBitForBit) {
-  Rig rig;
-  const TestFrame current =
-      frame(rig, {.render = {183, 92}, .jitter = {.25f, .25f}, .colour = Pattern::kNonFinite});
-  const TestFrame previous = frame(rig, {.render = {150, 99}, .jitter = {-.25f, -.25f}, .seed = 2});
-  EXPECT_EQ(resolve(rig, current, previous, {257, 129}).bytes,
-            resolve(rig, current, previous, {257, 129}).bytes);
+  two_runs_agree_bit_for_bit();
 }
 
 TEST_P(Resolve, AConstantStaysConstant) {
@@ -225,8 +156,8 @@ TEST_P(Resolve, NothingOfANonFinitePreviousFrameSurvives) {
   const TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Pixel> spoilt(60 * 40, Pixel{std::nan(""), infinity, 1, -infinity});
-  const TestFrame previous = with_motion(make_frame(rig, formats_, before, spoilt));
-  const Run resolved = resolve(rig, current, previous, {64, 33});
+  const TestFrame previous = frame(rig, before, spoilt);
+  const Resolved resolved = resolve(rig, current, previous, {64, 33});
   EXPECT_EQ(resolved.bytes, single(rig, current, {64, 33}).bytes);
   EXPECT_EQ(resolved.non_finite, 64 * 33);
 }
@@ -241,10 +172,10 @@ TEST_P(Resolve, ANonFiniteTexelChangesItsFootprintOnly) {
   const FrameSpec spec{.render = render, .jitter = {.25f, .25f}};
   Rig rig;
   const TestFrame previous = frame(rig, {.render = render, .jitter = {-.25f, -.25f}, .seed = 8});
-  const TestFrame clean_frame = with_motion(make_frame(rig, formats_, spec, clean));
-  const TestFrame spoilt_frame = with_motion(make_frame(rig, formats_, spec, spoilt));
-  const Run before = resolve(rig, clean_frame, previous, output);
-  const Run after = resolve(rig, spoilt_frame, previous, output);
+  const TestFrame clean_frame = frame(rig, spec, clean);
+  const TestFrame spoilt_frame = frame(rig, spec, spoilt);
+  const Resolved before = resolve(rig, clean_frame, previous, output);
+  const Resolved after = resolve(rig, spoilt_frame, previous, output);
   std::int64_t touched = 0;
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
@@ -293,7 +224,7 @@ TEST_P(Resolve, JitterIsTakenBackInBothFrames) {
   // The second case would hide a sign that is wrong in both: equal jitters do not cancel.
   const float jitters[][2] = {{.25f, -.25f}, {.25f, .25f}, {0, .5f}};
   for (const auto& jitter : jitters) {
-    const Run actual = resolve(rig, ramp(jitter[0], render), ramp(jitter[1], {100, 50}), output);
+    const Resolved actual = resolve(rig, ramp(jitter[0], render), ramp(jitter[1], {100, 50}), output);
     const double rounding = testing::input_rounding(formats_.colour, 1) + 2 * 0x1p-12;  // a half output's too
     for (int y = 4; y < output.height - 4; ++y) {
       for (int x = 4; x < output.width - 4; ++x) {
@@ -340,7 +271,7 @@ TEST(ResolveWeight, CountsRenderPixels) {
   ResolveSettings settings;
   settings.quincunx.velocity_weight = 2;
   PassRig pass({.transparents = false}, settings, "resolve_quincunx");
-  const FrameFormats formats{.with_velocity = true};
+  const testing::FrameFormats formats{.with_velocity = true};
   const Extent output{50, 30};
   for (const Extent render : {Extent{40, 20}, Extent{80, 40}}) {
     Rig rig;

@@ -9,14 +9,13 @@
 
 #include "../reference/reproject.h"
 #include "expected.h"
-#include "kernel_fixture.h"
 #include "pass_rig.h"
 #include "sample_reach.h"
+#include "two_frame_cases.h"
 
 namespace quincunx {
 namespace {
 
-using testing::FrameFormats;
 using testing::FrameSpec;
 using testing::Pattern;
 using testing::Pixel;
@@ -55,7 +54,7 @@ std::string name_of(const Variant& v) {
                      quincunx::name_of(v.resolved));
 }
 
-class Reprojected : public ::testing::TestWithParam<Variant> {
+class Reprojected : public ::testing::TestWithParam<Variant>, protected testing::TwoFrameCases {
  protected:
   Reprojected() {
     const Variant& v = GetParam();
@@ -83,38 +82,27 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     return *chain_;
   }
 
-  struct Run {
-    std::vector<unsigned char> bytes;
-    std::vector<Pixel> pixels;
-    std::vector<reference::Reprojection> reprojections;
-    std::int64_t non_finite = 0;
-  };
-
-  Run resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) {
+  Resolved resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) override {
     PassChain& chain = chain_for(output);
     const ImageView view = rig.output(settings_.resolved, output);
     const Counter counter = rig.counter();
     FrameReport report;
     chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
               report, nullptr);
-    Run run{rig.bytes(view, output), {}, {}, rig.count(counter)};
+    Resolved run{rig.bytes(view, output), {}, rig.count(counter)};
     run.pixels = testing::decode(settings_.resolved, run.bytes);
+    reprojections_.assign(current.reference.colour.size(), {0, 0, 1});
     if (const ImageView found = chain.newest(Resource::kReprojection)) {
-      for (const Pixel& pixel : rig.pixels(found, current.inputs.render))
-        run.reprojections.push_back({pixel[0], pixel[1], pixel[2]});
-    } else {
-      run.reprojections.assign(current.reference.colour.size(), {0, 0, 1});
+      const std::vector<Pixel> pixels = rig.pixels(found, current.inputs.render);
+      std::transform(pixels.begin(), pixels.end(), reprojections_.begin(), [](const Pixel& pixel) {
+        return reference::Reprojection{pixel[0], pixel[1], pixel[2]};
+      });
     }
     return run;
   }
 
-  TestFrame frame(Rig& rig, const FrameSpec& spec) { return with_motion(make_frame(rig, formats_, spec)); }
-  TestFrame frame(Rig& rig, const FrameSpec& spec, const std::vector<Pixel>& colour) {
-    return with_motion(make_frame(rig, formats_, spec, colour));
-  }
-
   // The camera walks backwards and turns; its matrix is not normalised.
-  TestFrame with_motion(TestFrame made) const {
+  TestFrame with_motion(TestFrame made) const override {
     made.inputs.velocity_scale = {-.5f, .75f};
     made.reference.velocity_scale = {-.5, .75};
     auto& camera = made.inputs.camera.clip_to_previous_clip;
@@ -123,8 +111,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     return made;
   }
 
-  void compare_reprojections(const Run& run, const TestFrame& current, const TestFrame& previous,
-                             const std::string& what) {
+  void compare_reprojections(const TestFrame& current, const TestFrame& previous, const std::string& what) {
     const Variant& v = GetParam();
     if (!v.moves) return;
     const auto expected = testing::expected_reprojections(
@@ -132,7 +119,7 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
         {.reactive = v.reactive, .residual_weight = static_cast<double>(settings_.quincunx.residual_weight)});
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const auto& [value, bound, undecided] = expected[i];
-      const reference::Reprojection& actual = run.reprojections[i];
+      const reference::Reprojection& actual = reprojections_[i];
       ASSERT_NEAR(value.x, actual.x, bound.x.error) << what << ", sample " << i;
       ASSERT_NEAR(value.y, actual.y, bound.y.error) << what << ", sample " << i;
       ++compared_;
@@ -145,18 +132,16 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
   }
 
   // The picture from the device's own reprojections, so that no rounding before it matters.
-  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) {
+  void compare(const FrameSpec& now, const FrameSpec& before, Extent output) override {
     Rig rig;
     const TestFrame current = frame(rig, now);
     const TestFrame previous = frame(rig, before);
-    const Run run = resolve(rig, current, previous, output);
-    const std::string what =
-        fmt::format("{}x{} and {}x{} -> {}x{}, {}", now.render.width, now.render.height, before.render.width,
-                    before.render.height, output.width, output.height, testing::name_of(now.colour));
-    compare_reprojections(run, current, previous, what);
+    const Resolved run = resolve(rig, current, previous, output);
+    const std::string what = testing::name_of(now, before, output);
+    compare_reprojections(current, previous, what);
     if (HasFatalFailure()) return;
     const auto expected =
-        reference::resolve_reprojected(current.reference, previous.reference, run.reprojections,
+        reference::resolve_reprojected(current.reference, previous.reference, reprojections_,
                                        !GetParam().moves && GetParam().reactive, output.width, output.height);
     const auto bound = [&](std::size_t i) {
       return weight_error(expected.motion[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
@@ -167,89 +152,32 @@ class Reprojected : public ::testing::TestWithParam<Variant> {
     EXPECT_LE(run.non_finite, expected.non_finite + expected.undecided) << what;
   }
 
-  ResolveSettings settings_;
   std::optional<PassChain> chain_;
-  FrameFormats formats_;
+  std::vector<reference::Reprojection> reprojections_;  // of the frame resolved last
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
 };
 
 TEST_P(Reprojected, MatchesTheReferenceAtEverySizeScaleAndInput) {
-  const double scales[][4] = {{.05, .1, .1, .05}, {.5, .71, .5, .71},   {.71, .5, .9, .6},
-                              {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
-  unsigned seed = 0;
-  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{130, 65}}) {
-    for (std::size_t i = 0; i < std::size(scales); ++i) {
-      const auto& scale = scales[i];
-      for (const Pattern pattern : testing::patterns_for(output, i)) {
-        ++seed;
-        const Pattern velocity = pattern == Pattern::kNonFinite ? Pattern::kNonFinite : Pattern::kNoise;
-        compare({.render = testing::scaled(output, scale[0], scale[1]),
-                 .jitter = {.25f, .25f},
-                 .colour = pattern,
-                 .velocity = velocity,
-                 .seed = seed},
-                {.render = testing::scaled(output, scale[2], scale[3]),
-                 .jitter = {-.25f, -.5f},
-                 .colour = pattern,
-                 .velocity = velocity,
-                 .seed = seed + 50},
-                output);
-        if (HasFatalFailure()) return;
-      }
-    }
-  }
+  compare_at_every_size_scale_and_input({130, 65});
   // Where roundings decide everywhere, nothing was compared.
   EXPECT_GE(decided_, compared_ * 9 / 10);
 }
 
-// From nothing over less than a rounding to far beyond the screen; and a row of the widest screens.
 TEST_P(Reprojected, AnySpeedAndTheWidestRowsMatchToo) {
-  const Variant& v = GetParam();
-  if (v.storage == Storage::kImage) return;  // images end at 8192 on some devices, the margin included
-  for (const double pixels : {0.0, 1e-6, .5, 400.0, 1e6}) {
-    compare({.render = {45, 23}, .jitter = {.25f, .25f}, .seed = 3, .speed = pixels / 45},
-            {.render = {60, 31}, .jitter = {-.25f, -.25f}, .seed = 4, .speed = pixels / 60}, {64, 33});
-    if (HasFatalFailure()) return;
-  }
-  compare({.render = {5816, 2}, .jitter = {.25f, .25f}, .seed = 5, .speed = 2e-4},
-          {.render = {5600, 3}, .jitter = {-.25f, -.25f}, .seed = 6, .speed = 2e-4}, {8192, 3});
+  compare_at_any_speed_and_with_the_widest_rows();
 }
 
 TEST_P(Reprojected, PoisonOutsideTheViewportChangesNoBit) {
-  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{45, 23}}) {
-    Rig rig;
-    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
-    FrameSpec before{.render = {render.width, render.height + 2}, .jitter = {.5f, .5f}, .seed = 4};
-    const Run clean = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
-    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
-      now.outside = before.outside = poison;
-      const Run poisoned = resolve(rig, frame(rig, now), frame(rig, before), {64, 33});
-      EXPECT_EQ(clean.bytes, poisoned.bytes) << render.width << "x" << render.height << ", poison " << poison;
-      EXPECT_EQ(poisoned.non_finite, 0);
-    }
-  }
+  poison_outside_the_viewport_changes_no_bit();
 }
 
-// Under a memory checker this also shows that nothing beyond the viewport is read.
 TEST_P(Reprojected, ATightImageGivesTheSameBits) {
-  for (const Extent render : {Extent{1, 1}, Extent{1, 9}, Extent{9, 1}, Extent{2, 2}, Extent{13, 7}}) {
-    Rig rig;
-    FrameSpec now{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
-    FrameSpec before{.render = {render.height, render.width}, .jitter = {.5f, .5f}, .seed = 4};
-    const Run roomy = resolve(rig, frame(rig, now), frame(rig, before), {16, 9});
-    now.tight = before.tight = true;
-    EXPECT_EQ(roomy.bytes, resolve(rig, frame(rig, now), frame(rig, before), {16, 9}).bytes);
-  }
+  a_tight_image_gives_the_same_bits();
 }
 
 TEST_P(Reprojected, TwoRunsAgreeBitForBit) {
-  Rig rig;
-  const TestFrame current =
-      frame(rig, {.render = {183, 92}, .jitter = {.25f, .25f}, .colour = Pattern::kNonFinite});
-  const TestFrame previous = frame(rig, {.render = {150, 99}, .jitter = {-.25f, -.25f}, .seed = 2});
-  EXPECT_EQ(resolve(rig, current, previous, {257, 129}).bytes,
-            resolve(rig, current, previous, {257, 129}).bytes);
+  two_runs_agree_bit_for_bit();
 }
 
 // The fast and the careful way through a block give the same bits.
@@ -263,8 +191,8 @@ TEST_P(Reprojected, ANonFiniteTexelChangesItsFootprintOnly) {
   const FrameSpec spec{.render = render, .jitter = {.25f, .25f}};
   Rig rig;
   const TestFrame previous = frame(rig, {.render = render, .jitter = {-.25f, -.25f}, .seed = 8});
-  const Run before = resolve(rig, frame(rig, spec, clean), previous, output);
-  const Run after = resolve(rig, frame(rig, spec, spoilt), previous, output);
+  const Resolved before = resolve(rig, frame(rig, spec, clean), previous, output);
+  const Resolved after = resolve(rig, frame(rig, spec, spoilt), previous, output);
   int changed = 0;
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
@@ -294,7 +222,7 @@ TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Pixel> spoilt(60 * 40, Pixel{std::nan(""), infinity, 1, -infinity});
   const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}}, spoilt);
-  const Run run = resolve(rig, current, previous, output);
+  const Resolved run = resolve(rig, current, previous, output);
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
       const reference::Sample bilinear =

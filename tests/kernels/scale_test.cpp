@@ -96,7 +96,7 @@ TEST_P(Scale, PoisonOutsideTheViewportChangesNoBit) {
     Rig rig;
     FrameSpec spec{.render = render, .jitter = {-.5f, -.5f}, .seed = 3};
     const ScaleRig::Run clean = scale_.run(rig, scale_.frame(rig, spec), {64, 33});
-    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
+    for (const double poison : testing::kPoisons) {
       spec.outside = poison;
       const ScaleRig::Run poisoned = scale_.run(rig, scale_.frame(rig, spec), {64, 33});
       EXPECT_EQ(clean.bytes, poisoned.bytes) << render.width << "x" << render.height << ", poison " << poison;

@@ -1,22 +1,16 @@
 // SPDX-License-Identifier: MIT
 // velocity_from_depth: velocity from depth and the camera's motion.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
 
 #include "error_table.h"
-#include "kernel_fixture.h"
-#include "pass_rig.h"
+#include "velocity_test_base.h"
 
 namespace quincunx {
 namespace {
 
-using testing::FrameFormats;
 using testing::FrameSpec;
-using testing::PassRig;
+using testing::kAboutTurn;
 using testing::Pattern;
 using testing::Pixel;
 using testing::Rig;
@@ -31,25 +25,12 @@ constexpr double kVelocityError = (2 * (12 + 4) + 5 + 2) * 0x1p-24;
 // Where w has lost this much to cancellation its sign is not certain.
 constexpr double kCancelled = kVelocityError;
 
-struct Variant {
-  Storage storage;
-  PixelFormat velocity;
-};
-
 // A turn and a step forward: uv change over the picture and with depth.
 constexpr std::array<float, 16> kCameraStep = {1.0f,  0.01f,  0, 0.02f, -0.01f, 1.0f,   0, 0.005f,
                                                0.03f, -0.02f, 1, 0.01f, 0.004f, 0.006f, 0, 1.0f};
-// A turn of more than a right angle: much of the picture was behind the camera.
-constexpr std::array<float, 16> kAboutTurn = {-0.2f, 0, 0, -0.98f, 0,     1, 0, 0,
-                                              0,     0, 1, 0,      0.98f, 0, 0, -0.2f};
-
-class Velocity : public ::testing::TestWithParam<Variant> {
+class Velocity : public testing::VelocityTest {
  protected:
-  Velocity() {
-    settings_.storage = GetParam().storage;
-    settings_.velocity = GetParam().velocity;
-    pass_ = std::make_unique<PassRig>(SceneNeeds{.moving_objects = false}, settings_, "velocity_from_depth");
-  }
+  Velocity() : VelocityTest(SceneNeeds{.moving_objects = false}, {}, "velocity_from_depth") {}
 
   TestFrame frame(Rig& rig, const FrameSpec& spec, const std::array<float, 16>& camera = kCameraStep) const {
     TestFrame made = make_frame(rig, {.storage = settings_.storage, .with_depth = true}, spec);
@@ -58,21 +39,7 @@ class Velocity : public ::testing::TestWithParam<Variant> {
     return made;
   }
 
-  std::vector<unsigned char> run(Rig& rig, const TestFrame& frame, bool tight = false) {
-    const Extent render = frame.inputs.render;
-    const std::vector<Pixel> before(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
-    const ImageView view = rig.image(settings_.velocity, settings_.storage, render, before, -7, tight);
-    pass_->run(frame.inputs, {}, {1, 1}, {}, {{Resource::kVelocity, view}});
-    const Extent target = view.extent;
-    const std::vector<Pixel> all = rig.pixels(view, target);
-    for (int y = 0; y < target.height; ++y) {
-      for (int x = 0; x < target.width; ++x) {
-        if (x < render.width && y < render.height) continue;
-        EXPECT_EQ(all[static_cast<std::size_t>(y * target.width + x)][0], -7) << "beyond the viewport";
-      }
-    }
-    return rig.bytes(view, render);
-  }
+  TestFrame turned_frame(Rig& rig, const FrameSpec& spec) const override { return frame(rig, spec); }
 
   void compare(const FrameSpec& spec, const std::array<float, 16>& camera) {
     Rig rig;
@@ -100,9 +67,6 @@ class Velocity : public ::testing::TestWithParam<Variant> {
       }
     }
   }
-
-  ResolveSettings settings_;
-  std::unique_ptr<PassRig> pass_;
 };
 
 TEST_P(Velocity, MatchesTheReference) {
@@ -130,43 +94,18 @@ TEST_P(Velocity, ACameraThatStandsStillGivesZero) {
 }
 
 TEST_P(Velocity, PoisonOutsideTheViewportChangesNoBit) {
-  for (const Extent render : {Extent{1, 1}, {1, 9}, {9, 1}, {45, 23}}) {
-    Rig rig;
-    FrameSpec spec{.render = render, .jitter = {-.5f, -.5f}};
-    const auto clean = run(rig, frame(rig, spec));
-    for (const double poison : {std::nan(""), std::numeric_limits<double>::infinity(), 1e30}) {
-      spec.outside = poison;
-      EXPECT_EQ(clean, run(rig, frame(rig, spec)));
-    }
-  }
+  poison_changes_no_bit();
 }
 
-// Under a memory checker this also shows that nothing beyond the viewport is read or written.
 TEST_P(Velocity, ATightImageGivesTheSameBits) {
-  for (const Extent render : {Extent{1, 1}, {1, 9}, {9, 1}, {13, 7}, {16, 2}}) {
-    Rig rig;
-    FrameSpec spec{.render = render};
-    const auto roomy = run(rig, frame(rig, spec));
-    spec.tight = true;
-    EXPECT_EQ(roomy, run(rig, frame(rig, spec), true));
-  }
+  a_tight_image_gives_the_same_bits();
 }
 
 TEST_P(Velocity, TwoRunsAgreeBitForBit) {
-  Rig rig;
-  const TestFrame made = frame(rig, {.render = {183, 92}, .velocity = Pattern::kNonFinite});
-  EXPECT_EQ(run(rig, made), run(rig, made));
+  two_runs_agree_bit_for_bit();
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Velocity,
-                         ::testing::Values(Variant{Storage::kBuffer, PixelFormat::kRG16F},
-                                           Variant{Storage::kBuffer, PixelFormat::kRG32F},
-                                           Variant{Storage::kImage, PixelFormat::kRG16F}),
-                         [](const auto& instance) {
-                           const Variant& v = instance.param;
-                           return fmt::format("{}_{}", v.storage == Storage::kImage ? "image" : "buffer",
-                                              name_of(v.velocity));
-                         });
+INSTANTIATE_TEST_SUITE_P(Variants, Velocity, testing::velocity_variants(), testing::variant_name);
 
 }  // namespace
 }  // namespace quincunx
