@@ -83,14 +83,15 @@ void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
 }
 
 void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-                  Extent extent, int columns, cl::Event* event) {
+                  Extent extent, int columns, cl::Event* event, int rows) {
   const int group_x = shape.group_width;
-  const int group_y = shape.group_height;
+  const int group_y = std::max(shape.group_height / rows, 1);
   const int items_x = (extent.width + columns - 1) / columns;
+  const int items_y = (extent.height + rows - 1) / rows;
   queue.enqueueNDRangeKernel(
       kernel, cl::NullRange,
       cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
-                  static_cast<std::size_t>(round_up(extent.height, group_y))),
+                  static_cast<std::size_t>(round_up(items_y, group_y))),
       cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
 }
 

@@ -85,10 +85,10 @@ struct PassFrame {
 // CLHPP takes no raw handle as an argument.
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
 
-// Enough work-items of `columns` x 1 pixels for the extent, in groups of one fixed size: a device compiles a
-// kernel anew for each size.
+// Enough work-items of `columns` x `rows` pixels for the extent, in groups of one fixed size: a device compiles a
+// kernel anew for each size. Groups hold fewer items where these have more rows.
 void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
-                  Extent extent, int columns, cl::Event* event);
+                  Extent extent, int columns, cl::Event* event, int rows = 1);
 
 // The shape with its group halved, the longer side first, until it has at most `most` work-items. Pure.
 WorkShape with_smaller_group(WorkShape shape, std::size_t most);
@@ -121,8 +121,8 @@ class Pass {
   Resource picture() const { return picture_of(facts_); }
 
   // As enqueue_rows().
-  void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event) {
-    enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event);
+  void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event, int rows = 1) {
+    enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event, rows);
   }
 
   // Sets the kernel's arguments in order: structs by value, buffers, the memory of images and counters.

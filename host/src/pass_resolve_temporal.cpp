@@ -51,7 +51,7 @@ class ResolveTemporalPass : public Pass {
          frame[Resource::kTileLight], view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
          frame[Resource::kHistory], view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown],
          frame.counter);
-    launch(frame, frame.output, params.columns_per_item, event);
+    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
 

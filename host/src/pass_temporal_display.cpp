@@ -19,7 +19,7 @@ class TemporalDisplayPass : public Pass {
     const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
          view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown]);
-    launch(frame, frame.output, params.columns_per_item, event);
+    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
 

@@ -52,6 +52,7 @@
 #include "temporal/fetch_history.h"
 #include "temporal/limit_confidence.h"
 #include "temporal/nearest_samples.h"
+#include "temporal/plain_tile.h"
 #include "temporal/relight.h"
 #include "temporal/reprojection.h"
 #include "texel.h"
@@ -63,6 +64,13 @@
 #error "LAYERS must be 0 or 1"
 #endif
 
+// Plain tiles have neither alpha nor a view.
+#if ALPHA || VIEW != PICTURE
+#define MAY_BE_PLAIN false
+#else
+#define MAY_BE_PLAIN true
+#endif
+
 __kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const float* reprojection, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha,
@@ -70,79 +78,89 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
                                __global const TileLight* light, __global const LayerTile* layers,
                                STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
                                __global uint* non_finite) {
-  const int y = get_global_id(1);
+  const int first_y = get_global_id(1) * params.rows_per_item;
   const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  if (first >= params.output_width || first_y >= params.output_height) return;
 
   const int end = min(first + params.columns_per_item, params.output_width);
+  const int end_y = min(first_y + params.rows_per_item, params.output_height);
   const SourceFrame frame = params.frame0;
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
-  const Positions row = row_position(&params, positions, y);
-  EdgeLight right = light_at_edge(light, &params, first, y);
+  const int tile_y = first_y / kTemporalTile;
+  bool left_is_even = has_even_light(light, &params, first / kTemporalTile - 1, tile_y);
+  bool own_is_even = has_even_light(light, &params, first / kTemporalTile, tile_y);
   uint met_count = 0;
   for (int x = first; x < end; x += kTemporalTile) {
-    const int tile_index = y / kTemporalTile * params.tiles_x + x / kTemporalTile;
+    const int tile_index = tile_y * params.tiles_x + x / kTemporalTile;
     const TileReprojection tile = tiles[tile_index];
+    const bool right_is_even = has_even_light(light, &params, x / kTemporalTile + 1, tile_y);
+    const bool even = left_is_even && own_is_even && right_is_even;
+    left_is_even = own_is_even;
+    own_is_even = right_is_even;
 #if LAYERS
-    if (layers[tile_index].is_layered) {
-      right = light_at_edge(light, &params, x + kTemporalTile, y);
-      continue;
-    }
+    if (layers[tile_index].is_layered) continue;
+#endif
+    const NearestSamples columns = find_nearest_columns(&params, positions, x, tile);
+    const bool holds_back = light[tile_index].holds_back;
+    const bool plain = MAY_BE_PLAIN && even && !holds_back &&
+                       is_plain(previous_tiles, &params, tile, x, first_y, end_y - 1);
+    for (int y = first_y; y < end_y; ++y) {
+      // Reproject.
+      const NearestSamples nearest = in_row(&params, columns, row_position(&params, positions, y), tile);
+      if (plain && resolve_plain_pixels(&params, colour, reactive0, reactive1, layer, tile, &nearest, updated, x, y))
+        continue;
+      const bool copied = is_copied(previous_tiles, &params, tile, x, y);
+      const bool whole = is_taken_whole(&params, reactive0, reactive1, &nearest, tile, copied);
+      EightReprojections motion = no_motion();
+      if (!whole) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
+
+      // Fetch history, and limit its confidence.
+      const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, copied, &motion, x, y);
+      Evidence evidence = full_evidence(&fetched);
+      if (!whole) evidence = limit_confidence(&fetched, &motion);
+      float8 known_alpha = (float8)(1.0f);
+#if ALPHA
+      const AlphaPlane plane = {alpha, params.output_width, params.output_height};
+      known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, copied, &motion, x, y);
 #endif
 
-    // Reproject.
-    const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
-    const bool copied = is_copied(previous_tiles, &params, tile, x, y);
-    const bool whole = is_taken_whole(&params, reactive0, reactive1, &nearest, tile, copied);
-    EightReprojections motion = no_motion();
-    if (!whole) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
+      // Relight.
+      const EdgeLight left = even ? EVEN_LIGHT : light_at_edge(light, &params, x, y);
+      const EdgeLight right = even ? EVEN_LIGHT : light_at_edge(light, &params, x + kTemporalTile, y);
+      reject_by_light(&evidence, left, right);
+      EightTexels known = relight(fetched.texels, left, right);
 
-    // Fetch history, and limit its confidence.
-    const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, copied, &motion, x, y);
-    Evidence evidence = full_evidence(&fetched);
-    if (!whole) evidence = limit_confidence(&fetched, &motion);
-    float8 known_alpha = (float8)(1.0f);
+      // Load the samples, and hold back startling ones.
+      EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
+      float8 held = (float8)(1.0f);
+      if (holds_back) held = hold_back(known, evidence.confidence, samples);
+
+      // Rectify and reseed.
+      float8 inertia = (float8)(0.0f);
+      if (needs_correction(&evidence))
+        inertia =
+            correct_history(colour, &frame, &sample_motion, &nearest, (int8)(-1), &known, &known_alpha, &evidence);
+
+      // Accumulate.
+      float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * held;
+      if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
+      const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
+
+      // Store.
+      store_history8(updated, y * params.output_width + x, end - x, sum);
 #if ALPHA
-    const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-    known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, copied, &motion, x, y);
-#endif
-
-    // Relight.
-    const EdgeLight left = right;
-    right = light_at_edge(light, &params, x + kTemporalTile, y);
-    reject_by_light(&evidence, left, right);
-    EightTexels known = relight(fetched.texels, left, right);
-
-    // Load the samples, and hold back startling ones.
-    EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
-    float8 held = (float8)(1.0f);
-    if (light[tile_index].holds_back) held = hold_back(known, evidence.confidence, samples);
-
-    // Rectify and reseed.
-    float8 inertia = (float8)(0.0f);
-    if (needs_correction(&evidence))
-      inertia =
-          correct_history(colour, &frame, &sample_motion, &nearest, (int8)(-1), &known, &known_alpha, &evidence);
-
-    // Accumulate.
-    float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * held;
-    if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
-    const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
-
-    // Store.
-    store_history8(updated, y * params.output_width + x, end - x, sum);
-#if ALPHA
-    store_alpha8(updated_alpha, y * params.output_width + x, end - x,
-                 accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
+      store_alpha8(updated_alpha, y * params.output_width + x, end - x,
+                   accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 #if VIEW == CONFIDENCE
-    store_view(view, params.output, x, y, end, view_confidence(sum));
+      store_view(view, params.output, x, y, end, view_confidence(sum));
 #elif VIEW == REJECTION
-    store_view(view, params.output, x, y, end, view_rejection(&motion, left, right));
+      store_view(view, params.output, x, y, end, view_rejection(&motion, left, right));
 #elif VIEW == PHASE
-    store_view(view, params.output, x, y, end, view_phase(tile, &fetched));
+      store_view(view, params.output, x, y, end, view_phase(tile, &fetched));
 #endif
+    }
   }
   if (met_count > 0) atomic_add(non_finite + params.counter, met_count);
 }

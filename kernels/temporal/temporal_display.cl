@@ -15,11 +15,13 @@
 //          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
 #include "temporal/display_place.h"
+#include "temporal/filtered_rows.h"
 #include "temporal/history_alpha.h"
 #include "temporal/history_sampling.h"
 #include "temporal/smooth.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
+#include "texels/stream.h"
 
 #ifndef ALPHA
 #define ALPHA 1
@@ -56,18 +58,7 @@ static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, i
   return pixels;
 }
 
-// The same where all texels that it needs are inside.
-static inline Pixels load_pixels(HistoryLayer layer, const Display* display, int x, int y) {
-  const EightTexels own = load_history8(layer, y * layer.width + x);
-  Pixels pixels = {own, own};
-  if (display->has_phase) {
-    const int first_x = x - display->step_x, first_y = y - display->step_y;
-    pixels.shown = sample_history_row(layer, first_x, first_y, display->wx, display->wy);
-  }
-  return pixels;
-}
-
-// Whether all texels that load_pixels() and load_around() need are inside.
+// Whether all texels that the cubic and load_around() need are inside.
 static inline bool lies_inside(HistoryLayer layer, const Display* display, int x, int y) {
   const int first_y = y - display->step_y;
   return x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
@@ -97,8 +88,8 @@ static inline float alpha_around(HistoryLayer layer, AlphaPlane plane, int x, in
 }
 
 // What is shown of the alpha of the first `count` pixels from (x, y) on.
-static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count, bool smooth,
-                              float8 confidence, float* shown) {
+static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count,
+                              bool smooth, float8 confidence, float* shown) {
   const SmoothParts parts = smooth_parts(confidence);
   float own[8], other[8];
   vstore8(parts.own, 0, own);
@@ -110,7 +101,6 @@ static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Displa
     if (smooth) shown[i] = shown[i] * own[i] + alpha_around(layer, plane, x + i, y) * other[i];
   }
 }
-#endif
 
 // One pixel, if it lies before `end`.
 static inline void store_pixel(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, float4 texel,
@@ -129,36 +119,71 @@ static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x,
   store_pixel(output, layout, x + 6, y, end, texels.right.s89ab, alphas[6]);
   store_pixel(output, layout, x + 7, y, end, texels.right.scdef, alphas[7]);
 }
+#else
+// Those of eight pixels that lie before `end`.
+static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, EightTexels texels) {
+  const float16 left = select(texels.left, (float16)(1.0f), LAST_CHANNELS);
+  const float16 right = select(texels.right, (float16)(1.0f), LAST_CHANNELS);
+  if (x + 8 <= end) {
+    stream_output4(output, layout, x, y, left);
+    stream_output4(output, layout, x + 4, y, right);
+    return;
+  }
+  float4 texel[8];
+  vstore16(left, 0, (float*)texel);
+  vstore16(right, 1, (float*)texel);
+  for (int i = 0; x + i < end; ++i) store_output(output, layout, x + i, y, texel[i]);
+}
+#endif
 
 __kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
-  const int y = get_global_id(1);
+  const int first_y = get_global_id(1) * params.rows_per_item;
   const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  if (first >= params.output_width || first_y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const int end = min(first + params.columns_per_item, params.output_width);
+  const int end_y = min(first_y + params.rows_per_item, params.output_height);
   for (int x = first; x < end; x += kTemporalTile) {
-    // Resample.
-    const TileReprojection tile = tiles[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
+    const TileReprojection tile = tiles[first_y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     const Display display = display_of(tile.phase_x, tile.phase_y);
-    const bool inside = lies_inside(layer, &display, x, y);
-    Pixels pixels = inside ? load_pixels(layer, &display, x, y) : gather_pixels(layer, &display, x, y);
+    FilteredRows rows;
+    bool has_rows = false;  // those of the row above
+    for (int y = first_y; y < end_y; ++y) {
+      // Resample.
+      const bool inside = lies_inside(layer, &display, x, y);
+      Pixels pixels;
+      if (inside) {
+        pixels.own = load_history8(layer, y * layer.width + x);
+        pixels.shown = pixels.own;
+      } else {
+        pixels = gather_pixels(layer, &display, x, y);
+      }
+      if (inside && display.has_phase) {
+        const int index = (y - display.step_y) * layer.width + x - display.step_x;
+        rows = has_rows ? next_rows(rows, layer, index, display.wx) : filter_rows(layer, index, display.wx);
+        has_rows = true;
+        pixels.shown = blend_filtered(&rows, display.wy);
+      }
 
-    // Smooth.
-    const float8 confidence = fabs(confidences(pixels.own));  // negative of two layers
-    const bool smooth = is_smoothed(&params, confidence);
-    if (smooth) {
-      const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
-      pixels.shown = smooth_little_known(pixels.shown, around, smooth_parts(confidence));
-    }
+      // Smooth.
+      const float8 confidence = fabs(confidences(pixels.own));  // negative of two layers
+      const bool smooth = is_smoothed(&params, confidence);
+      if (smooth) {
+        const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);
+        pixels.shown = smooth_little_known(pixels.shown, around, smooth_parts(confidence));
+      }
 
-    // Store.
-    float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+      // Store.
 #if ALPHA
-    const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-    show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
+      float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
+      const AlphaPlane plane = {alpha, params.output_width, params.output_height};
+      show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
+      store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
+#else
+      store_opaque(output, params.output, x, y, end, pixels.shown);
 #endif
-    store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
+    }
   }
 }

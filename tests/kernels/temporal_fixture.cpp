@@ -9,6 +9,7 @@
 #include "pass_rig.h"
 #include "program_cache.h"
 #include "resolve_params.h"
+#include "temporal_pass_params.h"
 
 namespace quincunx::testing {
 
@@ -294,6 +295,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.columns = position_columns(output);
   params.counter = counter.index;
   params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kReprojectedBlock);
+  params.rows_per_item = rows_per_item(impl().profile.shape);
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
   params.spacing_x = to_float(r.spacing(0));
@@ -328,7 +330,8 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   resolve.setArg(13, updated_alpha);
   set_memory(resolve, 14, view.memory);
   set_memory(resolve, 15, counter.memory);
-  enqueue_rows(impl().profile.shape, impl().queue, resolve, output, params.columns_per_item, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, resolve, output, params.columns_per_item, nullptr,
+               params.rows_per_item);
   Result result{from_device<unsigned char>(updated, bytes), {}, {}, rig.count(counter)};
   result.pixels = decode(variant_.history, result.bytes);
   if (!variant_.alpha) return result;
@@ -350,6 +353,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.output = layout_of(view);
   params.tiles_x = r.tiles_x();
   params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kTemporalTile);
+  params.rows_per_item = rows_per_item(impl().profile.shape);
   params.first = shown.first ? 1 : 0;
   cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);
   display.setArg(0, params);
@@ -360,7 +364,8 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   display.setArg(2, known);
   display.setArg(3, known_alpha);
   set_memory(display, 4, view.memory);
-  enqueue_rows(impl().profile.shape, impl().queue, display, output, params.columns_per_item, nullptr);
+  enqueue_rows(impl().profile.shape, impl().queue, display, output, params.columns_per_item, nullptr,
+               params.rows_per_item);
   Result result{rig.bytes(view, output), {}, {}, 0};
   result.pixels = decode(variant_.resolved, result.bytes);
   return result;

@@ -31,10 +31,17 @@ static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, i
 
 // The samples of a row nearest to eight pixels.
 static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, int8 x, int y) {
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
+  __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
+  const EightTexels samples = {load_half_bits((ulong4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3])),
+                               load_half_bits((ulong4)(row[x.s4], row[x.s5], row[x.s6], row[x.s7]))};
+  return samples;
+#else
   return eight_texels(load_colour(texels, layout, x.s0, y), load_colour(texels, layout, x.s1, y),
                       load_colour(texels, layout, x.s2, y), load_colour(texels, layout, x.s3, y),
                       load_colour(texels, layout, x.s4, y), load_colour(texels, layout, x.s5, y),
                       load_colour(texels, layout, x.s6, y), load_colour(texels, layout, x.s7, y));
+#endif
 }
 
 // The luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright sample does

@@ -86,7 +86,7 @@ static inline void will_read_history(HistoryLayer layer, int index) {
 
 // Each value to the four channels of a texel.
 static inline float16 to_four_texels(float4 value) {
-  return (float16)((float4)(value.x), (float4)(value.y), (float4)(value.z), (float4)(value.w));
+  return value.s0000111122223333;
 }
 
 // The lanes of four texels that hold their last channel.

@@ -149,13 +149,7 @@ static inline float16 blend_outer(float16 row0, float16 row1, float16 row2, floa
   const float16 outer = MULTIPLY_ADD(row0, (float16)(y.x), row3 * y.w);
   return MULTIPLY_ADD(row1, (float16)(y.y), MULTIPLY_ADD(row2, (float16)(y.z), outer));
 }
-#endif
 
-static inline float16 blend_inner(float16 row1, float16 row2, float4 y) {
-  return MULTIPLY_ADD(row1, (float16)(y.y), row2 * y.z);
-}
-
-#if TAPS == 16
 // The cubic at eight places of a row that lie alike among their texels, held in the range of the middle four of each.
 // Of four rows of texels, which begin at the first of those around the first place.
 static inline EightTexels blend_rows(TwelveTexels row0, TwelveTexels row1, TwelveTexels row2, TwelveTexels row3,
@@ -177,22 +171,3 @@ static inline EightTexels blend_rows(TwelveTexels row0, TwelveTexels row1, Twelv
   return held;
 }
 #endif
-
-// What sample_history gives for eight places of a row that lie alike among their texels, the first among those from
-// (x0, y0) on. All twelve columns are inside.
-static inline EightTexels sample_history_row(HistoryLayer layer, int x0, int y0, float4 x, float4 y) {
-  const int width = layer.width;
-  const int index = y0 * width + x0;
-  const TwelveTexels row1 = load_history12(layer, index + width), row2 = load_history12(layer, index + 2 * width);
-#if TAPS == 4
-  const TwelveTexels rows = {blend_inner(row1.first, row2.first, y), blend_inner(row1.second, row2.second, y),
-                             blend_inner(row1.third, row2.third, y)};
-  const EightTexels near = next_texels(rows), far = second_texels(rows);
-  const EightTexels sum = {MULTIPLY_ADD(near.left, (float16)(x.y), far.left * x.z),
-                           MULTIPLY_ADD(near.right, (float16)(x.y), far.right * x.z)};
-  return sum;
-#else
-  const TwelveTexels row0 = load_history12(layer, index), row3 = load_history12(layer, index + 3 * width);
-  return blend_rows(row0, row1, row2, row3, x, y);
-#endif
-}

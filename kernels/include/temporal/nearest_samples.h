@@ -36,22 +36,34 @@ static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams*
   nearest->from_x -= convert_float8(step);
 }
 
+// Of the pixels from column x on, in a row that is not known yet.
+static inline NearestSamples find_nearest_columns(const TemporalParams* params, __global const int* positions, int x,
+                                                  TileReprojection tile) {
+  Positions place = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
+  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
+    place = shifted_positions(place, (float8)(tile.phase_x / params->spacing_x));
+  NearestSamples nearest;
+  nearest.between_x = held_positions(place, params->frame0.width - 1);
+  nearest.x = nearest_samples(nearest.between_x);
+  nearest.from_x = place.fraction + convert_float8(place.texel - nearest.x);
+  return nearest;
+}
+
+// The same in a row.
+static inline NearestSamples in_row(const TemporalParams* params, NearestSamples nearest, Positions row,
+                                    TileReprojection tile) {
+  Positions place = row;
+  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
+    place = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+  nearest.between_y = held_positions(place, params->frame0.height - 1);
+  nearest.y = nearest_samples(nearest.between_y).s0;
+  nearest.from_y = place.fraction.s0 + (float)(place.texel.s0 - nearest.y);
+  if (params->parity >= 0) move_to_shaded(&nearest, params);
+  return nearest;
+}
+
 // Of the pixels from column x on.
 static inline NearestSamples find_nearest_samples(const TemporalParams* params, __global const int* positions, int x,
                                                   Positions row, TileReprojection tile) {
-  const Positions column = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
-  Positions place_x = column, place_y = row;
-  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f) {
-    place_x = shifted_positions(column, (float8)(tile.phase_x / params->spacing_x));
-    place_y = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
-  }
-  NearestSamples nearest;
-  nearest.between_x = held_positions(place_x, params->frame0.width - 1);
-  nearest.between_y = held_positions(place_y, params->frame0.height - 1);
-  nearest.x = nearest_samples(nearest.between_x);
-  nearest.y = nearest_samples(nearest.between_y).s0;
-  nearest.from_x = place_x.fraction + convert_float8(place_x.texel - nearest.x);
-  nearest.from_y = place_y.fraction.s0 + (float)(place_y.texel.s0 - nearest.y);
-  if (params->parity >= 0) move_to_shaded(&nearest, params);
-  return nearest;
+  return in_row(params, find_nearest_columns(params, positions, x, tile), row, tile);
 }

@@ -10,6 +10,9 @@ typedef struct EdgeLight {
   float rejection, gain;
 } EdgeLight;
 
+// Where light has not changed.
+#define EVEN_LIGHT ((EdgeLight){0.0f, 1.0f})
+
 // At the left edge of pixel (x, y), the first column of a tile: bilinear between the four tiles around it.
 static inline EdgeLight light_at_edge(__global const TileLight* light, const TemporalParams* params, int x, int y) {
   const int right = min(x / kTemporalTile, params->tiles_x - 1), left = max(x / kTemporalTile - 1, 0);
@@ -25,6 +28,17 @@ static inline EdgeLight light_at_edge(__global const TileLight* light, const Tem
   const float2 mean = upper_mean + (lower_mean - upper_mean) * down;
   const EdgeLight edge = {mean.x, mean.y};
   return edge;
+}
+
+// Whether no tile of a column of three, the middle one at (tile_x, tile_y), has a change of light; clamped to the edge.
+static inline bool has_even_light(__global const TileLight* light, const TemporalParams* params, int tile_x,
+                                  int tile_y) {
+  __global const TileLight* column = light + clamp(tile_x, 0, params->tiles_x - 1);
+  __global const TileLight* above = column + max(tile_y - 1, 0) * params->tiles_x;
+  __global const TileLight* own = column + tile_y * params->tiles_x;
+  __global const TileLight* below = column + min(tile_y + 1, params->tiles_y - 1) * params->tiles_x;
+  return !(above->rejection + own->rejection + below->rejection > 0.0f) && above->gain == 1.0f && own->gain == 1.0f &&
+         below->gain == 1.0f;
 }
 
 // From a tile's left edge to its right, at the centres of its eight columns.

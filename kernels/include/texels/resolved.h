@@ -94,6 +94,12 @@ static inline float16 load_half_texels4(__global const half* texels, int index) 
   return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
 }
 
+// The same of halves that are loaded already.
+static inline float16 load_half_bits(ulong4 bits) {
+  const ulong2 lower = bits.lo, upper = bits.hi;
+  return (float16)(vload_half8(0, (__private const half*)&lower), vload_half8(0, (__private const half*)&upper));
+}
+
 // The texels (x, y) to (x + 3, y).
 static inline float16 load_resolved4(RESOLVED_TEXELS texels, TexelLayout layout, int x, int y) {
   const int index = texel_index(layout, x, y);
