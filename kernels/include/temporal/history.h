@@ -65,6 +65,17 @@ static inline EightTexels eight_texels(float4 t0, float4 t1, float4 t2, float4 t
   return texels;
 }
 
+// The texels index and index + 1.
+static inline float8 load_history2(HistoryLayer layer, int index) {
+#if HISTORY_FORMAT == HALF
+  // Through private memory, as in load_half_texels4.
+  const uint4 bits = vload4(0, (__global const uint*)layer.texels + 2 * index);
+  return vload_half8(0, (__private const half*)&bits);
+#else
+  return vload8(0, layer.texels + 4 * index);
+#endif
+}
+
 // The texels index to index + 3.
 static inline float16 load_history4(HistoryLayer layer, int index) {
 #if HISTORY_FORMAT == HALF

@@ -89,8 +89,9 @@ static inline float4 blend_columns(float16 row, float4 w) {
   return pair.lo + pair.hi;
 }
 
-static inline float4 blend_middle(Neighbourhood around, float4 x, float4 y) {
-  const float8 rows = MULTIPLY_ADD(around.row1.s456789ab, (float8)(y.y), around.row2.s456789ab * y.z);
+// Between two rows of two texels.
+static inline float4 blend_pairs(float8 upper, float8 lower, float4 x, float4 y) {
+  const float8 rows = MULTIPLY_ADD(upper, (float8)(y.y), lower * y.z);
   return MULTIPLY_ADD(rows.lo, (float4)(x.y), rows.hi * x.z);
 }
 
@@ -106,11 +107,14 @@ static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4
 // History at a place with weights x and y among the 4x4 texels from (x0, y0) on; `inside`: they are all there, else
 // they are clamped to the edge.
 static inline float4 sample_history(HistoryLayer layer, int x0, int y0, bool inside, float4 x, float4 y) {
+#if TAPS == 4
+  const int index = (y0 + 1) * layer.width + x0 + 1;
+  if (inside) return blend_pairs(load_history2(layer, index), load_history2(layer, index + layer.width), x, y);
+  const Neighbourhood around = load_neighbourhood_clamped(layer, x0, y0);
+  return blend_pairs(around.row1.s456789ab, around.row2.s456789ab, x, y);
+#else
   const Neighbourhood around =
       inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
-#if TAPS == 4
-  return blend_middle(around, x, y);
-#else
   return sample_neighbourhood(around, x, y);
 #endif
 }
