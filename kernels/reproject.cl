@@ -106,6 +106,17 @@ static inline void store_floats(__global float* floats, int count, float4 value)
 }
 #endif
 
+enum { kSamplesAhead = 32, kReprojectionAhead = 16 };  // to prefetch
+
+// The samples below (x, y) are read soon.
+static inline void will_read_below(const ReprojectParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth, int x,
+                                   int y) {
+#if SOURCE_STORAGE == BUFFER
+  WILL_READ(velocity + 2 * texel_index(params->velocity0, x + kSamplesAhead, y + 1));
+  WILL_READ(depth + texel_index(params->depth0, x + kSamplesAhead, y + 1));
+#endif
+}
+
 __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1,
                         DEPTH_TEXELS depth0, DEPTH_TEXELS depth1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
                         __global const float* previous_reprojection, __global float* reprojection,
@@ -119,6 +130,8 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
   const int4 last_x = max(params.previous_width - 2, 0);
   const int4 last_y = max(params.previous_height - 2, 0);
   for (int x = first; x < end; x += kBlock) {
+    will_read_below(&params, velocity0, depth0, x, y);
+    WILL_WRITE(reprojection + 4 * (texel_index(params.reprojection, x, y) + kReprojectionAhead));
     const float4 depth = load_depth_block(depth0, params.depth0, x, y, params.width);
     const float8 input = load_velocity_block(velocity0, params.velocity0, x, y, params.width);
     int4 lost = non_finite_lanes(depth) | non_finite_velocity(input);
