@@ -28,6 +28,7 @@ Scene make_spokes(std::uint64_t seed);
 Scene make_twigs(std::uint64_t seed);
 Scene make_fence(std::uint64_t seed);
 Scene make_crossings(std::uint64_t seed);
+Scene make_jolts(std::uint64_t seed);
 Scene make_backdrop(std::uint64_t seed);
 Scene make_cutout(std::uint64_t seed);
 Scene make_faults(std::uint64_t seed);

@@ -61,6 +61,8 @@ constexpr std::array kBuiltIns = std::to_array<BuiltIn>({
      "a regular pattern that moves three times as fast as what is behind it", make_fence},
     {"crossings", "Harps of cord that slide across each other, and turning needles",
      "three surfaces within a few pixels, each with a motion of its own", make_crossings},
+    {"jolts", "Racks of thin rods and clock hands that start, stop and turn about from one frame to the next",
+     "sudden motion, the camera's as well: the motion of a frame tells nothing of the next", make_jolts},
     {"backdrop", "Columns, a mast and a wind wheel against the evening sun, under a camera that turns",
      "a sky that moves and says that it does not: its velocity is 0", make_backdrop},
     {"cutout", "A wheel, a swinging sign, cords and balls with nothing behind them",
