@@ -144,6 +144,8 @@ struct LayerWish {
   // Of kOnly: texels of one layer must not be nearer. Set by fetch_layer where the texel there has two, as then no
   // trust tells.
   bool tests_depth = false;
+  // Of kNear: so do all near layers of the tile, and none crosses it. Set by fetch_layer.
+  bool moves_alike = false;
 };
 
 template <typename Real>

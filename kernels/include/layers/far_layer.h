@@ -11,7 +11,7 @@
 static inline FetchedHistory fetch_far(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
                                        TexelLayout layout, TileReprojection tile, int x, int y,
                                        EightReprojections* motion, float8* alpha) {
-  const LayerWishes wishes = wishes_of(pixels, kFarLayer);
+  const LayerWishes wishes = far_wishes_of(pixels);
   const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y);
   const LayerSources from = find_sources(past, depth1, layout, &wishes, place, tile.is_rigid);
   const FetchedLayers layers = fetch_layers(past, depth1, layout, &wishes, &from, (int8)(-1));

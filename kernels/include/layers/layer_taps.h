@@ -5,6 +5,7 @@
 #include "layers/layer_row.h"
 
 #define NEAR_DEPTHS 0.1f       // of the larger depth: a near layer of another depth is another thing's
+#define CROSSING_DEPTHS 0.05f  // the same of near layers that do not move alike: those that cross are close together
 #define FAR_DEPTHS 0.2f        // the same of a far layer, which may be seen at a slant
 #define SOLID 0.3f             // coverage from which a near layer may stand for a surface alone
 #define EMPTY_CONFIDENCE 1.0f  // at most: that there is no near layer where there was but one
@@ -19,6 +20,7 @@ typedef struct LayerWishes {
   LayerKind kind;
   int8 is_split;                 // lanes with two layers
   float8 near_depth, far_depth;  // of a surface alone its own depth and any
+  float least_part, most_part;   // of a near layer's depth: texels within that range show the same thing
 } LayerWishes;
 
 // Of each pixel one texel as the layer has it: premultiplied colour and coverage, confidence, and whether it is the
@@ -73,7 +75,8 @@ static inline LayerTaps near_taps(const EightLayers* texels, const LayerWishes* 
   const int8 two = as_int8(stored) >> 31;
   const int8 is_near = two & (wishes->near_depth > 0.5f * (far_depth + near_depth));
   const float8 shown = select(far_depth, near_depth, is_near);
-  const int8 is_ours = shown > 0.5f * (wishes->near_depth + wishes->far_depth);
+  const int8 is_ours = (shown > 0.5f * (wishes->near_depth + wishes->far_depth)) &
+                       (shown >= wishes->near_depth * wishes->least_part);
   const float8 nothing = (float8)(0.0f);
   const float8 little = min(confidence, EMPTY_CONFIDENCE);
 
@@ -88,6 +91,6 @@ static inline LayerTaps near_taps(const EightLayers* texels, const LayerWishes* 
                            is_ours & is_near);
   taps.alpha = (float8)(1.0f);
   taps.has_two = two;
-  taps.valid = shown <= wishes->near_depth * (1.0f + NEAR_DEPTHS);  // nothing stood before it
+  taps.valid = shown <= wishes->near_depth * wishes->most_part;  // nothing stood before it
   return taps;
 }

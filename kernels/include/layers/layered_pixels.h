@@ -38,8 +38,19 @@ static inline LayeredPixels find_layers(DEPTH_TEXELS depth, TexelLayout layout, 
   return pixels;
 }
 
-static inline LayerWishes wishes_of(const LayeredPixels* pixels, LayerKind kind) {
-  const LayerWishes wishes = {kind, pixels->is_split, pixels->near_depth, pixels->far_depth};
+static inline LayerWishes far_wishes_of(const LayeredPixels* pixels) {
+  const LayerWishes wishes = {kFarLayer, pixels->is_split, pixels->near_depth, pixels->far_depth, 0.0f, 1.0f};
+  return wishes;
+}
+
+// `move_alike`: the near layers of the tile do. Else one of them may cross another that is nearly as deep.
+static inline LayerWishes near_wishes_of(const LayeredPixels* pixels, bool move_alike) {
+  const LayerWishes wishes = {kNearLayer,
+                              pixels->is_split,
+                              pixels->near_depth,
+                              pixels->far_depth,
+                              move_alike ? 0.0f : 1.0f - CROSSING_DEPTHS,
+                              1.0f + (move_alike ? NEAR_DEPTHS : CROSSING_DEPTHS)};
   return wishes;
 }
 

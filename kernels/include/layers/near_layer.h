@@ -24,7 +24,7 @@ typedef struct NearLayers {
 static inline NearLayers fetch_near(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
                                     TexelLayout layout, LayerTile tile, int x, int y, EdgeLight left,
                                     EdgeLight right, float cut) {
-  const LayerWishes wishes = wishes_of(pixels, kNearLayer);
+  const LayerWishes wishes = near_wishes_of(pixels, tile.is_rigid);
   const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, pixels->motion_x, pixels->motion_y);
   const LayerSources from = find_sources(past, depth1, layout, &wishes, place, tile.is_rigid);
   const FetchedLayers fetched = fetch_layers(past, depth1, layout, &wishes, &from, pixels->is_split);
