@@ -60,14 +60,23 @@ TEST_F(Layers, GreyIsReadAsGrey) {
   }
 }
 
-// Y beside X is a direction, beside RY and BY the luminance of a colour.
-TEST_F(Layers, OtherChannelsNamedYAreNotGrey) {
-  for (const std::vector<std::string>& channels :
-       {std::vector<std::string>{"BY", "RY", "Y"}, std::vector<std::string>{"X", "Y"}}) {
-    write_channels(input(1), {24, 14}, channels);
-    expect_refused(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame), 1,
-                   "has no channel 'R'");
-  }
+// Y beside X is a direction.
+TEST_F(Layers, AChannelNamedYBesideXIsNotGrey) {
+  write_channels(input(1), {24, 14}, {"X", "Y"});
+  expect_refused(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame), 1,
+                 "has no channel 'R'");
+}
+
+// Y beside RY and BY is the luminance of a colour. OpenImageIO 2.4 names these three channels as they are. 2.5 names
+// them R, G and B, and then cannot read them, as none of these leaves texels out.
+TEST_F(Layers, LuminanceOfAColourIsNotGrey) {
+  write_channels(input(1), {24, 14}, {"BY", "RY", "Y"});
+  const auto result = resolve(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame));
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(result.err.find("has no channel 'R'") != std::string::npos ||
+              result.err.find("cannot be read") != std::string::npos)
+      << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("o/u.0001.exr")));
 }
 
 class TruthLayers : public Layers {
