@@ -9,7 +9,7 @@ namespace quincunx {
 
 constexpr std::size_t kLayerStateBytes = 4 * sizeof(cl_half);
 
-// Of layer_records, advect_records and layer_split; items along rows of `extent`.
+// Of layer_records, turn_records, advect_records and layer_split; items along rows of `extent`.
 LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent extent);
 
 // Of resolve_layers and display_layers: where the samples lie of the frame that made the history, and the depths that

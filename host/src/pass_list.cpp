@@ -22,6 +22,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_reproject,
     // The picture: from many frames, from two, or from one.
     plan_layer_records,
+    plan_turn_records,
     plan_advect_records,
     plan_layer_split,
     plan_temporal_tiles,

@@ -18,6 +18,7 @@ void plan_resize_tiles(const PlanFacts& facts, PassList& list);
 void plan_resize_layers(const PlanFacts& facts, PassList& list);
 void plan_resize_records(const PlanFacts& facts, PassList& list);
 void plan_layer_records(const PlanFacts& facts, PassList& list);
+void plan_turn_records(const PlanFacts& facts, PassList& list);
 void plan_advect_records(const PlanFacts& facts, PassList& list);
 void plan_layer_split(const PlanFacts& facts, PassList& list);
 void plan_temporal_tiles(const PlanFacts& facts, PassList& list);

@@ -70,9 +70,10 @@ void damage(Seen& seen, std::mt19937& random, double largest_velocity) {
   if (random() % 12 == 0) seen.depth = kDepths[random() % std::size(kDepths)];
 }
 
-// Jitters that are no multiple of a small fraction: no place is half-way between two by rounding.
+// Jitters that are no multiple of a small fraction, nor is their difference: no place is half-way between two by
+// rounding, and no two are as far from one.
 constexpr Vec2 kJitter = {.21f, -.17f};
-constexpr Vec2 kPreviousJitter = {-.32f, .27f};
+constexpr Vec2 kPreviousJitter = {-.317f, .273f};
 
 reference::LayerRecord to_reference(const LayerRecord& record) {
   const auto number = [](float value) { return static_cast<double>(value); };
@@ -196,6 +197,7 @@ std::unique_ptr<PassRig> RecordStages::rig(const char* kernel) const {
 RecordStages::RecordStages(const LayerVariant& variant)
     : variant_(variant),
       records_(rig("layer_records")),
+      turn_(rig("turn_records")),
       advect_(rig("advect_records")),
       split_(rig("layer_split")) {}
 
@@ -266,7 +268,7 @@ LayerFrames RecordStages::frames(Rig& rig, const LayerSpec& spec) {
     earlier.render = spec.previous;
     LayerFrames alone = of(before, before);
     alone.reprojection = make_reprojection(alone, earlier);
-    in.before = run_records(rig, alone, earlier, false);
+    in.before = find_records(rig, alone, earlier);
     add_carried(in.before, spec);
   }
   in.reference.before = to_reference(in.before);
@@ -278,21 +280,54 @@ LayerFrames RecordStages::frames(Rig& rig, const LayerSpec& spec) {
   return in;
 }
 
-KernelGrid RecordStages::run_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec, bool carried) {
+KernelGrid RecordStages::find_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec) {
   const ImageView reprojection = rig.image(PixelFormat::kRGBA32F, Storage::kBuffer, spec.render,
                                            in.reprojection, spec.outside, spec.tight);
   const GuardedBuffer previous_keys(in.before.keys);
   const GuardedBuffer previous_records(in.before.records);
   const GuardedBuffer keys(std::vector<cl_uint>(area(spec.render), 0x12345678));
   const GuardedBuffer records(std::vector<LayerRecord>(area(spec.render)));
-  const PassRig::Bound bound = {{Resource::kReprojection, reprojection},
-                                {Resource::kPreviousRecordKeys, previous_keys.view()},
-                                {Resource::kPreviousRecords, previous_records.view()},
-                                {Resource::kRecordKeys, keys.view()},
-                                {Resource::kRecords, records.view()}};
-  records_->run(in.current, in.previous, spec.output, rig.counter(), bound);
-  if (carried) advect_->run(in.current, in.previous, spec.output, rig.counter(), bound);
+  records_->run(in.current, in.previous, spec.output, rig.counter(),
+                {{Resource::kReprojection, reprojection},
+                 {Resource::kPreviousRecordKeys, previous_keys.view()},
+                 {Resource::kPreviousRecords, previous_records.view()},
+                 {Resource::kRecordKeys, keys.view()},
+                 {Resource::kRecords, records.view()}});
   return {keys.elements(), records.elements()};
+}
+
+LayerFrames RecordStages::turn_records(Rig& rig, LayerFrames in, const LayerSpec& spec,
+                                       const KernelGrid& found) {
+  const GuardedBuffer previous_keys(in.before.keys);
+  const GuardedBuffer previous_records(in.before.records);
+  const GuardedBuffer keys(found.keys);
+  const GuardedBuffer records(found.records);
+  turn_->run(in.current, in.previous, spec.output, rig.counter(),
+             {{Resource::kPreviousRecordKeys, previous_keys.view()},
+              {Resource::kRecordKeys, keys.view()},
+              {Resource::kRecords, records.view()},
+              {Resource::kPreviousRecords, previous_records.view()}});
+  in.before.records = previous_records.elements();
+  in.reference.before = to_reference(in.before);
+  return in;
+}
+
+KernelGrid RecordStages::advect_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec,
+                                        const KernelGrid& found) {
+  const GuardedBuffer previous_keys(in.before.keys);
+  const GuardedBuffer previous_records(in.before.records);
+  const GuardedBuffer keys(found.keys);
+  advect_->run(in.current, in.previous, spec.output, rig.counter(),
+               {{Resource::kPreviousRecordKeys, previous_keys.view()},
+                {Resource::kPreviousRecords, previous_records.view()},
+                {Resource::kRecordKeys, keys.view()}});
+  return {keys.elements(), found.records};
+}
+
+KernelGrid RecordStages::run_records(Rig& rig, LayerFrames& in, const LayerSpec& spec) {
+  const KernelGrid found = find_records(rig, in, spec);
+  in = turn_records(rig, in, spec, found);
+  return advect_records(rig, in, spec, found);
 }
 
 RecordStages::Split RecordStages::run_split(Rig& rig, const LayerFrames& in, const LayerSpec& spec,

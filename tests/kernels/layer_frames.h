@@ -100,8 +100,14 @@ class RecordStages {
 
   LayerFrames frames(Rig& rig, const LayerSpec& spec);
 
-  // layer_records, then, if `carried`, advect_records.
-  KernelGrid run_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec, bool carried);
+  // layer_records: this frame's grid.
+  KernelGrid find_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec);
+  // turn_records: `in` with the previous frame's records as they are then.
+  LayerFrames turn_records(Rig& rig, LayerFrames in, const LayerSpec& spec, const KernelGrid& found);
+  // advect_records: `found` with those that are carried over.
+  KernelGrid advect_records(Rig& rig, const LayerFrames& in, const LayerSpec& spec, const KernelGrid& found);
+  // One after the other; `in` becomes what turn_records makes of it.
+  KernelGrid run_records(Rig& rig, LayerFrames& in, const LayerSpec& spec);
 
   struct Split {
     std::vector<LayerSplit> splits;
@@ -117,7 +123,7 @@ class RecordStages {
   std::unique_ptr<PassRig> rig(const char* kernel) const;
 
   LayerVariant variant_;
-  std::unique_ptr<PassRig> records_, advect_, split_;
+  std::unique_ptr<PassRig> records_, turn_, advect_, split_;
 };
 
 }  // namespace quincunx::testing

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// layer_records and advect_records: the records of near surfaces against their references.
+// layer_records, turn_records and advect_records: the records of near surfaces against their references.
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "expected.h"
 #include "layer_frames.h"
@@ -67,7 +68,7 @@ TEST_P(LayerRecords, MatchTheReference) {
   for (const LayerSpec& spec : testing::all_layer_specs()) {
     Rig rig;
     const LayerFrames in = stages.frames(rig, spec);
-    compare_records(in, spec, stages.run_records(rig, in, spec, false));
+    compare_records(in, spec, stages.find_records(rig, in, spec));
     if (HasFatalFailure()) return;
   }
   EXPECT_GE(decided_, compared_ * 99 / 100);
@@ -75,6 +76,41 @@ TEST_P(LayerRecords, MatchTheReference) {
   EXPECT_GE(thin_, near_ / 4);
   EXPECT_GE(near_ - thin_, near_ / 64);
   EXPECT_GE(drifting_, near_ / 64);
+}
+
+// Things that have turned take their records with them, and end those whose place is not known any more.
+TEST_P(LayerRecords, MatchTheReferenceWhereThingsTurn) {
+  RecordStages stages(GetParam());
+  std::int64_t carried = 0, decided = 0, turned = 0, ended = 0;
+  for (const LayerSpec& spec : testing::all_layer_specs()) {
+    Rig rig;
+    const LayerFrames in = stages.frames(rig, spec);
+    const KernelGrid found = stages.find_records(rig, in, spec);
+    const reference::RecordGrid now = to_reference(found);
+    const auto actual = stages.turn_records(rig, in, spec, found).reference.before.records;
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+      const auto expected = reference::expected_of([&]<typename Real>(Real) {
+        return reference::turned_record<Real>(in.reference, now, static_cast<int>(i));
+      });
+      const reference::LayerRecord& before = in.reference.before.records[i];
+      const bool is_carried = before.is_thin && in.reference.before.cells[i].has_record();
+      carried += is_carried ? 1 : 0;
+      if (expected.undecided) continue;
+      decided += is_carried ? 1 : 0;
+      const reference::LayerRecord& value = expected.value;
+      const std::string what = name_of(spec) + ": record " + std::to_string(i);
+      ASSERT_EQ(value.place, actual[i].place) << what;
+      ASSERT_EQ(value.depth, actual[i].depth) << what;
+      ASSERT_EQ(value.motion, actual[i].motion) << what;
+      ASSERT_EQ(value.drift, actual[i].drift) << what;
+      ASSERT_EQ(value.is_thin, actual[i].is_thin) << what;
+      turned += value.motion != before.motion ? 1 : 0;
+      ended += value.is_thin != before.is_thin ? 1 : 0;
+    }
+  }
+  EXPECT_GE(decided, carried * 99 / 100);
+  EXPECT_GE(turned, carried / 64);
+  EXPECT_GE(ended, carried / 128);
 }
 
 // The cells to which a rounding may bring a record.
@@ -102,9 +138,10 @@ TEST_P(LayerRecords, ThinOnesAreCarriedOverAsTheReferenceDoes) {
   std::int64_t undecided = 0, carried = 0, contested = 0, old = 0;
   for (const LayerSpec& spec : testing::all_layer_specs()) {
     Rig rig;
-    const LayerFrames in = stages.frames(rig, spec);
-    const KernelGrid alone = stages.run_records(rig, in, spec, false);
-    const KernelGrid all = stages.run_records(rig, in, spec, true);
+    LayerFrames in = stages.frames(rig, spec);
+    const KernelGrid alone = stages.find_records(rig, in, spec);
+    in = stages.turn_records(rig, in, spec, alone);
+    const KernelGrid all = stages.advect_records(rig, in, spec, alone);
     const auto found = to_reference(alone).cells;
     const auto expected = reference::advect_records(in.reference, found);
     const std::set<std::size_t> open = undecided_cells(in);
@@ -142,7 +179,7 @@ TEST_P(LayerRecords, AreSoughtAtMotionEdgesOnly) {
   LayerFrames in = stages.frames(rig, spec);
   for (testing::Pixel& sample : in.reprojection)
     sample[3] = .05;
-  for (const cl_uint key : stages.run_records(rig, in, spec, false).keys)
+  for (const cl_uint key : stages.find_records(rig, in, spec).keys)
     EXPECT_EQ(key, 0u);
 }
 
@@ -155,9 +192,9 @@ TEST_P(LayerRecords, PoisonOutsideTheViewportChangesNoBit) {
       spec.seed = 5;
       Rig rig;
       const auto run = [&] {
-        const LayerFrames in = stages.frames(rig, spec);
-        KernelGrid grid = stages.run_records(rig, in, spec, true);
-        return std::pair(grid.keys, testing::bytes_of(grid.records));
+        LayerFrames in = stages.frames(rig, spec);
+        KernelGrid grid = stages.run_records(rig, in, spec);
+        return std::tuple(grid.keys, testing::bytes_of(grid.records), testing::bytes_of(in.before.records));
       };
       SCOPED_TRACE(name_of(spec));
       testing::expect_same_whatever_is_outside(spec, run);

@@ -26,8 +26,8 @@ TEST_P(LayerSplits, MatchTheReference) {
   std::int64_t compared = 0, decided = 0, split = 0, by_old = 0, far = 0;
   for (const LayerSpec& spec : testing::all_layer_specs()) {
     Rig rig;
-    const LayerFrames in = stages.frames(rig, spec);
-    const KernelGrid now = stages.run_records(rig, in, spec, true);
+    LayerFrames in = stages.frames(rig, spec);
+    const KernelGrid now = stages.run_records(rig, in, spec);
     const reference::RecordGrid grid = to_reference(now);
     const RecordStages::Split actual = stages.run_split(rig, in, spec, now);
     const auto expected = testing::expected_pixels(
@@ -81,8 +81,8 @@ TEST_P(LayerSplits, CarriedRecordsJoinThisFrames) {
   std::int64_t carried = 0;
   for (const LayerSpec& spec : testing::all_layer_specs()) {
     Rig rig;
-    const LayerFrames in = stages.frames(rig, spec);
-    const KernelGrid now = stages.run_records(rig, in, spec, true);
+    LayerFrames in = stages.frames(rig, spec);
+    const KernelGrid now = stages.run_records(rig, in, spec);
     const reference::RecordGrid grid = to_reference(now);
     const auto records = stages.run_split(rig, in, spec, now).records;
     for (std::size_t i = 0; i < records.size(); ++i) {
@@ -117,14 +117,14 @@ TEST_P(LayerSplits, WiresOutliveTheirSamplesByEightFrames) {
   LayerSpec spec{.output = {129, 77}, .render = {65, 39}, .previous = {65, 39}, .seed = 9, .first = true};
   Rig rig;
   LayerFrames in = stages.frames(rig, spec);
-  KernelGrid grid = stages.run_records(rig, in, spec, true);
+  KernelGrid grid = stages.run_records(rig, in, spec);
   ASSERT_GT(std::count_if(grid.keys.begin(), grid.keys.end(), [](cl_uint key) { return key != 0; }), 100);
   spec.surfaces = Surfaces::kWall;
   for (int age = 1; age <= 9; ++age) {
     in = stages.frames(rig, spec);
     in.before = grid;
     in.reference.before = to_reference(grid);
-    grid = stages.run_records(rig, in, spec, true);
+    grid = stages.run_records(rig, in, spec);
     const auto split = stages.run_split(rig, in, spec, grid);
     grid.records = split.records;
     const reference::RecordGrid now = to_reference(grid);
@@ -158,8 +158,9 @@ TEST_P(LayerSplits, PoisonOutsideTheViewportChangesNoBit) {
       spec.seed = 6;
       Rig rig;
       const auto run = [&] {
-        const LayerFrames in = stages.frames(rig, spec);
-        return stages.run_split(rig, in, spec, stages.run_records(rig, in, spec, true)).bytes;
+        LayerFrames in = stages.frames(rig, spec);
+        const KernelGrid now = stages.run_records(rig, in, spec);
+        return stages.run_split(rig, in, spec, now).bytes;
       };
       SCOPED_TRACE(name_of(spec));
       testing::expect_same_whatever_is_outside(spec, run);
@@ -175,8 +176,9 @@ TEST_P(LayerSplits, ATightFrameIsReadWithinItsEdges) {
     spec.surfaces = Surfaces::kNoise;
     spec.tight = true;
     Rig rig;
-    const LayerFrames in = stages.frames(rig, spec);
-    const auto split = stages.run_split(rig, in, spec, stages.run_records(rig, in, spec, true));
+    LayerFrames in = stages.frames(rig, spec);
+    const KernelGrid now = stages.run_records(rig, in, spec);
+    const auto split = stages.run_split(rig, in, spec, now);
     EXPECT_EQ(split.marks.size(), 6u);
     for (const LayerSplit& sample : split.splits)
       EXPECT_TRUE(std::isfinite(sample.motion_x) && std::isfinite(sample.motion_y));

@@ -23,7 +23,6 @@ constexpr double kSlant = .5;        // of the step of depth to a neighbour
 constexpr double kSameRecord = 1.5;  // samples of the previous frame
 constexpr double kDriftKept = .7;    // of a change of motion
 constexpr double kMostDrift = .25;   // of the motion: more is no steady change
-constexpr int kOldest = 8;           // frames
 
 template <typename Real>
 Real squared_length(const std::array<Real, 2>& a) {
@@ -141,7 +140,7 @@ template <typename Real>
 std::optional<int> advected_cell(const LayerInputs& in, int before) {
   const auto i = static_cast<std::size_t>(before);
   const RecordCell& cell = in.before.cells[i];
-  if (!cell.has_record() || cell.age >= kOldest || !in.before.records[i].is_thin) return {};
+  if (!cell.has_record() || cell.age >= kOldestRecord || !in.before.records[i].is_thin) return {};
   const auto record = advanced<Real>(in.before.records[i]);
   const auto [columns, rows] = axes_of<Real>(in);
   const int x = floor_within(columns.coordinate(record.place[0]) + .5, -1, in.frame.width);

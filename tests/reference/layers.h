@@ -80,6 +80,10 @@ std::optional<LayerRecordOf<Real>> layer_record(const LayerInputs& in, int x, in
 template <typename Real>
 LayerRecordOf<Real> advanced(const LayerRecord& before);
 
+// turn_records: the record of a cell of the previous frame's grid as it leaves it. `now`: the new records.
+template <typename Real>
+LayerRecord turned_record(const LayerInputs& in, const RecordGrid& now, int before);
+
 // advect_records: the cell of this frame's grid to which the record of a cell of the previous one goes; nowhere
 // if it is not carried over.
 template <typename Real>
@@ -104,6 +108,7 @@ LayerSampleOf<Real> layer_split(const LayerInputs& in, const RecordGrid& now, in
 // ---- What these share.
 
 constexpr double kLayerGap = .03;     // of the nearer one's depth: surfaces closer together are one layer
+constexpr int kOldestRecord = 8;      // frames for which a record outlives its sample
 constexpr double kLayerMotion = .05;  // output pixels a frame: surfaces whose motion differs by less are, too
 
 constexpr double kFarthestLayerMotion = 65504;  // pixels a frame: beyond any picture
