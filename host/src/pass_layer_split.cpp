@@ -15,8 +15,9 @@ class LayerSplitPass : public Pass {
     const Extent render = frame.current.render;
     const LayerParams params = layer_params(frame, shape(), render);
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kOpenTrust],
-         frame[Resource::kRecordKeys], frame[Resource::kPreviousRecords], frame[Resource::kRecords],
-         frame[Resource::kReprojection], frame[Resource::kSplits], frame[Resource::kSplitMarks]);
+         frame[Resource::kPreviousRecordKeys], frame[Resource::kRecordKeys],
+         frame[Resource::kPreviousRecords], frame[Resource::kRecords], frame[Resource::kReprojection],
+         frame[Resource::kSplits], frame[Resource::kSplitMarks]);
     launch(frame, render, params.columns_per_item, event);
   }
 };
@@ -31,7 +32,8 @@ void plan_layer_split(const PlanFacts& facts, PassList& list) {
        .reason = "the second layer: which samples have two layers",
        .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, facts.settings.velocity},
                 {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kOpenTrust, Access::kRead, Area::kViewport, {}, sizeof(cl_float)},
+                {Resource::kOpenTrust, Access::kUpdate, Area::kViewport, {}, sizeof(cl_float)},
+                {Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
                 {Resource::kRecordKeys, Access::kRead, Area::kViewport, {}, sizeof(cl_uint)},
                 {Resource::kPreviousRecords, Access::kRead, Area::kPreviousViewport, {}, sizeof(LayerRecord)},
                 {Resource::kRecords, Access::kWrite, Area::kViewport, {}, sizeof(LayerRecord)},

@@ -2,11 +2,14 @@
 // layer_split: which samples have two layers, and which. With r the record within 1.7 samples of a sample whose squared
 // distance + .4 of its age is least, and b the closest of its 3x3 samples that lies behind r by 3 % of depth, the
 // sample is split if the two move apart. Its reprojection becomes that of the far layer: a near sample takes b's.
+//   If r is new, and no record of the previous frame lies around where it comes from, the two have only begun to move
+//   apart: what history has there holds both, and open trust is little.
 //
 //   params            in      viewports, layouts, scales
 //   velocity          in      RG16F or RG32F, viewport
 //   depth             in      R32F, viewport
-//   open_trust        in      of each sample: trust without a comparison of depths, from reproject
+//   open_trust        in/out  of each sample: trust without a comparison of depths, from reproject
+//   previous_keys     in      of the previous frame's grid of records
 //   keys              in      of this frame's grid of records
 //   previous_records  in      LayerRecord of each cell of the previous grid that has one
 //   records           in/out  LayerRecord of each near sample; grows by those that came from the previous frame
@@ -19,9 +22,11 @@
 #include "layers/split.h"
 
 #define RECORD_REACH 1.7f  // samples
+#define MIXED_TRUST 0.2f   // of history that holds both layers
 #define AGE_COST 0.4f      // samples, squared, for each frame of a record's age
 
 enum { kReach = 2, kWindow = 8 };  // cells around a sample; samples that are looked at together
+enum { kKnownReach = 2 };          // cells around the place that a record comes from
 
 static inline LayerRecord record_of(uint key, int cell, __global const LayerRecord* previous_records,
                                     __global const LayerRecord* records) {
@@ -121,8 +126,23 @@ static inline void mark_tile(const LayerParams* params, __global int* marks, int
   atomic_or(marks + tile_y * params->tiles_x + tile_x, 1);
 }
 
+// Whether the previous frame has a record around the place that `record` comes from.
+static inline bool was_known(const LayerParams* params, __global const uint* previous_keys, LayerRecord record) {
+  const float2 place = (float2)(record.x + record.motion_x, record.y + record.motion_y);
+  const float2 start = (float2)(params->previous_start_x, params->previous_start_y);
+  const float2 spacing = (float2)(params->previous_spacing_x, params->previous_spacing_y);
+  const int2 at = convert_int2(clamp(floor((place - start) / spacing + 0.5f), -4.0f, 65536.0f));
+  for (int row = max(at.y - kKnownReach, 0); row <= min(at.y + kKnownReach, params->previous_height - 1); ++row) {
+    for (int column = max(at.x - kKnownReach, 0); column <= min(at.x + kKnownReach, params->previous_width - 1);
+         ++column) {
+      if (previous_keys[row * params->previous_width + column] != 0) return true;
+    }
+  }
+  return false;
+}
+
 __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
-                          __global const float* open_trust, __global const uint* keys,
+                          __global float* open_trust, __global const uint* previous_keys, __global const uint* keys,
                           __global const LayerRecord* previous_records, __global LayerRecord* records,
                           __global float* reprojection, __global LayerSplit* splits, __global int* marks) {
   const int y = get_global_id(1);
@@ -151,6 +171,8 @@ __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DE
           const float2 far_motion = far_motion_at(&params, velocity, depth, split, behind, x, y);
           vstore4((float4)(far_motion, open_trust[i], 0.0f), texel_index(params.reprojection, x, y), reprojection);
           mark_tile(&params, marks, x, y);
+          if (record_age(keys[cell]) == 0 && !was_known(&params, previous_keys, record))
+            open_trust[i] = min(open_trust[i], MIXED_TRUST);
         }
       }
       splits[i] = split;

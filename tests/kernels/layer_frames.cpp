@@ -336,6 +336,7 @@ RecordStages::Split RecordStages::run_split(Rig& rig, const LayerFrames& in, con
                                            in.reprojection, spec.outside, spec.tight);
   const Extent tiles = extent_of(Area::kTiles, {spec.render, spec.previous, spec.output});
   const GuardedBuffer open_trust(in.open_trust);
+  const GuardedBuffer previous_keys(in.before.keys);
   const GuardedBuffer keys(now.keys);
   const GuardedBuffer previous_records(in.before.records);
   const GuardedBuffer records(now.records);
@@ -344,13 +345,15 @@ RecordStages::Split RecordStages::run_split(Rig& rig, const LayerFrames& in, con
   split_->run(in.current, in.previous, spec.output, rig.counter(),
               {{Resource::kReprojection, reprojection},
                {Resource::kOpenTrust, open_trust.view()},
+               {Resource::kPreviousRecordKeys, previous_keys.view()},
                {Resource::kRecordKeys, keys.view()},
                {Resource::kPreviousRecords, previous_records.view()},
                {Resource::kRecords, records.view()},
                {Resource::kSplits, splits.view()},
                {Resource::kSplitMarks, marks.view()}});
-  Split made{splits.elements(), marks.elements(), records.elements(), rig.pixels(reprojection, spec.render),
-             rig.bytes(reprojection, spec.render)};
+  Split made{splits.elements(),     marks.elements(),
+             records.elements(),    rig.pixels(reprojection, spec.render),
+             open_trust.elements(), rig.bytes(reprojection, spec.render)};
   const auto append = [&](const auto& elements) {
     const auto bytes = bytes_of(elements);
     made.bytes.insert(made.bytes.end(), bytes.begin(), bytes.end());
@@ -358,6 +361,7 @@ RecordStages::Split RecordStages::run_split(Rig& rig, const LayerFrames& in, con
   append(made.splits);
   append(made.marks);
   append(made.records);
+  append(made.open_trust);
   return made;
 }
 

@@ -114,6 +114,7 @@ class RecordStages {
     std::vector<cl_int> marks;
     std::vector<LayerRecord> records;
     std::vector<Pixel> reprojection;
+    std::vector<float> open_trust;
     std::vector<unsigned char> bytes;  // of all that
   };
   Split run_split(Rig& rig, const LayerFrames& in, const LayerSpec& spec, const KernelGrid& now);

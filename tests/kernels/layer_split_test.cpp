@@ -23,7 +23,7 @@ class LayerSplits : public ::testing::TestWithParam<LayerVariant> {};
 
 TEST_P(LayerSplits, MatchTheReference) {
   RecordStages stages(GetParam());
-  std::int64_t compared = 0, decided = 0, split = 0, by_old = 0, far = 0;
+  std::int64_t compared = 0, decided = 0, split = 0, by_old = 0, far = 0, begun = 0;
   for (const LayerSpec& spec : testing::all_layer_specs()) {
     Rig rig;
     LayerFrames in = stages.frames(rig, spec);
@@ -48,6 +48,10 @@ TEST_P(LayerSplits, MatchTheReference) {
       ASSERT_EQ(value.split.far_depth, static_cast<double>(made.far_depth)) << what;
       expect_near(value.split.motion[0], bound.split.motion[0], static_cast<double>(made.motion_x), what);
       expect_near(value.split.motion[1], bound.split.motion[1], static_cast<double>(made.motion_y), what);
+      const float trust = in.open_trust[i];
+      const auto mixed = static_cast<float>(reference::kMixedTrust);
+      ASSERT_EQ(value.has_begun ? std::min(trust, mixed) : trust, actual.open_trust[i]) << what;
+      begun += value.has_begun && trust > mixed ? 1 : 0;
       if (!value.split.is_split()) {
         ASSERT_EQ(in.reprojection[i], actual.reprojection[i]) << what;
         continue;
@@ -71,6 +75,7 @@ TEST_P(LayerSplits, MatchTheReference) {
   EXPECT_GE(split, compared / 8);
   EXPECT_GE(compared - split, compared / 8);
   EXPECT_GE(by_old, split / 64);
+  EXPECT_GE(begun, split / 64);
   EXPECT_GE(far, split / 8);
   EXPECT_GE(split - far, split / 8);
 }

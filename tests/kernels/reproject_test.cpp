@@ -181,10 +181,12 @@ TEST(TemporalReproject, HistoryOutlivesACameraThatWalksBackwards) {
   EXPECT_EQ(trust_of_wall(.4f, 1, .1), 1) << "what moves along with the camera";
 }
 
-// The open trust of the newest frame, where the plan has layers.
-std::vector<float> open_trust(const PassChain& chain, Extent render) {
-  std::vector<float> trust(static_cast<std::size_t>(render.area()));
-  const ImageView view = chain.newest(Resource::kOpenTrust);
+// What reproject alone gives as open trust of each sample: layer_split lowers it afterwards.
+std::vector<float> open_trust(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs& before) {
+  const PassFrame frame = chain.frame(now, &before, {}, rig.counter());
+  PassChain::enqueue(*chain.find("reproject"), frame, nullptr);
+  std::vector<float> trust(static_cast<std::size_t>(now.render.area()));
+  const ImageView view = frame[Resource::kOpenTrust];
   clEnqueueReadBuffer(testing::impl().queue(), view.memory, CL_TRUE, view.offset,
                       trust.size() * sizeof(float), trust.data(), 0, nullptr, nullptr);
   return trust;
@@ -221,9 +223,7 @@ TEST(TemporalReproject, OpenTrustMatchesTheReference) {
           TestFrame now = make_frame(rig, formats, spec);
           if (transparents) scatter_reactive(rig, now, storage, spec);
           PassChain chain(testing::device(), PlanFacts({.transparents = transparents}, settings));
-          reproject(rig, chain, before.inputs, nullptr);
-          reproject(rig, chain, now.inputs, &before.inputs);
-          const std::vector<float> actual = open_trust(chain, render);
+          const std::vector<float> actual = open_trust(rig, chain, now.inputs, before.inputs);
           const auto expected = testing::expected_reprojections(
               now.reference, before.reference,
               {.reactive = transparents, .output_width = 129, .output_height = 65});

@@ -2,6 +2,7 @@
 // layer_split: which samples have two layers. r: the record within 1.7 samples of a sample whose squared distance
 // + .4 of its age is least; b: the closest of the sample's 3 x 3 that lies behind r, d(b) < .97 d(r).
 //   split       if |v(r) - v(b)| > .05 px: the layers are r's and b's
+//   begun       r is of age 0, and no cell of the 5 x 5 around where it comes from has a record of the previous frame
 //   far motion  the sample's own if its depth is below half-way between the layers, else b's
 // Of two alike the first counts, row by row.
 // Source: found by measuring (docs/temporal.md).
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kRecordReach = 1.7;  // samples
 constexpr double kAgeCost = .4;       // samples, squared, for each frame of a record's age
+constexpr int kKnownReach = 2;        // cells
 
 template <typename Real>
 LayerRecordOf<Real> record_of(const LayerInputs& in, const RecordGrid& now, std::size_t i) {
@@ -26,11 +28,17 @@ LayerRecordOf<Real> record_of(const LayerInputs& in, const RecordGrid& now, std:
       .place = {own.place[0], own.place[1]}, .depth = own.depth, .motion = {own.motion[0], own.motion[1]}};
 }
 
-// The record of sample (x, y).
 template <typename Real>
-std::optional<LayerRecordOf<Real>> find_record(const LayerInputs& in, const RecordGrid& now, int x, int y) {
+struct FoundRecord {
+  LayerRecordOf<Real> record;
+  int age = 0;
+};
+
+// That of sample (x, y).
+template <typename Real>
+std::optional<FoundRecord<Real>> find_record(const LayerInputs& in, const RecordGrid& now, int x, int y) {
   const auto [columns, rows] = axes_of<Real>(in);
-  std::optional<LayerRecordOf<Real>> found;
+  std::optional<FoundRecord<Real>> found;
   Real least = 0;
   // A record lies within half a sample of its cell's centre.
   constexpr int kReach = 2;
@@ -50,10 +58,30 @@ std::optional<LayerRecordOf<Real>> find_record(const LayerInputs& in, const Reco
       const Real cost = distance + kAgeCost * Real(cell.age);
       if (found && !(cost < least)) continue;
       least = cost;
-      found = record;
+      found = {record, cell.age};
     }
   }
   return found;
+}
+
+// Whether the previous frame has a record around the place that `record` comes from.
+template <typename Real>
+bool was_known(const LayerInputs& in, const LayerRecordOf<Real>& record) {
+  const SampleAxis<Real> columns(in.output_width, in.previous_width, in.previous_jitter[0]);
+  const SampleAxis<Real> rows(in.output_height, in.previous_height, in.previous_jitter[1]);
+  // Outside all cells it does not matter where.
+  const int middle_x = floor_within(columns.coordinate(record.place[0] + record.motion[0]) + .5,
+                                    -kKnownReach - 1, in.previous_width + kKnownReach);
+  const int middle_y = floor_within(rows.coordinate(record.place[1] + record.motion[1]) + .5,
+                                    -kKnownReach - 1, in.previous_height + kKnownReach);
+  for (int y = std::max(middle_y - kKnownReach, 0);
+       y <= std::min(middle_y + kKnownReach, in.previous_height - 1); ++y) {
+    for (int x = std::max(middle_x - kKnownReach, 0);
+         x <= std::min(middle_x + kKnownReach, in.previous_width - 1); ++x) {
+      if (in.before.cells[index_of(in.previous_width, x, y)].has_record()) return true;
+    }
+  }
+  return false;
 }
 
 // The closest of the 3 x 3 samples that lies behind `depth`.
@@ -78,13 +106,15 @@ std::optional<SurfaceOf<Real>> find_behind(const LayerInputs& in, double depth, 
 
 template <typename Real>
 LayerSampleOf<Real> layer_split(const LayerInputs& in, const RecordGrid& now, int x, int y) {
-  const auto record = find_record<Real>(in, now, x, y);
-  if (!record) return {};
+  const auto found = find_record<Real>(in, now, x, y);
+  if (!found) return {};
+  const LayerRecordOf<Real>* record = &found->record;
   const auto behind = find_behind<Real>(in, record->depth, x, y);
   if (!behind || !move_apart(record->motion, behind->motion)) return {};
 
   LayerSampleOf<Real> sample;
   sample.split = {.near_depth = record->depth, .far_depth = behind->depth, .motion = record->motion};
+  sample.has_begun = found->age == 0 && !was_known(in, *record);
   const auto own = surface_at<Real>(in, x, y);
   const bool is_far = own.is_known && own.depth < .5 * (Real(record->depth) + behind->depth);
   const std::array<Real, 2>& motion = is_far ? own.motion : behind->motion;

@@ -98,6 +98,7 @@ struct LayerSampleOf {
   // If it is split:
   std::array<Real, 2> far_motion = {};  // pixels of the previous viewport
   int tile = 0;                         // in which it lies
+  bool has_begun = false;               // only now do its layers move apart: history holds both
 };
 using LayerSample = LayerSampleOf<double>;
 
@@ -108,6 +109,7 @@ LayerSampleOf<Real> layer_split(const LayerInputs& in, const RecordGrid& now, in
 // ---- What these share.
 
 constexpr double kLayerGap = .03;     // of the nearer one's depth: surfaces closer together are one layer
+constexpr double kMixedTrust = .2;    // of history that holds both layers, at most
 constexpr int kOldestRecord = 8;      // frames for which a record outlives its sample
 constexpr double kLayerMotion = .05;  // output pixels a frame: surfaces whose motion differs by less are, too
 
