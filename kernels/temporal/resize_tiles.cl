@@ -49,7 +49,7 @@ __kernel void resize_tiles(const ResizeParams params, __global const TileReproje
   const TilesUnder rows = tiles_under(y, params.height, params.previous_height);
   TileReprojection tile = {0.0f, 0.0f, 0.0f, 0.0f, 0, 0, 0, 0, 0};
 #if LAYERS
-  LayerTile layer = {0.0f, 0.0f, 0.0f, 0, 0, 0};
+  LayerTile layer = {0.0f, 0.0f, 0.0f, 0.0f, 0, 0, 0};
 #endif
   for (int row = rows.first; row <= rows.last; ++row) {
     for (int column = columns.first; column <= columns.last; ++column) {

@@ -50,8 +50,8 @@ std::vector<LayerTile> to_kernel(const std::vector<reference::LayerTile>& tiles)
   const auto number = [](double value) { return static_cast<float>(value); };
   std::vector<LayerTile> made;
   for (const reference::LayerTile& t : tiles) {
-    made.push_back({number(t.phase[0]), number(t.phase[1]), number(t.between), t.is_rigid ? 1 : 0,
-                    t.is_split ? 1 : 0, t.is_layered ? 1 : 0});
+    made.push_back({number(t.phase[0]), number(t.phase[1]), number(t.between), number(t.motion_range),
+                    t.is_rigid ? 1 : 0, t.is_split ? 1 : 0, t.is_layered ? 1 : 0});
   }
   return made;
 }

@@ -86,9 +86,10 @@ std::vector<reference::LayerSplit> make_splits(const reference::TemporalInputs& 
       const auto& motion = kNearMoves[area() % std::size(kNearMoves)];
       const bool is_rigid = area() % 3 != 0;
       const bool has_any = area() % 5 != 0;
+      const bool may_cross = area() % 2 == 0;
       reference::LayerSplit split;
       if (has_any && zone() % 2 == 0) {
-        const double spread = is_rigid ? 0 : .4;
+        const double spread = is_rigid ? 0 : may_cross ? 1.3 : .4;
         split = {about(random, kNear, .04),
                  about(random, kFar, .04),
                  {as_float(motion[0] + uniform(random, -spread, spread)),
@@ -218,6 +219,10 @@ std::vector<reference::LayerTile> make_layers(const reference::ResolveInputs& in
       reference::LayerTile tile;
       tile.is_split = around.any;
       tile.is_layered = around.any || random() % 4 == 0;
+      if (around.any) {
+        tile.motion_range =
+            as_float(std::max(around.most[0] - around.least[0], around.most[1] - around.least[1]));
+      }
       tile.is_rigid = around.any && around.most == around.least;
       if (tile.is_rigid) {
         const reference::LayerTile& from = in.past.layers[reference::index_of(

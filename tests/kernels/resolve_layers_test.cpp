@@ -54,6 +54,9 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
     }
     if (!value.is_split) return;
     ++split_;
+    const reference::LayerTile& tile = in.reference.layers[in.reference.past.tile(x, y)];
+    crossing_ += tile.motion_range > 1 ? 1 : 0;
+    drifting_ += !tile.is_rigid && tile.motion_range <= 1 ? 1 : 0;
     ASSERT_TRUE(std::signbit(actual.far[3])) << what << ": two layers are told by the sign";
     for (std::size_t c = 0; c < 4; ++c) {
       expect_near(value.near[c], bound.near[c], actual.near[c], fmt::format("{} near {}", what, c), history);
@@ -104,6 +107,8 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
   std::int64_t split_ = 0;
+  std::int64_t crossing_ = 0;  // where near layers may cross
+  std::int64_t drifting_ = 0;  // where they only drift apart
 };
 
 TEST_P(ResolveLayers, MatchesTheReferenceAtEverySizeScaleAndInput) {
@@ -119,6 +124,8 @@ TEST_P(ResolveLayers, MatchesTheReferenceAtEverySizeScaleAndInput) {
   EXPECT_GE(decided_, 100'000);
   EXPECT_GE(split_, decided_ / 5);
   EXPECT_GE(decided_ - split_, decided_ / 5);
+  EXPECT_GE(crossing_, split_ / 16);
+  EXPECT_GE(drifting_, split_ / 16);
 }
 
 TEST_P(ResolveLayers, PoisonOutsideTheViewportChangesNoBit) {

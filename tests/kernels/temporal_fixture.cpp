@@ -69,6 +69,7 @@ LayerTile to_kernel(const reference::LayerTile& tile) {
   return {.phase_x = static_cast<float>(tile.phase[0]),
           .phase_y = static_cast<float>(tile.phase[1]),
           .between = static_cast<float>(tile.between),
+          .motion_range = static_cast<float>(tile.motion_range),
           .is_rigid = tile.is_rigid ? 1 : 0,
           .is_split = tile.is_split ? 1 : 0,
           .is_layered = tile.is_layered ? 1 : 0};

@@ -90,6 +90,8 @@ class TemporalTiles : public ::testing::TestWithParam<StageVariant> {
     expect_near(tile.phase[0], bound.phase[0], static_cast<double>(actual.phase_x), what + " near phase_x");
     expect_near(tile.phase[1], bound.phase[1], static_cast<double>(actual.phase_y), what + " near phase_y");
     expect_near(tile.between, bound.between, static_cast<double>(actual.between), what + " between");
+    expect_near(tile.motion_range, bound.motion_range, static_cast<double>(actual.motion_range),
+                what + " motion_range");
     split_ += tile.is_split ? 1 : 0;
     rigid_near_ += tile.is_rigid ? 1 : 0;
     layered_ += tile.is_layered ? 1 : 0;

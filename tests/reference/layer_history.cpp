@@ -14,7 +14,7 @@ constexpr double kCopied = .06;
 // Of the larger depth: a near layer of another depth is another thing's; a far one may be seen at a slant.
 constexpr double kNearDepths = .1;
 constexpr double kFarDepths = .2;
-constexpr double kCrossingDepths = .05;  // the same of near layers that do not move alike
+constexpr double kCrossingDepths = .05;  // the same of near layers that may cross
 constexpr double kMostEmpty = 1;         // confidence that there is no near layer where there was but one
 constexpr double kFarthestPlace = 65536;
 
@@ -79,8 +79,8 @@ LayerTap<Real> near_tap(const LayerHistory& history, const LayerWish& wish, int 
   const bool was_near = state.has_two() && wish.near_depth > state.between();
   const Real shown = was_near ? state.near_depth : state.far_depth;
   LayerTap<Real> tap = far_of<Real>(history, x, y);
-  const double nearer = wish.moves_alike ? kNearDepths : kCrossingDepths;
-  const bool is_behind = !wish.moves_alike && !(shown >= Real(wish.near_depth) * (1 - kCrossingDepths));
+  const double nearer = wish.may_cross ? kCrossingDepths : kNearDepths;
+  const bool is_behind = wish.may_cross && !(shown >= Real(wish.near_depth) * (1 - kCrossingDepths));
   if (!(shown <= Real(wish.near_depth) * (1 + nearer))) {  // something hid it, or has no depth
     tap.is_valid = false;
   } else if (is_behind || !(shown > between)) {
@@ -172,7 +172,6 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
   if (was_split && wish.layer == Layer::kOnly)
     takes_near = wish.near_depth > state_at<Real>(history, texel[0], texel[1]).between();
   wish.tests_depth = was_split;
-  wish.moves_alike = is_rigid;
   const std::array<double, 2>& phase = takes_near ? near_phase : far_phase;
 
   FetchedLayer<Real> fetched;

@@ -141,11 +141,10 @@ enum class Layer {
 struct LayerWish {
   Layer layer = Layer::kOnly;
   double near_depth = 0, far_depth = 0;
+  bool may_cross = false;  // of kNear: another near layer of the tile may cross it
   // Of kOnly: texels of one layer must not be nearer. Set by fetch_layer where the texel there has two, as then no
   // trust tells.
   bool tests_depth = false;
-  // Of kNear: so do all near layers of the tile, and none crosses it. Set by fetch_layer.
-  bool moves_alike = false;
 };
 
 template <typename Real>

@@ -2,7 +2,8 @@
 // temporal_tiles where the picture has two layers: the near layer of a tile. `before` of a place: what the
 // previous frame's tile there has.
 //   split       a tile of the 3 x 3 around it is marked, and a sample in it or next to it is split
-//   rigid       the near layer: if the motions v of those samples differ by no more than .05 px on either axis
+//   range       of the motions v of those samples, on the axis where it is larger
+//   rigid       the near layer: if that is no more than .05 px
 //   phase       R' - v without whole texels. R': the near layer's phase before, if the tile's middle + v was split
 //               and the mean near depth of the samples is above `between` there, else the phase of the tile there
 //   layered     split, or a tile was split that the tile's texels, and 3 around them, come from
@@ -100,10 +101,11 @@ LayerTileOf<Real> near_layer(const TemporalInputs& in, int tile_x, int tile_y) {
   if (count == 0) return tile;
   tile.is_split = true;
   tile.between = between / count;
+  tile.motion_range = max(Real(most[0]) - least[0], Real(most[1]) - least[1]);
+  if (tile.motion_range > kRigid) return tile;
 
   std::array<Real, 2> motion;
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (Real(most[axis]) - least[axis] > kRigid) return tile;
     motion[axis] = .5 * (Real(most[axis]) + least[axis]);
     if (abs(motion[axis]) < kStill) motion[axis] = 0;
   }

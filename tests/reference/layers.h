@@ -43,6 +43,7 @@ template <typename Real>
 struct LayerTileOf {
   std::array<Real, 2> phase = {};  // of the near layer's texels; 0 unless rigid
   Real between = 0;                // mean of the depths half-way between the layers of its samples
+  Real motion_range = 0;           // of its samples' near layers, on the axis where it is larger
   bool is_rigid = false;           // the near layer
   bool is_split = false;           // a sample in it or next to it has two layers
   bool is_layered = false;         // split, or texels of two layers may be where it was

@@ -11,7 +11,8 @@
 //                                none nothing changes
 //              accumulate        n, if it lies behind D
 //   near layer, as premultiplied colour and coverage: a sample before D counts as its colour and 1, one behind as 0
-//              fetch history     the near surface, at the place that p + R' moved from
+//              fetch history     the near surface, at the place that p + R' moved from; where the near layers of the
+//                                tile move apart by more than 1 px, others may cross it
 //              limit confidence  W <- W / (1 + .2 k W); at most 8, and min(t, 1 - new cut) in place of t in
 //                                t / (1 + 1/32 - t), t being open trust
 //              relight           as in resolve_temporal
@@ -33,6 +34,8 @@ namespace quincunx::reference {
 namespace {
 
 // Of the distance between samples: the near layer's reach, at least kReach. +.2 dB on turning spokes.
+constexpr double kCrossingMotion =
+    1;  // output pixels a frame: near layers of a tile that move apart by more may cross
 constexpr double kNearReach = .6;
 constexpr double kMostNear = 8;  // confidence: it is resampled more often than not; 32 gives no more
 
@@ -188,8 +191,9 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
   const LayerSplit& s = pixel.split;
   const std::array<Real, 2> place = {Real(pixel.x + .5) + pixel.layers->phase[0] + s.motion[0],
                                      Real(pixel.y + .5) + pixel.layers->phase[1] + s.motion[1]};
-  const auto fetched =
-      fetch_layer(in.past, {Layer::kNear, s.near_depth, s.far_depth}, place, pixel.layers->is_rigid);
+  const bool may_cross = pixel.layers->motion_range > kCrossingMotion;
+  const auto fetched = fetch_layer(in.past, {Layer::kNear, s.near_depth, s.far_depth, may_cross}, place,
+                                   pixel.layers->is_rigid);
   NearTexel<Real> near{fetched.value, fetched.confidence};
 
   // Limit confidence, relight.

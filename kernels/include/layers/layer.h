@@ -34,11 +34,12 @@ QUINCUNX_CHECK_SIZE(LayerSplit, 16);
 typedef struct LayerTile {
   float phase_x, phase_y;  // of the near layer's texels; 0 if it is not rigid
   float between;           // mean of the depths half-way between the layers of its samples
+  float motion_range;      // how far the near layers of its samples move apart: on the larger axis, output pixels
   int is_rigid;            // 0 or 1: the near layer
   int is_split;            // 0 or 1: a sample in it or next to it has two layers
   int is_layered;          // 0 or 1: split, or texels of two layers may be where it was
 } LayerTile;
-QUINCUNX_CHECK_SIZE(LayerTile, 24);
+QUINCUNX_CHECK_SIZE(LayerTile, 28);
 
 typedef struct LayerParams {
   int width, height;                    // of this frame's viewport, in samples

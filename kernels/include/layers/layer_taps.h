@@ -5,7 +5,7 @@
 #include "layers/layer_row.h"
 
 #define NEAR_DEPTHS 0.1f       // of the larger depth: a near layer of another depth is another thing's
-#define CROSSING_DEPTHS 0.05f  // the same of near layers that do not move alike: those that cross are close together
+#define CROSSING_DEPTHS 0.05f  // the same of near layers that may cross: those that do are close together
 #define FAR_DEPTHS 0.2f        // the same of a far layer, which may be seen at a slant
 #define SOLID 0.3f             // coverage from which a near layer may stand for a surface alone
 #define EMPTY_CONFIDENCE 1.0f  // at most: that there is no near layer where there was but one

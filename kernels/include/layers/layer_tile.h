@@ -113,12 +113,12 @@ static inline LayerTile near_layer_of(const TemporalTileParams* params, const La
       count += 1.0f;
     }
   }
-  LayerTile tile = {0.0f, 0.0f, 0.0f, 0, 0, 0};
+  LayerTile tile = {0.0f, 0.0f, 0.0f, 0.0f, 0, 0, 0};
   if (count == 0.0f) return tile;
   tile.is_split = 1;
   tile.between = between / count;
-  const float2 range = most - least;
-  if (!(range.x <= RIGID_RANGE && range.y <= RIGID_RANGE)) return tile;
+  tile.motion_range = max(most.x - least.x, most.y - least.y);
+  if (!(tile.motion_range <= RIGID_RANGE)) return tile;
   const float2 motion = settled(0.5f * (most + least));
   const int from = source_tile(params, corner, motion);
   const LayerTile before = in->previous[from];
@@ -138,7 +138,7 @@ static inline LayerTile layer_tile(const TemporalTileParams* params, DEPTH_TEXEL
                                    SampleRange samples, ReprojectionRange found, int2 at, float2 corner,
                                    __global const TileReprojection* previous_tiles, TileReprojection* tile,
                                    bool* hidden) {
-  LayerTile layers = {0.0f, 0.0f, 0.0f, 0, 0, 0};
+  LayerTile layers = {0.0f, 0.0f, 0.0f, 0.0f, 0, 0, 0};
   if (is_marked(params, in->marks, at.x, at.y))
     layers = near_layer_of(params, in, widened(params, samples), corner, previous_tiles);
   const float2 scale = (float2)(params->motion_x, params->motion_y);

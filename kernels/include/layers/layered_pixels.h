@@ -43,14 +43,14 @@ static inline LayerWishes far_wishes_of(const LayeredPixels* pixels) {
   return wishes;
 }
 
-// `move_alike`: the near layers of the tile do. Else one of them may cross another that is nearly as deep.
-static inline LayerWishes near_wishes_of(const LayeredPixels* pixels, bool move_alike) {
+// `may_cross`: one of the tile's near layers may cross another that is nearly as deep.
+static inline LayerWishes near_wishes_of(const LayeredPixels* pixels, bool may_cross) {
   const LayerWishes wishes = {kNearLayer,
                               pixels->is_split,
                               pixels->near_depth,
                               pixels->far_depth,
-                              move_alike ? 0.0f : 1.0f - CROSSING_DEPTHS,
-                              1.0f + (move_alike ? NEAR_DEPTHS : CROSSING_DEPTHS)};
+                              may_cross ? 1.0f - CROSSING_DEPTHS : 0.0f,
+                              1.0f + (may_cross ? CROSSING_DEPTHS : NEAR_DEPTHS)};
   return wishes;
 }
 
