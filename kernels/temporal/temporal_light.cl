@@ -8,7 +8,7 @@
 //              picture's
 //   rejection  the largest of three, clamped to [0, 1]:
 //     by error   history foretells the samples much worse than their neighbours do, and not because light has changed
-//     by cut     over the whole picture history foretells no better than the neighbours: it is another picture
+//     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
 //     by change  the tile's own samples agree that it is brighter or darker now, by more than its aliasing has shown in
 //                flicker and in the neighbours' error, as in the first frames of a moving highlight
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
@@ -33,9 +33,10 @@
 #define ERROR_RATIO 1.6f          // of history's error to the neighbours', from which on it rejects
 #define ERROR_FLOOR 0.002f        // luma, of each sample: less is no error
 #define INCOHERENT 0.5f           // of the error: a larger part that is brightening may be a change of light
-// Rejection by cut. Without one the ratio is .6 to .9.
-#define CUT_RATIO 0.95f           // of history's error to the neighbours', from which on it rejects
-#define CUT_RANGE 0.25f           // by how much more of the neighbours' error it rejects wholly
+// Rejection by cut. The ratio is 1.7 or more then, without a cut below 1.3. Textures finer than the samples are the
+// highest, as long as history is new. Soft, because what is rejected is new again.
+#define CUT_RATIO 1.1f            // of history's error to the neighbours', from which on it rejects
+#define CUT_RANGE 0.3f            // by how much more of the neighbours' error it rejects wholly
 #define CUT_FLOOR 0.03f           // of the light: less is no error
 #define CUT_MEMORY 0.9f           // from one frame to the next: where each seems another picture there is no cut
 // Rejection by change.

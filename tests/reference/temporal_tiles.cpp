@@ -165,6 +165,13 @@ TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, in
   return tile;
 }
 
+// How far the judges of row y lie to the left of those of row 0.
+int staggered(int y, int judged_apart) {
+  constexpr std::array kOfTwo = {0, 1, 1, 0}, kOfFour = {0, 2, 3, 1};
+  const auto row = static_cast<std::size_t>(y % 4);
+  return judged_apart == 4 ? kOfFour[row] : judged_apart == 2 ? kOfTwo[row] : 0;
+}
+
 template <typename Real>
 TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
                                    int tile_x, int tile_y) {
@@ -172,7 +179,7 @@ TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReproject
   const auto [columns, rows] = samples_of_tile<Real>(in, tile_x, tile_y);
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
-      const int place = in.parity >= 0 ? x + y - in.parity : x + in.judged_apart / 2 * y;
+      const int place = in.parity >= 0 ? x + y - in.parity : x + staggered(y, in.judged_apart);
       const bool is_judge = place % in.judged_apart == 0;
       if (is_judge) judge_sample(in, reprojection, x, y, evidence);
     }
