@@ -94,7 +94,8 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
     EightTexels known = relight(fetched.texels, left, right);
     EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
     float8 taken = far_samples(&pixels);
-    if (light[tile_index].holds_back) taken *= hold_back(known, evidence.confidence, samples);
+    if (light[tile_index].holds_back)
+      taken = select(taken, (float8)(0.0f), are_held_back(known, evidence.confidence, samples));
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
       inertia = correct_layers(&pixels, colour, depth, before.depth0, &frame, &sample_motion, &nearest, &known,

@@ -8,7 +8,8 @@
 //   s  the nearest sample; d its distance from the pixel's picture, output pixels
 //   w  its weight, (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2);
 //      r = 1.05, in still tiles down to .85 as W grows
-// In a tile that holds back (TileLight), startling samples of pixels whose history is known have no weight.
+// In a tile that holds back (TileLight), startling samples of pixels whose history is known are replaced by what
+// history foretells of them.
 // Only where something speaks against history is it brought into the range of the samples there: doing so everywhere
 // would cost more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.
 //
@@ -50,6 +51,7 @@
 #include "temporal/correct_history.h"
 #include "temporal/debug_view.h"
 #include "temporal/fetch_history.h"
+#include "temporal/foretell.h"
 #include "temporal/limit_confidence.h"
 #include "temporal/nearest_samples.h"
 #include "temporal/plain_tile.h"
@@ -133,8 +135,13 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 
       // Load the samples, and hold back startling ones.
       EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
-      float8 held = (float8)(1.0f);
-      if (holds_back) held = hold_back(known, evidence.confidence, samples);
+      int8 held = (int8)(0);
+      if (holds_back) held = are_held_back(known, evidence.confidence, samples);
+      if (any_lane(held)) {
+        const EightTexels foretold =
+            foretell_samples(layer, previous_tiles, &params, tile, copied, &motion, &nearest, x, y);
+        samples = with_foretold(samples, relight(foretold, left, right), known_alpha, held);
+      }
 
       // Rectify and reseed.
       float8 inertia = (float8)(0.0f);
@@ -143,7 +150,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
             correct_history(colour, &frame, &sample_motion, &nearest, (int8)(-1), &known, &known_alpha, &evidence);
 
       // Accumulate.
-      float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * held;
+      float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence));
       if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
       const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 

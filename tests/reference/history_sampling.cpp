@@ -35,6 +35,51 @@ bool can_copy(const TemporalInputs& in, const TileReprojection& tile, int x, int
   return true;
 }
 
+// Where a pixel's picture was in the previous history: texel + fraction.
+template <typename Real>
+struct HistoryPlace {
+  bool is_copied = false;
+  std::array<int, 2> texel = {};
+  std::array<Real, 2> fraction = {};
+};
+
+template <typename Real>
+HistoryPlace<Real> history_place(const TemporalInputs& in, const TileReprojection& tile,
+                                 const Reprojection& reprojection, int x, int y) {
+  if (can_copy(in, tile, x, y)) return {true, {x - tile.step[0], y - tile.step[1]}, {}};
+  const std::array<int, 2> pixel = {x, y};
+  const std::array<int, 2> size = {in.output_width, in.output_height};
+  const std::array<double, 2> motion = {reprojection.x, reprojection.y};
+  // From the pixel's centre to where its picture was.
+  std::array<Real, 2> way;
+  std::array<int, 2> near;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Real moved = Real(motion[axis]) * in.reprojection_scale(static_cast<int>(axis));
+    way[axis] = clamp(moved, -kFarthestMotion, kFarthestMotion) + tile.phase[axis];
+    near[axis] = pixel[axis] + truncate_within(way[axis] + .5, -pixel[axis], size[axis] - 1 - pixel[axis]);
+  }
+  // The texels there hold their picture at a phase of their own.
+  const TileReprojection& source = reprojection_before(in, near[0], near[1]);
+  HistoryPlace<Real> place;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Split<Real> at = split(way[axis] - source.phase[axis]);
+    place.texel[axis] = pixel[axis] + at.whole;
+    place.fraction[axis] = at.fraction;
+  }
+  return place;
+}
+
+template <typename Real>
+bool is_outside(const TemporalInputs& in, const HistoryPlace<Real>& from) {
+  const std::array<int, 2> size = {in.output_width, in.output_height};
+  bool outside = false;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const Real place = from.texel[axis] + from.fraction[axis];
+    outside = outside || place < -.5 || place > size[axis] - .5;
+  }
+  return outside;
+}
+
 // `at(x, y)`: what is sampled, of a texel.
 template <typename Real, typename At>
 Real linear_of(const At& at, int x, int y, const std::array<Real, 2>& fraction) {
@@ -101,41 +146,32 @@ template <typename Real>
 FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReprojection& tile,
                                    const Reprojection& reprojection, const TemporalOptions& options, int x,
                                    int y) {
+  const auto from = history_place<Real>(in, tile, reprojection, x, y);
   FetchedHistory<Real> fetched;
-  if (can_copy(in, tile, x, y)) {
-    const int from_x = x - tile.step[0];
-    const int from_y = y - tile.step[1];
-    fetched.known.texel = as<Real>(in.history_clamped(from_x, from_y));
-    fetched.known.alpha = in.alpha_clamped(from_x, from_y);
+  if (from.is_copied) {
+    fetched.known.texel = as<Real>(in.history_clamped(from.texel[0], from.texel[1]));
+    fetched.known.alpha = in.alpha_clamped(from.texel[0], from.texel[1]);
     return fetched;
   }
-  const std::array<int, 2> pixel = {x, y};
-  const std::array<int, 2> size = {in.output_width, in.output_height};
-  const std::array<double, 2> motion = {reprojection.x, reprojection.y};
-  // From the pixel's centre to where its picture was.
-  std::array<Real, 2> way;
-  std::array<int, 2> near;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const Real moved = Real(motion[axis]) * in.reprojection_scale(static_cast<int>(axis));
-    way[axis] = clamp(moved, -kFarthestMotion, kFarthestMotion) + tile.phase[axis];
-    near[axis] = pixel[axis] + truncate_within(way[axis] + .5, -pixel[axis], size[axis] - 1 - pixel[axis]);
-  }
-  // The texels there hold their picture at a phase of their own.
-  const TileReprojection& source = reprojection_before(in, near[0], near[1]);
-  std::array<int, 2> texel;
-  std::array<Real, 2> fraction;
-  bool is_outside = false;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const Split<Real> at = split(way[axis] - source.phase[axis]);
-    texel[axis] = pixel[axis] + at.whole;
-    fraction[axis] = at.fraction;
-    const Real place = texel[axis] + fraction[axis];
-    is_outside = is_outside || place < -.5 || place > size[axis] - .5;
-  }
-  fetched.known = sample_history(in, options.taps, texel[0], texel[1], fraction);
-  if (is_outside) fetched.known.texel[3] = 0;
-  fetched.between = between_texels(fraction);
+  fetched.known = sample_history(in, options.taps, from.texel[0], from.texel[1], from.fraction);
+  if (is_outside(in, from)) fetched.known.texel[3] = 0;
+  fetched.between = between_texels(from.fraction);
   return fetched;
+}
+
+template <typename Real>
+PixelOf<Real> foretell(const TemporalInputs& in, const TileReprojection& tile,
+                       const Reprojection& reprojection, int x, int y, const std::array<Real, 2>& away) {
+  const auto from = history_place<Real>(in, tile, reprojection, x, y);
+  const Split<Real> across = split(from.fraction[0] + away[0]);
+  const Split<Real> down = split(from.fraction[1] + away[1]);
+  PixelOf<Real> foretold = {};
+  for (std::size_t c = 0; c < 3; ++c) {
+    foretold[c] = linear_of<Real>([&](int i, int j) { return in.history_clamped(i, j)[c]; },
+                                  from.texel[0] + across.whole, from.texel[1] + down.whole,
+                                  {across.fraction, down.fraction});
+  }
+  return foretold;
 }
 
 template <typename Real>
@@ -157,6 +193,10 @@ template FetchedHistory<double> fetch_history(const TemporalInputs&, const TileR
                                               const Reprojection&, const TemporalOptions&, int, int);
 template FetchedHistory<Bounded> fetch_history(const TemporalInputs&, const TileReprojection&,
                                                const Reprojection&, const TemporalOptions&, int, int);
+template PixelOf<double> foretell(const TemporalInputs&, const TileReprojection&, const Reprojection&, int,
+                                  int, const std::array<double, 2>&);
+template PixelOf<Bounded> foretell(const TemporalInputs&, const TileReprojection&, const Reprojection&, int,
+                                   int, const std::array<Bounded, 2>&);
 template PixelOf<double> sample_cubic(const TemporalInputs&, int, int, const std::array<double, 2>&, double);
 template PixelOf<Bounded> sample_cubic(const TemporalInputs&, int, int, const std::array<Bounded, 2>&,
                                        double);

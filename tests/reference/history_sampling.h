@@ -38,6 +38,12 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
                                    const Reprojection& reprojection, const TemporalOptions& options, int x,
                                    int y);
 
+// What history foretells of a sample that lies `away` output pixels from where output pixel (x, y)'s picture lies:
+// bilinear between four texels. The fourth channel is not used.
+template <typename Real>
+PixelOf<Real> foretell(const TemporalInputs& in, const TileReprojection& tile,
+                       const Reprojection& reprojection, int x, int y, const std::array<Real, 2>& away);
+
 // History at texel (x, y) + fraction, fraction within [0, 1], by the cubic of Keys, "Cubic Convolution
 // Interpolation for Digital Image Processing", 1981, with his parameter `a`; clamped to the range of the
 // middle four of its 16 texels. Texels are clamped to the edge.

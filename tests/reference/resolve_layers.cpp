@@ -93,7 +93,8 @@ LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& nea
       const Pixel sample = layer == Layer::kFar ? own : near_sample(own, side, has_alpha);
       const Real across = dx - near.x.past;
       const Real down = dy - near.y.past;
-      const Real weight = luma_weighted(bell((across * across + down * down) * kSeedFalloff), sample);
+      const Real weight =
+          luma_weighted(bell((across * across + down * down) * kSeedFalloff), as<Real>(sample));
       weights += weight;
       for (std::size_t c = 0; c < 4; ++c)
         sum[c] += sample[c] * weight;
@@ -151,7 +152,7 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
   Known<Real> known{history.known.texel, fetched.alpha, limit_confidence(history, trust, motion_edge),
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(now, in.tiles, pixel.x, pixel.y, known);
-  relight(now, in.tiles, pixel.x, pixel.y, known);
+  relight(now, in.tiles, pixel.x, pixel.y, known.colour);
 
   const Pixel& sample = texel_clamped(now.frame, near.x.sample, near.y.sample);
   const bool is_held_back = holds_back(pixel.tile->light, known, sample);
@@ -170,10 +171,10 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
   // Accumulate. A split tile does not stand still as a whole.
   Real weight = 0;
   if (is_valid(sample) && !is_held_back && (!is_split || pixel.depth < pixel.between)) {
-    weight = sample_weight<Real>(sample, near.x.past * now.spacing(0), near.y.past * now.spacing(1),
-                                 reach_of(stands_still(tile) && !pixel.layers->is_split, known.confidence));
+    weight = sample_weight(as<Real>(sample), near.x.past * now.spacing(0), near.y.past * now.spacing(1),
+                           reach_of(stands_still(tile) && !pixel.layers->is_split, known.confidence));
   }
-  HistoryTexel<Real> updated = accumulate(known, sample, weight);
+  HistoryTexel<Real> updated = accumulate(known, as<Real>(sample), weight);
   if (is_split) updated.texel[3] = -updated.texel[3];
   return updated;
 }
@@ -233,8 +234,8 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
     const Pixel sample =
         near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
     const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kReach);
-    const Real weight = sample_weight<Real>(sample, around.x.past * in.now.spacing(0),
-                                            around.y.past * in.now.spacing(1), Real(reach));
+    const Real weight = sample_weight(as<Real>(sample), around.x.past * in.now.spacing(0),
+                                      around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;
     const Real share = weight / max(total + inertia, kLeastWeight);
     for (std::size_t c = 0; c < 4; ++c)

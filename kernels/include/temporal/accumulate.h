@@ -57,16 +57,17 @@ static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count
   return met;
 }
 
-// 0 of startling samples of pixels whose history is known, else 1.
-static inline float8 hold_back(EightTexels history, float8 confidence, EightTexels samples) {
+// Whether they are startling, of pixels whose history is known.
+static inline int8 are_held_back(EightTexels history, float8 confidence, EightTexels samples) {
   float4 known[8], sample[8];
-  float weight[8];
+  int held[8];
   vstore16(history.left, 0, (float*)known);
   vstore16(history.right, 1, (float*)known);
   vstore16(samples.left, 0, (float*)sample);
   vstore16(samples.right, 1, (float*)sample);
-  for (int i = 0; i < 8; ++i) weight[i] = is_startling(sample[i], startling_range(known[i])) ? 0.0f : 1.0f;
-  return select((float8)(1.0f), vload8(0, weight), confidence >= LEAST_CONFIDENCE);
+  for (int i = 0; i < 8; ++i)
+    held[i] = is_valid(sample[i]) && is_startling(sample[i], startling_range(known[i])) ? -1 : 0;
+  return vload8(0, held) & (confidence >= LEAST_CONFIDENCE);
 }
 
 // m + (s - m) part, and in w their confidence.

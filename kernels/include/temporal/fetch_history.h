@@ -104,21 +104,26 @@ static inline float8 held_confidence(EightTexels texels) {
   return clamp(confidences(texels), 0.0f, MOST_CONFIDENCE);
 }
 
+// A layer at eight places with weights x and y, held in the range of the middle four texels. `inside`: all texels are.
+static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
+  const int8 column = from.x.texel, row = from.y.texel;
+  const EightWeights wx = weights_by_place(x), wy = weights_by_place(y);
+  return eight_texels(sample_history(layer, column.s0, row.s0, inside, wx.p0, wy.p0),
+                      sample_history(layer, column.s1, row.s1, inside, wx.p1, wy.p1),
+                      sample_history(layer, column.s2, row.s2, inside, wx.p2, wy.p2),
+                      sample_history(layer, column.s3, row.s3, inside, wx.p3, wy.p3),
+                      sample_history(layer, column.s4, row.s4, inside, wx.p4, wy.p4),
+                      sample_history(layer, column.s5, row.s5, inside, wx.p5, wy.p5),
+                      sample_history(layer, column.s6, row.s6, inside, wx.p6, wy.p6),
+                      sample_history(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
+}
+
 // History at eight places, between texels.
 static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces from) {
-  const int8 x = from.x.texel, y = from.y.texel;
-  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
-  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
-  const bool inside = lie_inside(x, y, layer.width, layer.height);
-  will_read_rows(layer, x.s0 + kResampledAhead, y.s0);
-  const EightTexels texels = eight_texels(sample_history(layer, x.s0, y.s0, inside, wx.p0, wy.p0),
-                                          sample_history(layer, x.s1, y.s1, inside, wx.p1, wy.p1),
-                                          sample_history(layer, x.s2, y.s2, inside, wx.p2, wy.p2),
-                                          sample_history(layer, x.s3, y.s3, inside, wx.p3, wy.p3),
-                                          sample_history(layer, x.s4, y.s4, inside, wx.p4, wy.p4),
-                                          sample_history(layer, x.s5, y.s5, inside, wx.p5, wy.p5),
-                                          sample_history(layer, x.s6, y.s6, inside, wx.p6, wy.p6),
-                                          sample_history(layer, x.s7, y.s7, inside, wx.p7, wy.p7));
+  const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
+  will_read_rows(layer, from.x.texel.s0 + kResampledAhead, from.y.texel.s0);
+  const EightTexels texels = sample_places(layer, from, inside, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
+                                           cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
   int8 outside = (int8)(0);
   if (!inside) outside = lie_outside(from.x, layer.width) | lie_outside(from.y, layer.height);
   const float8 confidence = select(held_confidence(texels), (float8)(0.0f), outside);

@@ -53,13 +53,17 @@ typedef struct Cubic {
   float8 w0, w1, w2, w3;
 } Cubic;
 
+static inline Cubic tent_weights(float8 f) {
+  const Cubic tent = {(float8)(0.0f), 1.0f - f, f, (float8)(0.0f)};
+  return tent;
+}
+
 // Keys, "Cubic Convolution Interpolation for Digital Image Processing", 1981, with his `a`.
 static inline Cubic cubic_weights(float8 f, float a) {
-  const float8 rest = 1.0f - f;
 #if TAPS == 4
-  const Cubic tent = {(float8)(0.0f), rest, f, (float8)(0.0f)};
-  return tent;
+  return tent_weights(f);
 #else
+  const float8 rest = 1.0f - f;
   Cubic w;
   w.w0 = a * f * rest * rest;
   w.w3 = a * rest * f * f;

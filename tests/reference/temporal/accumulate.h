@@ -25,9 +25,9 @@ Real reach_of(bool is_still, const Real& confidence) {
 
 // Of a sample `dx` and `dy` output pixels away.
 template <typename Real>
-Real sample_weight(const Pixel& sample, const Real& dx, const Real& dy, const Real& reach) {
+Real sample_weight(const PixelOf<Real>& sample, const Real& dx, const Real& dy, const Real& reach) {
   const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
-  return luma_weighted<Real>(near * near, sample);
+  return luma_weighted(near * near, sample);
 }
 
 // Whether a tile holds a sample back from history that is known.
@@ -38,7 +38,7 @@ bool holds_back(const TileLight& tile, const Known<Real>& known, const Pixel& sa
 }
 
 template <typename Real>
-HistoryTexel<Real> accumulate(const Known<Real>& known, const Pixel& sample, const Real& weight) {
+HistoryTexel<Real> accumulate(const Known<Real>& known, const PixelOf<Real>& sample, const Real& weight) {
   HistoryTexel<Real> updated = {known.colour, known.alpha};
   const Real total = known.confidence + weight;
   const Real share = weight / max(total + known.inertia, kLeastWeight);

@@ -13,8 +13,8 @@ Real brightest(const PixelOf<Real>& c) {
 
 // A sample's weight times its luma weight 1 / max(1, brightest / 2): one sample shall not outshine the others.
 template <typename Real>
-Real luma_weighted(const Real& weight, const Pixel& sample) {
-  return weight / max(1, .5 * brightest(as<Real>(sample)));
+Real luma_weighted(const Real& weight, const PixelOf<Real>& sample) {
+  return weight / max(1, .5 * brightest(sample));
 }
 
 }  // namespace quincunx::reference

@@ -33,9 +33,9 @@ Real between_tiles(const TemporalInputs& in, const std::vector<Tile>& tiles, int
 }
 
 template <typename Real>
-void relight(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, Known<Real>& known) {
+void relight(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, PixelOf<Real>& colour) {
   const auto gain = between_tiles<Real>(in, tiles, x, y, &TileLight::gain);
-  for (Real& value : known.colour)
+  for (Real& value : colour)
     value *= gain;
 }
 

@@ -49,7 +49,7 @@ PixelOf<Real> seed_from_afar(const Frame& frame, int x, int y) {
       for (int dx = -distance; dx <= distance; dx += distance) {
         const Pixel& sample = texel_clamped(frame, x + dx, y + dy);
         if (!is_valid(sample)) continue;
-        const Real weight = luma_weighted<Real>(Real(1) / distance, sample);
+        const Real weight = luma_weighted(Real(1) / distance, as<Real>(sample));
         weights += weight;
         for (std::size_t c = 0; c < 4; ++c)
           sum[c] += sample[c] * weight;
@@ -75,8 +75,8 @@ Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
       const Real across = dx - near.x.past;
       const Real down = dy - near.y.past;
       const Real gaussian = bell((across * across + down * down) * kSeedFalloff);
-      const Real weight =
-          luma_weighted(gaussian, sample) * similarity<Real>(in, near.x.sample, near.y.sample, x, y);
+      const Real weight = luma_weighted(gaussian, as<Real>(sample)) *
+                          similarity<Real>(in, near.x.sample, near.y.sample, x, y);
       weights += weight;
       for (std::size_t c = 0; c < 4; ++c)
         sum[c] += sample[c] * weight;
