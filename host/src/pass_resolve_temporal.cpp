@@ -55,20 +55,31 @@ class ResolveTemporalPass : public Pass {
   }
 };
 
+// Where nothing moves hardly anything is resampled.
+int taps_of(const PlanFacts& facts) {
+  if (!facts.reprojects()) return 16;
+  switch (facts.settings.temporal.preset) {
+    case TemporalPreset::kFast:
+      return 4;
+    case TemporalPreset::kBalanced:
+      return 16;
+    case TemporalPreset::kQuality:
+      return 36;
+  }
+  return 16;
+}
+
 std::string options_of(const PlanFacts& facts, bool reactive) {
   const ResolveSettings& settings = facts.settings;
-  const TemporalPreset preset = settings.temporal.preset;
-  const bool moves = facts.reprojects();
   std::string format;
   if (!facts.displays_history())
     format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
   return fmt::format(
       "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
       "-D HISTORY_FORMAT={}{}",
-      facts.accumulates_alpha() ? 1 : 0, moves ? 1 : 0, reactive ? 1 : 0,
-      moves && preset == TemporalPreset::kFast ? 4 : 16, facts.has_layers() ? 1 : 0,
-      view_option(settings.temporal.view), colour_options(settings), precision_of(settings.temporal.history),
-      format);
+      facts.accumulates_alpha() ? 1 : 0, facts.reprojects() ? 1 : 0, reactive ? 1 : 0, taps_of(facts),
+      facts.has_layers() ? 1 : 0, view_option(settings.temporal.view), colour_options(settings),
+      precision_of(settings.temporal.history), format);
 }
 
 }  // namespace

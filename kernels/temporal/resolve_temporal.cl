@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // resolve_temporal: adds this frame's samples to a history of the output's size, which follows the surfaces.
 //   m  history's colour where the pixel's picture was in the previous frame: a texel's own in a rigid tile, else a
-//      cubic, clamped to the range of the middle four texels
+//      cubic, clamped to the range of the middle texels
 //   W  its confidence, the sum of the weights of the samples in it: at most 32, or 8 once resampled, less what
 //      resampling, disocclusion, reactive values, motion edges and a change of light take
 //   m += (s - m) w / (W + w)
@@ -31,7 +31,8 @@
 // Options: ALPHA     0 (default) | 1: alpha is accumulated as colour is, with the same weights
 //          MOTION    1 (default) | 0: nothing moves
 //          REACTIVE  0 (default) | 1: with MOTION 0; else the reprojection's trust holds what reactive values take
-//          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs
+//          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs | 36: from 6x6
+//                    texels, which is dearer and sharper
 //          LAYERS    0 (default) | 1: leaves layered tiles to resolve_layers
 //          VIEW      PICTURE (default): temporal_display makes the picture | CONFIDENCE | REJECTION | PHASE, as in
 //                    temporal/debug_view.h

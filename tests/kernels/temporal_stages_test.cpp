@@ -112,15 +112,17 @@ TEST_P(Temporal, CopyableTilesGiveTheSameBits) {
   }
 }
 
-TEST_P(Temporal, BilinearHistoryMatchesToo) {
+TEST_P(Temporal, HistoryOfFourAndOf36TapsMatchesToo) {
   const TemporalStages stages(GetParam());
   if (!GetParam().moves) return;  // it changes nothing
   for (const StageSpec& spec : testing::all_stage_specs({Pattern::kNoise})) {
     Rig rig;
     const StageInputs in = stages.inputs(rig, spec);
     const auto tiles = stages.tiles(in, spec.seed);
-    const auto actual = stages.run_resolve(rig, in, tiles, {TemporalPreset::kFast});
-    compare_resolve(in, tiles, {.taps = 4}, actual, spec);
+    compare_resolve(in, tiles, {.taps = 4}, stages.run_resolve(rig, in, tiles, {TemporalPreset::kFast}),
+                    spec);
+    compare_resolve(in, tiles, {.taps = 36}, stages.run_resolve(rig, in, tiles, {TemporalPreset::kQuality}),
+                    spec);
     if (HasFatalFailure()) return;
   }
   // Where a motion is whole pixels a rounding decides between which texels history is read.

@@ -195,7 +195,7 @@ template <typename Real>
 TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y);
 
 struct TemporalOptions {
-  int taps = 16;  // texels of history that are read where it is resampled; 4: bilinear
+  int taps = 16;  // texels of history that are read where it is resampled; 4: bilinear; 36: the cubic of six
 };
 
 template <typename Real>

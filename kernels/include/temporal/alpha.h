@@ -9,6 +9,18 @@
 #include "temporal/rectify.h"
 
 // What resample_history gives, of alpha.
+#if TAPS == 36
+static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
+  const int8 i = from.x.texel - 1, j = from.y.texel - 1;
+  const SixByPlace wx = six_by_place(six_weights(from.x.fraction));
+  const SixByPlace wy = six_by_place(six_weights(from.y.fraction));
+  return (float8)(
+      sample_alpha_six(plane, i.s0, j.s0, wx.p0, wy.p0), sample_alpha_six(plane, i.s1, j.s1, wx.p1, wy.p1),
+      sample_alpha_six(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha_six(plane, i.s3, j.s3, wx.p3, wy.p3),
+      sample_alpha_six(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha_six(plane, i.s5, j.s5, wx.p5, wy.p5),
+      sample_alpha_six(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha_six(plane, i.s7, j.s7, wx.p7, wy.p7));
+}
+#else
 static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
   const int8 i = from.x.texel, j = from.y.texel;
   const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
@@ -18,6 +30,7 @@ static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
                   sample_alpha(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha(plane, i.s5, j.s5, wx.p5, wy.p5),
                   sample_alpha(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha(plane, i.s7, j.s7, wx.p7, wy.p7));
 }
+#endif
 
 // What fetch_history gives, of alpha.
 static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,

@@ -5,6 +5,7 @@
 #include "sanitise.h"
 #include "temporal/history_sampling.h"
 #include "temporal/reprojection.h"
+#include "temporal/six_taps.h"
 
 // Confidence, the sum of the weights of all samples in a texel, each 1 at most.
 #define MOST_CONFIDENCE 32.0f      // about 140 frames at scale .5
@@ -118,12 +119,36 @@ static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, b
                       sample_history(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
 }
 
+#if TAPS == 36
+// A layer at eight places between 6x6 texels.
+static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
+  const int8 column = from.x.texel - 1, row = from.y.texel - 1;
+  const bool inside = lie_inside(column, row, layer.width - 2, layer.height - 2);
+  const SixByPlace wx = six_by_place(six_weights(from.x.fraction));
+  const SixByPlace wy = six_by_place(six_weights(from.y.fraction));
+  return eight_texels(sample_six(layer, column.s0, row.s0, inside, wx.p0, wy.p0),
+                      sample_six(layer, column.s1, row.s1, inside, wx.p1, wy.p1),
+                      sample_six(layer, column.s2, row.s2, inside, wx.p2, wy.p2),
+                      sample_six(layer, column.s3, row.s3, inside, wx.p3, wy.p3),
+                      sample_six(layer, column.s4, row.s4, inside, wx.p4, wy.p4),
+                      sample_six(layer, column.s5, row.s5, inside, wx.p5, wy.p5),
+                      sample_six(layer, column.s6, row.s6, inside, wx.p6, wy.p6),
+                      sample_six(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
+}
+#else
+// A layer at eight places between 4x4 texels.
+static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
+  const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
+  return sample_places(layer, from, inside, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
+                       cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
+}
+#endif
+
 // History at eight places, between texels.
 static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces from) {
   const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
   will_read_rows(layer, from.x.texel.s0 + kResampledAhead, from.y.texel.s0);
-  const EightTexels texels = sample_places(layer, from, inside, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
-                                           cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
+  const EightTexels texels = resample_texels(layer, from);
   int8 outside = (int8)(0);
   if (!inside) outside = lie_outside(from.x, layer.width) | lie_outside(from.y, layer.height);
   const float8 confidence = select(held_confidence(texels), (float8)(0.0f), outside);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Reading a layer of history between its texels.
 //
-// Option: TAPS  16 (default): cubic | 4: bilinear
+// Option: TAPS  16 (default): cubic | 4: bilinear | 36: temporal/six_taps.h where resolve_temporal resamples, cubic
+//               elsewhere
 #pragma once
 
 #include "multiply_add.h"
@@ -10,8 +11,8 @@
 #ifndef TAPS
 #define TAPS 16
 #endif
-#if TAPS != 16 && TAPS != 4
-#error "TAPS must be 16 or 4"
+#if TAPS != 36 && TAPS != 16 && TAPS != 4
+#error "TAPS must be 36, 16 or 4"
 #endif
 
 // The 4x4 texels around a place that lies between the middle four.
@@ -146,7 +147,7 @@ static inline EightTexels second_texels(TwelveTexels row) {
   return next;
 }
 
-#if TAPS == 16
+#if TAPS != 4
 static inline EightTexels third_texels(TwelveTexels row) {
   const EightTexels next = {(float16)(row.first.scdef, row.second.s0123, row.second.s456789ab),
                             (float16)(row.second.scdef, row.third.s0123, row.third.s456789ab)};

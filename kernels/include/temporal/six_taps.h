@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Reading a layer of history between 6x6 texels: a Hermite cubic, whose slope at each texel comes from two texels on
+// each side. It keeps more of what is resampled in each frame than the cubic of 4x4 texels does.
+#pragma once
+
+#include "temporal/history_alpha.h"
+
+// slope at texel 0 = NEAR (t[1] - t[-1]) - FAR (t[2] - t[-2]). 2/3 and 1/12 would be exact for polynomials of degree
+// four (Keys 1981), .83 and .21 those of Lanczos' window of six; these were found by search (docs/temporal.md).
+#define NEAR_SLOPE 0.9f
+#define FAR_SLOPE 0.25f
+
+// Of eight places on one axis, `fraction` of the way from the third texel to the fourth.
+typedef struct SixWeights {
+  float8 w0, w1, w2, w3, w4, w5;
+} SixWeights;
+
+static inline SixWeights six_weights(float8 f) {
+  const float8 rest = 1.0f - f;
+  const float8 before = f * rest * rest, after = -f * f * rest;  // what the slopes at the two texels count
+  const float8 next = f * f * (3.0f - 2.0f * f);
+  SixWeights w;
+  w.w0 = FAR_SLOPE * before;
+  w.w1 = FAR_SLOPE * after - NEAR_SLOPE * before;
+  w.w2 = 1.0f - next - NEAR_SLOPE * after;
+  w.w3 = next + NEAR_SLOPE * before;
+  w.w4 = NEAR_SLOPE * after - FAR_SLOPE * before;
+  w.w5 = -FAR_SLOPE * after;
+  return w;
+}
+
+// The same by place: the six weights of each, and two that do not count.
+typedef struct SixByPlace {
+  float8 p0, p1, p2, p3, p4, p5, p6, p7;
+} SixByPlace;
+
+static inline SixByPlace six_by_place(SixWeights w) {
+  const SixByPlace weights = {(float8)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0, w.w4.s0, w.w5.s0, 0.0f, 0.0f),
+                              (float8)(w.w0.s1, w.w1.s1, w.w2.s1, w.w3.s1, w.w4.s1, w.w5.s1, 0.0f, 0.0f),
+                              (float8)(w.w0.s2, w.w1.s2, w.w2.s2, w.w3.s2, w.w4.s2, w.w5.s2, 0.0f, 0.0f),
+                              (float8)(w.w0.s3, w.w1.s3, w.w2.s3, w.w3.s3, w.w4.s3, w.w5.s3, 0.0f, 0.0f),
+                              (float8)(w.w0.s4, w.w1.s4, w.w2.s4, w.w3.s4, w.w4.s4, w.w5.s4, 0.0f, 0.0f),
+                              (float8)(w.w0.s5, w.w1.s5, w.w2.s5, w.w3.s5, w.w4.s5, w.w5.s5, 0.0f, 0.0f),
+                              (float8)(w.w0.s6, w.w1.s6, w.w2.s6, w.w3.s6, w.w4.s6, w.w5.s6, 0.0f, 0.0f),
+                              (float8)(w.w0.s7, w.w1.s7, w.w2.s7, w.w3.s7, w.w4.s7, w.w5.s7, 0.0f, 0.0f)};
+  return weights;
+}
+
+// Of a row.
+typedef struct SixTexels {
+  float16 first;  // four
+  float8 last;    // two
+} SixTexels;
+
+// Those from (x, y) on; `inside`: they are there, else they are clamped to the edge.
+static inline SixTexels load_six(HistoryLayer layer, int x, int y, bool inside) {
+  if (inside) {
+    const int index = y * layer.width + x;
+    const SixTexels row = {load_history4(layer, index), load_history2(layer, index + 4)};
+    return row;
+  }
+  const float16 first = load_clamped4(layer, x, y), last = load_clamped4(layer, x + 4, y);
+  const SixTexels row = {first, last.lo};
+  return row;
+}
+
+static inline void add_six(SixTexels* sum, SixTexels row, float weight) {
+  sum->first = MULTIPLY_ADD(row.first, (float16)(weight), sum->first);
+  sum->last = MULTIPLY_ADD(row.last, (float8)(weight), sum->last);
+}
+
+static inline SixTexels least_of_six(SixTexels a, SixTexels b) {
+  const SixTexels least = {min(a.first, b.first), min(a.last, b.last)};
+  return least;
+}
+
+static inline SixTexels most_of_six(SixTexels a, SixTexels b) {
+  const SixTexels most = {max(a.first, b.first), max(a.last, b.last)};
+  return most;
+}
+
+// History among the 6x6 texels from (x, y) on, held in the range of the middle 4x4.
+static inline float4 sample_six(HistoryLayer layer, int x, int y, bool inside, float8 wx, float8 wy) {
+  const SixTexels row0 = load_six(layer, x, y, inside), row1 = load_six(layer, x, y + 1, inside);
+  const SixTexels row2 = load_six(layer, x, y + 2, inside), row3 = load_six(layer, x, y + 3, inside);
+  const SixTexels row4 = load_six(layer, x, y + 4, inside), row5 = load_six(layer, x, y + 5, inside);
+  SixTexels sum = {row0.first * wy.s0, row0.last * wy.s0};
+  add_six(&sum, row1, wy.s1);
+  add_six(&sum, row2, wy.s2);
+  add_six(&sum, row3, wy.s3);
+  add_six(&sum, row4, wy.s4);
+  add_six(&sum, row5, wy.s5);
+  const float4 blended = (sum.first.s0123 * wx.s0 + sum.first.s4567 * wx.s1) +
+                         (sum.first.s89ab * wx.s2 + sum.first.scdef * wx.s3) +
+                         (sum.last.lo * wx.s4 + sum.last.hi * wx.s5);
+  const SixTexels least = least_of_six(least_of_six(row1, row2), least_of_six(row3, row4));
+  const SixTexels most = most_of_six(most_of_six(row1, row2), most_of_six(row3, row4));
+  const float4 low = min(min(least.first.s4567, least.first.s89ab), min(least.first.scdef, least.last.lo));
+  const float4 high = max(max(most.first.s4567, most.first.s89ab), max(most.first.scdef, most.last.lo));
+  return min(max(blended, low), high);
+}
+
+// The same of alpha, clamped to the edge.
+static inline float sample_alpha_six(AlphaPlane plane, int x, int y, float8 wx, float8 wy) {
+  float weight[8], sum = 0.0f, low = INFINITY, high = -INFINITY;
+  vstore8(wy, 0, weight);
+  for (int j = 0; j < 6; ++j) {
+    const float4 first = load_alpha_clamped4(plane, x, y + j), last = load_alpha_clamped4(plane, x + 4, y + j);
+    sum += weight[j] * (dot(first, wx.lo) + dot(last.lo, wx.s45));
+    if (j == 0 || j == 5) continue;
+    low = min(low, min(min(first.y, first.z), min(first.w, last.x)));
+    high = max(high, max(max(first.y, first.z), max(first.w, last.x)));
+  }
+  return min(max(sum, low), high);
+}
