@@ -32,8 +32,8 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   PassSpec spec{
       .kernel = "temporal_display",
       .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             alpha ? 1 : 0, settings.temporal.preset == TemporalPreset::kFast ? 0 : 1,
-                             precision_of(settings.resolved), precision_of(settings.temporal.history)),
+                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0, precision_of(settings.resolved),
+                             precision_of(settings.temporal.history)),
       .reason = "the method: the history's picture",
       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},

@@ -23,7 +23,7 @@ class TemporalRefinePass : public Pass {
                               .height = frame.output.height,
                               .source = layout_of(frame[Resource::kUnrefined]),
                               .output = layout_of(frame[picture()])};
-    bind(params, frame[Resource::kUnrefined], frame[picture()]);
+    bind(params, frame[Resource::kUnrefined], frame[Resource::kHistory], frame[picture()]);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -36,9 +36,11 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
   const ResolveSettings& settings = facts.settings;
   list.passes.push_back(
       {.kernel = "temporal_refine",
-       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
-       .reason = "the preset: sharpened, and smoothed along edges",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
+                              precision_of(settings.resolved), precision_of(settings.temporal.history)),
+       .reason = "the preset: sharpened, and smoothed along edges where little is known",
        .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.resolved},
+                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
                 {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});

@@ -58,6 +58,9 @@ struct PlanFacts {
   bool refines() const {  // the picture of history: sharpened, and smoothed along edges
     return accumulates() && shows_picture() && settings.temporal.preset == TemporalPreset::kQuality;
   }
+  bool smooths_history() const {  // where little is known, on all sides; temporal_refine does it along edges
+    return displays_history() && settings.temporal.preset != TemporalPreset::kFast && !refines();
+  }
   bool resizes_history() const { return is_dual() && accumulates(); }
   bool accumulates_alpha() const { return shows_picture() && accumulates() && !needs.background; }
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }

@@ -4,27 +4,28 @@
 //   mean   of the 3x3 pixels
 //   D_n, D_t  second derivatives of t across and along the edge that luma of tone has around the pixel
 //   K      how much of an edge it is, 0 to 1: the coherence of luma's gradients
-//   t <- clamp(t + .03 (t - mean) + K (.21 D_t - .03 D_n), range of the 3x3 pixels)
+//   t <- clamp(t + a (t - mean) + K (b D_t + c D_n), range of the 3x3 pixels)
+//   a, b, c  by the pixel's confidence, and by whether it has two layers: temporal/refine_strengths.h. The less is
+//            known, the smoother along edges
 //   A pixel of which no channel moves keeps its colour bit by bit.
 //
-//   params  in   extents, layouts
-//   source  in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer. NaN counts as 0, what is larger
-//                than 65504 as that
-//   output  out  as source, alpha unchanged; another buffer
+//   params   in   extents, layouts
+//   source   in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer. NaN counts as 0, what is larger
+//                 than 65504 as that
+//   history  in   the layer of this frame: of its texels the confidence alone, negative of pixels of two layers
+//   output   out  as source, alpha unchanged; another buffer
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
+//          HISTORY_FORMAT as in temporal/history.h
 // Beyond the picture its outermost pixels repeat.
-// Source: the structure tensor after Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987; the
-// three weights were found by least squares against truth (docs/temporal.md).
+// Source: the structure tensor after Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987.
 // Reference: tests/reference/temporal_refine.cpp
+#include "temporal/refine_strengths.h"
 #include "temporal/tone_rows.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
 
-#define SHARPENING 0.03f      // of the difference from the mean; more would show the rest of a fault
-#define ALONG 0.21f           // of the second derivative along an edge
-#define ACROSS (-0.03f)       // of that across it
 #define GRADIENT_FLOOR 1e-3f  // squared tone: much weaker gradients make no edge
 
 // Of eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
@@ -57,7 +58,7 @@ static inline EightEdges edges_of(const ToneRow* rows) {
 }
 
 // One channel of the pixels.
-static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges) {
+static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges, EightStrengths by) {
   const float16 beside = above + below, apart = below - above, column = beside + same;
   const float16 low = min(min(above, below), same), high = max(max(above, below), same);
   const float8 own = at_pixels(same);
@@ -68,8 +69,8 @@ static inline float8 refined(float16 above, float16 same, float16 below, EightEd
   // K (D_n + D_t) and K (D_n - D_t).
   const float8 sum = edges.coherence * (xx + yy);
   const float8 difference = edges.cosine * (xx - yy) + 2.0f * edges.sine * xy;
-  const float8 moved =
-      own + SHARPENING * (own - mean) + 0.5f * (ALONG + ACROSS) * sum - 0.5f * (ALONG - ACROSS) * difference;
+  const float8 moved = own + by.sharpening * (own - mean) + 0.5f * (by.along + by.across) * sum -
+                       0.5f * (by.along - by.across) * difference;
   const float8 least = min(min(on_the_left(low), on_the_right(low)), at_pixels(low));
   const float8 most = max(max(on_the_left(high), on_the_right(high)), at_pixels(high));
   return min(max(moved, least), most);
@@ -94,12 +95,12 @@ static inline void store_refined(OUTPUT_TEXELS output, RESOLVED_TEXELS source, c
 }
 
 // Of the pixels from (x, y) on, with the five rows around theirs.
-static inline void refine_row(const ToneRow* rows, LightRow light, RESOLVED_TEXELS source,
+static inline void refine_row(const ToneRow* rows, LightRow light, EightStrengths by, RESOLVED_TEXELS source,
                               OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
   const EightEdges edges = edges_of(rows);
-  const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges);
-  const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges);
-  const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges);
+  const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
+  const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
+  const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
   const int8 stays = (red == at_pixels(rows[2].red)) & (green == at_pixels(rows[2].green)) &
                      (blue == at_pixels(rows[2].blue));
   const float8 brightest = max(max(max(red, green), blue), 0.0f);
@@ -110,10 +111,12 @@ static inline void refine_row(const ToneRow* rows, LightRow light, RESOLVED_TEXE
                 light_of(blue, scale, at_pixels(light.blue), stays));
 }
 
-__kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output) {
+__kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, HISTORY_TEXELS history,
+                              OUTPUT_TEXELS output) {
   const int top = get_global_id(1) * kRefineBlock;
   if (top >= params.height) return;
 
+  const HistoryLayer layer = {history, params.width, params.height};
   const int stride = (int)get_global_size(0) * kRefineBlock;
   const int bottom = min(top + kRefineBlock, params.height);
   for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
@@ -128,7 +131,7 @@ __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source,
       for (int i = 0; i < 4; ++i)
         rows[i] = rows[i + 1];
       rows[4] = tone_of(after);
-      refine_row(rows, own, source, output, &params, x, y);
+      refine_row(rows, own, strengths_at(layer, x, y), source, output, &params, x, y);
       own = next;
       next = after;
     }

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "expected.h"
@@ -28,44 +30,76 @@ std::size_t index_of(Extent extent, int x, int y) {
                                   std::clamp(x, 0, extent.width - 1));
 }
 
-class TemporalRefine : public ::testing::TestWithParam<PixelFormat> {
+struct Formats {
+  PixelFormat picture, history;
+};
+
+class TemporalRefine : public ::testing::TestWithParam<Formats> {
  protected:
-  std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent, double outside = 1e30,
+  static PixelFormat format() { return GetParam().picture; }
+
+  // Of each pixel `confidences`, or if there are none of every kind, side by side; of colours history has NaN.
+  std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent,
+                                 const std::vector<double>& confidences = {}, double outside = 1e30,
                                  bool tight = false) {
     Rig rig;
     const ResolveSettings settings = {
-        .method = Method::kTemporal, .resolved = GetParam(), .temporal = {TemporalPreset::kQuality}};
+        .method = Method::kTemporal,
+        .resolved = format(),
+        .temporal = {.preset = TemporalPreset::kQuality, .history = GetParam().history}};
     PassRig pass({}, settings, "temporal_refine");
-    const ImageView source = rig.image(GetParam(), Storage::kBuffer, extent, pixels, outside, tight);
-    const ImageView view = rig.output(GetParam(), extent);
-    pass.run({}, {}, extent, {}, {{Resource::kUnrefined, source}, {Resource::kResolved, view}});
+    std::vector<Pixel> known;
+    for (const double confidence : confidences.empty() ? every_kind(extent) : confidences)
+      known.push_back({kNan, kNan, kNan, confidence});
+    const std::vector<unsigned char> bytes = testing::encode(GetParam().history, known);
+    cl::Buffer history(testing::impl().context, CL_MEM_READ_WRITE, bytes.size());
+    testing::impl().queue.enqueueWriteBuffer(history, CL_TRUE, 0, bytes.size(), bytes.data());
+    const ImageView source = rig.image(format(), Storage::kBuffer, extent, pixels, outside, tight);
+    const ImageView view = rig.output(format(), extent);
+    pass.run({}, {}, extent, {},
+             {{Resource::kUnrefined, source},
+              {Resource::kHistory, {.memory = history()}},
+              {Resource::kResolved, view}});
     return rig.bytes(view, extent);
   }
 
-  std::vector<Pixel> refined(const std::vector<Pixel>& pixels, Extent extent) {
-    return testing::decode(GetParam(), run(pixels, extent));
+  std::vector<Pixel> refined(const std::vector<Pixel>& pixels, Extent extent,
+                             const std::vector<double>& confidences = {}) {
+    return testing::decode(format(), run(pixels, extent, confidences));
   }
 
-  reference::Picture stored(const std::vector<Pixel>& pixels, Extent extent) const {
+  static reference::Picture stored(const std::vector<Pixel>& pixels, Extent extent) {
     reference::Picture picture{extent.width, extent.height, pixels, {}, 0};
     for (Pixel& pixel : picture.pixels) {
       for (double& value : pixel)
-        value = testing::stored_value(GetParam(), value);
+        value = testing::stored_value(format(), value);
     }
     return picture;
   }
 
+  // Confidences as history stores them: of one layer and, negative, of two.
+  static std::vector<double> every_kind(Extent extent) {
+    constexpr std::array kKinds = {0.0, .15, -.4, .7, 1.5, -0.0, 8.0, -32.0, 32.0, .3, -2.0};
+    std::vector<double> confidences;
+    for (int i = 0; i < extent.area(); ++i)
+      confidences.push_back(
+          testing::stored_value(GetParam().history, kKinds.at(static_cast<std::size_t>(i) % kKinds.size())));
+    return confidences;
+  }
+
   void compare(const std::vector<Pixel>& pixels, Extent extent, const std::string& what) {
     const reference::Picture picture = stored(pixels, extent);
-    const auto expected = testing::expected_pixels(
-        extent.width, extent.height,
-        [&]<typename Real>(Real, int x, int y) { return reference::temporal_refine<Real>(picture, x, y); });
+    const std::vector<double> confidences = every_kind(extent);
+    const auto expected =
+        testing::expected_pixels(extent.width, extent.height, [&]<typename Real>(Real, int x, int y) {
+          return reference::temporal_refine<Real>(picture, confidences, x, y);
+        });
     const std::vector<Pixel> actual = refined(pixels, extent);
     for (std::size_t i = 0; i < actual.size(); ++i) {
       ASSERT_FALSE(expected[i].undecided);
       for (std::size_t c = 0; c < 4; ++c) {
         testing::expect_near(expected[i].value[c], expected[i].bound[c], actual[i][c],
-                             fmt::format("{}: value {} of pixel {}", what, c, i), GetParam());
+                             fmt::format("{}: value {} of pixel {}", what, c, i), format());
         if (HasFatalFailure()) return;
       }
     }
@@ -92,7 +126,7 @@ TEST_P(TemporalRefine, ConstantsAndAlphaKeepEveryBit) {
     for (const double value : {0.0, .3, -2.0, 1e-7, 65504.0}) {
       const std::vector<Pixel> flat(static_cast<std::size_t>(extent.area()),
                                     Pixel{value, value, value / 3, .7});
-      EXPECT_EQ(run(flat, extent), testing::encode(GetParam(), flat)) << value;
+      EXPECT_EQ(run(flat, extent), testing::encode(format(), flat)) << value;
     }
     const std::vector<Pixel> noise = testing::pattern_pixels(Pattern::kNoise, extent, 3);
     const reference::Picture before = stored(noise, extent);
@@ -102,33 +136,52 @@ TEST_P(TemporalRefine, ConstantsAndAlphaKeepEveryBit) {
   }
 }
 
-// Stairs of a slanted edge, half a pixel high and wide, get flatter; a level edge that is blurred gets steeper.
-TEST_P(TemporalRefine, SlantedEdgesAreSmoothedAndBlurredOnesSharpened) {
-  const Extent extent{24, 24};
-  const auto picture_of = [&](auto light) {
-    std::vector<Pixel> pixels;
-    for (int y = 0; y < extent.height; ++y) {
-      for (int x = 0; x < extent.width; ++x) {
-        const double value = light(x, y);
-        pixels.push_back({value, value, value, 1});
-      }
+std::vector<Pixel> picture_of(Extent extent, const std::function<double(int, int)>& light) {
+  std::vector<Pixel> pixels;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      const double value = light(x, y);
+      pixels.push_back({value, value, value, 1});
     }
-    return pixels;
-  };
-  // What is left of the stairs: how far the pixels of a slanted line are from their mean.
-  const auto stairs = [&](const std::vector<Pixel>& pixels) {
-    double sum = 0;
-    for (int y = 6; y < 16; y += 2)
-      sum += std::abs(pixels[index_of(extent, y + 2, y)][0] - pixels[index_of(extent, y + 3, y + 1)][0]);
-    return sum;
-  };
-  const auto jagged = picture_of([](int x, int y) { return x - y / 2 * 2 > 2 ? .8 : .1; });
-  EXPECT_LT(stairs(refined(jagged, extent)), .9 * stairs(jagged));
+  }
+  return pixels;
+}
 
-  const auto blurred = picture_of([](int x, int) { return .1 + .7 * std::clamp((x - 9) / 6.0, 0.0, 1.0); });
-  const std::vector<Pixel> sharp = refined(blurred, extent);
-  EXPECT_LT(sharp[index_of(extent, 9, 12)][0], blurred[index_of(extent, 9, 12)][0] + 1e-3);
-  EXPECT_GT(sharp[index_of(extent, 14, 12)][0], blurred[index_of(extent, 14, 12)][0]);
+// What is left of the stairs: how far the pixels of a slanted line are from their mean.
+double stairs(const std::vector<Pixel>& pixels, Extent extent) {
+  double sum = 0;
+  for (int y = 6; y < 16; y += 2)
+    sum += std::abs(pixels[index_of(extent, y + 2, y)][0] - pixels[index_of(extent, y + 3, y + 1)][0]);
+  return sum;
+}
+
+// Stairs of a slanted edge, half a pixel high and wide, get flatter: the flatter, the less is known.
+TEST_P(TemporalRefine, SlantedEdgesAreSmoothedTheMoreTheLessIsKnown) {
+  const Extent extent{24, 24};
+  const auto all = [&](double confidence) {
+    return std::vector<double>(static_cast<std::size_t>(extent.area()), confidence);
+  };
+  const auto jagged = picture_of(extent, [](int x, int y) { return x - y / 2 * 2 > 2 ? .8 : .1; });
+  const double before = stairs(jagged, extent);
+  const double little = stairs(refined(jagged, extent, all(.5)), extent);
+  const double more = stairs(refined(jagged, extent, all(2)), extent);
+  EXPECT_LT(little, .7 * before);
+  EXPECT_LT(little, .9 * more);
+  EXPECT_LT(more, before);
+  EXPECT_LT(stairs(refined(jagged, extent, all(-8)), extent), .9 * before);
+}
+
+// A level edge that is blurred gets steeper; of pixels of two layers, too, across the edge.
+TEST_P(TemporalRefine, BlurredEdgesAreSharpened) {
+  const Extent extent{24, 24};
+  const auto blurred =
+      picture_of(extent, [](int x, int) { return .1 + .7 * std::clamp((x - 9) / 6.0, 0.0, 1.0); });
+  for (const double confidence : {2.0, -2.0}) {
+    const std::vector<Pixel> sharp =
+        refined(blurred, extent, std::vector<double>(static_cast<std::size_t>(extent.area()), confidence));
+    EXPECT_LT(sharp[index_of(extent, 9, 12)][0], blurred[index_of(extent, 9, 12)][0] + 1e-3) << confidence;
+    EXPECT_GT(sharp[index_of(extent, 14, 12)][0], blurred[index_of(extent, 14, 12)][0]) << confidence;
+  }
 }
 
 TEST_P(TemporalRefine, ANonFinitePixelCountsAsItsStandInAndReachesTwoPixelsFar) {
@@ -155,9 +208,9 @@ TEST_P(TemporalRefine, ANonFinitePixelCountsAsItsStandInAndReachesTwoPixelsFar) 
 TEST_P(TemporalRefine, PoisonOutsideThePictureChangesNoBit) {
   for (const Extent extent : {Extent{1, 1}, {5, 3}, {33, 21}}) {
     const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
-    const std::vector<unsigned char> clean = run(pixels, extent, 0);
+    const std::vector<unsigned char> clean = run(pixels, extent, {}, 0);
     for (const double poison : testing::kPoisons)
-      EXPECT_EQ(clean, run(pixels, extent, poison)) << poison;
+      EXPECT_EQ(clean, run(pixels, extent, {}, poison)) << poison;
   }
 }
 
@@ -165,7 +218,7 @@ TEST_P(TemporalRefine, PoisonOutsideThePictureChangesNoBit) {
 TEST_P(TemporalRefine, ATightImageGivesTheSameBits) {
   for (const Extent extent : {Extent{1, 1}, {1, 6}, {4, 2}, {5, 1}, {8, 3}, {13, 11}}) {
     const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
-    EXPECT_EQ(run(pixels, extent, 0), run(pixels, extent, 0, true)) << extent.width;
+    EXPECT_EQ(run(pixels, extent, {}, 0), run(pixels, extent, {}, 0, true)) << extent.width;
   }
 }
 
@@ -174,9 +227,15 @@ TEST_P(TemporalRefine, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run(pixels, {100, 70}), run(pixels, {100, 70}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine,
-                         ::testing::Values(PixelFormat::kRGBA32F, PixelFormat::kRGBA16F),
-                         [](const auto& variant) { return quincunx::name_of(variant.param); });
+constexpr Formats kFormats[] = {{PixelFormat::kRGBA32F, PixelFormat::kRGBA32F},
+                                {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F},
+                                {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F},
+                                {PixelFormat::kRGBA16F, PixelFormat::kRGBA16F}};
+
+INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine, ::testing::ValuesIn(kFormats), [](const auto& variant) {
+  return fmt::format("{}_of_{}", quincunx::name_of(variant.param.picture),
+                     quincunx::name_of(variant.param.history));
+});
 
 }  // namespace
 }  // namespace quincunx

@@ -9,9 +9,14 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kLargest = 65504;
-constexpr double kSharpening = .03;
-constexpr double kAlong = .21;
-constexpr double kAcross = -.03;
+constexpr double kSharpening = .05;       // of one layer where all is known
+constexpr double kSharpeningYoung = .35;  // and more, divided by the confidence and kSharpeningYouth
+constexpr double kSharpeningYouth = .6;
+constexpr double kAlong = .03;
+constexpr double kAlongYoung = .5;  // divided by the confidence and kAlongYouth
+constexpr double kAlongYouth = .15;
+constexpr double kAlongLayered = .2;  // of two layers
+constexpr double kAcrossLayered = -.12;
 constexpr double kGradientFloor = 1e-3;
 constexpr double kLeastRest = 0x1p-16;  // of 1 - tone, against a division by 0 on the way back
 
@@ -74,9 +79,23 @@ Edge<Real> edge_at(const TonePicture<Real>& tone, int x, int y) {
   return edge;
 }
 
+template <typename Real>
+struct Strengths {
+  Real sharpening = 0, along = 0, across = 0;
+};
+
+// Of a pixel of a confidence as history stores it: even -0 tells of two layers.
+template <typename Real>
+Strengths<Real> strengths_of(double confidence) {
+  if (std::signbit(confidence)) return {0, kAlongLayered, kAcrossLayered};
+  return {kSharpening + kSharpeningYoung / (Real(confidence) + kSharpeningYouth),
+          kAlong + kAlongYoung / (Real(confidence) + kAlongYouth), 0};
+}
+
 // Channel c of the pixel, in tone space.
 template <typename Real>
-Real refined(const TonePicture<Real>& tone, const Edge<Real>& edge, int x, int y, std::size_t c) {
+Real refined(const TonePicture<Real>& tone, const Edge<Real>& edge, const Strengths<Real>& by, int x, int y,
+             std::size_t c) {
   const auto at = [&](int i, int j) { return tone.at(x + i, y + j)[c]; };
   const Real own = at(0, 0);
   Real sum = 0, least = own, most = own;
@@ -91,21 +110,22 @@ Real refined(const TonePicture<Real>& tone, const Edge<Real>& edge, int x, int y
   const Real xy = .25 * (at(1, 1) - at(1, -1) - (at(-1, 1) - at(-1, -1)));
   const Real both = edge.coherence * (xx + yy);                          // K (D_n + D_t)
   const Real difference = edge.cosine * (xx - yy) + 2 * edge.sine * xy;  // K (D_n - D_t)
-  const Real moved = own + kSharpening * (own - sum * (1 / 9.0)) + .5 * (kAlong + kAcross) * both -
-                     .5 * (kAlong - kAcross) * difference;
+  const Real moved = own + by.sharpening * (own - sum * (1 / 9.0)) + .5 * (by.along + by.across) * both -
+                     .5 * (by.along - by.across) * difference;
   return min(max(moved, least), most);
 }
 
 }  // namespace
 
 template <typename Real>
-PixelOf<Real> temporal_refine(const Picture& picture, int x, int y) {
+PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>& confidences, int x, int y) {
   const TonePicture<Real> tone(picture);
   const Edge<Real> edge = edge_at(tone, x, y);
+  const auto by = strengths_of<Real>(confidences[index_of(picture.width, x, y)]);
   PixelOf<Real> out = {};
   Real brightest = 0;
   for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = refined(tone, edge, x, y, c);
+    out[c] = refined(tone, edge, by, x, y, c);
     brightest = max(brightest, out[c]);
   }
   const Real scale = 1 / max(1 - brightest, kLeastRest);
@@ -115,7 +135,7 @@ PixelOf<Real> temporal_refine(const Picture& picture, int x, int y) {
   return out;
 }
 
-template PixelOf<double> temporal_refine(const Picture&, int, int);
-template PixelOf<Bounded> temporal_refine(const Picture&, int, int);
+template PixelOf<double> temporal_refine(const Picture&, const std::vector<double>&, int, int);
+template PixelOf<Bounded> temporal_refine(const Picture&, const std::vector<double>&, int, int);
 
 }  // namespace quincunx::reference

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // temporal_refine: the specification. In tone space, t = c / (1 + max(red, green, blue, 0)), for each channel
-//   t' = clamp(t + .03 (t - m) + K (.21 D_t - .03 D_n), l, h)
+//   t' = clamp(t + a (t - m) + K (b D_t + c D_n), l, h)
+//   a, b, c   .05 + .35 / (W + .6), .03 + .5 / (W + .15), 0 of a pixel of one layer and confidence W;
+//             0, .2, -.12 of one of two layers, whose confidence is negative
 //   m, l, h   mean and range of the 3x3 pixels around
 //   D_n, D_t  second derivatives across and along the edge; K its coherence, 0 to 1: both of the sums of luma's
 //             gradients' products over the 3x3 pixels, (1 2 1) by (1 2 1) / 16
@@ -9,12 +11,15 @@
 // Source: Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987.
 #pragma once
 
+#include <vector>
+
 #include "error_bound.h"
 #include "picture.h"
 
 namespace quincunx::reference {
 
+// `confidences`: of each pixel, as history stores them.
 template <typename Real>
-PixelOf<Real> temporal_refine(const Picture& picture, int x, int y);
+PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>& confidences, int x, int y);
 
 }  // namespace quincunx::reference
