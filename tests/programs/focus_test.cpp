@@ -220,10 +220,10 @@ TEST_F(Focused, TheErrorInsideIsThatOfTheLargerScale) {
     EXPECT_LT(error.focused, .9 * error.plain) << scene << ", " << name_of(method);
     EXPECT_NEAR(error.focused / error.whole, 1, .05) << scene << ", " << name_of(method);
   }
-  // What a pan brings into the region has less of a history there than in a whole picture.
+  // What a pan brings into the region has another history there than in a whole picture.
   const Measured pan = measure("pan", Method::kTemporal);
   EXPECT_LT(pan.focused, .75 * pan.plain);
-  EXPECT_LT(pan.whole, pan.focused);
+  EXPECT_NEAR(pan.focused / pan.whole, 1, .1);
 }
 
 TEST_F(Focused, AnObjectIsFollowed) {
