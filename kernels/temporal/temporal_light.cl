@@ -33,10 +33,10 @@
 #define ERROR_RATIO 1.6f          // of history's error to the neighbours', from which on it rejects
 #define ERROR_FLOOR 0.002f        // luma, of each sample: less is no error
 #define INCOHERENT 0.5f           // of the error: a larger part that is brightening may be a change of light
-// Rejection by cut. The ratio is 1.7 or more then, without a cut below 1.3. Textures finer than the samples are the
-// highest, as long as history is new. Soft, because what is rejected is new again.
-#define CUT_RATIO 1.1f            // of history's error to the neighbours', from which on it rejects
-#define CUT_RANGE 0.3f            // by how much more of the neighbours' error it rejects wholly
+// Rejection by cut. The ratio is 1.66 or more then. Textures finer than the samples may have as much as long as history
+// is new, and up to 1.44 later. So it is soft: what is rejected is new again.
+#define CUT_RATIO 1.25f           // of history's error to the neighbours', from which on it rejects
+#define CUT_RANGE 0.35f           // by how much more of the neighbours' error it rejects wholly
 #define CUT_FLOOR 0.03f           // of the light: less is no error
 #define CUT_MEMORY 0.9f           // from one frame to the next: where each seems another picture there is no cut
 // Rejection by change.

@@ -19,7 +19,7 @@
 //     by error   (E - e) / e, e = 1.6 N + .002 n, where |B| < .5 E; in a calm tile its confirmed part
 //     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
 //                |brightening| > .15 light; in a calm tile its confirmed part
-//     by cut     (E' - 1.1 N') / (.3 N' + 1) of the whole picture's sums, where E' > .03 L', it is not
+//     by cut     (E' - 1.25 N') / (.35 N' + 1) of the whole picture's sums, where E' > .03 L', it is not
 //                relit, and the change is widespread
 //   unrest       1 where the confirmed part of either suspicion is above 0, else u <- .97 u
 //   startled     1 where one of the nine tiles has startling > 0, else a <- .9 a
@@ -65,8 +65,8 @@ constexpr double kConfirmingCost = .3;  // of what two frames share of a suspici
 constexpr double kSureAlone = 4;        // suspicion of one frame that needs no other
 constexpr double kUnrestMemory = .97;   // each frame
 constexpr double kCalm = .3;            // unrest below which a tile that stands still is calm
-constexpr double kCut = 1.1;            // E / N of the whole picture from which on it may be another one
-constexpr double kCutRange = .3;        // of N, over which rejection grows to 1
+constexpr double kCut = 1.25;           // E / N of the whole picture from which on it may be another one
+constexpr double kCutRange = .35;       // of N, over which rejection grows to 1
 constexpr double kCutFloor = .03;       // of the whole picture's light
 constexpr double kCutMemory = .9;       // each frame: what seems another picture in each of them has no cut
 constexpr double kSpread = .2;          // of all tiles: fewer are not the whole picture
