@@ -249,13 +249,14 @@ TEST(ErrorFront, TheBuiltInOneSaysSo) {
   EXPECT_TRUE(front.is_built_in());
   EXPECT_EQ(front.summary().rfind("built in", 0), 0u) << front.summary();
   EXPECT_TRUE(front.source().scene.empty());
-  // What a controller chooses from: at least a filter and a method that accumulates, and more pixels are better.
+  // What a controller chooses from: at least a filter and a method that accumulates, and more pixels are better. From
+  // half on that need not hold of a still picture, of which what accumulates has all there is.
   EXPECT_TRUE(front.resolve_ms(kBilinear, 0.7, 0.9));
   EXPECT_TRUE(front.resolve_ms(kFast, 0.7, 0.9));
   for (const FrontMethod& method : front.methods()) {
     for (std::size_t i = 0; i < kSceneClasses; ++i) {
       const SceneMix mix = SceneMix::only(static_cast<SceneClass>(i));
-      EXPECT_LT(front.flip(mix, method, 1).value(), front.flip(mix, method, 0.5).value())
+      EXPECT_LT(front.flip(mix, method, 1).value(), front.flip(mix, method, 0.35).value())
           << name_of(method) << " of " << name_of(static_cast<SceneClass>(i));
     }
   }
