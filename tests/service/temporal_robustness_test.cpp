@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 
 #include "temporal_scene.h"
 
@@ -229,9 +230,10 @@ double error_of(ServiceRig& rig, const TemporalScene& scene, const std::vector<P
 }
 
 // Where the velocity of everything is wrong, or there is none although everything moves, the picture may be
-// worse than that of one frame alone: its squared error is at most 1.7 times as large (2.3 dB). To hold it to 1.3, what
-// history foretells would have to count as another picture where it is 5 % worse than what the neighbours do, and then
-// fine textures count as one: a history that is right is that bad there.
+// worse than that of one frame alone: its squared error is at most 1.3 times as large (1.1 dB), and 1.7 times (2.3 dB)
+// in slow motion whose velocity is finite. To hold that to 1.3, too, what history foretells would have to
+// count as another picture where it is 5 % worse than what the neighbours do, and then fine textures count as one: a
+// history that is right is that bad there.
 TEST(TemporalRobustness, WrongVelocityCostsAtMost70PercentOfBilinearsError) {
   for (const Place velocity : {Place(.4, .1), Place(1.3, .4), Place(6.2, -2.3)}) {
     const TemporalScene scene = moving_scene(velocity);
@@ -249,7 +251,8 @@ TEST(TemporalRobustness, WrongVelocityCostsAtMost70PercentOfBilinearsError) {
             fmt::format("{}, {}, {:.1f} pixels a frame", wrong.name,
                         preset == TemporalPreset::kFast ? "fast" : "balanced", std::abs(velocity));
         RecordProperty(what, fmt::format("{:.3f}", own / bilinear));
-        EXPECT_LE(own, 1.7 * bilinear) << what;
+        const bool is_slow = std::abs(velocity) < 2 && std::string_view(wrong.name) != "NaN";
+        EXPECT_LE(own, (is_slow ? 1.7 : 1.3) * bilinear) << what;
       }
     }
   }
