@@ -62,7 +62,7 @@ int taps_of(const PlanFacts& facts) {
     case TemporalPreset::kFast:
       return 4;
     case TemporalPreset::kBalanced:
-      return 16;
+      break;
     case TemporalPreset::kQuality:
       return 36;
   }

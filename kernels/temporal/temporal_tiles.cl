@@ -138,10 +138,9 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   evidence->startling += startling_too >= 2 ? 1.0f : 0.0f;
 }
 
-// The first column from `first` on that is judged in row y: one of `apart`, a power of two. From row to row they are
-// staggered so that in four rows as many even as odd columns are judged, and as many black as white fields of a
-// chessboard; otherwise stripes or checks as fine as the samples would look as if the light changed. On a
-// checkerboard, of which every second sample is shaded, those where column + y - parity is a multiple of `apart`.
+// The first column from `first` on that is judged in row y: one of `apart`, a power of two. Rows are staggered so that
+// four of them judge as many even as odd columns, and as many black as white fields of a chessboard: of one colour
+// alone, a moving edge would look like a change of light. Of frames shaded in a checkerboard only shaded samples are.
 static inline int first_judged(int first, int y, int apart, int parity) {
   const int staggered = ((y ^ (y >> 1)) & 1) * (apart / 2) + ((y >> 1) & 1) * (apart / 4);
   const int shifted = first + (parity >= 0 ? y - parity : staggered);
