@@ -20,7 +20,7 @@ __kernel void advect_records(const LayerParams params, __global const uint* prev
   for (int x = first; x < end; ++x) {
     const int i = y * params.previous_width + x;
     const uint key = previous_keys[i];
-    if (key == 0 || record_age(key) >= OLDEST_RECORD || !previous_records[i].is_thin) continue;
+    if (!is_carried_over(key, previous_records + i)) continue;
     const LayerRecord record = advanced(previous_records[i]);
     int2 cell;
     if (!cell_at(&params, record.x, record.y, &cell)) continue;

@@ -58,7 +58,7 @@ __kernel void turn_records(const LayerParams params, __global const uint* previo
   for (int x = first; x < end; ++x) {
     const int i = y * params.previous_width + x;
     const uint key = previous_keys[i];
-    if (key == 0 || record_age(key) >= OLDEST_RECORD || !previous_records[i].is_thin) continue;
+    if (!is_carried_over(key, previous_records + i)) continue;
     const LayerRecord record = advanced(previous_records[i]);
     const int cell = find_new(&params, keys, records, record);
     if (cell < 0 || !moves_otherwise(record, records[cell])) continue;

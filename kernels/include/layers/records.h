@@ -21,6 +21,11 @@ static inline int record_index(uint key) {
   return (int)(0x0fffffffu - (key & 0x0fffffffu));
 }
 
+// Whether a record of the previous grid is carried over: those of thin things are, until they are too old.
+static inline bool is_carried_over(uint key, __global const LayerRecord* record) {
+  return key != 0 && record_age(key) < OLDEST_RECORD && record->is_thin;
+}
+
 // A record of the previous frame in this one.
 static inline LayerRecord advanced(LayerRecord record) {
   record.motion_x += record.drift_x;
