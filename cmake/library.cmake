@@ -4,7 +4,7 @@
 #   quincunx_shared_library(TARGET)      the version of a shared one; done by quincunx_library() where it is one
 #
 # The number after .so rises when a program that was linked against the library would have to be built anew. The C
-# interface grows without that (docs/c_interface.md); the classes of C++ do not.
+# interface grows without that (docs/integrate.md); the classes of C++ do not.
 set(QUINCUNX_ABI_VERSION 1)
 set(QUINCUNX_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/exports.map)
 

@@ -6,6 +6,7 @@
 // NaN counts as 0 and +-Inf as +-65504. Where both are the same, that is what there is.
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of other; OUTPUT_FORMAT is the same
 // Reference: tests/reference/cross_fade.cpp
+#include "bits.h"
 #include "picture_params.h"
 #include "texel.h"
 

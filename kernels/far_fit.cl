@@ -7,16 +7,16 @@
 //   match     in   FarMatch of the frame before
 //   motion    out  FarModel
 // One work-item, so that the order of additions never changes.
-#include "motion/far_params.h"
+#include "motion/velocity_params.h"
 
-#define LEAST_PIVOT 1e-7f  // of 1: against the rounding of what nothing is left of
+#define LEAST_PIVOT 1e-7f  // relative to the diagonal, about 1: a smaller pivot is rounding alone
 
-#define KEPT_MATCH 0.9f    // of what the frames before said
+#define KEPT_MATCH 0.9f    // weight of the previous frames' evidence
 
-// Of the sum of a parameter's squared terms, what is added to it. That of a term of higher order tells the least.
+// Damping: the part of a parameter's sum of squared terms that is added to it. Terms of higher order tell the least.
 __constant const float kHold[kFarTerms] = {1e-6f, 1e-3f, 1e-6f, 1e-3f, 1e-4f, 1e-4f, 1e-4f, 1e-4f, 1e-4f};
 
-// Of the lower triangle, column <= row.
+// Returns the index of a product in the lower triangle, column <= row.
 static inline int product_index(int row, int column) {
   return row * (row + 1) / 2 + column;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // far_match: which explains better what is infinitely far away and was drawn without motion, the motion of far_fit or
-// none: the previous frame's colour at both places, as forecasts of this frame's. Of each 2x2 samples one is asked. It
+// none: the previous frame's colour at both places, as forecasts of this frame's. One of each 2x2 samples is asked. It
 // is no evidence where either place lies outside of the previous frame, or something stood before it there.
 //   params             in   viewports, layouts, places
 //   depth0, 1          in   R32F, viewports of frames n and n-1
@@ -10,8 +10,9 @@
 //   match              out  FarMatch grows by what the cell's samples say
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
-#include "motion/far_motion.h"
-#include "motion/far_params.h"
+#include "bits.h"
+#include "motion/camera_velocity.h"
+#include "motion/velocity_params.h"
 #include "texel.h"
 
 static inline float luma_of(float4 colour) {

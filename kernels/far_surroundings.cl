@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // far_surroundings: what the drawn velocities of a cell of samples say of the camera's motion: sums for a fit by least
-// squares of the model in motion/far_motion.h. A sample counts 1 / depth, since the farther it is the more the turning
-// of the camera and the less its walking is seen in it, and 1 / (1 + (r / .25)^2), r being how many output pixels the
-// motion of the frame before is wrong about it: what moves by itself drops out. Of each 2x2 samples one is asked.
+// squares of the model in motion/camera_velocity.h. A sample counts 1 / depth, since the farther it is the more the
+// turning of the camera and the less its walking is seen in it, and 1 / (1 + (r / .25)^2), r being how many output
+// pixels the motion of the frame before is wrong about it: what moves by itself drops out. One of each 2x2 samples is
+// asked.
 //   params    in   viewport, layouts, places
 //   depth     in   R32F, viewport, reversed and infinite
 //   drawn     in   RG16F or RG32F, viewport, in the caller's units
@@ -11,8 +12,8 @@
 // A sample whose depth or velocity is not finite does not count, nor does one that far_velocity moves.
 // Options: SOURCE_STORAGE (of depth and drawn), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
-#include "motion/far_motion.h"
-#include "motion/far_params.h"
+#include "motion/camera_velocity.h"
+#include "motion/velocity_params.h"
 #include "texel.h"
 
 #define NEAREST_TO_FAR 1e-6f  // reversed depth: what is farther counts no more than this

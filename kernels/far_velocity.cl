@@ -10,11 +10,10 @@
 // Options: FAR  CAMERA (default): the camera's motion is given | EVIDENCE: it was fitted
 //          SOURCE_STORAGE (of depth and velocities), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_velocity.cpp
+#include "bits.h"
 #include "motion/camera_velocity.h"
-#include "motion/far_motion.h"
-#include "motion/far_params.h"
 #include "motion/velocity_params.h"
-#include "texel_blocks.h"
+#include "texels/surfaces.h"
 
 #define CAMERA 1
 #define EVIDENCE 2
@@ -42,7 +41,7 @@ static inline FarModel believed_motion(__global const FarModel* motion, __global
   return believed;
 }
 
-// Of four samples from (x, y) on, x and y in turn.
+// Returns the velocities of four samples from (x, y) on, x and y in turn.
 static inline float8 modelled_velocities(const FarModel* motion, const FarPlaces* places, int x, int y) {
   return (float8)(far_velocity_at(motion, places, x, y), far_velocity_at(motion, places, x + 1, y),
                   far_velocity_at(motion, places, x + 2, y), far_velocity_at(motion, places, x + 3, y));
@@ -73,7 +72,7 @@ __kernel void far_velocity(const FarVelocityParams params, DEPTH_TEXELS depth, V
 #endif
       const int8 lanes = (int8)(far.s0, far.s0, far.s1, far.s1, far.s2, far.s2, far.s3, far.s3);
       const float8 units = moved * (float8)(unit, unit, unit, unit);
-      found = select(found, clamp(units, -LARGEST_VELOCITY, LARGEST_VELOCITY), lanes);
+      found = select(found, clamp(units, -FINITE_HALF_MAX, FINITE_HALF_MAX), lanes);
     }
     store_velocity4(velocity, frame.velocity, x, y, end, found);
   }

@@ -8,13 +8,14 @@
 // Options: MASK           0 (default) | 1
 //          SOURCE_FORMAT  HALF (default) | FLOAT   of focus; OUTPUT_FORMAT is the same
 // A pixel at the distance d within a rectangle has the weight t t (3 - 2 t), t = min(d rate, 1); of several rectangles
-// the largest counts. Of weight 1 the focus is copied. Between, out = picture (1 - weight) + focus weight, where NaN
+// the largest counts. At weight 1 the focus is copied. Between, out = picture (1 - weight) + focus weight, where NaN
 // counts as 0 and +-Inf as +-65504.
 // Source: Binks, "Dynamic Resolution Rendering", 2012: higher quality over a smaller area of the image.
 // Reference: tests/reference/lay_focus.cpp
 #ifndef MASK
 #define MASK 0
 #endif
+#include "bits.h"
 #include "picture_params.h"
 #include "texel.h"
 #if MASK != 0 && MASK != 1
@@ -24,7 +25,7 @@
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
 
-// Of four neighbours of a row of the region, from x on.
+// Returns the weights of four neighbours of a row of the region, from x on.
 static inline float4 rectangle_weights(const FocusParams* params, int x, int y) {
   const float4 centre_x = (float)x + (float4)(0.5f, 1.5f, 2.5f, 3.5f);
   const float centre_y = (float)y + 0.5f;
@@ -39,7 +40,7 @@ static inline float4 rectangle_weights(const FocusParams* params, int x, int y) 
   return weights;
 }
 
-// Of those that lie before `end`; 0 of the others.
+// Returns the weights of those that lie before `end`, and 0 for the others.
 static inline float4 weights_of(const FocusParams* params, __global const uchar* mask, int x, int y, int end) {
   const int4 columns = x + (int4)(0, 1, 2, 3);
   float4 weights = rectangle_weights(params, x, y);

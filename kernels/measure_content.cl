@@ -19,7 +19,8 @@
 #ifndef REACTIVE
 #define REACTIVE 0
 #endif
-#include "content_params.h"
+#include "bits.h"
+#include "picture_params.h"
 #include "texel.h"
 #if REACTIVE != 0 && REACTIVE != 1
 #error "REACTIVE must be 0 or 1"
@@ -28,10 +29,10 @@
 #define MOVING 0.25f         // output pixels: ContentStatistics::kMovingPx
 #define APART 1.0f           // output pixels: less is what a camera's own motion does at every edge
 #define FASTEST 255.0f       // output pixels: so that the sum over all tiles fits
-#define SPEED_UNITS 16.0f    // of a sum, an output pixel
-#define BEHIND 0.9f          // of a surface's depth
+#define SPEED_UNITS 16.0f    // steps of the sum in an output pixel
+#define BEHIND 0.9f          // fraction of a surface's depth
 #define LEAST_REACTIVE 0.1f
-#define GROWS 0.01f          // of the distance, a frame
+#define GROWS 0.01f          // fraction of the distance, a frame
 
 typedef struct Sample {
   float2 velocity;  // output pixels
@@ -39,7 +40,7 @@ typedef struct Sample {
 } Sample;
 
 typedef struct Growth {
-  float2 sum;  // of differences of velocity along each axis
+  float2 sum;  // total difference of velocity along each axis
   int2 pairs;
 } Growth;
 

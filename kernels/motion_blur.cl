@@ -18,15 +18,16 @@
 // Source: McGuire et al. 2012; Guertin, McGuire, Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter",
 // 2014.
 // Reference: tests/reference/motion_blur.cpp
-#include "hash.h"
+#include "bits.h"
 #include "motion/blur_params.h"
 #include "motion/streaks.h"
+#include "texel.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
 
-#define NEARER 1.01f  // of two depths: one surface is in front of the other
+#define NEARER 1.01f  // ratio of two depths from which one surface is in front of the other
 
 // Four places of the output.
 typedef struct Places {
@@ -34,7 +35,7 @@ typedef struct Places {
   int4 y;
 } Places;
 
-// What is seen there now.
+// Surfaces seen there now.
 typedef struct Surfaces {
   int4 streak_x;
   int4 streak_y;
@@ -86,7 +87,7 @@ static inline Places choose(Places otherwise, Places chosen, int4 where) {
   return places;
 }
 
-// What is known of four pixels before any sample.
+// Four pixels, as far as they are known before any sample.
 typedef struct Pixels {
   int4 x;
   int y;
@@ -105,7 +106,7 @@ static inline Pixels pixels_at(const Frame* frame, TileBlur blur, VELOCITY_TEXEL
   pixels.own = surfaces_at(frame, velocity, depth, here);
   pixels.passed = ~moves_as(pixels.own, (int4)(blur.x), (int4)(blur.y));
   pixels.any_passed = any(pixels.passed);
-  // What moves by less than half a pixel stays on its own.
+  // Pixels that move by less than half a pixel stay on their own.
   pixels.any_moves = any(max(abs(pixels.own.streak_x), abs(pixels.own.streak_y)) >= (uint4)(kStreakUnits / 2));
   return pixels;
 }

@@ -6,7 +6,7 @@
 //   tiles     out  TileStreaks, params.tiles_x x params.tiles_y, row by row
 //   longest   out  longest[0] grows to the longest streak of all, on either axis
 // Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
-// A tile in which nothing moves by half a pixel on an axis counts as still. Of equally long streaks the one with the
+// A tile in which nothing moves by half a pixel on an axis counts as still. Among equally long streaks the one with the
 // larger x, then the larger y counts: the order of work does not matter.
 // Source: McGuire, Hennessy, Bukowski, Osman, "A Reconstruction Filter for Plausible Motion Blur", 2012.
 // Reference: tests/reference/motion_blur.cpp

@@ -28,7 +28,8 @@
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // A sample whose velocity or depth is not finite stands still, and its trust is NaN.
 // Reference: tests/reference/reproject.cpp
-#include "texel_blocks.h"
+#include "bits.h"
+#include "texels/surfaces.h"
 
 #ifndef REACTIVE
 #define REACTIVE 0
@@ -55,12 +56,9 @@
 #error "OPEN_TRUST must be 0 or, with MOTION_EDGE 1, 1"
 #endif
 
-#include "motion/depth_limit.h"
-#include "motion/find_motion_edges.h"
-#include "motion/reactive_around.h"
-#include "motion/reproject_params.h"
+#include "motion/reproject_samples.h"
+#include "motion/velocity_params.h"
 
-#define FARTHEST_MOTION 65504.0f  // pixels of the previous frame: beyond any viewport
 #define NAN_BITS 0x7fc00000
 
 // Towards minus infinity, of less than 2^24.
@@ -139,8 +137,8 @@ __kernel void reproject(const ReprojectParams params, VELOCITY_TEXELS velocity0,
 
     // Reproject.
     FourReprojections found;
-    found.x = clamp(velocity.even * params.motion_x, -FARTHEST_MOTION, FARTHEST_MOTION);
-    found.y = clamp(velocity.odd * params.motion_y, -FARTHEST_MOTION, FARTHEST_MOTION);
+    found.x = clamp(velocity.even * params.motion_x, -FINITE_HALF_MAX, FINITE_HALF_MAX);
+    found.y = clamp(velocity.odd * params.motion_y, -FINITE_HALF_MAX, FINITE_HALF_MAX);
     const float4 at_x = convert_float4(x + (int4)(0, 1, 2, 3)) * params.step_x + params.start_x + found.x;
     const float4 at_y = row + found.y;
 

@@ -54,8 +54,9 @@
 #error "REACTIVE must be 0 or 1"
 #endif
 
+#include "bits.h"
+#include "checkerboard/every_other.h"
 #include "checkerboard/fill_colour.h"
-#include "checkerboard/store_in_turn.h"
 
 #if MOTION == TARGET
 #define MOTION_OF(surface) motion_of(velocity_on(surfaces.surface, velocities))
@@ -75,10 +76,10 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
   if (first >= params.width || y >= params.height) return;
 
   const int end = min(first + params.columns_per_item, params.width);
-  const bool shaded_first = (y & 1) == params.parity;  // of columns, which begin at an even one
+  const bool shaded_first = (y & 1) == params.parity;  // the first column is shaded; runs begin at an even one
   for (int run = first; run < end; run += kCheckerboardBlock) {
     const int count = min(end - run, (int)kCheckerboardBlock);
-    const int x = run + shaded_first;  // of the first pixel that is not shaded
+    const int x = run + shaded_first;  // the first pixel that is not shaded
 
     // Which surfaces lie around, and where they were.
     const DepthsAround depths = depths_around(&params, shaded_depth, x, y);

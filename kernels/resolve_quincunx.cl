@@ -18,6 +18,7 @@
 // Where the previous frame or a velocity is not finite, f is 0: nothing survives into the next frame.
 // Source: Binks, "Dynamic Resolution Rendering", 2012.   Reference: tests/reference/resolve_quincunx.cpp
 #include "bilinear.h"
+#include "bits.h"
 #include "resolve_params.h"
 
 // Not zero, so that a misspelt option is an error.

@@ -23,16 +23,17 @@
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Where a previous sample or the reprojection is not finite, g is 0: nothing survives into the next frame.
 // Reference: tests/reference/resolve_reprojected.cpp
+#include "arithmetic.h"
+#include "bits.h"
 #include "texel.h"
 
 #include "distance_weights.h"
-#include "motion/motion_options.h"
-#include "positions.h"
+#include "motion/motion_edge.h"
 #include "resolve_params.h"
 
 #define BRIGHT 2.0f  // see any_at_least_two
 
-// What a run of output pixels in one row shares.
+// Values that a run of output pixels in one row shares.
 typedef struct Row {
   int texel0, texel1;
   float fraction0, fraction1;
@@ -53,7 +54,7 @@ static inline Positions columns_of(const ReprojectedParams* params, __global con
 }
 
 #if MOTION
-// Of eight pixels, from the samples that are nearest to them.
+// Returns the motion of eight pixels, from the samples that are nearest to them.
 static inline PixelMotion motion_of(const ReprojectedParams* params, __global const float* reprojection, int8 x,
                                     int y) {
   PixelMotion motion;

@@ -9,7 +9,8 @@
 // Above scale 1 it still reads four samples: it does not average what lies between output pixels.
 // Reference: tests/reference/scale_bilinear.cpp
 #include "bilinear.h"
-#include "scale_params.h"
+#include "bits.h"
+#include "resolve_params.h"
 
 __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
                              OUTPUT_TEXELS output, __global uint* non_finite) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // scale_filter: each output pixel is a weighted mean of the samples around its centre, by a separable filter of any
-// width: every separable filter of the table in host/src/method.cpp, and the tent that bilinear becomes above scale 1.
+// width: every separable filter of the table in host/src/plan/method.cpp, and the tent that bilinear becomes above
+// scale 1.
 //   params      in   extents, layouts, taps of each axis
 //   spans       in   FilterSpan of each output column, then row; behind them the weights, taps of each column, then
 //                    row. The filter, the jitter and the widening above scale 1 are in them
@@ -12,9 +13,9 @@
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a row.
 // The table names the source of each filter.   Reference: tests/reference/scale_filter.cpp
-#include "multiply_add.h"
-#include "sanitise.h"
-#include "scale_params.h"
+#include "arithmetic.h"
+#include "bits.h"
+#include "resolve_params.h"
 #include "texel.h"
 
 #ifndef TAPS

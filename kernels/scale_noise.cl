@@ -8,9 +8,8 @@
 //   non_finite  out  non_finite[params.scale.counter] grows by the pixels whose sample is NaN or infinite
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Source: Binks, "Dynamic Resolution Rendering", 2012 (noise filtering).   Reference: tests/reference/noise.cpp
-#include "hash.h"
-#include "sanitise.h"
-#include "scale_params.h"
+#include "bits.h"
+#include "resolve_params.h"
 #include "texel.h"
 
 static inline float4 grained(float4 colour, float grain) {

@@ -12,9 +12,8 @@
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // The random values belong to the output pixel: jitter moves the samples under them, not them.
 // Source: Binks, "Dynamic Resolution Rendering", 2012 (noise offset filtering).   Reference: tests/reference/noise.cpp
-#include "hash.h"
-#include "sanitise.h"
-#include "scale_params.h"
+#include "bits.h"
+#include "resolve_params.h"
 #include "texel.h"
 
 // The texel of each of four places: `weight` texels right of the centre of `base`, moved by random * reach, random in 0

@@ -7,8 +7,8 @@
 //   non_finite  out  non_finite[params.counter] grows by the pixels whose sample is NaN or infinite
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
 // Reference: tests/reference/scale_point.cpp
-#include "sanitise.h"
-#include "scale_params.h"
+#include "bits.h"
+#include "resolve_params.h"
 #include "texel.h"
 
 __kernel void scale_point(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,

@@ -9,6 +9,7 @@
 // Beyond the picture its outermost pixels repeat.
 // Source: AMD FidelityFX Contrast Adaptive Sharpening, 2019, and RCAS of FSR 1, 2021: a cross whose weight gives way.
 // Reference: tests/reference/sharpen.cpp
+#include "bits.h"
 #include "picture_params.h"
 #include "texel.h"
 
@@ -87,7 +88,7 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
   const int8 largest8 = max(largest.lo, largest.hi);
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
 
-  // What is left over of the row or, which is rare, all of it once more.
+  // The rest of the row or, which is rare, all of it once more.
   for (; x < end; x += kBlock)
     sharpen_careful(source, output, &params, x, y, end);
 }

@@ -8,20 +8,57 @@
 //                         d(i), if that is within d(i) / 32; if there is none, of such a sample two columns or rows
 //                         away, and so on to REACH; if there is none, what the camera's motion gives it, where that is
 //                         known; else it keeps what it has
-// Of samples as close the first counts, row by row. A NaN in depth is no surface, and a sample that has it, or a depth
-// of less than 0, keeps its velocity.
+// Where samples are equally close, the first counts, row by row. A NaN in depth is no surface, and a sample that has
+// it, or a depth of less than 0, keeps its velocity.
 //   params    in   viewport, layouts, camera motion
 //   depth     in   R32F, viewport, reversed and infinite: 0 at infinity
 //   dilated   in   RG16F or RG32F, viewport, in the caller's units
 //   velocity  out  the same format and units, viewport: values of `dilated`, or the camera's, within +-65504
 // Options: SOURCE_STORAGE (of depth and velocities), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/undilate_velocity.cpp
+#include "bits.h"
 #include "motion/camera_velocity.h"
-#include "motion/dilated_depth.h"
 #include "motion/velocity_params.h"
+#include "texels/surfaces.h"
 
 #define REACH 8                      // samples, found by search on the development scenes
-#define SAME_SURFACE (1.0f / 32.0f)  // of a depth; a power of two, so that the product is exact
+#define SAME_SURFACE (1.0f / 32.0f)  // fraction of a depth; a power of two, so that the product is exact
+
+// The depths of columns x - 2 to x + 5, clamped to the edge.
+static inline float8 load_depth_columns(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width) {
+#if SOURCE_STORAGE == BUFFER
+  if (x >= 2 && x + 5 < width) return vload8(0, texels + texel_index(layout, x - 2, y));
+#endif
+  return (float8)(load_depth4(texels, layout, block_columns(x - 2, width), y),
+                  load_depth4(texels, layout, block_columns(x + 2, width), y));
+}
+
+// The dilated depths of four samples of a row, x to x + 3, and of those left and right of each.
+typedef struct DilatedDepths {
+  float4 left, own, right;
+} DilatedDepths;
+
+static inline DilatedDepths load_dilated_depths(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width,
+                                                int height) {
+  const float8 above = load_depth_columns(texels, layout, x, max(y - 1, 0), width);
+  const float8 row = load_depth_columns(texels, layout, x, y, width);
+  const float8 below = load_depth_columns(texels, layout, x, min(y + 1, height - 1), width);
+  const float8 most = fmax(fmax(above, row), below);
+  const DilatedDepths depths = {fmax(fmax(most.s0123, most.s1234), most.s2345),
+                                fmax(fmax(most.s1234, most.s2345), most.s3456),
+                                fmax(fmax(most.s2345, most.s3456), most.s4567)};
+  return depths;
+}
+
+// That of one sample; that of the sample alone where it is more than `limit`, which says enough.
+static inline float load_dilated_depth(DEPTH_TEXELS texels, TexelLayout layout, int x, int y, int width, int height,
+                                       float limit) {
+  float most = load_depth(texels, layout, x, y);
+  for (int j = max(y - 1, 0); j <= min(y + 1, height - 1) && !(most > limit); ++j) {
+    for (int i = max(x - 1, 0); i <= min(x + 1, width - 1); ++i) most = fmax(most, load_depth(texels, layout, i, j));
+  }
+  return most;
+}
 
 static inline int8 both_axes(int4 lanes) {
   return (int8)(lanes.s0, lanes.s0, lanes.s1, lanes.s1, lanes.s2, lanes.s2, lanes.s3, lanes.s3);
@@ -84,7 +121,8 @@ static inline int2 place_of_same(const UndilateParams* params, DEPTH_TEXELS dept
   return place;
 }
 
-// Of four samples, what those that are missing get from afar; which still are missing is kept.
+// Returns four samples' velocities, with those that are `missing` taken from two to REACH samples away. Lanes that find
+// none keep their velocity and their mark.
 static inline float8 look_afar(const UndilateParams* params, VELOCITY_TEXELS velocities, DEPTH_TEXELS depths, int x,
                                int y, float4 depth, float8 velocity, int4* missing) {
   for (int i = 0; i < kBlock; ++i) {
@@ -105,7 +143,7 @@ static inline float8 camera_velocities(const UndilateParams* params, int x, int 
   const float ndc_y = (float)y * camera->step_y + camera->start_y;
   const float2 unit = (float2)(params->to_drawn_x, params->to_drawn_y);
   const float8 moved = velocity_of(convert_float4(x + (int4)(0, 1, 2, 3)), ndc_y, depth, camera);
-  return clamp(moved * (float8)(unit, unit, unit, unit), -LARGEST_VELOCITY, LARGEST_VELOCITY);
+  return clamp(moved * (float8)(unit, unit, unit, unit), -FINITE_HALF_MAX, FINITE_HALF_MAX);
 }
 
 __kernel void undilate_velocity(const UndilateParams params, DEPTH_TEXELS depth, VELOCITY_TEXELS dilated,

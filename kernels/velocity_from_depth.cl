@@ -3,13 +3,13 @@
 //   params    in   viewport, layouts, camera motion
 //   depth     in   R32F, viewport, reversed and infinite: 1 at the near plane, 0 at infinity
 //   velocity  out  RG16F or RG32F, viewport: this position - the previous one, uv, jitter excluded
-// What was not before the previous camera, or moved further than that, has +-65504. Depth that is not finite gives NaN:
-// the passes that read it count it and trust no history there.
+// A surface that was not before the previous camera, or moved further than that, has +-65504. Depth that is not finite
+// gives NaN: the passes that read it count it and trust no history there.
 // Options: SOURCE_STORAGE (of both), VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/velocity_from_depth.cpp
+#include "bits.h"
 #include "motion/camera_velocity.h"
 #include "motion/velocity_params.h"
-#include "sanitise.h"
 #include "texel.h"
 
 __kernel void velocity_from_depth(const VelocityParams params, DEPTH_TEXELS depth, STORED_VELOCITY velocity) {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "quincunx/resolve_plan.h"
+#include "quincunx/status.h"
 
 namespace quincunx::scenes {
 
@@ -39,7 +40,7 @@ struct Texture {
 
 struct TextureSlot {
   int texture = -1;        // index into Scene::textures; -1: none
-  glm::mat3 transform{1};  // of uv (KHR_texture_transform)
+  glm::mat3 transform{1};  // transform of uv (KHR_texture_transform)
 };
 
 enum class AlphaMode : std::uint8_t { kOpaque, kMask, kBlend };
@@ -75,7 +76,7 @@ struct Instance {
   int mesh = 0;
   glm::mat4 transform{1};  // world from mesh, when there is no motion
   Motion motion;           // world from mesh at a time; empty: it stands still
-  std::string name = {};   // of the object that it belongs to; several may share it
+  std::string name = {};   // name of the object that it belongs to; several may share it
 };
 
 // A camera-facing, additively or alpha blended quad; no velocity, reactive.
@@ -113,12 +114,12 @@ enum class Background : std::uint8_t {
 
 struct Sky {
   Background background = Background::kSky;
-  // Whether its velocity is that of the camera's turning; else 0, as many renderers write it.
+  // Its velocity is that of the camera's turning; else it is 0, as many renderers write it.
   bool has_velocity = true;
   glm::vec3 zenith{0.2f, 0.4f, 0.8f};
   glm::vec3 horizon{0.6f, 0.7f, 0.8f};
   glm::vec3 ground{0.2f, 0.18f, 0.15f};
-  glm::vec3 sun_radiance{0};  // of a disc along -sun.direction; 0: none
+  glm::vec3 sun_radiance{0};  // radiance of a disc along -sun.direction; 0: none
   float sun_radius = 0.02f;   // radians
 };
 
@@ -126,9 +127,9 @@ struct Sky {
 // which is drawn without a frame before it, has none.
 struct Fault {
   double seconds = 0;  // in [0, Scene::duration)
-  glm::vec2 place{0};  // of its upper left corner, parts of the viewport's width and height, in [0, 1)
+  glm::vec2 place{0};  // upper left corner, parts of the viewport's width and height, in [0, 1)
   float side = 0;      // part of the viewport's height, in [0, 1)
-  float value = 0;     // of R, G and B; anything, infinity and NaN too
+  float value = 0;     // R, G and B; anything, infinity and NaN too
 };
 
 struct Bounds {
@@ -158,14 +159,14 @@ struct Scene {
   static constexpr int kMaxPointLights = 16;
 };
 
-// What the resolve plan may leave out follows from this.
+// Returns the facts from which follows what the resolve plan may leave out.
 SceneNeeds needs_of(const Scene& scene);
 
-// Whether the frame at `seconds` belongs to another shot than the one at `previous_seconds`: nothing of that
+// Returns whether the frame at `seconds` belongs to another shot than the one at `previous_seconds`: nothing of that
 // one may be used then.
 bool is_cut(const Scene& scene, double previous_seconds, double seconds);
 
-// Whether the frame at `seconds` that follows on one at `previous_seconds` shows a fault; a scene repeats.
+// Returns whether the frame at `seconds` that follows on one at `previous_seconds` shows a fault; a scene repeats.
 bool shows(const Scene& scene, const Fault& fault, double previous_seconds, double seconds);
 
 // The first cut at or after `seconds`; nothing where the scene has none.
@@ -176,5 +177,9 @@ Bounds bounds_of(const Scene& scene);
 
 // The axis-aligned box around a transformed box.
 Bounds transformed(const Bounds& box, const glm::mat4& transform);
+
+// Checks whether a scene holds together: indices, sizes, counts, finite positions. Errors: kInvalidArgument; the
+// message names the first object that does not, what it holds and what would be right.
+Status check_scene(const Scene& scene);
 
 }  // namespace quincunx::scenes

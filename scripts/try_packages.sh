@@ -90,7 +90,7 @@ print(quincunx.Resolver((64, 48), method=\"bilinear\").resolve(numpy.ones((20, 3
       zsh -n /usr/share/zsh/vendor-completions/_quincunx-\$program
       fish -n /usr/share/fish/vendor_completions.d/quincunx-\$program.fish
     done
-    test -s /usr/share/doc/quincunx/docs/c_interface.md"
+    test -s /usr/share/doc/quincunx/docs/integrate.md"
   say "The packages of Debian $suite hold; they are in $packages."
 }
 

@@ -16,7 +16,7 @@ bool has_any(std::initializer_list<const char*> extensions) {
   return false;
 }
 
-// What OpenGL ES 3.2 has and 3.1 may have.
+// Features that OpenGL ES 3.2 has and 3.1 may have.
 std::string missing_in_es(int version) {
   if (version >= 32) return {};
   struct Need {

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Fence: waits until the GL commands issued before it are done.
+// Waiting for GL (Fence), and how long something took (Stopwatch).
 #pragma once
 
 #include <epoxy/gl.h>
 
+#include <chrono>
 #include <utility>
 
 #include "cl_handle.h"
 
 namespace quincunx::gl {
 
+// Waits until the GL commands issued before it are done.
 class Fence {
  public:
   Fence() = default;  // nothing to wait for
@@ -29,7 +31,7 @@ class Fence {
     glFlush();
   }
 
-  // Whether all of it is done; does not wait. Nothing to wait for is done.
+  // Returns whether all of it is done; does not wait. Nothing to wait for is done.
   bool done() const {
     if (sync_ == nullptr) return true;
     const GLenum result = glClientWaitSync(sync_, 0, 0);
@@ -54,6 +56,18 @@ class Fence {
   }
 
   GLsync sync_ = nullptr;
+};
+
+// Host time since it was made.
+class Stopwatch {
+ public:
+  double milliseconds() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace quincunx::gl

@@ -9,12 +9,11 @@
 #include <exception>
 #include <utility>
 
-#include "covering_program.h"
 #include "fence.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
-#include "stopwatch.h"
+#include "viewport_pass.h"
 
 namespace quincunx::gl {
 namespace {
@@ -71,8 +70,8 @@ double query_ms(GLuint query) {
   return static_cast<double>(nanoseconds) * 1e-6;
 }
 
-// Whether something, a change of the clock for example, has made the times since the last look worthless. OpenGL ES
-// asks its callers to look (GL_EXT_disjoint_timer_query).
+// Returns whether something, a change of the clock for example, has made the times since the last look worthless.
+// OpenGL ES asks its callers to look (GL_EXT_disjoint_timer_query).
 bool times_are_disjoint() {
   if (capabilities().api != Api::kEs3) return false;
   GLint disjoint = 0;
@@ -80,7 +79,7 @@ bool times_are_disjoint() {
   return disjoint != 0;
 }
 
-// What a load took, ms.
+// The times of a load, ms.
 struct LoadTimes {
   double host = 0;
   double query = 0;
@@ -99,7 +98,7 @@ LoadTimes time_load(const KnownLoad& load, GLuint query, int layers) {
   return {host, query_ms(query)};
 }
 
-// Whether a query sees a load grow as the host's clock does.
+// Returns whether a query sees a load grow as the host's clock does.
 bool grow_alike(const LoadTimes& light, const LoadTimes& heavy) {
   constexpr double kLeastAgreement = 0.7;
   constexpr double kMostAgreement = 1.2;
@@ -112,9 +111,9 @@ bool grow_alike(const LoadTimes& light, const LoadTimes& heavy) {
   return plausible && grown > 0 && seen >= kLeastAgreement * grown && seen <= kMostAgreement * grown;
 }
 
-// Whether queries do so each time: where other programs run, wrong ones agree now and then by chance.
+// Returns whether queries do so each time: where other programs run, wrong ones agree now and then by chance.
 bool queries_agree() {
-  constexpr double kEnoughMs = 8;  // of load, beside which submission and waking up are small
+  constexpr double kEnoughMs = 8;  // least load, beside which submission and waking up are small
   constexpr int kMostLayers = 1 << 16;
   constexpr int kTimes = 4;
   const KnownLoad load;

@@ -7,16 +7,52 @@
 // waited for before GL takes them back.
 #pragma once
 
+#include <epoxy/gl.h>
+
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "plane.h"
+#include "cl_handle.h"
+#include "frame_layout.h"
+#include "quincunx/device.h"
 #include "quincunx_gl/bridge.h"
-#include "shared_textures.h"
 #include "slot_ring.h"
 
 namespace quincunx::gl {
+
+// GL textures that OpenCL knows as images, and which side owns them: a set that changes sides together. GL owns them
+// first. Where OpenCL still owns them at the end, the destructor gives them back. All functions throw InteropError.
+class SharedTextures {
+ public:
+  explicit SharedTextures(const Device& device);
+  ~SharedTextures();
+  SharedTextures(SharedTextures&& other) noexcept;
+  SharedTextures& operator=(SharedTextures&&) = delete;
+  SharedTextures(const SharedTextures&) = delete;
+  SharedTextures& operator=(const SharedTextures&) = delete;
+
+  // The image of a complete GL_TEXTURE_2D, which must outlive this object. `format` is what OpenCL must see
+  // in it.
+  cl_mem add(GLuint texture, PixelFormat format, cl_mem_flags flags);
+
+  // Enqueues the change to OpenCL, after what GL was told to do so far.
+  void acquire();
+  // Enqueues the change to GL, after what OpenCL was told to do so far.
+  void release();
+  // Before GL touches the textures again: waits for release() where the driver does not order the two itself.
+  void wait_for_release();
+
+  bool acquired() const { return acquired_; }
+
+ private:
+  Device device_;
+  bool driver_synchronises_;  // cl_khr_gl_event
+  std::vector<ClMem> images_;
+  std::vector<cl_mem> raw_;
+  ClEvent released_;
+  bool acquired_ = false;
+};
 
 class GlSharing final : public Bridge {
  public:

@@ -9,20 +9,80 @@
 // again in begin_draw(), when OpenCL has given the slot back, and only where the size is another.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "depth_reader.h"
 #include "fence.h"
+#include "frame_layout.h"
 #include "pixel_buffer.h"
-#include "plane.h"
 #include "quincunx_gl/bridge.h"
-#include "slot_images.h"
+#include "quincunx_gl/render_targets.h"
 #include "slot_ring.h"
-#include "target_pool.h"
+#include "viewport_pass.h"
 
 namespace quincunx::gl {
+
+// Render targets of the sizes that were asked for most recently.
+//
+// OpenGL has no memory in which textures could be placed (but what Vulkan allocates), so that targets of exactly a
+// viewport's size have to be made. Those of sizes that come back are kept, as long as all of them together have no
+// more texels than two of the largest size: as many as a double-buffered allocation would have.
+class TargetPool {
+ public:
+  // `largest.target` is the largest size that at() will be asked for. Makes nothing yet.
+  explicit TargetPool(const TargetNeeds& largest);
+
+  // Targets of this size, valid until the next call. Throws std::runtime_error where they cannot be made.
+  const RenderTargets& at(Extent extent);
+
+  std::uint64_t bytes() const;  // sum over all that are kept
+
+ private:
+  void make_room(Extent extent);
+
+  TargetNeeds needs_;
+  std::int64_t most_texels_;
+  std::vector<std::unique_ptr<RenderTargets>> kept_;  // the most recently used last
+};
+
+// The form of placed images: buffers, or images made on them (cl_khr_image2d_from_buffer).
+struct PlacedForm {
+  Storage storage = Storage::kBuffer;
+  int row_texels = 1;  // rows start at multiples of so many texels
+};
+
+// Chooses images on a device that can make them and gains by them, else buffers.
+PlacedForm placed_form_for(const DeviceInfo& device);
+
+// The images of one slot, in its part of the memory that GL and OpenCL use together.
+class SlotImages {
+ public:
+  // In `pixels`, which outlives this object. Throws InteropError.
+  SlotImages(const Device& device, const std::vector<Plane>& planes, const FrameLayout& layout,
+             const PlacedForm& form, const PixelBuffer& pixels);
+
+  // Makes placed images of this size, at most the layout's; nothing where they have it. OpenCL uses them no more.
+  void resize(Extent render);
+
+  Extent extent() const { return views_.colour.extent; }
+  const SharedFrame& views() const { return views_; }      // for OpenCL
+  const SharedFrame& regions() const { return regions_; }  // regions of the pixel buffer, for copies
+
+ private:
+  struct Surface {  // for form.storage kImage
+    ClMem region;
+    ClMem image;
+  };
+
+  Device device_;
+  std::vector<Plane> planes_;
+  PlacedForm form_;
+  SharedFrame regions_;
+  SharedFrame views_;
+  std::vector<Surface> surfaces_;  // one for each plane
+};
 
 class HostCopy final : public Bridge {
  public:

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "fence.h"
 #include "quincunx_gl/handle.h"
-#include "stopwatch.h"
 
 namespace quincunx::gl {
 namespace {

@@ -69,7 +69,7 @@ class PixelBuffer {
   PixelBuffer& operator=(const PixelBuffer&) = delete;
 
   GLuint gl_buffer() const { return memory_->gl_buffer(); }  // 0: client memory
-  // What GL takes for byte `offset` while gl_buffer() is bound.
+  // Returns the pointer that GL takes for byte `offset` while gl_buffer() is bound.
   void* gl_pointer(std::size_t offset) const { return memory_->gl_pointer(offset_ + offset); }
   const std::uint8_t* bytes() const { return own_bytes(); }
   std::size_t size() const { return size_; }
@@ -96,6 +96,7 @@ class PixelBuffer {
   void enqueue_read();
 
  private:
+  void enqueue_write_rows(const ImageView& view, int width, std::size_t first, std::size_t rows);
   std::uint8_t* own_bytes() const { return memory_->bytes() + offset_; }
   void settle() noexcept;
 

@@ -3,7 +3,7 @@
 // share it, so that a resolve without history gives the same bits.
 #pragma once
 
-#include "sanitise.h"
+#include "bits.h"
 #include "texel.h"
 
 static inline float4 weigh_taps(float8 upper, float8 lower, AxisTap column, AxisTap row) {

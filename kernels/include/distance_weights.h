@@ -2,16 +2,16 @@
 // Weights of the samples of two frames by their distance, for resolve_reprojected: eight output pixels at a time.
 #pragma once
 
-#include "multiply_add.h"
+#include "arithmetic.h"
+#include "bits.h"
 #include "resolve_params.h"
-#include "sanitise.h"
 
 // Reprojection of eight pixels: pixels of the previous frame, and the trust of what lies there.
 typedef struct PixelMotion {
   float8 x, y, trust;
 } PixelMotion;
 
-// Of the 2x2 samples of both frames: a sample's weight is the product of its column's and its row's. All eight of a
+// Weights of the 2x2 samples of both frames: a sample's is the product of its column's and its row's. All eight of a
 // pixel add up to 1.
 typedef struct Weights {
   float8 now_x0, now_x1, now_y0, now_y1;
@@ -75,7 +75,7 @@ static inline int8 bits_of(FourPairs samples) {
   return as_int8(samples.now0) | as_int8(samples.now1) | as_int8(samples.before0) | as_int8(samples.before1);
 }
 
-// Of each sample of a pair, in all its lanes: 1 / max(bright, largest of red, green and blue).
+// Returns the weight of each sample of a pair, in all its lanes: 1 / max(bright, largest of red, green and blue).
 static inline float8 brightness_weight(float8 pair, float bright) {
   return 1.0f / max(max(max(pair.s01204564, pair.s12015645), pair.s20126456), (float8)(bright));
 }

@@ -21,14 +21,14 @@ typedef struct TexelLayout {
 } TexelLayout;
 QUINCUNX_CHECK_SIZE(TexelLayout, 8);
 
-// What one output column (or row) reads of its axis. The two taps base and base + 1 lie inside the viewport: what a
-// clamp at the edge would do is folded into the weights. A viewport of one texel has base 0 and weights 1, 0, and its
-// second tap must not be read.
+// Taps of one output column (or row) on its axis. The two taps base and base + 1 lie inside the viewport: what a clamp
+// at the edge would do is folded into the weights. A viewport of one texel has base 0 and weights 1, 0, and its second
+// tap must not be read.
 typedef struct AxisTap {
   int base;
   int nearest;    // the texel whose sample lies nearest to the pixel centre; of two equally near the upper/left one
-  float weight0;  // of base; weight0 + weight1 == 1 exactly
-  float weight1;  // of base + 1
+  float weight0;  // weight of base; weight0 + weight1 == 1 exactly
+  float weight1;  // weight of base + 1
 } AxisTap;
 QUINCUNX_CHECK_SIZE(AxisTap, 16);
 

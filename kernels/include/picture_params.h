@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Structs that host and the kernels that work on a finished picture share, as in params.h.
+// Structs that host and the kernels before and after a resolve share, as in params.h: those of a finished picture, of
+// measure_content and of overlay_particles.
 #pragma once
 
 #include "params.h"
@@ -30,11 +31,11 @@ QUINCUNX_CHECK_SIZE(FocusRectangle, 20);
 enum { kMostFocusRectangles = 4 };
 
 typedef struct FocusParams {
-  int left, top;         // of the part that is laid over, in pixels of the region
-  int width, height;     // of that part
-  TexelLayout focus;     // of the region
-  TexelLayout mask;      // of the region
-  TexelLayout output;    // of the picture, from the region's first pixel on
+  int left, top;         // corner of the part that is laid over, in pixels of the region
+  int width, height;     // size of that part
+  TexelLayout focus;     // layout of the region
+  TexelLayout mask;      // layout of its mask
+  TexelLayout output;    // layout of the picture, from the region's first pixel on
   int columns_per_item;  // pixels that a work-item makes: a multiple of kBlock
   int rectangle_count;   // at least 1
   FocusRectangle rectangles[kMostFocusRectangles];
@@ -47,7 +48,7 @@ typedef struct CrossFadeParams {
   TexelLayout other;
   TexelLayout output;
   int columns_per_item;
-  float weight;  // of the picture, in [0, 1]
+  float weight;  // the picture's, in [0, 1]
 } CrossFadeParams;
 QUINCUNX_CHECK_SIZE(CrossFadeParams, 32);
 
@@ -71,6 +72,54 @@ typedef struct ClearParams {
   float value[4];    // the same for an image
 } ClearParams;
 QUINCUNX_CHECK_SIZE(ClearParams, 52);
+
+// ---- measure_content.
+// A tile of the picture is about kContentTile^2 output pixels, of which kContentSamples^2 are asked what they show.
+enum { kContentTile = 32, kContentSamples = 8 };
+
+// Numbers of samples, over the whole picture; `speed` in 1/16 output pixels, summed over the moving ones.
+typedef struct ContentSums {
+  unsigned moving;
+  unsigned speed;
+  unsigned apart;
+  unsigned thin;
+  unsigned light;
+  unsigned zoom;
+} ContentSums;
+QUINCUNX_CHECK_SIZE(ContentSums, 24);
+
+typedef struct ContentParams {
+  int width;  // the viewport, in texels
+  int height;
+  int tiles_x;
+  int tiles_y;
+  TexelLayout velocity;
+  TexelLayout depth;
+  TexelLayout reactive;
+  int reach_x;  // texels to either side of what is thin
+  int reach_y;
+  float pixels_x;  // output pixels in a unit of velocity
+  float pixels_y;
+  float step_x;  // output pixels between two samples
+  float step_y;
+} ContentParams;
+QUINCUNX_CHECK_SIZE(ContentParams, 64);
+
+// ---- overlay_particles.
+// Runs of this many neighbouring pixels of a row are copied at once where no particle is.
+enum { kParticleBlock = 8 };
+
+typedef struct OverlayParams {
+  int width;  // the viewport of the frame
+  int height;
+  int particle_width;  // that of the particles
+  int particle_height;
+  int columns_per_item;  // a multiple of kParticleBlock
+  TexelLayout bare_colour, bare_reactive, depth;
+  TexelLayout particle_colour, particle_reactive, particle_depth;
+  TexelLayout colour, reactive;
+} OverlayParams;
+QUINCUNX_CHECK_SIZE(OverlayParams, 20 + 8 * 8);
 
 #ifdef __cplusplus
 }  // namespace quincunx

@@ -3,6 +3,7 @@
 // bit.
 #pragma once
 
+#include "bits.h"
 #include "texel.h"
 
 #if SOURCE_STORAGE == IMAGE
@@ -25,9 +26,9 @@
 // Finite values only; half saturates instead of becoming infinite, and so does an image, whose format is unknown here.
 static inline void store_colour(STORED_COLOUR texels, TexelLayout layout, int x, int y, float4 value) {
 #if SOURCE_STORAGE == IMAGE
-  write_imagef(texels, (int2)(x, y), clamp(value, -INFINITY_STAND_IN, INFINITY_STAND_IN));
+  write_imagef(texels, (int2)(x, y), clamp(value, -FINITE_HALF_MAX, FINITE_HALF_MAX));
 #elif SOURCE_FORMAT == HALF
-  vstore_half4(clamp(value, -INFINITY_STAND_IN, INFINITY_STAND_IN), texel_index(layout, x, y), texels);
+  vstore_half4(clamp(value, -FINITE_HALF_MAX, FINITE_HALF_MAX), texel_index(layout, x, y), texels);
 #else
   vstore4(value, texel_index(layout, x, y), texels);
 #endif

@@ -10,6 +10,14 @@
 // Reference: tests/reference/layer_records.cpp
 #include "layers/records.h"
 
+// Finds the cell of this frame's grid that holds a place in output pixels. Returns whether there is one.
+static inline bool find_cell(const LayerParams* params, float2 place, int* cell) {
+  const float2 at = floor(among_samples(params, place) + 0.5f);
+  if (!(at.x >= 0.0f && at.y >= 0.0f && at.x < (float)params->width && at.y < (float)params->height)) return false;
+  *cell = (int)at.y * params->width + (int)at.x;
+  return true;
+}
+
 __kernel void advect_records(const LayerParams params, __global const uint* previous_keys,
                              __global const LayerRecord* previous_records, __global uint* keys) {
   const int y = get_global_id(1);
@@ -20,10 +28,10 @@ __kernel void advect_records(const LayerParams params, __global const uint* prev
   for (int x = first; x < end; ++x) {
     const int i = y * params.previous_width + x;
     const uint key = previous_keys[i];
-    if (!is_carried_over(key, previous_records + i)) continue;
-    const LayerRecord record = advanced(previous_records[i]);
-    int2 cell;
-    if (!cell_at(&params, record.x, record.y, &cell)) continue;
-    atomic_max(keys + cell.y * params.width + cell.x, record_key(record_age(key) + 1, i));
+    LayerRecord record;
+    int cell;
+    if (!carry_over(key, previous_records + i, &record)) continue;
+    if (find_cell(&params, (float2)(record.x, record.y), &cell))
+      atomic_max(keys + cell, record_key(record_age(key) + 1, i));
   }
 }

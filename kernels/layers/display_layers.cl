@@ -4,7 +4,7 @@
 // known of the far layer the near one's colour stands in for it. Pixels of one layer stay what they are.
 //
 //   params        in      as in temporal_display
-//   now           in      this frame's viewport and places of its samples
+//   now           in      this frame's samples
 //   depth         in      R32F, viewport
 //   tiles         in      TileReprojection of each tile
 //   layers        in      LayerTile of each tile
@@ -17,7 +17,11 @@
 //          SOURCE_STORAGE, OUTPUT_FORMAT, HISTORY_FORMAT as of temporal_display
 // Reference: tests/reference/display_layers.cpp
 #define ALPHA 0
-#include "layers/display_rows.h"
+#include "bits.h"
+#include "layers/constants.h"
+#include "layers/past_layers.h"
+#include "temporal/constants.h"
+#include "temporal/display.h"
 
 #define PICTURE 1
 #define LAYERS 2
@@ -30,21 +34,18 @@
 #error "VIEW must be PICTURE, LAYERS, COVERAGE or NEAR"
 #endif
 
-// To each channel of four pixels whether there are two layers.
+// Tells each channel of four pixels whether there are two layers.
 static inline int16 two_layers(float4 confidence) {
   return to_four_masks(as_int4(confidence) >> 31);
 }
 
 #if VIEW == PICTURE
-#define UNKNOWN_FAR 0.15f     // confidence of the far layer below which the near one's colour stands in for it
-#define LEAST_COVERAGE 0.02f  // from which the near layer has a colour
-
-// Four pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether there
-// are two layers. Where there is one, `near` is 0.
+// Shows four pixels. `far` is the picture so far, `confidence` that of the far layer, as stored: its sign tells whether
+// there are two layers. Where there is one, `near` is 0.
 static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
   const float16 covered = to_four_texels(near.s37bf), coverage = clamp(covered, 0.0f, 1.0f);
-  const float16 unknown = to_four_texels(clamp(1.0f - fabs(confidence) / UNKNOWN_FAR, 0.0f, 1.0f));
-  const int16 is_stood_in = (unknown > 0.0f) & (coverage > LEAST_COVERAGE);
+  const float16 unknown = to_four_texels(clamp(1.0f - fabs(confidence) / CONFIDENCE_MIN, 0.0f, 1.0f));
+  const int16 is_stood_in = (unknown > 0.0f) & (coverage > SHOWN_COVERAGE_MIN);
   const float16 behind = select(far, far + (near / covered - far) * unknown, is_stood_in);
   const float16 composed = select(near, coverage, LAST_CHANNELS) + (1.0f - coverage) * behind;
   return select(far, composed, two_layers(confidence));
@@ -52,7 +53,7 @@ static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
 #else
 static inline float4 view_of(float4 near, float confidence) {
 #if VIEW == LAYERS
-  return (float4)(as_int(confidence) < 0 ? 1.0f : 0.0f, near.w, fabs(confidence) * (1.0f / MOST_CONFIDENCE), 1.0f);
+  return (float4)(as_int(confidence) < 0 ? 1.0f : 0.0f, near.w, fabs(confidence) * (1.0f / CONFIDENCE_MAX), 1.0f);
 #elif VIEW == COVERAGE
   return (float4)(near.w, near.w, near.w, 1.0f);
 #else
@@ -66,7 +67,7 @@ static inline float16 shown_of(float16 far, float16 near, float4 confidence) {
 }
 #endif
 
-// The first `count` of the four pixels from `index` on; the others are 0.
+// Loads the first `count` of the four pixels from `index` on; the others are 0.
 static inline float16 load_pixels(OUTPUT_TEXELS texels, int index, int count) {
 #if OUTPUT_FORMAT == HALF
   if (count >= 4) return load_half_texels4(texels, index);
@@ -80,10 +81,10 @@ static inline float16 load_pixels(OUTPUT_TEXELS texels, int index, int count) {
   return vload16(0, (const float*)texel);
 }
 
-// Finite values only; half saturates instead of becoming infinite.
+// Stores finite values; half saturates instead of becoming infinite.
 static inline void store_pixels(OUTPUT_TEXELS texels, int index, int count, float16 pixels) {
 #if OUTPUT_FORMAT == HALF
-  const float16 held = clamp(pixels, -65504.0f, 65504.0f);
+  const float16 held = clamp(pixels, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   if (count >= 4) {
     store_half_texels4(texels, index, held);
     return;
@@ -110,7 +111,31 @@ static inline void show_pixels(OUTPUT_TEXELS output, int index, int count, float
   store_pixels(output, index, count, shown_of(far, known, confidence));
 }
 
-__kernel void display_layers(const TemporalDisplayParams params, const LayerPastParams now, DEPTH_TEXELS depth,
+// Loads twelve texels of the near layer's picture, side by side.
+static inline TwelveTexels load_near_row12(const PastLayers* known, DEPTH_TEXELS depth, float between,
+                                           const RowWindows* windows, int row) {
+  const TwelveTexels texels = {load_near_row(known, depth, between, windows->first, row),
+                               load_near_row(known, depth, between, windows->second, row),
+                               load_near_row(known, depth, between, windows->third, row)};
+  return texels;
+}
+
+// Resamples the near layer at the pixels from (x, y) on; those of one layer may get anything.
+static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display,
+                                      int x, int y) {
+  if (!display.has_phase) {
+    const EightTexels own = {load_row(known->near, window_at(known, x, y, 1), 0),
+                             load_row(known->near, window_at(known, x + 4, y, 1), 0)};
+    return own;
+  }
+  const RowWindows windows = windows_from(known, x - display.step_x, y - display.step_y, 4, true);
+  return blend_rows(load_near_row12(known, depth, between, &windows, 0),
+                    load_near_row12(known, depth, between, &windows, 1),
+                    load_near_row12(known, depth, between, &windows, 2),
+                    load_near_row12(known, depth, between, &windows, 3), display.wx, display.wy);
+}
+
+__kernel void display_layers(const TemporalDisplayParams params, const HistorySamples now, DEPTH_TEXELS depth,
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
                              HISTORY_TEXELS history, HISTORY_TEXELS near_history, __global const half* states,
                              OUTPUT_TEXELS output) {
@@ -119,18 +144,8 @@ __kernel void display_layers(const TemporalDisplayParams params, const LayerPast
   if (first >= params.output_width || y >= params.output_height) return;
 
   const int end = min(first + params.columns_per_item, params.output_width);
-  const PastLayers known = {{history, params.output_width, params.output_height},
-                            {history, params.output_width, params.output_height},  // no alpha is read
-                            {near_history, params.output_width, params.output_height},
-                            states,
-                            tiles,
-                            layers,
-                            params.tiles_x,
-                            (params.output_height + kTemporalTile - 1) / kTemporalTile,
-                            now.width,
-                            now.height,
-                            (float2)(now.spacing_x, now.spacing_y),
-                            (float2)(now.start_x, now.start_y)};
+  const PastLayers known =
+      past_layers(params.output_width, params.output_height, now, history, 0, near_history, states, tiles, layers);
   for (int x = first; x < end; x += kTemporalTile) {
     const LayerTile layer = layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     if (VIEW == PICTURE && !layer.is_split) continue;
@@ -141,7 +156,7 @@ __kernel void display_layers(const TemporalDisplayParams params, const LayerPast
     if (VIEW == PICTURE && !any_split) continue;
     const Display display = display_of(layer.phase_x, layer.phase_y);
     EightTexels near = {(float16)(0.0f), (float16)(0.0f)};
-    if (any_split) near = show_near(&known, depth, now.depth0, layer.between, display, x, y);
+    if (any_split) near = sample_near(&known, depth, layer.between, display, x, y);
     const int index = texel_index(params.output, x, y);
     show_pixels(output, index, end - x, near.left, confidence.lo);
     show_pixels(output, index + 4, end - x - 4, near.right, confidence.hi);

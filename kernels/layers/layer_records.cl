@@ -18,11 +18,6 @@
 // Reference: tests/reference/layer_records.cpp
 #include "layers/records.h"
 
-#define SLANT 0.5f           // of the step of depth to a neighbour: a larger one on the other side is a slanted plane
-#define SAME_RECORD 2.25f    // samples, squared: how near a record of the previous frame must be to be the same thing's
-#define DRIFT_KEPT 0.7f      // of the change of motion: the part that goes on
-#define MOST_DRIFT 0.0625f   // of the motion, squared: more is no steady change
-
 enum { kTogether = 8 };  // samples that are looked at together
 
 // Whether a sample from (x, y) on may be near: its depth is less than a neighbour's by the gap between layers.
@@ -36,7 +31,7 @@ static inline bool may_be_near(const LayerParams* params, DEPTH_TEXELS depth, in
     least = min(min(least, middle), min(vload8(0, line - 1), vload8(0, line + 1)));
     if (row == y) own = middle;
   }
-  return any(!(own - least <= LAYER_GAP * own));
+  return any(!(own - least <= LAYER_GAP_MIN * own));
 #else
   return true;
 #endif
@@ -47,8 +42,8 @@ static inline bool is_near(const LayerParams* params, VELOCITY_TEXELS velocity, 
   for (int row = -1; row <= 1; ++row) {
     for (int column = -1; column <= 1; ++column) {
       const float step = own.depth - depth_at(params, depth, x + column, y + row);
-      if (!(step > LAYER_GAP * own.depth)) continue;
-      if (depth_at(params, depth, x - column, y - row) - own.depth > SLANT * step) continue;
+      if (!(step > LAYER_GAP_MIN * own.depth)) continue;
+      if (depth_at(params, depth, x - column, y - row) - own.depth > SLANT_RISE_MAX * step) continue;
       const Surface other = surface_at(params, velocity, depth, x + column, y + row);
       if (other.is_known && move_apart(own.motion, other.motion)) return true;
     }
@@ -57,7 +52,7 @@ static inline bool is_near(const LayerParams* params, VELOCITY_TEXELS velocity, 
 }
 
 static inline bool is_thin(const LayerParams* params, DEPTH_TEXELS depth, float own, int x, int y) {
-  const float least = own * (1.0f - LAYER_GAP);
+  const float least = own * (1.0f - LAYER_GAP_MIN);
   for (int row = -1; row <= 1; row += 2) {
     for (int column = -1; column <= 1; column += 2) {
       if (depth_at(params, depth, x + column, y) > least && depth_at(params, depth, x, y + row) > least &&
@@ -68,23 +63,22 @@ static inline bool is_thin(const LayerParams* params, DEPTH_TEXELS depth, float 
   return true;
 }
 
-// What the motion of the same thing was in the previous frame; `otherwise` where it has left no record.
+// Returns the motion of the same thing in the previous frame, `otherwise` where it has left no record. It comes from
+// `place`.
 static inline float2 motion_before(const LayerParams* params, __global const uint* keys,
                                    __global const LayerRecord* records, float2 place, float depth, float2 otherwise) {
   const float2 spacing = (float2)(params->previous_spacing_x, params->previous_spacing_y);
-  const float2 start = (float2)(params->previous_start_x, params->previous_start_y);
-  const float2 at = clamp(floor((place - start) / spacing + 0.5f), -4.0f, 65536.0f);
-  float best = SAME_RECORD;
+  const CellRange around = previous_cells_around(params, place, 1);
+  float best = SAME_RECORD_DISTANCE_MAX * SAME_RECORD_DISTANCE_MAX;
   float2 motion = otherwise;
-  for (int row = (int)at.y - 1; row <= (int)at.y + 1; ++row) {
-    for (int column = (int)at.x - 1; column <= (int)at.x + 1; ++column) {
-      if (column < 0 || row < 0 || column >= params->previous_width || row >= params->previous_height) continue;
+  for (int row = around.first.y; row <= around.last.y; ++row) {
+    for (int column = around.first.x; column <= around.last.x; ++column) {
       const int i = row * params->previous_width + column;
       if (keys[i] == 0 || record_age(keys[i]) != 0) continue;
       const LayerRecord record = records[i];
       const float2 apart = ((float2)(record.x, record.y) - place) / spacing;
       const float distance = dot(apart, apart);
-      if (fabs(record.depth - depth) > LAYER_GAP * depth || !(distance < best)) continue;
+      if (!have_one_depth(depth, record.depth) || !(distance < best)) continue;
       best = distance;
       motion = (float2)(record.motion_x, record.motion_y);
     }
@@ -107,7 +101,7 @@ __kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, 
     if (!may_be_near(&params, depth, start, y)) continue;
     for (int x = start; x < stop; ++x) {
       const float edge = reprojection[4 * texel_index(params.reprojection, x, y) + 3];
-      if (!(fabs(edge) > LAYER_MOTION)) continue;  // a motion edge of this frame is no larger
+      if (!(fabs(edge) > LAYER_MOTION_MIN)) continue;  // a motion edge of this frame is no larger
       const Surface own = surface_at(&params, velocity, depth, x, y);
       if (!own.is_known || !(own.depth > 0.0f) || !is_near(&params, velocity, depth, own, x, y)) continue;
 
@@ -115,8 +109,8 @@ __kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, 
       const float2 place = place_of(&params, x, y);
       const float2 before =
           motion_before(&params, previous_keys, previous_records, place + own.motion, own.depth, own.motion);
-      float2 drift = DRIFT_KEPT * (own.motion - before);
-      if (dot(drift, drift) > MOST_DRIFT * dot(own.motion, own.motion)) drift = (float2)(0.0f);
+      float2 drift = DRIFT_SHARE * (own.motion - before);
+      if (dot(drift, drift) > DRIFT_MAX * DRIFT_MAX * dot(own.motion, own.motion)) drift = (float2)(0.0f);
       const LayerRecord record = {place.x, place.y, own.depth, own.motion.x, own.motion.y, drift.x, drift.y,
                                   is_thin(&params, depth, own.depth, x, y) ? 1 : 0};
       keys[i] = record_key(0, i);

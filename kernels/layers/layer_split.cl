@@ -19,14 +19,11 @@
 // Options: SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/layer_split.cpp
 #include "layers/records.h"
-#include "layers/split.h"
 
-#define RECORD_REACH 1.7f  // samples
-#define MIXED_TRUST 0.2f   // of history that holds both layers
-#define AGE_COST 0.4f      // samples, squared, for each frame of a record's age
-
-enum { kReach = 2, kWindow = 8 };  // cells around a sample; samples that are looked at together
-enum { kKnownReach = 2 };          // cells around the place that a record comes from
+enum {
+  kReach = 2,  // cells around a sample that may hold its record: that lies within half a sample of its cell's centre
+  kWindow = 8  // samples of a row that are looked at together
+};
 
 static inline LayerRecord record_of(uint key, int cell, __global const LayerRecord* previous_records,
                                     __global const LayerRecord* records) {
@@ -51,20 +48,20 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
   return any != 0;
 }
 
-// Of each of kWindow samples of a row the cell of its record; -1 if none is within reach.
+// The cell of the record of each of kWindow samples of a row; -1 if none is within reach.
 typedef struct NearestRecords {
   int cell[kWindow];
 } NearestRecords;
 
-// Where a cell's record lies, in samples: 0 at the first, 1 at the next. A new one is exactly at its cell's sample.
+// Returns where a cell's record lies, counted in samples. A new one is exactly at its cell's sample.
 static inline float2 record_position(const LayerParams* params, uint key, int column, int row,
                                      __global const LayerRecord* previous_records) {
   if (record_age(key) == 0) return (float2)((float)column, (float)row);
   const LayerRecord record = advanced(previous_records[record_index(key)]);
-  return (float2)((record.x - params->start_x) / params->spacing_x, (record.y - params->start_y) / params->spacing_y);
+  return among_samples(params, (float2)(record.x, record.y));
 }
 
-// The records nearest to the samples from (x, y) on, old ones as if they were farther; of two alike the first.
+// Finds the records nearest to the samples from (x, y) on, old ones as if they were farther; of two alike the first.
 static inline NearestRecords find_records(const LayerParams* params, __global const uint* keys,
                                           __global const LayerRecord* previous_records, int x, int y) {
   const float8 sample_x = convert_float8((int8)(x) + (int8)(0, 1, 2, 3, 4, 5, 6, 7));
@@ -80,8 +77,8 @@ static inline NearestRecords find_records(const LayerParams* params, __global co
       const float8 apart_x = position.x - sample_x;
       const float apart_y = position.y - sample_y;
       const float8 distance = apart_x * apart_x + apart_y * apart_y;
-      const float8 cost = distance + AGE_COST * (float)record_age(key);
-      const int8 better = (distance <= RECORD_REACH * RECORD_REACH) & (cost < best);
+      const float8 cost = distance + RECORD_AGE_COST * (float)record_age(key);
+      const int8 better = (distance <= RECORD_DISTANCE_MAX * RECORD_DISTANCE_MAX) & (cost < best);
       best = select(best, cost, better);
       cells = select(cells, (int8)(cell), better);
     }
@@ -91,11 +88,11 @@ static inline NearestRecords find_records(const LayerParams* params, __global co
   return nearest;
 }
 
-// The closest of the 3x3 samples around (x, y) that lies behind `near_depth`, the first of two alike; false if there is
-// none.
+// Finds the closest of the 3x3 samples around (x, y) that lies behind `near_depth`, the first of two alike. Returns
+// whether there is one.
 static inline bool find_behind(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
                                float near_depth, int x, int y, Surface* found) {
-  const float most = near_depth * (1.0f - LAYER_GAP);
+  const float most = near_depth * (1.0f - LAYER_GAP_MIN);
   int best = 3;
   for (int row = -1; row <= 1; ++row) {
     for (int column = -1; column <= 1; ++column) {
@@ -110,13 +107,13 @@ static inline bool find_behind(const LayerParams* params, VELOCITY_TEXELS veloci
   return best < 3;
 }
 
-// The motion of the far layer at a sample, as Reprojection has it: its own, or that of what is behind it.
+// Returns the motion of the far layer at a sample, as Reprojection has it: its own, or that of the surface behind it.
 static inline float2 far_motion_at(const LayerParams* params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
                                    LayerSplit split, Surface behind, int x, int y) {
   const Surface own = surface_at(params, velocity, depth, x, y);
   const bool is_far = own.is_known && own.depth < between_of(split);
   const float2 motion = (is_far ? own.motion : behind.motion) * (float2)(params->to_previous_x, params->to_previous_y);
-  return clamp(motion, -FARTHEST_MOTION, FARTHEST_MOTION);
+  return clamp(motion, -FINITE_HALF_MAX, FINITE_HALF_MAX);
 }
 
 static inline void mark_tile(const LayerParams* params, __global int* marks, int x, int y) {
@@ -129,12 +126,9 @@ static inline void mark_tile(const LayerParams* params, __global int* marks, int
 // Whether the previous frame has a record around the place that `record` comes from.
 static inline bool was_known(const LayerParams* params, __global const uint* previous_keys, LayerRecord record) {
   const float2 place = (float2)(record.x + record.motion_x, record.y + record.motion_y);
-  const float2 start = (float2)(params->previous_start_x, params->previous_start_y);
-  const float2 spacing = (float2)(params->previous_spacing_x, params->previous_spacing_y);
-  const int2 at = convert_int2(clamp(floor((place - start) / spacing + 0.5f), -4.0f, 65536.0f));
-  for (int row = max(at.y - kKnownReach, 0); row <= min(at.y + kKnownReach, params->previous_height - 1); ++row) {
-    for (int column = max(at.x - kKnownReach, 0); column <= min(at.x + kKnownReach, params->previous_width - 1);
-         ++column) {
+  const CellRange around = previous_cells_around(params, place, KNOWN_RECORD_CELLS);
+  for (int row = around.first.y; row <= around.last.y; ++row) {
+    for (int column = around.first.x; column <= around.last.x; ++column) {
       if (previous_keys[row * params->previous_width + column] != 0) return true;
     }
   }
@@ -172,7 +166,7 @@ __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DE
           vstore4((float4)(far_motion, open_trust[i], 0.0f), texel_index(params.reprojection, x, y), reprojection);
           mark_tile(&params, marks, x, y);
           if (record_age(keys[cell]) == 0 && !was_known(&params, previous_keys, record))
-            open_trust[i] = min(open_trust[i], MIXED_TRUST);
+            open_trust[i] = min(open_trust[i], MIXED_TRUST_MAX);
         }
       }
       splits[i] = split;

@@ -6,7 +6,7 @@
 //   that texel's layers.
 //
 //   params             in   extents, places
-//   before             in   where the samples of the history's frame lie, and the layout of its depth
+//   before             in   the samples of the history's frame
 //   positions          in   as in resize_history
 //   depth              in   R32F, of the history's frame
 //   previous_tiles     in   TileReprojection of each tile of the history
@@ -20,10 +20,12 @@
 // Options: SOURCE_STORAGE, HISTORY_FORMAT as of resolve_layers
 // Reference: tests/reference/resize_history.cpp
 #define ALPHA 0
-#include "layers/display_rows.h"
+#include "arithmetic.h"
+#include "layers/past_layers.h"
+#include "temporal/constants.h"
 #include "temporal/resized_pixels.h"
 
-// What the texels nearest to eight pixels are.
+// The states of the texels nearest to eight pixels.
 typedef struct NearestTexels {
   float far_depth[8], near_depth[8], near_confidence[8];
   bool is_split[8];
@@ -31,40 +33,40 @@ typedef struct NearestTexels {
 
 // Sets the pixels' phases to those of the near layer.
 static inline NearestTexels look_at_nearest(const ResizeParams* params, const PastLayers* past, DEPTH_TEXELS depth,
-                                            TexelLayout layout, ResizedPixels* pixels) {
+                                            ResizedPixels* pixels) {
   NearestTexels nearest;
   int texel[8];
   float phase_x[8], phase_y[8];
   vstore8(pixels->x, 0, texel);
   for (int i = 0; i < 8; ++i) {
-    const LayerState state = state_at(past, depth, layout, texel[i], pixels->y);
-    __global const LayerTile* tile = past->layer_tiles + previous_tile(params, texel[i], pixels->y);
+    const LayerState state = state_at(past, depth, texel[i], pixels->y);
+    const float2 phase = phase_of(past, previous_tile(params, texel[i], pixels->y), kNearLayer);
     nearest.far_depth[i] = state.far_depth;
     nearest.near_depth[i] = state.near_depth;
     nearest.near_confidence[i] = min(state.near_confidence * params->share, params->most);
     nearest.is_split[i] = as_int(load_confidence(past->far, pixels->y * past->far.width + texel[i])) < 0;
-    phase_x[i] = tile->phase_x;
-    phase_y[i] = tile->phase_y;
+    phase_x[i] = phase.x;
+    phase_y[i] = phase.y;
   }
   pixels->phase_x = vload8(0, phase_x);
   pixels->phase_y = vload8(0, phase_y);
   return nearest;
 }
 
-// The near layer at one of a pixel's places, among the 4x4 texels from (x, y) on.
-static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout, float between, int x,
-                             int y, float4 wx, float4 wy) {
+// Resamples the near layer at one of a pixel's places, among the 4x4 texels from (x, y) on.
+static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, float between, int x, int y, float4 wx,
+                             float4 wy) {
   const TexelWindow window = window_at(past, x, y, 4);
-  const Neighbourhood around = {near_of_row(past, depth, layout, between, window, 0),
-                                near_of_row(past, depth, layout, between, window, 1),
-                                near_of_row(past, depth, layout, between, window, 2),
-                                near_of_row(past, depth, layout, between, window, 3)};
+  const Neighbourhood around = {load_near_row(past, depth, between, window, 0),
+                                load_near_row(past, depth, between, window, 1),
+                                load_near_row(past, depth, between, window, 2),
+                                load_near_row(past, depth, between, window, 3)};
   return sample_neighbourhood(around, wx, wy);
 }
 
 // Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
-static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout,
-                            const NearestTexels* nearest, SourcePlaces from, int count, float part, float4* sums) {
+static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const NearestTexels* nearest,
+                            SourcePlaces from, int count, float part, float4* sums) {
   const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
   const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
   const float4 x_weights[8] = {wx.p0, wx.p1, wx.p2, wx.p3, wx.p4, wx.p5, wx.p6, wx.p7};
@@ -75,11 +77,11 @@ static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, TexelLay
   for (int i = 0; i < count; ++i) {
     if (!nearest->is_split[i]) continue;
     const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
-    sums[i] += near_at(past, depth, layout, between, x[i], y[i], x_weights[i], y_weights[i]) * part;
+    sums[i] += near_at(past, depth, between, x[i], y[i], x_weights[i], y_weights[i]) * part;
   }
 }
 
-__kernel void resize_layers(const ResizeParams params, const ResizeSamples before, __global const int* positions,
+__kernel void resize_layers(const ResizeParams params, const HistorySamples before, __global const int* positions,
                             DEPTH_TEXELS depth, __global const TileReprojection* previous_tiles,
                             __global const LayerTile* previous_layers, HISTORY_TEXELS history,
                             HISTORY_TEXELS near_history, __global const half* states, __global const LayerTile* layers,
@@ -91,23 +93,13 @@ __kernel void resize_layers(const ResizeParams params, const ResizeSamples befor
   const int end = min(first + params.columns_per_item, params.width);
   const Positions row = row_among_texels(&params, positions, y);
   const int places = params.places_x * params.places_y;
-  const PastLayers past = {{history, params.previous_width, params.previous_height},
-                           {history, params.previous_width, params.previous_height},  // no alpha is read
-                           {near_history, params.previous_width, params.previous_height},
-                           states,
-                           previous_tiles,
-                           previous_layers,
-                           params.previous_tiles_x,
-                           params.previous_tiles_y,
-                           before.width,
-                           before.height,
-                           (float2)(before.spacing_x, before.spacing_y),
-                           (float2)(before.start_x, before.start_y)};
+  const PastLayers past = past_layers(params.previous_width, params.previous_height, before, history, 0, near_history,
+                                      states, previous_tiles, previous_layers);
   for (int x = first; x < end; x += kTemporalTile) {
     if (!layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile].is_layered) continue;
     const int count = min(end - x, (int)kTemporalTile);
     ResizedPixels pixels = pixels_among_texels(&params, positions, x, row);
-    const NearestTexels nearest = look_at_nearest(&params, &past, depth, before.depth, &pixels);
+    const NearestTexels nearest = look_at_nearest(&params, &past, depth, &pixels);
     store_states(resized_states, y * params.width + x, count, vload8(0, nearest.far_depth),
                  vload8(0, nearest.near_depth), vload8(0, nearest.near_confidence));
     float4 sums[8];
@@ -115,7 +107,7 @@ __kernel void resize_layers(const ResizeParams params, const ResizeSamples befor
     for (int place = 0; place < places; ++place) {
       const SourcePlaces from =
           places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);
-      add_near(&past, depth, before.depth, &nearest, from, count, 1.0f / (float)places, sums);
+      add_near(&past, depth, &nearest, from, count, 1.0f / (float)places, sums);
     }
     for (int i = 0; i < count; ++i) {
       if (nearest.is_split[i]) store_history(resized_near, y * params.width + x + i, sums[i]);

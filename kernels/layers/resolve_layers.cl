@@ -6,7 +6,8 @@
 //   The near layer: follows the near surface; a sample of the far one counts as one of no colour and no coverage.
 //
 //   params             in   as in resolve_temporal
-//   past               in   of the previous frame: viewport, places of its samples
+//   before             in   the previous frame's samples
+//   depth_layout       in   of this frame's depth
 //   positions          in   as in resolve_temporal
 //   colour             in   RGBA16F or RGBA32F, viewport, linear, premultiplied
 //   reprojection       in   Reprojection of each sample, of split ones the far layer's
@@ -37,39 +38,25 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
-#include "layers/far_layer.h"
-#include "layers/near_layer.h"
-#include "temporal/alpha.h"
-#include "temporal/relight.h"
-#include "texel.h"
+#include "layers/update_layers.h"
 
-__kernel void resolve_layers(const TemporalParams params, const LayerPastParams before, __global const int* positions,
-                             COLOUR_TEXELS colour, __global const float* reprojection, DEPTH_TEXELS depth,
-                             DEPTH_TEXELS depth1, __global const float* open_trust, __global const LayerSplit* splits,
-                             HISTORY_TEXELS history, HISTORY_TEXELS alpha, HISTORY_TEXELS near_history,
-                             __global const half* states, __global const TileReprojection* previous_tiles,
-                             __global const LayerTile* previous_layers, __global const TileReprojection* tiles,
-                             __global const LayerTile* layers, __global const TileLight* light, STORED_HISTORY updated,
-                             STORED_HISTORY updated_alpha, STORED_HISTORY updated_near, __global half* updated_states,
-                             __global uint* non_finite) {
+__kernel void resolve_layers(const TemporalParams params, const HistorySamples before, const TexelLayout depth_layout,
+                             __global const int* positions, COLOUR_TEXELS colour, __global const float* reprojection,
+                             DEPTH_TEXELS depth, DEPTH_TEXELS depth1, __global const float* open_trust,
+                             __global const LayerSplit* splits, HISTORY_TEXELS history, HISTORY_TEXELS alpha,
+                             HISTORY_TEXELS near_history, __global const half* states,
+                             __global const TileReprojection* previous_tiles, __global const LayerTile* previous_layers,
+                             __global const TileReprojection* tiles, __global const LayerTile* layers,
+                             __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
+                             STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.output_width || y >= params.output_height) return;
 
   const int end = min(first + params.columns_per_item, params.output_width);
   const SourceFrame frame = params.frame0;
-  const PastLayers past = {{history, params.output_width, params.output_height},
-                           {alpha, params.output_width, params.output_height},
-                           {near_history, params.output_width, params.output_height},
-                           states,
-                           previous_tiles,
-                           previous_layers,
-                           params.tiles_x,
-                           params.tiles_y,
-                           before.width,
-                           before.height,
-                           (float2)(before.spacing_x, before.spacing_y),
-                           (float2)(before.start_x, before.start_y)};
+  const PastLayers past = past_layers(params.output_width, params.output_height, before, history, alpha, near_history,
+                                      states, previous_tiles, previous_layers);
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
   const Positions row = row_position(&params, positions, y);
   uint met_count = 0;
@@ -81,11 +68,10 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
 
     // The far layers, or the only ones.
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
-    const LayeredPixels pixels = find_layers(depth, before.depth0, &params, splits, open_trust, &nearest);
+    const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
     EightReprojections motion = load_reprojections(&params, reprojection, &nearest);
     float8 known_alpha;
-    const FetchedHistory fetched =
-        fetch_far(&pixels, &past, depth1, before.depth1, tile, x, y, &motion, &known_alpha);
+    const FetchedHistory fetched = fetch_far(&pixels, &past, depth1, tile, x, y, &motion, &known_alpha);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const EdgeLight left = light_at_edge(light, &params, x, y);
     const EdgeLight right = light_at_edge(light, &params, x + kTemporalTile, y);
@@ -98,8 +84,8 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
       taken = select(taken, (float8)(0.0f), are_held_back(known, evidence.confidence, samples));
     float8 inertia = (float8)(0.0f);
     if (needs_correction(&evidence))
-      inertia = correct_layers(&pixels, colour, depth, before.depth0, &frame, &sample_motion, &nearest, &known,
-                               &known_alpha, &evidence);
+      inertia = correct_far(&pixels, colour, depth, depth_layout, &frame, &sample_motion, &nearest, &known,
+                            &known_alpha, &evidence);
     if (layer.is_split) tile.is_rigid = 0;  // it does not stand still as a whole
     float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * taken;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
@@ -123,8 +109,8 @@ __kernel void resolve_layers(const TemporalParams params, const LayerPastParams 
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
     const float cut = light[tile_index].new_cut;
-    NearLayers near = fetch_near(&pixels, &past, depth1, before.depth1, layer, x, y, left, right, cut);
-    near = update_near(near, &pixels, colour, depth, before.depth0, &params, &nearest_near);
+    KnownLayers near = fetch_near(&pixels, &past, depth1, layer, x, y, left, right, cut);
+    near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
     const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
     store_states(updated_states, index, end - x, select(pixels.depth, pixels.far_depth, pixels.is_split),

@@ -10,30 +10,24 @@
 //   records           in      LayerRecord of each of its cells that has one
 //   previous_records  in/out  LayerRecord of each cell of the previous grid that has one
 // Options: none
-// Reference: tests/reference/turn_records.cpp
+// Reference: tests/reference/layer_records.cpp
 #include "layers/records.h"
 
-#define STEADY 0.25f  // pixels a frame, and part of the new motion: less is no sudden change
-
-enum { kTurnReach = 3 };  // cells around a record
-
-// The cell of the new record of the depth of `record` that is nearest to it, the first of two alike; -1 if there is
-// none.
+// Finds the new record of the depth of `record` that is nearest to it, the first of two alike. Returns its cell; -1 if
+// there is none.
 static inline int find_new(const LayerParams* params, __global const uint* keys, __global const LayerRecord* records,
                            LayerRecord record) {
-  const float2 at = clamp((float2)((record.x - params->start_x) / params->spacing_x,
-                                   (record.y - params->start_y) / params->spacing_y), -8.0f, 65536.0f);
-  const int2 middle = convert_int2(floor(at + 0.5f));
+  const float2 at = among_samples(params, (float2)(record.x, record.y));
+  const CellRange around = cells_around(at, TURNED_RECORD_CELLS, (int2)(params->width, params->height));
   float best = FLT_MAX;
   int found = -1;
-  for (int row = max(middle.y - kTurnReach, 0); row <= min(middle.y + kTurnReach, params->height - 1); ++row) {
-    for (int column = max(middle.x - kTurnReach, 0); column <= min(middle.x + kTurnReach, params->width - 1);
-         ++column) {
+  for (int row = around.first.y; row <= around.last.y; ++row) {
+    for (int column = around.first.x; column <= around.last.x; ++column) {
       const int cell = row * params->width + column;
       if (keys[cell] == 0) continue;
       const float2 apart = (float2)((float)column, (float)row) - at;
       const float distance = dot(apart, apart);
-      if (!(distance < best) || fabs(records[cell].depth - record.depth) > LAYER_GAP * record.depth) continue;
+      if (!(distance < best) || !have_one_depth(record.depth, records[cell].depth)) continue;
       best = distance;
       found = cell;
     }
@@ -44,8 +38,8 @@ static inline int find_new(const LayerParams* params, __global const uint* keys,
 static inline bool moves_otherwise(LayerRecord record, LayerRecord now) {
   const float2 motion = (float2)(now.motion_x, now.motion_y);
   const float2 change = motion - (float2)(record.motion_x, record.motion_y);
-  const float most = STEADY + STEADY * length(motion);
-  return dot(change, change) > most * most;
+  const float steady = SUDDEN_MOTION_MIN + SUDDEN_MOTION_SHARE * length(motion);
+  return dot(change, change) > steady * steady;
 }
 
 __kernel void turn_records(const LayerParams params, __global const uint* previous_keys, __global const uint* keys,
@@ -58,8 +52,8 @@ __kernel void turn_records(const LayerParams params, __global const uint* previo
   for (int x = first; x < end; ++x) {
     const int i = y * params.previous_width + x;
     const uint key = previous_keys[i];
-    if (!is_carried_over(key, previous_records + i)) continue;
-    const LayerRecord record = advanced(previous_records[i]);
+    LayerRecord record;
+    if (!carry_over(key, previous_records + i, &record)) continue;
     const int cell = find_new(&params, keys, records, record);
     if (cell < 0 || !moves_otherwise(record, records[cell])) continue;
     if (record_age(key) != 0) {

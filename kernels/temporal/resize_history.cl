@@ -2,7 +2,7 @@
 // resize_history: the history in the size of another output, so that it goes on where the output's resolution changes.
 //   A pixel is the mean of the history at its places, by the cubic of resolve_temporal. On an axis of at most 1.5
 //   texels a pixel there is one place, the pixel's centre; else there are as many as texels, rounded up, 4 at most.
-//   What a texel holds is its picture at its centre + its tile's phase; here phases end.
+//   A texel holds its picture at its centre + its tile's phase; here phases end.
 //   Confidence is that of the texel nearest to the pixel's centre, with its sign, times params.share: a texel that
 //   becomes several pixels has no more samples than before. At most params.most is left: 8, as of all history that was
 //   resampled, or 1 where the output grows, so that the detail that history cannot have soon replaces its blur.
@@ -24,7 +24,8 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
-#include "temporal/alpha.h"
+#include "arithmetic.h"
+#include "temporal/fetch_history.h"
 #include "temporal/resized_pixels.h"
 
 // The pixels with the phases of the texels there.
@@ -44,7 +45,7 @@ static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __glo
   return pixels;
 }
 
-// Of the texels nearest to the pixels' centres, less what resizing takes, with their signs.
+// Returns the confidence of the texels nearest to the pixels' centres, less what resizing takes, with their signs.
 static inline float8 confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
   float known[8];
   int texel[8];

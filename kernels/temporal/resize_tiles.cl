@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // resize_tiles: what the history keeps of its tiles, in the tiles of an output of another size. resize_history has
-// ended phases, so no tile is rigid. What holds of any tile of the history under a tile holds of that: motion edges,
-// layers. Light is that of the tile under its centre.
+// ended phases, so no tile is rigid. A tile has whatever any tile of the history under it has: motion edges, layers.
+// Light is that of the tile under its centre.
 //
 //   params              in   extents
 //   previous_tiles      in   TileReprojection of each tile of the history
@@ -13,7 +13,7 @@
 // Options: LAYERS  0 (default) | 1
 // Reference: tests/reference/resize_history.cpp
 #include "layers/layer.h"
-#include "temporal/resize_params.h"
+#include "temporal/temporal_params.h"
 
 #ifndef LAYERS
 #define LAYERS 0

@@ -8,8 +8,7 @@
 //   s  the nearest sample; d its distance from the pixel's picture, output pixels
 //   w  its weight, (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2);
 //      r = 1.05, in still tiles down to .85 as W grows
-// In a tile that holds back (TileLight), startling samples of pixels whose history is known are replaced by what
-// history foretells of them.
+// In a tile that holds back (TileLight), outliers of pixels whose history is known do not count.
 // Only where something speaks against history is it brought into the range of the samples there: doing so everywhere
 // would cost more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.
 //
@@ -34,8 +33,11 @@
 //          TAPS      16 (default) | 4: history is resampled bilinearly, which is cheaper and blurs | 36: from 6x6
 //                    texels, which is dearer and sharper
 //          LAYERS    0 (default) | 1: leaves layered tiles to resolve_layers
-//          VIEW      PICTURE (default): temporal_display makes the picture | CONFIDENCE | REJECTION | PHASE, as in
-//                    temporal/debug_view.h
+//          VIEW      PICTURE (default): temporal_display makes the picture
+//                    CONFIDENCE  grey: confidence over the most there is
+//                    REJECTION   red: 1 - trust, green: rejection by a motion edge, blue: rejection by temporal_light
+//                    PHASE       red x, green y: where between texels history lies; blue: 1 in a rigid tile, whose
+//                                phase it is, 0 where history was resampled
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT (of a view) as in texel.h
 //          HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/resolve_temporal.cpp
@@ -46,18 +48,16 @@
 #error "ALPHA must be 0 or 1"
 #endif
 
+#include "bits.h"
 #include "layers/layer.h"
 #include "temporal/accumulate.h"
-#include "temporal/alpha.h"
-#include "temporal/correct_history.h"
-#include "temporal/debug_view.h"
+#include "temporal/constants.h"
 #include "temporal/fetch_history.h"
-#include "temporal/foretell.h"
+#include "temporal/frame_samples.h"
 #include "temporal/limit_confidence.h"
-#include "temporal/nearest_samples.h"
-#include "temporal/plain_tile.h"
-#include "temporal/relight.h"
 #include "temporal/reprojection.h"
+#include "temporal/reseed.h"
+#include "temporal/tile_path.h"
 #include "texel.h"
 
 #ifndef LAYERS
@@ -67,12 +67,81 @@
 #error "LAYERS must be 0 or 1"
 #endif
 
-// Plain tiles have neither alpha nor a view.
+#define PICTURE 1
+#define CONFIDENCE 2
+#define REJECTION 3
+#define PHASE 4
+#ifndef VIEW
+#define VIEW PICTURE
+#endif
+#if VIEW != PICTURE && VIEW != CONFIDENCE && VIEW != REJECTION && VIEW != PHASE
+#error "VIEW must be PICTURE, CONFIDENCE, REJECTION or PHASE"
+#endif
+
+#if VIEW != PICTURE
+// A view of eight pixels of a row.
+typedef struct View {
+  float8 red, green, blue;
+} View;
+
+#if VIEW == CONFIDENCE
+static inline View view_confidence(EightTexels updated) {
+  const float8 part = confidences(updated) * (1.0f / CONFIDENCE_MAX);
+  const View view = {part, part, part};
+  return view;
+}
+#elif VIEW == REJECTION
+static inline View view_rejection(const EightReprojections* motion, EdgeLight left, EdgeLight right) {
+  const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp(left.rejection, right.rejection)};
+  return view;
+}
+#else
+static inline View view_phase(TileReprojection tile, const FetchedHistory* history) {
+  View view;
+  view.red = tile.is_rigid ? (float8)(tile.phase_x + 0.5f) : history->fraction_x;
+  view.green = tile.is_rigid ? (float8)(tile.phase_y + 0.5f) : history->fraction_y;
+  view.blue = (float8)(tile.is_rigid ? 1.0f : 0.0f);
+  return view;
+}
+#endif
+
+// Stores the pixels from (x, y) on that lie before `end`.
+static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, View view) {
+  float red[8], green[8], blue[8];
+  vstore8(view.red, 0, red);
+  vstore8(view.green, 0, green);
+  vstore8(view.blue, 0, blue);
+  for (int i = 0; i < min(end - x, 8); ++i)
+    store_output(output, layout, x + i, y, (float4)(red[i], green[i], blue[i], 1.0f));
+}
+#endif
+
+// Whether a row may take the path kCopiedPlain, which knows neither alpha nor a view.
 #if ALPHA || VIEW != PICTURE
 #define MAY_BE_PLAIN false
 #else
 #define MAY_BE_PLAIN true
 #endif
+
+enum { kPlainAhead = 6 * kTemporalTile };  // texels to prefetch
+
+// Adds samples to eight pixels on the path kCopiedPlain, from (x, y) on. Returns false, and stores nothing, where too
+// little is known of one, or a sample is bright or not finite.
+static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS colour, HistoryLayer layer,
+                                     TileReprojection tile, const NearestSamples* nearest, STORED_HISTORY updated,
+                                     int x, int y) {
+  const int index = y * params->output_width + x;
+  const int from = index - tile.step_y * params->output_width - tile.step_x;
+  will_read_history(layer, from + kPlainAhead);
+  WILL_WRITE(updated + 4 * (index + kPlainAhead));
+  const FetchedHistory fetched = copy_history(layer, x - tile.step_x, y - tile.step_y);
+  const EightTexels samples = load_samples(colour, params->frame0.colour, nearest->x, nearest->y);
+  if (any_lane(fetched.confidence < CONFIDENCE_MIN) || may_be_bright(samples)) return false;
+  const float8 weight = distance_weights(params, nearest, reach_of(tile, fetched.confidence));
+  const EightTexels sum = accumulate(fetched.texels, fetched.confidence, (float8)(0.0f), samples, weight);
+  store_history8(updated, index, kTemporalTile, sum);
+  return true;
+}
 
 __kernel void resolve_temporal(const TemporalParams params, __global const int* positions, COLOUR_TEXELS colour,
                                __global const float* reprojection, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
@@ -106,26 +175,26 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 #endif
     const NearestSamples columns = find_nearest_columns(&params, positions, x, tile);
     const bool holds_back = light[tile_index].holds_back;
-    const bool plain = MAY_BE_PLAIN && even && !holds_back &&
-                       is_plain(previous_tiles, &params, tile, x, first_y, end_y - 1);
+    const TileRows rows =
+        tile_rows(previous_tiles, &params, tile, MAY_BE_PLAIN && even && !holds_back, x, first_y, end_y - 1);
     for (int y = first_y; y < end_y; ++y) {
       // Reproject.
       const NearestSamples nearest = in_row(&params, columns, row_position(&params, positions, y), tile);
-      if (plain && resolve_plain_pixels(&params, colour, reactive0, reactive1, layer, tile, &nearest, updated, x, y))
-        continue;
-      const bool copied = is_copied(previous_tiles, &params, tile, x, y);
-      const bool whole = is_taken_whole(&params, reactive0, reactive1, &nearest, tile, copied);
+      const TilePath path =
+          path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, x, y);
+      if (path == kCopiedPlain && resolve_plain_row(&params, colour, layer, tile, &nearest, updated, x, y)) continue;
+      const bool looks_up_motion = path == kResampled || path == kCopied;
       EightReprojections motion = no_motion();
-      if (!whole) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
+      if (looks_up_motion) motion = reproject_pixels(&params, reprojection, reactive0, reactive1, &nearest);
 
       // Fetch history, and limit its confidence.
-      const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, copied, &motion, x, y);
+      const FetchedHistory fetched = fetch_history(layer, previous_tiles, &params, tile, path, &motion, x, y);
       Evidence evidence = full_evidence(&fetched);
-      if (!whole) evidence = limit_confidence(&fetched, &motion);
+      if (looks_up_motion) evidence = limit_confidence(&fetched, &motion);
       float8 known_alpha = (float8)(1.0f);
 #if ALPHA
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-      known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, copied, &motion, x, y);
+      known_alpha = fetch_alpha(plane, previous_tiles, &params, tile, path, &motion, x, y);
 #endif
 
       // Relight.
@@ -134,15 +203,10 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       reject_by_light(&evidence, left, right);
       EightTexels known = relight(fetched.texels, left, right);
 
-      // Load the samples, and hold back startling ones.
+      // Load the samples, and find outliers to hold back.
       EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
       int8 held = (int8)(0);
       if (holds_back) held = are_held_back(known, evidence.confidence, samples);
-      if (any_lane(held)) {
-        const EightTexels foretold =
-            foretell_samples(layer, previous_tiles, &params, tile, copied, &motion, &nearest, x, y);
-        samples = with_foretold(samples, relight(foretold, left, right), known_alpha, held);
-      }
 
       // Rectify and reseed.
       float8 inertia = (float8)(0.0f);
@@ -152,6 +216,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 
       // Accumulate.
       float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence));
+      if (holds_back) weight = select(weight, (float8)(0.0f), held);
       if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
       const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 

@@ -14,34 +14,28 @@
 //          SMOOTH  1 (default) | 0
 //          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
-#include "temporal/display_place.h"
-#include "temporal/filtered_rows.h"
-#include "temporal/history_alpha.h"
+#include "bits.h"
+#include "temporal/constants.h"
+#include "temporal/display.h"
+#include "temporal/history.h"
 #include "temporal/history_sampling.h"
-#include "temporal/smooth.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
-#include "texels/stream.h"
+#include "texels/resolved.h"
 
 #ifndef ALPHA
 #define ALPHA 1
 #endif
-#ifndef SMOOTH
-#define SMOOTH 1
-#endif
 #if ALPHA < 0 || ALPHA > 1
 #error "ALPHA must be 0 or 1"
 #endif
-#if SMOOTH < 0 || SMOOTH > 1
-#error "SMOOTH must be 0 or 1"
-#endif
 
-// What history holds of eight pixels, and what is shown of it.
+// Eight pixels: as history holds them, and as they are shown.
 typedef struct Pixels {
   EightTexels own, shown;
 } Pixels;
 
-// Of the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
+// Returns the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
 static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, int x, int y) {
   float4 own[8], shown[8];
   for (int i = 0; i < 8; ++i) {
@@ -67,7 +61,7 @@ static inline bool lies_inside(HistoryLayer layer, const Display* display, int x
 // Whether any of eight pixels is.
 static inline bool is_smoothed(const TemporalDisplayParams* params, float8 confidence) {
 #if SMOOTH
-  return !params->first && any_lane(confidence < LITTLE_CONFIDENCE);
+  return !params->first && any_lane(confidence < SMOOTHED_CONFIDENCE_MAX);
 #else
   return false;
 #endif
@@ -87,7 +81,7 @@ static inline float alpha_around(HistoryLayer layer, AlphaPlane plane, int x, in
   return sum;
 }
 
-// What is shown of the alpha of the first `count` pixels from (x, y) on.
+// Finds the alpha that is shown of the first `count` pixels from (x, y) on.
 static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count,
                               bool smooth, float8 confidence, float* shown) {
   const SmoothParts parts = smooth_parts(confidence);

@@ -12,9 +12,9 @@
 //     by change  the tile's own samples agree that it is brighter or darker now, by more than its aliasing has shown in
 //                flicker and in the neighbours' error, as in the first frames of a moving highlight
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
-//              (temporal/startling.h): gain is 1 and rejection 0 then
-//   calm       a tile that stands still, around which no suspicion was confirmed lately: there rejection by error and
-//              by change wait for a second frame, because in a still picture each place of the jitter can look like a
+//              (outliers): gain is 1 and rejection 0 then
+//   confirmed  in a tile that stands still, around which no suspicion was confirmed lately, rejection by error and by
+//              change wait for a second frame, because in a still picture each place of the jitter can look like a
 //              change of its own
 //
 //   tiles_x, tiles_y  in   how many tiles there are
@@ -25,69 +25,101 @@
 //   light             out  TileLight of each tile
 // Options: none
 // Reference: tests/reference/temporal_light.cpp
-#include "temporal/light_change.h"
+#include "temporal/constants.h"
+#include "temporal/tile.h"
 
-// Thresholds. They were found by search on the development scenes; what a measurement showed is in docs/temporal.md.
-//
-// Rejection by error.
-#define ERROR_RATIO 1.6f          // of history's error to the neighbours', from which on it rejects
-#define ERROR_FLOOR 0.002f        // luma, of each sample: less is no error
-#define INCOHERENT 0.5f           // of the error: a larger part that is brightening may be a change of light
-// Rejection by cut. The ratio is 1.66 or more then. Textures finer than the samples may have as much as long as history
-// is new, and up to 1.44 later. So it is soft: what is rejected is new again.
-#define CUT_RATIO 1.25f           // of history's error to the neighbours', from which on it rejects
-#define CUT_RANGE 0.35f           // by how much more of the neighbours' error it rejects wholly
-#define CUT_FLOOR 0.03f           // of the light: less is no error
-#define CUT_MEMORY 0.9f           // from one frame to the next: where each seems another picture there is no cut
-// Rejection by change.
-#define SIGN_TEST 1.1f            // least majority, in squared standard deviations of a fair coin
-#define LEAST_CHANGE 0.15f        // of the tile's light
-#define NEIGHBOUR_SHARE 0.8f      // of the neighbours' error that is usual
-#define FLICKER_SHARE 12.0f       // of flicker that is usual: an aliased tile is more often near its mean than far
-#define CHANGE_FLOOR 0.01f        // luma: usual anyway
-#define CHANGE_RANGE 0.5f         // by how much more of what is usual it rejects wholly
-#define FLICKER_MEMORY 0.9f       // of flicker, from one frame to the next. Without flicker -.08 dB, still -.8
+// The evidence of 3x3 tiles.
+typedef struct EvidenceAround {
+  TileEvidence sum;
+  float change;  // sum of the magnitudes of the brightenings
+  float confirmation, recent_outliers;  // the most, in the previous frame
+  bool has_motion_edge;
+} EvidenceAround;
 
-// Calm tiles. Without them about twenty tiles of a still picture are rejected in each frame.
-#define CONFIRMING_COST 0.3f      // of a suspicion that two frames share
-#define SURE_ALONE 4.0f           // from which on a suspicion of one frame rejects
-#define UNREST_MEMORY 0.97f       // from one frame to the next
-#define CALM 0.3f                 // most unrest: 40 frames after the last confirmed suspicion
+static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
+                                          __global const TileLight* previous, int tiles_x, int tiles_y, int x, int y) {
+  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, false};
+  for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
+    for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
+      const int i = row * tiles_x + column;
+      const TileEvidence tile = evidence[i];
+      around.sum.brightening += tile.brightening;
+      around.sum.light += tile.light;
+      around.sum.history_error += tile.history_error;
+      around.sum.neighbour_error += tile.neighbour_error;
+      around.sum.count += tile.count;
+      around.sum.brighter += tile.brighter;
+      around.sum.outliers += tile.outliers;
+      around.change += fabs(tile.brightening);
+      around.confirmation = max(around.confirmation, previous[i].confirmation);
+      around.recent_outliers = max(around.recent_outliers, previous[i].recent_outliers);
+      around.has_motion_edge = around.has_motion_edge || tiles[i].has_motion_edge;
+    }
+  }
+  return around;
+}
 
-// Startling samples (temporal/startling.h).
-#define STARTLED_MEMORY 0.9f      // from one frame to the next
-#define FORGOTTEN 0.15f           // most: 18 frames after the last ones
+// A change of light in 3x3 tiles.
+typedef struct LightChange {
+  float relative, coherence;
+  float direction;  // 1: brighter, -1: darker
+  bool is_agreed;   // by the samples
+} LightChange;
 
-// How far the mean brightening alternates: the smaller of two frames' whose signs differ.
+static inline LightChange change_of(const EvidenceAround* around) {
+  const TileEvidence sum = around->sum;
+  LightChange change;
+  change.relative = sum.brightening / max(sum.light, LIGHT_SUM_MIN);
+  change.coherence = fabs(sum.brightening) / max(around->change, LIGHT_SUM_MIN);
+  change.direction = change.relative > 0.0f ? 1.0f : -1.0f;
+  change.is_agreed = sum.brighter * change.direction > RELIGHT_MAJORITY_MIN * sum.count;
+  return change;
+}
+
+// Returns whether light alone explains it in this frame.
+static inline bool is_change_of_light(const LightChange* change, const EvidenceAround* around) {
+  // The brightening that aliasing alone may give.
+  const float chance = around->sum.neighbour_error / sqrt(max(around->sum.count, 1.0f));
+  return !around->has_motion_edge && change->is_agreed && change->coherence > RELIGHT_COHERENCE_MIN &&
+         fabs(change->relative) > RELIGHT_CHANGE_MIN &&
+         fabs(around->sum.brightening) > RELIGHT_NOISE_RATIO_MIN * chance;
+}
+
+static inline bool is_relit(const TotalLight* total) {
+  const float whole = (float)total->brightening, change = (float)total->change, light = (float)total->light;
+  return fabs(whole) > WHOLE_COHERENCE_MIN * change && fabs(whole) > RELIGHT_CHANGE_MIN * light;
+}
+
+// Returns how far the mean brightening alternates: the smaller of two frames' whose signs differ.
 static inline float alternation(float now, float before) {
   return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
 static inline float suspicion_by_error(const TileEvidence* sum) {
-  const float allowed = ERROR_RATIO * sum->neighbour_error + ERROR_FLOOR * max(sum->count, 1.0f);
-  const bool incoherent = fabs(sum->brightening) < INCOHERENT * sum->history_error;
+  const float allowed = ERROR_RATIO_MIN * sum->neighbour_error + ERROR_FLOOR * max(sum->count, 1.0f);
+  const bool incoherent = fabs(sum->brightening) < ERROR_COHERENCE_MAX * sum->history_error;
   return incoherent ? max((sum->history_error - allowed) / allowed, 0.0f) : 0.0f;
 }
 
 static inline float rejection_by_cut(const TotalLight* total) {
   const float error = (float)total->history_error, usual = (float)total->neighbour_error;
-  if (!(error > CUT_FLOOR * (float)total->light)) return 0.0f;
-  return (error - CUT_RATIO * usual) / (CUT_RANGE * usual + 1.0f);
+  if (!(error > CUT_ERROR_MIN * (float)total->light)) return 0.0f;
+  return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
 
 static inline float suspicion_by_change(const TileEvidence* tile, float mean_brightening, float flicker,
                                         float neighbour_error) {
   // A test of signs, corrected as for few samples: three must all agree.
   const float majority = fabs(tile->brighter) - 1.0f;
-  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST * tile->count;
-  if (!is_agreed || fabs(tile->brightening) <= LEAST_CHANGE * tile->light) return 0.0f;
-  const float usual = NEIGHBOUR_SHARE * neighbour_error + FLICKER_SHARE * flicker + CHANGE_FLOOR;
+  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST_MIN * tile->count;
+  if (!is_agreed || fabs(tile->brightening) <= CHANGE_MIN * tile->light) return 0.0f;
+  const float usual = USUAL_NEIGHBOUR_ERROR * neighbour_error + USUAL_FLICKER * flicker + USUAL_CHANGE;
   return max((fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual), 0.0f);
 }
 
-// What is left of a suspicion in a calm tile. Positive if confirmed.
+// Returns what is left of a suspicion that waits for a second frame: positive if confirmed.
 static inline float confirm(float suspected, float before) {
-  return max(min(suspected, before) - CONFIRMING_COST, suspected - SURE_ALONE);
+  return max(min(suspected, before) - CONFIRMATION_COST, suspected - SINGLE_FRAME_REJECT_MIN);
 }
 
 // That of tile (x, y).
@@ -106,12 +138,12 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const bool changes = is_change_of_light(&change, &around);
   tile.persistence = PERSISTENCE_MEMORY * before.persistence +
                      (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
-  float gain = changes && tile.persistence * change.direction > PERSISTENT ? 1.0f + change.relative : 1.0f;
-  const bool is_widespread = (float)whole.changed > LEAST_SPREAD * (float)(tiles_x * tiles_y);
+  float gain = changes && tile.persistence * change.direction > PERSISTENCE_MIN ? 1.0f + change.relative : 1.0f;
+  const bool is_widespread = (float)whole.changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
   const bool relit = is_widespread && is_relit(&whole);
   if (relit && change.is_agreed && change.relative * (float)whole.brightening > 0.0f)
-    gain = gain_of_whole(&change, &around, &whole);
-  tile.gain = clamp(gain, 1.0f / MOST_GAIN, MOST_GAIN);
+    gain = 1.0f + (float)whole.brightening / (float)whole.light;  // surer than what one tile finds
+  tile.gain = clamp(gain, 1.0f / GAIN_MAX, GAIN_MAX);
 
   // Flicker.
   tile.mean_brightening = own.brightening / max(own.count, 1.0f);
@@ -129,21 +161,22 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
       before.suspected_change * tile.mean_brightening > 0.0f ? fabs(before.suspected_change) : 0.0f;
   const float sure_error = confirm(error, before.suspected_error);
   const float sure_change = confirm(changed, changed_before);
-  tile.unrest = max(sure_error, sure_change) > 0.0f ? 1.0f : UNREST_MEMORY * before.unrest;
+  tile.confirmation = max(sure_error, sure_change) > 0.0f ? 1.0f : CONFIRMATION_MEMORY * before.confirmation;
 
   // Rejection.
-  const bool calm = stands_still(tiles[i]) && around.unrest < CALM;
-  const float by_error = calm ? sure_error : error;
-  const float by_change = calm ? sure_change : changed;
+  const bool waits = stands_still(tiles[i]) && around.confirmation < STILL_TILE_CONFIRMATION_MAX;
+  const float by_error = waits ? sure_error : error;
+  const float by_change = waits ? sure_change : changed;
   const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
   tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
   const float cut = clamp(by_cut, 0.0f, 1.0f);
   tile.cut = max(cut, CUT_MEMORY * before.cut);
   tile.new_cut = max(cut - before.cut, 0.0f);
 
-  // Startling samples. Those of a picture that is another one, or in another light, are no faults.
-  tile.startled = around.sum.startling > 0.0f ? 1.0f : STARTLED_MEMORY * before.startled;
-  tile.holds_back = around.sum.startling > 0.0f && around.startled < FORGOTTEN && !relit && !(by_cut > 0.0f);
+  // Outliers. Those of a picture that is another one, or in another light, are no faults.
+  tile.recent_outliers = around.sum.outliers > 0.0f ? 1.0f : OUTLIER_MEMORY * before.recent_outliers;
+  tile.holds_back =
+      around.sum.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
   if (tile.holds_back) {
     tile.rejection = 0.0f;
     tile.gain = 1.0f;

@@ -5,8 +5,8 @@
 //   D_n, D_t  second derivatives of t across and along the edge that luma of tone has around the pixel
 //   K      how much of an edge it is, 0 to 1: the coherence of luma's gradients
 //   t <- clamp(t + a (t - mean) + K (b D_t + c D_n), range of the 3x3 pixels)
-//   a, b, c  by the pixel's confidence, and by whether it has two layers: temporal/refine_strengths.h. The less is
-//            known, the smoother along edges
+//   a, b, c  by the pixel's confidence, and by whether it has two layers (temporal/constants.h). The less is known,
+//            the smoother along edges
 //   A pixel of which no channel moves keeps its colour bit by bit.
 //
 //   params   in   extents, layouts
@@ -19,16 +19,117 @@
 // Beyond the picture its outermost pixels repeat.
 // Source: the structure tensor after Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987.
 // Reference: tests/reference/temporal_refine.cpp
-#include "temporal/refine_strengths.h"
-#include "temporal/tone_rows.h"
+#include "bits.h"
+#include "temporal/constants.h"
+#include "temporal/history.h"
+#include "temporal/temporal_params.h"
+#include "texel.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
 
-#define GRADIENT_FLOOR 1e-3f  // squared tone: much weaker gradients make no edge
+enum { kRowMargin = 4 };  // texels before the eight pixels of a row, and after them
 
-// Of eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
+// Sixteen texels of a row; the pixels are the middle eight.
+typedef struct ToneRow {
+  float16 red, green, blue, luma;
+} ToneRow;
+
+static inline float8 at_pixels(float16 row) {
+  return row.s456789ab;
+}
+
+static inline float8 on_the_left(float16 row) {
+  return row.s3456789a;
+}
+
+static inline float8 on_the_right(float16 row) {
+  return row.s56789abc;
+}
+
+// Each texel's left and right neighbour; the outermost texel stands in for what lies beyond.
+static inline float16 to_the_left(float16 row) {
+  return row.s00123456789abcde;
+}
+
+static inline float16 to_the_right(float16 row) {
+  return row.s123456789abcdeff;
+}
+
+// The four texels from (x, y) on, clamped to the edge.
+static inline float16 load_clamped_texels4(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
+  const int last = params->width - 1;
+  if (x >= 0 && x + 3 <= last) return load_resolved4(source, params->source, x, y);
+  return (float16)(load_resolved(source, params->source, clamp(x, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 1, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 2, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 3, 0, last), y));
+}
+
+// NaN becomes 0; the rest is held within the largest half.
+static inline float16 cleaned(float16 values) {
+  const int16 is_nan = (as_int16(values) & 0x7fffffff) > 0x7f800000;
+  const float16 known = as_float16(as_int16(values) & ~is_nan);
+  return min(max(known, -FINITE_HALF_MAX), FINITE_HALF_MAX);
+}
+
+// Sixteen texels as they were drawn, cleaned.
+typedef struct LightRow {
+  float16 red, green, blue;
+} LightRow;
+
+// Those around the pixels from (x, y) on; the row clamped to the edge, too.
+static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
+  const int row = clamp(y, 0, params->height - 1);
+  const float16 t0 = load_clamped_texels4(source, params, x - kRowMargin, row);
+  const float16 t1 = load_clamped_texels4(source, params, x, row);
+  const float16 t2 = load_clamped_texels4(source, params, x + 4, row);
+  const float16 t3 = load_clamped_texels4(source, params, x + 8, row);
+  const LightRow light = {cleaned((float16)(t0.s048c, t1.s048c, t2.s048c, t3.s048c)),
+                          cleaned((float16)(t0.s159d, t1.s159d, t2.s159d, t3.s159d)),
+                          cleaned((float16)(t0.s26ae, t1.s26ae, t2.s26ae, t3.s26ae))};
+  return light;
+}
+
+static inline ToneRow tone_of(LightRow light) {
+  const float16 scale = 1.0f / (1.0f + max(max(max(light.red, light.green), light.blue), 0.0f));
+  ToneRow tone = {light.red * scale, light.green * scale, light.blue * scale, (float16)(0.0f)};
+  tone.luma = 0.25f * (tone.red + tone.blue) + 0.5f * tone.green;
+  return tone;
+}
+
+// Found by least squares against truth, and by search, on the development scenes (docs/temporal.md).
+
+typedef struct EightStrengths {
+  float8 sharpening;  // factor of the difference from the mean
+  float8 along;       // factor of the second derivative along an edge
+  float8 across;      // factor of that across it
+} EightStrengths;
+
+// As history stores them. Beyond the row's end its last texel repeats.
+static inline float8 confidences_at(HistoryLayer layer, int x, int y) {
+  const int index = y * layer.width + x, last = (y + 1) * layer.width - 1;
+  if (index + 7 <= last) return confidences(load_history8(layer, index));
+  return (float8)(load_confidence(layer, index), load_confidence(layer, min(index + 1, last)),
+                  load_confidence(layer, min(index + 2, last)), load_confidence(layer, min(index + 3, last)),
+                  load_confidence(layer, min(index + 4, last)), load_confidence(layer, min(index + 5, last)),
+                  load_confidence(layer, min(index + 6, last)), load_confidence(layer, min(index + 7, last)));
+}
+
+// Returns the strengths for the pixels from (x, y) on.
+static inline EightStrengths strengths_at(HistoryLayer layer, int x, int y) {
+  const float8 stored = confidences_at(layer, x, y), known = fabs(stored), zero = (float8)(0.0f);
+  const int8 layered = as_int8(stored) >> 31;
+  const float8 sharpening = SHARPENING + SHARPENING_NEW / (known + SHARPENING_NEW_CONFIDENCE);
+  const float8 along = EDGE_SMOOTHING + EDGE_SMOOTHING_NEW / (known + EDGE_SMOOTHING_NEW_CONFIDENCE);
+  const EightStrengths strengths = {select(sharpening, zero, layered),
+                                    select(along, (float8)(EDGE_SMOOTHING_LAYERED), layered),
+                                    select(zero, (float8)(EDGE_SHARPENING_LAYERED), layered)};
+  return strengths;
+}
+
+// Edges at eight pixels: K cos 2a, K sin 2a and K, with a the direction across the edge.
 typedef struct EightEdges {
   float8 cosine, sine, coherence;
 } EightEdges;
@@ -43,7 +144,7 @@ static inline float16 slope_x(float16 luma) {
   return 0.5f * (to_the_right(luma) - to_the_left(luma));
 }
 
-// Of the five rows of luma around the pixels.
+// Returns the edges in the five rows of luma around the pixels.
 static inline EightEdges edges_of(const ToneRow* rows) {
   const float16 x0 = slope_x(rows[1].luma), x1 = slope_x(rows[2].luma), x2 = slope_x(rows[3].luma);
   const float16 y0 = 0.5f * (rows[2].luma - rows[0].luma), y1 = 0.5f * (rows[3].luma - rows[1].luma);
@@ -51,7 +152,7 @@ static inline EightEdges edges_of(const ToneRow* rows) {
   const float8 xx = around_pixels(x0 * x0, x1 * x1, x2 * x2);
   const float8 yy = around_pixels(y0 * y0, y1 * y1, y2 * y2);
   const float8 xy = around_pixels(x0 * y0, x1 * y1, x2 * y2);
-  const float8 scale = 1.0f / (xx + yy + GRADIENT_FLOOR);
+  const float8 scale = 1.0f / (xx + yy + EDGE_GRADIENT_FLOOR);
   const float8 cosine = (xx - yy) * scale, sine = 2.0f * xy * scale;
   const EightEdges edges = {cosine, sine, sqrt(cosine * cosine + sine * sine)};
   return edges;
@@ -78,7 +179,7 @@ static inline float8 refined(float16 above, float16 same, float16 below, EightEd
 
 // Light of eight values in tone space; of those that stay, as it was.
 static inline float8 light_of(float8 tone, float8 scale, float8 before, int8 stays) {
-  return select(min(max(tone * scale, -INFINITY_STAND_IN), INFINITY_STAND_IN), before, stays);
+  return select(min(max(tone * scale, -FINITE_HALF_MAX), FINITE_HALF_MAX), before, stays);
 }
 
 // The first `count` pixels of a row.
@@ -94,7 +195,7 @@ static inline void store_refined(OUTPUT_TEXELS output, RESOLVED_TEXELS source, c
   }
 }
 
-// Of the pixels from (x, y) on, with the five rows around theirs.
+// Refines the pixels from (x, y) on, with the five rows around theirs.
 static inline void refine_row(const ToneRow* rows, LightRow light, EightStrengths by, RESOLVED_TEXELS source,
                               OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
   const EightEdges edges = edges_of(rows);
@@ -104,7 +205,7 @@ static inline void refine_row(const ToneRow* rows, LightRow light, EightStrength
   const int8 stays = (red == at_pixels(rows[2].red)) & (green == at_pixels(rows[2].green)) &
                      (blue == at_pixels(rows[2].blue));
   const float8 brightest = max(max(max(red, green), blue), 0.0f);
-  const float8 scale = 1.0f / max(1.0f - brightest, DARKEST_REFINED);
+  const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
   store_refined(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
                 light_of(red, scale, at_pixels(light.red), stays),
                 light_of(green, scale, at_pixels(light.green), stays),

@@ -4,8 +4,8 @@
 //   A tile is rigid if its samples, and the next ones around it, move alike within .05 output pixels. With r the phase
 //   of the previous tile that its middle comes from and v the way that it has come, both in output pixels, it takes
 //   texels round(r + v) away and has the phase r + v - round(r + v).
-//   Of the evidence see TileEvidence: sums over one of judged_apart samples of each row, in a pattern that is staggered
-//   from row to row. Samples that are not trusted do not count.
+//   The evidence (see TileEvidence) is sums over one of judged_apart samples of each row, in a pattern that is
+//   staggered from row to row. Samples that are not trusted do not count.
 //
 //   params          in   viewport, layouts, scales
 //   colour          in   RGBA16F or RGBA32F, viewport
@@ -25,13 +25,12 @@
 //                  of its own (layers/layer_tile.h). Samples of a near layer say nothing of history
 //          SOURCE_STORAGE, SOURCE_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_tiles.cpp; of layers tests/reference/layer_tile.cpp
-#include "layers/split.h"
+#include "layers/layer.h"
+#include "temporal/constants.h"
 #include "temporal/frame_samples.h"
 #include "temporal/history.h"
 #include "temporal/reproject_tile.h"
-#include "temporal/startling.h"
 #include "temporal/temporal_params.h"
-#include "temporal/total_light.h"
 #include "texel.h"
 
 #ifndef LAYERS
@@ -45,18 +44,15 @@
 #endif
 
 // Found by search on the development scenes.
-#define KNOWN_CONFIDENCE 0.1f  // from which a texel of history is asked: less than one reseeded in the last frame has
-#define SURE_TRUST 0.9f        // from which a sample is asked
-#define LUMA_NOISE 0.01f       // relative change of luma that says nothing. +.03 dB, together with no gain at edges
 
 enum { kJudgedAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
-// What is known of the previous frame, and how to get there.
+// The previous frame, as far as it is known, and how to get there.
 typedef struct Past {
   __global const float* reprojection;
   HistoryLayer history;
   __global const TileReprojection* previous_tiles;
-  __global const LayerSplit* splits;  // of the samples of a split tile, else null
+  __global const LayerSplit* splits;  // one for each sample of a split tile, else null
 } Past;
 
 static inline float luma(float4 colour) {
@@ -70,7 +66,7 @@ static inline bool find_in_history(const Past* past, const TemporalTileParams* p
   float at_y = (float)y * params->spacing_y + params->start_y;
 #if MOTION
   const float4 found = vload4(texel_index(params->reprojection, x, y), past->reprojection);
-  if (!(found.z > SURE_TRUST)) return false;
+  if (!(found.z > JUDGING_TRUST_MIN)) return false;
   if (!tile.is_rigid) {
     at_x += found.x * params->motion_x;
     at_y += found.y * params->motion_y;
@@ -112,7 +108,7 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   will_read_history(past->history, index + kJudgedAhead);
   const float4 before = load_history(past->history, index);
   const float4 sample = sample_at(colour, &params->frame, x, y);
-  if (fabs(before.w) < KNOWN_CONFIDENCE || !is_valid(sample)) return;
+  if (fabs(before.w) < JUDGED_CONFIDENCE_MIN || !is_valid(sample)) return;
 
   const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
   const float4 left = sample_at(colour, &params->frame, x - 1, y - aside);
@@ -128,19 +124,20 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   evidence->history_error += fabs(change);
   const float beside = luma(around);
   evidence->neighbour_error += is_valid(around) ? fabs(own - beside) / (1.0f + own + beside) : 0.0f;
-  evidence->brighter += (change > LUMA_NOISE ? 1.0f : 0.0f) - (change < -LUMA_NOISE ? 1.0f : 0.0f);
+  evidence->brighter += (change > LUMA_CHANGE_MIN ? 1.0f : 0.0f) - (change < -LUMA_CHANGE_MIN ? 1.0f : 0.0f);
   evidence->count += 1.0f;
-  const StartlingRange range = startling_range(before);
-  if (!is_startling(sample, range)) return;
-  const int startling_too =
-      (is_valid(left) && is_startling(left, range)) + (is_valid(right) && is_startling(right, range)) +
-      (is_valid(above) && is_startling(above, range)) + (is_valid(below) && is_startling(below, range));
-  evidence->startling += startling_too >= 2 ? 1.0f : 0.0f;
+  const OutlierRange range = outlier_range(before);
+  if (!is_outlier(sample, range)) return;
+  const int outliers_beside =
+      (is_valid(left) && is_outlier(left, range)) + (is_valid(right) && is_outlier(right, range)) +
+      (is_valid(above) && is_outlier(above, range)) + (is_valid(below) && is_outlier(below, range));
+  evidence->outliers += outliers_beside >= 2 ? 1.0f : 0.0f;
 }
 
-// The first column from `first` on that is judged in row y: one of `apart`, a power of two. Rows are staggered so that
-// four of them judge as many even as odd columns, and as many black as white fields of a chessboard: of one colour
-// alone, a moving edge would look like a change of light. Of frames shaded in a checkerboard only shaded samples are.
+// Returns the first column from `first` on that is judged in row y: one of `apart`, a power of two. Rows are staggered
+// so that four of them judge as many even as odd columns, and as many black as white fields of a chessboard: on one
+// colour alone, a moving edge would look like a change of light. In frames shaded in a checkerboard only shaded samples
+// are judged.
 static inline int first_judged(int first, int y, int apart, int parity) {
   const int staggered = ((y ^ (y >> 1)) & 1) * (apart / 2) + ((y >> 1) & 1) * (apart / 4);
   const int shifted = first + (parity >= 0 ? y - parity : staggered);
@@ -162,6 +159,30 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS de
   return evidence;
 }
 
+// Found by search on the development scenes.
+
+// Adds the means of a tile to a sum of such, in units that leave no total beyond an int.
+static inline void add_means(TotalLight* sum, const TemporalTileParams* params, TileEvidence tile) {
+  const float most = min((float)kLightUnits, 0x1p30f / ((float)params->tiles_x * (float)params->tiles_y));
+  const float units = most / max(tile.count, 1.0f);
+  sum->brightening += convert_int(tile.brightening * units);
+  sum->change += convert_int(fabs(tile.brightening) * units);
+  sum->light += convert_int(tile.light * units);
+  sum->history_error += convert_int(tile.history_error * units);
+  sum->neighbour_error += convert_int(tile.neighbour_error * units);
+  sum->changed += tile.history_error > CHANGED_TILE_ERROR_MIN * tile.light;
+}
+
+// Adds the sum of a work-item's tiles to that of the picture.
+static inline void add_to_total(__global TotalLight* total, TotalLight sum) {
+  atomic_add(&total->brightening, sum.brightening);
+  atomic_add(&total->change, sum.change);
+  atomic_add(&total->light, sum.light);
+  atomic_add(&total->history_error, sum.history_error);
+  atomic_add(&total->neighbour_error, sum.neighbour_error);
+  atomic_add(&total->changed, sum.changed);
+}
+
 __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colour, __global const float* reprojection,
                              HISTORY_TEXELS history, __global const TileReprojection* previous_tiles,
                              DEPTH_TEXELS depth, TexelLayout depth_layout, __global const LayerSplit* splits,
@@ -179,7 +200,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
     const ReprojectionRange found = range_of(reprojection, params.reprojection, widened(&params, samples));
     TileReprojection tile = reproject_tile(&params, found, previous_tiles, corner);
 #else
-    const TileReprojection tile = {.is_rigid = 1, .is_copyable = 1};
+    const TileReprojection tile = {.is_rigid = 1, .is_trusted = 1};
 #endif
     const int i = tile_y * params.tiles_x + tile_x;
     bool hidden = false, is_split = false;

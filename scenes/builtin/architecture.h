@@ -15,7 +15,7 @@ struct ArchWall {
   float bay_width = 2.6f;
   float base = 0;          // where the wall begins: 0 for piers, the springing for columns
   float springing = 2.4f;  // where the arches begin
-  float radius = 1.0f;     // of the arches; less than half the bay's width
+  float radius = 1.0f;     // radius of the arches; less than half the bay's width
   float top = 4.2f;
   float thickness = 0.45f;
 };

@@ -6,10 +6,17 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "builtin/foliage.h"
 #include "builtin/scene_assembly.h"
 
 namespace quincunx::scenes {
+
+struct PlantMaterials {
+  int leaves = 0;  // masked, leaf_texture()
+  int bark = 0;
+  int fruit = 0;
+};
+
+Material leaf_material(int leaf_texture);
 
 inline constexpr double kCourtyardDuration = 8;
 inline constexpr glm::vec3 kFountain{0, 0, -0.6f};

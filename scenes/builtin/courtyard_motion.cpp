@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "builtin/courtyard.h"
+#include "random.h"
 
 namespace quincunx::scenes {
 

@@ -17,7 +17,7 @@
 
 namespace quincunx::scenes {
 
-// How what is added next is placed and painted.
+// The place and the paint of what is added next.
 struct Pen {
   glm::mat4 placement{1};  // mesh from local; no mirroring
   glm::vec4 colour{1};     // vertex colour

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Objects and shadows that pass over a wall which stands still: `occluders` and `shadows`.
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -7,7 +8,6 @@
 #include "builtin/scenes.h"
 
 namespace quincunx::scenes {
-
 namespace {
 
 constexpr double kDuration = 8;
@@ -63,9 +63,7 @@ int make_ball(SceneAssembly& assembly, int paint) {
 Scene make_occluders(std::uint64_t seed) {
   SceneAssembly assembly;
   add_poster_wall(assembly, 20, 4.4f, -3.0f, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
-  paving.pen.uv_per_metre = 1 / 2.4f;
-  paving.patch({-12, 0, 12}, {24, 0, 0}, {0, 0, -15});
+  add_paving(assembly, 24, 12, 15, seed + 2);
   const int wood =
       assembly.add_surface("planks", plank_surface(256, seed + 4), SceneAssembly::Detail::kColour);
   const int blue = assembly.add(plain_material("blue enamel", glm::vec3(0.05f, 0.16f, 0.42f), 0.3f));
@@ -77,11 +75,90 @@ Scene make_occluders(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   set_daylight(scene);
-  scene.duration = kDuration;
-  Camera camera;
-  camera.vertical_fov = 0.75f;
-  camera.world_from_camera = looking_from(kEye, {0, 1.75f, -3});
-  scene.camera = [camera](double) { return camera; };
+  hold_camera(scene, kDuration, 0.75f, kEye, {0, 1.75f, -3});
+  return assembly.finish();
+}
+
+namespace {
+
+// The casters of the shadows stand above the picture, on the sun's way to these places.
+constexpr float kWall = -3.0f;
+constexpr glm::vec3 kOnTheLeft(-1.9f, 2.3f, kWall);
+constexpr glm::vec3 kOnTheRight(1.7f, 2.3f, kWall);
+constexpr glm::vec3 kOnTheFloor(1.2f, 0, -0.6f);
+constexpr float kWayOff = 5.5f;  // metres
+
+// Blades in a hoop, turning in a plane across the sun's rays: edges of shadow that sweep the wall.
+void add_rotor(SceneAssembly& assembly, int wood, glm::vec3 shadow, glm::vec3 to_sun, int cycles) {
+  constexpr int kBlades = 5;
+  MeshBuilder rotor(wood);
+  rotor.ring({0, 0, 0}, {0, 0, 1}, 1.6f, 0.03f, 64, 6);
+  for (int i = 0; i < kBlades; ++i) {
+    rotor.pen.placement = turned(kTau * static_cast<float>(i) / kBlades, {0, 0, 1});
+    rotor.box({-0.19f, 0.15f, -0.01f}, {0.19f, 1.6f, 0.01f});
+  }
+  const glm::mat4 rest = moved_to(shadow + kWayOff * to_sun) * looking_from({0, 0, 0}, -to_sun);
+  assembly.move(assembly.add(rotor.take()), spinning(rest, {0, 0, 1}, kDuration, cycles));
+}
+
+// A trellis that swings: thin shadows, and what they uncover, on the floor.
+void add_trellis(SceneAssembly& assembly, int wood, glm::vec3 to_sun) {
+  constexpr int kSlats = 9;
+  MeshBuilder slats(wood);
+  for (int i = 0; i < kSlats; ++i) {
+    const float at = 0.24f * (static_cast<float>(i) - (kSlats - 1) / 2.0f);
+    slats.box({at - 0.03f, -1.2f, -0.01f}, {at + 0.03f, 1.2f, 0.01f});
+    slats.box({-1.2f, at - 0.03f, 0.012f}, {1.2f, at + 0.03f, 0.03f});
+  }
+  const glm::mat4 rest = moved_to(kOnTheFloor + kWayOff * to_sun) * looking_from({0, 0, 0}, -to_sun);
+  assembly.move(assembly.add(slats.take()), swinging(rest, {0, 0, 1}, 0.5f, kDuration, 4, 0));
+}
+
+// A highlight stands still while the surface under it turns away.
+void add_vases(SceneAssembly& assembly, std::uint64_t seed) {
+  constexpr std::array<glm::vec2, 9> kProfile{{{0, 0},
+                                               {0.20f, 0},
+                                               {0.26f, 0.08f},
+                                               {0.38f, 0.38f},
+                                               {0.34f, 0.66f},
+                                               {0.17f, 0.90f},
+                                               {0.15f, 1.02f},
+                                               {0.22f, 1.12f},
+                                               {0, 1.08f}}};
+  Material glaze = plain_material("glaze", glm::vec3(1), 0.22f, 0.35f);
+  glaze.base_colour_texture.texture = assembly.add(colour_texture(plank_surface(256, seed + 4)));
+  const int material = assembly.add(glaze);
+  const int stone =
+      assembly.add_surface("plinth", stone_surface(256, seed + 3), SceneAssembly::Detail::kColour);
+  constexpr std::array<int, 3> kTurns{2, -4, 7};
+  for (int i = 0; i < 3; ++i) {
+    const float x = -2.3f + 2.2f * static_cast<float>(i);
+    MeshBuilder vase(material);
+    vase.pen.uv_per_metre = 2;
+    vase.lathe(kProfile, 48);
+    assembly.move(assembly.add(vase.take()), spinning(moved_to({x, 0.3f, 0.7f}), {0, 1, 0}, kDuration,
+                                                      kTurns[static_cast<std::size_t>(i)]));
+    assembly.still(stone).box({x - 0.3f, 0, 0.4f}, {x + 0.3f, 0.3f, 1.0f});
+  }
+}
+
+}  // namespace
+
+Scene make_shadows(std::uint64_t seed) {
+  SceneAssembly assembly;
+  set_daylight(assembly.scene);
+  const glm::vec3 to_sun = -assembly.scene.sun.direction;
+  add_poster_wall(assembly, 16, 4.6f, kWall, seed);
+  add_paving(assembly, 18, 7, 10, seed + 2);
+  const int wood =
+      assembly.add_surface("planks", plank_surface(256, seed + 5), SceneAssembly::Detail::kColour);
+  add_rotor(assembly, wood, kOnTheLeft, to_sun, 3);
+  add_rotor(assembly, wood, kOnTheRight, to_sun, -2);
+  add_trellis(assembly, wood, to_sun);
+  add_vases(assembly, seed);
+
+  Scene& scene = assembly.scene;
+  hold_camera(scene, kDuration, 0.75f, {0.2f, 1.9f, 5.2f}, {0, 1.65f, -1});
   return assembly.finish();
 }
 

@@ -79,9 +79,7 @@ int add_glass(SceneAssembly& assembly, const char* name, glm::vec3 tint, float a
 Scene make_particles(std::uint64_t seed) {
   SceneAssembly assembly;
   add_poster_wall(assembly, 18, 4.4f, -3.4f, seed);
-  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed + 2)));
-  paving.pen.uv_per_metre = 1 / 2.4f;
-  paving.patch({-10, 0, 8}, {20, 0, 0}, {0, 0, -12});
+  add_paving(assembly, 20, 8, 12, seed + 2);
   MeshBuilder& iron = assembly.still(assembly.add(plain_material("iron", glm::vec3(0.04f), 0.5f)));
   const std::array<glm::vec2, 6> bowl{
       {{0, 0.28f}, {0.22f, 0.30f}, {0.36f, 0.44f}, {0.40f, 0.6f}, {0.37f, 0.6f}, {0.30f, 0.42f}}};
@@ -108,7 +106,6 @@ Scene make_particles(std::uint64_t seed) {
   Scene& scene = assembly.scene;
   set_daylight(scene);
   scene.lights.push_back({{1.5f, 1.0f, -0.6f}, {9, 4, 1.2f}, 6});
-  scene.duration = kDuration;
   const auto smoke = sow(seed, 1, 260, {0.15f, 0.1f, 0.15f}, {0.5f, 2.6f, 0.3f}, 2);
   const auto sparks = sow(seed, 2, 700, {0.12f, 0.05f, 0.12f}, {1.3f, 3.2f, 1.0f}, 6);
   scene.particles = [smoke, sparks](double seconds, std::vector<Particle>& particles) {
@@ -116,15 +113,9 @@ Scene make_particles(std::uint64_t seed) {
     add_smoke(smoke, seconds, particles);
     add_sparks(sparks, seconds, particles);
   };
-  scene.camera_moves = true;
-  scene.camera = [](double seconds) {
-    const float angle = phase_at(seconds, kDuration);
-    Camera camera;
-    camera.vertical_fov = 0.8f;
-    camera.world_from_camera =
-        looking_from({0.8f * std::sin(angle), 1.7f, 4.6f}, {0.15f * std::sin(angle), 1.6f, -2});
-    return camera;
-  };
+  swing_camera(scene, kDuration, 0.8f, [](float swing) {
+    return looking_from({0.8f * swing, 1.7f, 4.6f}, {0.15f * swing, 1.6f, -2});
+  });
   return assembly.finish();
 }
 

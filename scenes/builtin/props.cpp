@@ -132,6 +132,12 @@ void add_poster_wall(SceneAssembly& assembly, float width, float height, float z
   }
 }
 
+void add_paving(SceneAssembly& assembly, float width, float front, float depth, std::uint64_t seed) {
+  MeshBuilder& paving = assembly.still(assembly.add_surface("paving", paving_surface(512, seed)));
+  paving.pen.uv_per_metre = 1 / 2.4f;
+  paving.patch({-width / 2, 0, front}, {width, 0, 0}, {0, 0, -depth});
+}
+
 void set_daylight(Scene& scene) {
   scene.sun.direction = glm::normalize(glm::vec3(-0.45f, -0.75f, -0.5f));
   scene.sun.irradiance = {4.6f, 4.1f, 3.3f};

@@ -33,6 +33,9 @@ int add_picture_material(SceneAssembly& assembly, const std::string& name, Textu
 // A brick wall that faces +z, its foot at y = 0, with a stone base and posters; `width` around x = 0.
 void add_poster_wall(SceneAssembly& assembly, float width, float height, float z, std::uint64_t seed);
 
+// Paving at y = 0 in front of such a wall: `width` around x = 0, from z = `front` to `depth` behind it.
+void add_paving(SceneAssembly& assembly, float width, float front, float depth, std::uint64_t seed);
+
 // A sunny day for scenes without a mood of their own.
 void set_daylight(Scene& scene);
 

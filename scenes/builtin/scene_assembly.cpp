@@ -38,7 +38,7 @@ MeshBuilder& SceneAssembly::still(int material, int part) {
   return still_.try_emplace({part, material}, material).first->second;
 }
 
-// What has no name of its own has that of its material.
+// A mesh without a name of its own has that of its material.
 std::string SceneAssembly::name_of(int mesh) const {
   const int material = scene.meshes[static_cast<std::size_t>(mesh)].material;
   return scene.materials[static_cast<std::size_t>(material)].name;
@@ -113,6 +113,14 @@ Motion sliding(const glm::mat4& rest, glm::vec3 way, double period, int cycles, 
 
 Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles) {
   return [=](double seconds) { return rest * turned(phase_at(seconds, period, cycles), axis); };
+}
+
+void hold_camera(Scene& scene, double duration, float vertical_fov, glm::vec3 eye, glm::vec3 target) {
+  scene.duration = duration;
+  Camera camera;
+  camera.vertical_fov = vertical_fov;
+  camera.world_from_camera = looking_from(eye, target);
+  scene.camera = [camera](double) { return camera; };
 }
 
 void swing_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(float)> place) {

@@ -27,8 +27,8 @@ class SceneAssembly {
   enum class Detail { kColour, kRelief, kReliefAndRoughness };
   int add_surface(const std::string& name, const Surface& surface, Detail detail = Detail::kRelief);
 
-  // What stands still is collected in one mesh per material and part of the scene; parts that lie apart let
-  // the renderer leave out what is not seen, and the lamps that do not reach.
+  // Returns the builder of what stands still, which is collected in one mesh per material and part of the scene; parts
+  // that lie apart let the renderer leave out what is not seen, and the lamps that do not reach.
   MeshBuilder& still(int material, int part = 0);
 
   void place(int mesh, const glm::mat4& transform);
@@ -62,6 +62,8 @@ Motion sliding(const glm::mat4& rest, glm::vec3 way, double period, int cycles, 
 // `rest` turning about `axis` through its origin.
 Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles);
 
+// A camera that stands still for `duration` seconds, the scene's.
+void hold_camera(Scene& scene, double duration, float vertical_fov, glm::vec3 eye, glm::vec3 target);
 // A camera that swings to and fro once in `duration` seconds, the scene's. `place`: world from camera, of -1 to 1.
 void swing_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(float)> place);
 

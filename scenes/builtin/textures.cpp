@@ -70,7 +70,7 @@ void append(Texture& texture, glm::vec4 value) {
     texture.rgba.push_back(to_byte(value[i]));
 }
 
-// Where a point lies in a course of blocks: which block, and how far from the nearest joint, in units of the
+// The place of a point in a course of blocks: which block, and how far from the nearest joint, in units of the
 // course height.
 struct Block {
   int row = 0;

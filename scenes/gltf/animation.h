@@ -21,7 +21,7 @@ struct Track {
   bool rotation = false;  // x y z w, unit: linear means slerp, a spline is normalised
   int components = 3;
   std::vector<float> times;   // ascending, seconds
-  std::vector<float> values;  // of each key; for a spline in-tangent, value, out-tangent
+  std::vector<float> values;  // values of each key; for a spline in-tangent, value, out-tangent
 
   glm::vec4 at(double seconds) const;
 };
@@ -32,7 +32,7 @@ class NodeTree {
   // Takes the first animation of the file; others are named in a warning. Throws GltfError.
   explicit NodeTree(GltfDocument& document);
 
-  double duration() const { return duration_; }  // of the animation; 0: nothing moves
+  double duration() const { return duration_; }  // seconds; 0: nothing moves
   bool is_animated(int node) const { return nodes_[static_cast<std::size_t>(node)].animated; }
 
   // World from node. Time runs round: `duration()` seconds are 0 seconds again.

@@ -1,16 +1,218 @@
 // SPDX-License-Identifier: MIT
+// The document, and files and URIs of glTF: containers, percent encoding, base64.
 #include "gltf/document.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cctype>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <system_error>
 #include <utility>
+#include <vector>
 
-#include "gltf/file.h"
-#include "gltf/validate.h"
+#include "gltf/schema.h"
 
 namespace quincunx::scenes {
 namespace {
+
+// No file, buffer or offset may be larger, so that sums of two sizes never overflow 32 unsigned bits.
+constexpr std::uint64_t kMaxGltfBytes = (std::uint64_t{1} << 31) - 1;
+
+// The two parts of a .glb; a .gltf has only the first.
+struct GltfContainer {
+  std::string json;
+  std::vector<std::uint8_t> binary;
+};
+
+constexpr std::uint32_t kGlbMagic = 0x46546c67;   // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4e4f534a;  // "JSON"
+constexpr std::uint32_t kBinaryChunk = 0x004e4942;
+constexpr std::size_t kGlbHeaderBytes = 12;
+constexpr std::size_t kChunkHeaderBytes = 8;
+
+std::uint32_t word_at(const std::vector<std::uint8_t>& bytes, std::size_t offset) {
+  return static_cast<std::uint32_t>(bytes[offset]) | static_cast<std::uint32_t>(bytes[offset + 1]) << 8 |
+         static_cast<std::uint32_t>(bytes[offset + 2]) << 16 |
+         static_cast<std::uint32_t>(bytes[offset + 3]) << 24;
+}
+
+GltfContainer split_glb(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < kGlbHeaderBytes + kChunkHeaderBytes) {
+    throw GltfError(
+        fmt::format("the binary glTF ends after {} bytes; its headers alone take 20", bytes.size()));
+  }
+  if (const std::uint32_t version = word_at(bytes, 4); version != 2) {
+    throw GltfError(fmt::format("the binary glTF has version {}; only version 2 can be read", version));
+  }
+  const std::uint64_t length = word_at(bytes, 8);
+  if (length > bytes.size()) {
+    throw GltfError(fmt::format("the file is truncated: it has {} bytes of the {} that its header states",
+                                bytes.size(), length));
+  }
+  GltfContainer container;
+  std::uint64_t offset = kGlbHeaderBytes;
+  for (int chunk = 0; offset + kChunkHeaderBytes <= length; ++chunk) {
+    const std::uint64_t size = word_at(bytes, static_cast<std::size_t>(offset));
+    const std::uint32_t type = word_at(bytes, static_cast<std::size_t>(offset + 4));
+    offset += kChunkHeaderBytes;
+    if (size > length - offset) {
+      throw GltfError(fmt::format("chunk {} of the binary glTF states {} bytes, but only {} are left", chunk,
+                                  size, length - offset));
+    }
+    if ((chunk == 0) != (type == kJsonChunk)) {
+      throw GltfError("the binary glTF must have one JSON chunk, and have it first");
+    }
+    const auto first = bytes.begin() + static_cast<std::ptrdiff_t>(offset);
+    const auto last = first + static_cast<std::ptrdiff_t>(size);
+    if (chunk == 0) container.json.assign(first, last);
+    if (chunk == 1 && type == kBinaryChunk) container.binary.assign(first, last);
+    offset += (size + 3) / 4 * 4;
+  }
+  if (container.json.empty()) throw GltfError("the binary glTF has an empty JSON chunk; it needs an object");
+  return container;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+int base64_digit(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  if (c == '+') return 62;
+  if (c == '/') return 63;
+  return -1;
+}
+
+// Decodes %xx. Throws GltfError for a % without two hexadecimal digits.
+std::string percent_decoded(std::string_view text, const std::string& what) {
+  std::string decoded;
+  decoded.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      decoded.push_back(text[i]);
+      continue;
+    }
+    const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
+    const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
+    if (low < 0) {
+      throw GltfError(what + " has a URI with '%' that is not followed by two hexadecimal digits");
+    }
+    decoded.push_back(static_cast<char>(high * 16 + low));
+    i += 2;
+  }
+  return decoded;
+}
+
+// Decodes the standard alphabet, padding optional. Throws GltfError for any other character or a bad length.
+std::vector<std::uint8_t> base64_decoded(std::string_view text, const std::string& what) {
+  while (!text.empty() && text.back() == '=')
+    text.remove_suffix(1);
+  if (text.size() % 4 == 1) {
+    throw GltfError(what + " has a base64 data URI of an impossible length; it is truncated");
+  }
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    const int digit = base64_digit(c);
+    if (digit < 0) {
+      throw GltfError(fmt::format("{} has a data URI with the byte {:#04x}, which is not base64", what,
+                                  static_cast<unsigned>(static_cast<unsigned char>(c))));
+    }
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<std::uint8_t>(bits >> count & 0xff));
+    }
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> read_data_uri(std::string_view uri, const std::string& what) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos) {
+    throw GltfError(what + " has a data URI without a comma; expected data:<type>;base64,<data>");
+  }
+  const std::string_view head = uri.substr(0, comma);
+  const std::string_view body = uri.substr(comma + 1);
+  if (head.ends_with(";base64")) return base64_decoded(body, what);
+  const std::string text = percent_decoded(body, what);
+  return {text.begin(), text.end()};
+}
+
+// Reads the whole of a regular file. `what` begins the sentence of the GltfError: "image 2".
+std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw GltfError(fmt::format("{} is missing: there is no file '{}'", what, path.string()));
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw GltfError(fmt::format("{} cannot be read: '{}' is a directory, not a file", what, path.string()));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw GltfError(fmt::format("{} cannot be read: '{}' is not a regular file", what, path.string()));
+  }
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  if (error || size > kMaxGltfBytes) {
+    throw GltfError(fmt::format("{} cannot be read: '{}' must be smaller than {} bytes", what, path.string(),
+                                kMaxGltfBytes));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream) {
+    throw GltfError(fmt::format("{} cannot be read: opening or reading '{}' failed; check its permissions",
+                                what, path.string()));
+  }
+  return bytes;
+}
+
+// Reads a .gltf or .glb, told apart by their first bytes. Throws GltfError.
+GltfContainer read_gltf_container(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file(path, "the file");
+  if (bytes.empty()) throw GltfError("the file is empty; a glTF 2.0 file (.gltf or .glb) is needed");
+  if (bytes.size() >= 4 && word_at(bytes, 0) == kGlbMagic) return split_glb(bytes);
+
+  std::size_t start = 0;
+  if (bytes.size() >= 3 && std::memcmp(bytes.data(), "\xef\xbb\xbf", 3) == 0) start = 3;  // byte order mark
+  std::size_t first = start;
+  while (first < bytes.size() && std::isspace(bytes[first]) != 0)
+    ++first;
+  if (first == bytes.size() || bytes[first] != '{') {
+    throw GltfError("the file is not glTF: it begins neither with '{' (.gltf) nor with 'glTF' (.glb)");
+  }
+  return {{bytes.begin() + static_cast<std::ptrdiff_t>(start), bytes.end()}, {}};
+}
+
+// Returns the bytes behind a URI: data (base64 or percent encoded) or a file relative to `folder`. Throws GltfError.
+std::vector<std::uint8_t> read_uri(const std::filesystem::path& folder, const std::string& uri,
+                                   const std::string& what) {
+  if (uri.starts_with("data:")) return read_data_uri(uri, what);
+  const std::string relative = percent_decoded(uri, what);
+  if (relative.empty()) throw GltfError(what + " has an empty URI; it must name a file or hold data");
+  if (relative.find('\0') != std::string::npos) {
+    throw GltfError(what + " has a URI with a zero byte; it must name a file");
+  }
+  if (relative.find("://") != std::string::npos) {
+    throw GltfError(fmt::format("{} refers to '{}'; only files beside the glTF can be read", what, relative));
+  }
+  return read_file(folder / relative, what);
+}
 
 using nlohmann::json;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // GltfDocument: a glTF file as data that can be trusted in form. Private to the glTF loader.
 //
-// What holds after open_gltf_document: every field read here has its type, its range and, where it is an
+// After open_gltf_document every field read here has its type, its range and, where it is an
 // index, something to point at; every buffer is loaded and as long as it says; each node has one parent at
 // most and the graph no cycle. What accessors and images hold is checked when they are read. tinygltf gives
 // the types; it never sees bytes from the file, only JSON that gltf_schema has checked and rebuilt.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/image.h"
+#include "gltf/materials.h"
 
 #include <fmt/format.h>
 

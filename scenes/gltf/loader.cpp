@@ -8,18 +8,139 @@
 #include <exception>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "gltf/animation.h"
 #include "gltf/document.h"
-#include "gltf/lights.h"
 #include "gltf/materials.h"
 #include "gltf/mesh.h"
-#include "orbit_camera.h"
+#include "scene.h"
 
 namespace quincunx::scenes {
 namespace {
+
+constexpr glm::vec3 kSunIrradiance{3.3f, 3.1f, 2.8f};
+constexpr glm::vec3 kSunDirection{-0.45f, -0.75f, -0.5f};  // from the upper right of who looks along -z
+
+// White paper under this irradiance has radiance 3.2, about what tone mapping still shows as bright.
+constexpr float kBrightIrradiance = 10;
+
+// Without a range a light reaches this many diagonals of the scene.
+constexpr float kReachInDiagonals = 4;
+
+// How much of the day's sky is left where the file lights the scene with lamps alone.
+constexpr float kNightSky = 0.1f;
+
+void default_light(Scene& scene) {
+  scene.sun.direction = glm::normalize(kSunDirection);
+  scene.sun.irradiance = kSunIrradiance;
+  scene.sky.sun_radiance = 20.0f * kSunIrradiance;
+}
+
+glm::vec3 power_of(const tinygltf::Light& light) {
+  glm::vec3 colour(1);
+  for (std::size_t c = 0; c < light.color.size() && c < 3; ++c) {
+    colour[static_cast<int>(c)] = static_cast<float>(light.color[c]);
+  }
+  return colour * static_cast<float>(light.intensity);
+}
+
+float brightness(const glm::vec3& colour) {
+  return std::max({colour.r, colour.g, colour.b});
+}
+
+void scale_to_photometric(Scene& scene, const Bounds& bounds) {
+  const glm::vec3 centre = 0.5f * bounds.low + 0.5f * bounds.high;
+  const float radius = 0.5f * glm::length(bounds.high - bounds.low);
+  float irradiance = brightness(scene.sun.irradiance);
+  for (const PointLight& light : scene.lights) {
+    const float distance = std::max(glm::length(light.position - centre), radius);
+    if (distance > 0) irradiance += brightness(light.intensity) / (distance * distance);
+  }
+  const float gain =
+      irradiance > kBrightIrradiance && std::isfinite(irradiance) ? irradiance / kBrightIrradiance : 1.0f;
+  scene.exposure = 1 / gain;
+  const bool is_day = scene.sun.irradiance != glm::vec3(0);
+  for (glm::vec3* colour : {&scene.sky.zenith, &scene.sky.horizon, &scene.sky.ground}) {
+    *colour *= gain * (is_day ? 1.0f : kNightSky);
+  }
+}
+
+// Lights of the given nodes where they stand at time 0. The first directional light becomes the sun, further
+// ones and spot lights are left out with a warning, as are point lights beyond Scene::kMaxPointLights. A file
+// without lights gets a sun and a sky. Lights in photometric units (thousands of lux or candela) lower
+// Scene::exposure so that a white surface in the middle of `bounds` is not burnt out; the sky follows.
+void read_lights(GltfDocument& document, const NodeTree& tree, const std::vector<int>& nodes,
+                 const Bounds& bounds, Scene& scene) {
+  const float diagonal = glm::length(bounds.high - bounds.low);
+  bool has_sun = false;
+  for (const int node : nodes) {
+    const tinygltf::Node& source = document.model.nodes[static_cast<std::size_t>(node)];
+    const auto extension = source.extensions.find("KHR_lights_punctual");
+    if (extension == source.extensions.end()) continue;
+    const int index = extension->second.Get("light").GetNumberAsInt();
+    const tinygltf::Light& light = document.model.lights[static_cast<std::size_t>(index)];
+    const std::string who = described("light", index, light.name);
+    const glm::mat4 world = tree.world(node, 0);
+    if (tree.is_animated(node)) document.warn(who + " is animated; it stays where it is at time 0");
+    if (light.type == "spot") {
+      document.warn(who + " is a spot light, which is left out; point and directional lights are read");
+    } else if (light.type == "directional") {
+      const glm::vec3 direction = -glm::vec3(world[2]);
+      if (has_sun || !(glm::length(direction) > 0)) {
+        document.warn(who + " is left out; one directional light can shine, and needs a direction");
+        continue;
+      }
+      has_sun = true;
+      scene.sun.direction = glm::normalize(direction);
+      scene.sun.irradiance = power_of(light);
+    } else if (scene.lights.size() < static_cast<std::size_t>(Scene::kMaxPointLights)) {
+      const float range = light.range > 0 ? static_cast<float>(light.range) : kReachInDiagonals * diagonal;
+      scene.lights.push_back({glm::vec3(world[3]), power_of(light), range});
+    } else {
+      document.warn(fmt::format("only the first {} point lights can shine", Scene::kMaxPointLights));
+    }
+  }
+  if (!has_sun && scene.lights.empty()) {
+    default_light(scene);
+  } else {
+    scale_to_photometric(scene, bounds);
+  }
+}
+
+constexpr double kElevation = 18 * std::numbers::pi / 180;
+constexpr double kStart = 30 * std::numbers::pi / 180;
+constexpr double kVerticalFov = 40 * std::numbers::pi / 180;
+constexpr double kAspect = 4.0 / 3.0;
+constexpr double kMargin = 1.08;  // a little air round the box
+
+// The smallest distance from which the cylinder that the box's corners turn on is all in view.
+double fitting_distance(double radius, double half_height) {
+  constexpr int kSteps = 128;
+  const double tan_y = std::tan(kVerticalFov / 2);
+  const double tan_x = tan_y * kAspect;
+  double distance = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const double angle = step * 2 * std::numbers::pi / kSteps;
+    const double towards = radius * std::cos(angle);  // horizontally, to the camera's side
+    const double across = radius * std::sin(angle);
+    for (const double height : {-half_height, half_height}) {
+      const double nearer = towards * std::cos(kElevation) + height * std::sin(kElevation);
+      const double up = height * std::cos(kElevation) - towards * std::sin(kElevation);
+      distance = std::max(distance, nearer + std::max(std::abs(up) / tan_y, std::abs(across) / tan_x));
+    }
+  }
+  return distance * kMargin;
+}
+
+// Rigid, at `eye`, with `back` the unit vector away from what it looks at, never straight up or down. From
+// the direction, not from two points: far from the origin their difference is lost.
+glm::mat4 camera_at(const glm::vec3& eye, const glm::vec3& back) {
+  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0, 1, 0), back));
+  return {glm::vec4(right, 0), glm::vec4(glm::cross(back, right), 0), glm::vec4(back, 0), glm::vec4(eye, 1)};
+}
 
 // A small file can ask for a great deal by using the same data many times.
 constexpr std::size_t kMaxVertices = std::size_t{1} << 26;
@@ -238,13 +359,36 @@ class SceneReader {
   const tinygltf::Model& model_;
   std::shared_ptr<const NodeTree> tree_;
   GltfMaterials materials_;
-  std::map<int, std::vector<int>> meshes_;  // of the scene, by mesh of the file
+  std::map<int, std::vector<int>> meshes_;  // the scene's meshes, by mesh of the file
   std::vector<Bounds> mesh_bounds_;         // by mesh of the scene
   std::size_t vertices_ = 0;
   Scene scene_;
 };
 
 }  // namespace
+
+CameraPath orbit_camera(const Bounds& bounds, double seconds) {
+  const glm::vec3 centre = 0.5f * bounds.low + 0.5f * bounds.high;
+  const glm::dvec3 half = 0.5 * (glm::dvec3(bounds.high) - glm::dvec3(bounds.low));
+  double radius = std::hypot(half.x, half.z);
+  double half_height = half.y;
+  if (!(std::max(radius, half_height) > 0)) radius = half_height = 0.5;
+  const double distance = fitting_distance(radius, half_height);
+  // Half way to the nearest point of the box, or close to the eye where the box surrounds it.
+  const double nearest = distance - std::hypot(radius, half_height);
+  const auto near_plane = static_cast<float>(std::max(0.5 * nearest, 0.01 * distance));
+
+  return [=](double time) {
+    const double angle = kStart + 2 * std::numbers::pi * std::fmod(time / seconds, 1.0);
+    const glm::dvec3 towards(std::sin(angle) * std::cos(kElevation), std::sin(kElevation),
+                             std::cos(angle) * std::cos(kElevation));
+    Camera camera;
+    camera.world_from_camera = camera_at(centre + glm::vec3(distance * towards), glm::vec3(towards));
+    camera.vertical_fov = static_cast<float>(kVerticalFov);
+    camera.near_plane = near_plane;
+    return camera;
+  };
+}
 
 Result<Scene> load_gltf(const std::string& path) {
   try {

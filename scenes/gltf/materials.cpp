@@ -7,8 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "gltf/image.h"
-
 namespace quincunx::scenes {
 namespace {
 
@@ -45,7 +43,7 @@ glm::mat3 transform_of(const tinygltf::Value& extension) {
           glm::vec3(offset, 1)};
 }
 
-// What a slot says, before it is known whether its set of texture coordinates can be had.
+// The settings of a slot, before it is known whether its set of texture coordinates can be had.
 struct SlotSource {
   int texture = -1;
   int uv_set = 0;

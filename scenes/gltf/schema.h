@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The part of glTF 2.0 that the loader reads, as tables. Private to the glTF loader.
+// The part of glTF 2.0 that the loader reads, as tables, and the check against them (validate.cpp). Private to the glTF
+// loader.
 // Source: Khronos Group, "glTF 2.0 Specification", version 2.0.1, 2021, and the extensions named in
 // gltf/loader.h.
 #pragma once
@@ -7,7 +8,9 @@
 #include <cfloat>
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
+#include <string>
 
 namespace quincunx::scenes {
 
@@ -46,6 +49,12 @@ struct ObjectSchema {
   std::span<const Field> fields;
 };
 
-const ObjectSchema& gltf_schema();  // of the root object
+const ObjectSchema& gltf_schema();  // returns the schema of the root object
+
+// Parses the text and rebuilds it from the fields of gltf_schema() only, each with its right type, in range,
+// and every index pointing at something; so its depth is small and nothing of it can surprise a trusting
+// reader. Extras, unknown extensions and morph targets are gone afterwards. Throws GltfError that names the
+// object and the field, also for an extension that the file requires and the loader lacks.
+nlohmann::json checked_gltf_json(const std::string& text);
 
 }  // namespace quincunx::scenes

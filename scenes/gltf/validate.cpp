@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "gltf/validate.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "gltf/document.h"
@@ -294,7 +293,7 @@ void check_extensions(const json& root) {
   }
 }
 
-// What the tables cannot say: the object that belongs to a type.
+// Checks what the tables cannot say: the object that belongs to a type.
 void complete_types(json& root) {
   for (std::size_t i = 0; root.contains("cameras") && i < root["cameras"].size(); ++i) {
     const auto type = root["cameras"][i]["type"].get<std::string>();

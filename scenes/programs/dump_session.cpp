@@ -9,8 +9,7 @@
 #include <filesystem>
 #include <glm/gtc/packing.hpp>
 
-#include "programs/presenter.h"
-#include "programs/target_file.h"
+#include "frames/target_file.h"
 #include "render/truth.h"
 #include "tools/image/display_light.h"
 #include "tools/image/flip.h"
@@ -50,7 +49,7 @@ bool is_colour(Stage stage) {
   }
 }
 
-// Of its file: what a viewer shows first.
+// Tells whether a viewer shows it first of its file.
 bool is_only_colour(Stage stage) {
   return stage == Stage::kResolved || stage == Stage::kDisplayed || stage == Stage::kHistory ||
          stage == Stage::kParticles;
@@ -160,7 +159,7 @@ Status DumpSession::choose_stages() {
   return {};
 }
 
-// Of every colour stage, truth included, so that errors are those of the picture.
+// Tells whether every colour stage, truth included, is as a screen shows it, so that errors are those of the picture.
 bool DumpSession::is_display_referred() const {
   return options_.resolve.colour == PixelFormat::kRGBA8;
 }
@@ -194,7 +193,7 @@ Status DumpSession::resolve_next() {
   return source_->bridge().present();
 }
 
-// What the frame that is drawn and not yet resolved will read of the past.
+// Reads what the frame that is drawn and not yet resolved will read of the past.
 Status DumpSession::collect_history() {
   const DrawnFrame& next = source_->oldest();
   const ResolvePlan& plan = service_->plan();
@@ -365,9 +364,9 @@ Status DumpSession::write_pictures() {
       status = tools::write_png(files_.back(), planes.extent, presented_.data());
     } else if (is_colour(stage)) {
       const bool shown = is_display_referred();
-      auto presenter = Presenter::create(source_->device(), planes.extent,
-                                         shown ? ToneMap::kClamp : options_.resolve.tone_map,
-                                         options_.resolve.dither, shown ? 1 : exposure_);
+      auto presenter = PicturePresenter::create(source_->device(), planes.extent,
+                                                shown ? ToneMap::kClamp : options_.resolve.tone_map,
+                                                options_.resolve.dither, shown ? 1 : exposure_);
       if (!presenter.ok()) return presenter.status();
       auto codes = presenter->present(interleaved(planes));
       if (!codes.ok()) return codes.status();

@@ -3,36 +3,88 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <vector>
 
 #include "catalog/scene_catalog.h"
-#include "programs/calibration_run.h"
-#include "programs/method_resolves.h"
-#include "programs/render_options.h"
-#include "programs/render_session.h"
-#include "programs/truth_run.h"
+#include "frames/method_resolves.h"
+#include "frames/target_file.h"
 #include "quincunx/front_file.h"
+#include "quincunx/status.h"
+#include "render/truth.h"
+#include "session/calibration.h"
+#include "session/render_options.h"
+#include "session/render_session.h"
+#include "tools/image/image_io.h"
 #include "tools/page/report_page.h"
-#include "tools/program/device_lines.h"
 #include "tools/program/program.h"
+#include "tools/program/progress.h"
+#include "tools/sequence/frame_pattern.h"
 #include "window/window_run.h"
 
 namespace quincunx::scenes {
 namespace {
 
-// Which figures a controller that chooses methods goes by. Nothing where there is no OpenCL device.
+Status write_truth(PicturePresenter& presenter, const tools::FramePattern& pattern, std::int64_t index,
+                   Extent extent, const std::vector<float>& rgba) {
+  const std::string path = pattern.expand(index);
+  if (pattern.format() == tools::FileFormat::kExr) return write_rgba(path, extent, rgba);
+  auto pixels = presenter.present(rgba);
+  if (!pixels.ok()) return pixels.status();
+  return tools::write_png(path, extent, pixels.value().data());
+}
+
+// --truth: renders and writes supersampled frames instead of resolved ones: .exr linear, .png through the present pass.
+Status run_truth(const RenderOptions& options) {
+  if (options.out.empty()) return Status::invalid("--truth needs --out: the pattern of the files to write");
+  auto pattern = tools::FramePattern::parse(options.out);
+  if (!pattern.ok()) return pattern.status();
+  if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
+  auto scene = open_scene(options.scene, options.seed);
+  if (!scene.ok()) return scene.status();
+  auto source = source_settings_for(options);
+  if (!source.ok()) return source.status();
+  auto sequence = FrameSequence::create(source->sequence);
+  if (!sequence.ok()) return sequence.status();
+  auto context = gl::EglContext::create(options.platform, options.api);
+  if (!context.ok()) return context.status();
+  auto renderer = Renderer::create(scene.value());
+  if (!renderer.ok()) return renderer.status();
+  auto device = Device::open(options.device);
+  if (!device.ok()) return device.status();
+  auto presenter = PicturePresenter::create(device.value(), options.output, options.resolve.tone_map,
+                                            options.resolve.dither,
+                                            options.exposure > 0 ? options.exposure : scene->exposure);
+  if (!presenter.ok()) return presenter.status();
+
+  const TruthSettings settings = {options.output, options.truth, options.shutter / options.fps};
+  using Show = tools::Progress::Show;
+  tools::Progress progress("truth", options.frames, options.quiet ? Show::kNever : Show::kOnTerminal);
+  for (std::int64_t index = 0; index < options.frames; ++index) {
+    auto rgba = render_truth(renderer.value(), settings, sequence->at(index).seconds);
+    if (!rgba.ok()) return rgba.status();
+    if (Status status = write_truth(presenter.value(), pattern.value(), index, options.output, rgba.value());
+        !status.ok()) {
+      return status;
+    }
+    progress.update(index + 1);
+  }
+  return {};
+}
+
+// Names the figures that a controller which chooses methods goes by. Empty where there is no OpenCL device.
 std::string front_text(const std::optional<FoundFront>& found) {
   return found ? fmt::format("Error front    {}\n", found->explanation) : std::string();
 }
 
-// What that controller begins with, before it has seen a frame; it becomes the method of `settings`.
+// Explains the method that this controller begins with, before it has seen a frame, and puts it into `settings`.
 Result<std::string> choose_first(const RenderOptions& options, const std::optional<FoundFront>& found,
                                  ResolveSettings& settings) {
   if (!options.pacing.chooses_method()) return std::string();
   const auto pacing =
       frame_pacing_for(options.pacing, options.output, found ? found->front : ErrorFront::built_in());
   if (!pacing.ok()) return pacing.status();
-  settings = method_settings(settings, pacing.value()->choice()->method);
-  return "At the first frame, before any was timed:\n" + pacing.value()->reasons();
+  settings = method_settings(settings, pacing->choice()->method);
+  return "At the first frame, before any was timed:\n" + pacing->reasons();
 }
 
 int explain(const RenderOptions& options) {
@@ -49,9 +101,9 @@ int explain(const RenderOptions& options) {
   settings.target = sequence->target();
   if (has_particles) settings.particle_target = particle_target(source->parts, settings.target);
   if (source->focus.target) {
-    auto focus = FocusFeed::create(source->focus, scene.value(), source->sequence);
+    auto focus = FocusRegion::create(source->focus, scene.value(), source->sequence);
     if (!focus.ok()) return tools::fail(focus.status());
-    settings.focus = focus.value()->settings();
+    if (focus.value()) settings.focus = focus.value()->settings();
   }
   const Result<Device> device = Device::open(options.device);
   std::optional<FoundFront> found;
@@ -66,7 +118,7 @@ int explain(const RenderOptions& options) {
   return tools::kDone;
 }
 
-// The same frames at fixed scales, beside those of the report.
+// Draws the same frames at fixed scales, beside those of the report.
 Status compare(const RenderSession& session, const std::vector<float>& scales, tools::RunReport& report) {
   for (const float scale : scales) {
     auto fixed = session.at_fixed_scale(scale);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "programs/sequence_dump.h"
-
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "programs/frame_source.h"
-#include "programs/target_file.h"
+#include "frames/frame_source.h"
+#include "frames/target_file.h"
+#include "programs/dump_session.h"
 #include "render/truth.h"
 #include "tools/image/display_light.h"
 #include "tools/program/atomic_file.h"

@@ -25,10 +25,10 @@ struct Batch {
 // Reused from frame to frame: the vectors keep their capacity.
 class DrawList {
  public:
-  // What casts a shadow, by mesh: either all that stands still or all that moves.
+  // Casters of shadows, by mesh: either all that stands still or all that moves.
   void build_casters(const SceneLayout& layout, const std::vector<InstanceData>& placed, bool moving);
 
-  // What the frustum sees: opaque front to back (near things hide fill cost; a mesh with many instances stays
+  // Surfaces within the frustum: opaque front to back (near things hide fill cost; a mesh with many instances stays
   // one draw), then alpha-tested, as `opaque`; blended instances and particles back to front as `blended`.
   // `boxes`: world bounds of this frame. What spans less than `least_span` (its diagonal over its distance)
   // is left out; 0 leaves nothing out. Sorts `particles`.

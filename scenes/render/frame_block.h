@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the shaders read, as they lay it out (std140). Mirrors shaders/frame.glsl, surface.frag.glsl,
+// The blocks that the shaders read, as they lay them out (std140). Mirrors shaders/frame.glsl, surface.frag.glsl,
 // lighting.glsl.
 #pragma once
 

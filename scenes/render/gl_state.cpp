@@ -27,7 +27,7 @@ void write_to(bool velocity, bool reactive) {
 DrawState::DrawState() {
   if (gl::capabilities().clip_control) glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
-  // Of targets that hold encoded colour, and of no others.
+  // Only for targets that hold encoded colour.
   if (gl::capabilities().encodes_on_demand) glEnable(GL_FRAMEBUFFER_SRGB);
   glDisable(GL_BLEND);
   set_winding(false);

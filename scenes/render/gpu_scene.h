@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// GpuScene: what of a scene never changes, on the GPU: meshes, textures, materials, light sets.
+// GpuScene: what never changes of a scene, on the GPU: meshes, textures, materials, light sets; and how meshes are
+// drawn.
 #pragma once
 
 #include <array>
@@ -42,5 +43,17 @@ class GpuScene {
   std::vector<gl::Texture> textures_;
   std::vector<BoundMaterial> materials_;
 };
+
+// Vertex layouts. Buffer bindings: 0 per vertex, 1 per instance.
+inline constexpr GLuint kVertexSlot = 0;
+inline constexpr GLuint kInstanceSlot = 1;
+
+gl::VertexArray surface_vertex_array(const GpuScene& gpu);  // the instance buffer is bound per frame
+gl::VertexArray particle_vertex_array();                    // the same
+
+// Draws instances of a mesh; the vertex array, program and material are bound. `instances`: a buffer of InstanceData
+// from `offset` on, of which `count` from `first` on are drawn.
+void draw_mesh(const MeshRange& mesh, GLuint instances, GLintptr offset, std::uint32_t first,
+               std::uint32_t count);
 
 }  // namespace quincunx::scenes

@@ -6,6 +6,7 @@
 // projection. Uses the current GL context; one thread.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,14 +14,28 @@
 #include "quincunx/frame.h"
 #include "quincunx/method.h"
 #include "quincunx/status.h"
+#include "quincunx_gl/part_timer.h"
 #include "quincunx_gl/render_targets.h"
-#include "render/frame_parts.h"
 #include "render/view_math.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
 
-// What targets that hold encoded colour (RGBA8) show of the scene's light; of others nothing is read.
+inline constexpr float kLeastPartScale = 0.0625f;  // per axis
+
+// Targets and timers of the parts of a frame that have a resolution of their own. They are the caller's; a part whose
+// timer is null is not timed.
+struct FrameParts {
+  std::uint64_t frame = 0;  // its number, for the timers
+  // Times what moves in the shadow map: a frame that also draws what stands still is like no other.
+  gl::PartTimer* shadow_timer = nullptr;
+  // The targets of FrameView::particles: linear colour (alpha: coverage), reactive values if the frame's
+  // targets have them, and depth of the surfaces behind.
+  const gl::RenderTargets* particles = nullptr;
+  gl::PartTimer* particle_timer = nullptr;
+};
+
+// How targets that hold encoded colour (RGBA8) show the scene's light; others ignore it.
 struct Display {
   float exposure = 1;  // multiplies light before the curve; > 0
   ToneMap tone_map = ToneMap::kAces;
@@ -31,10 +46,10 @@ struct FrameView {
   Vec2 jitter = {};             // render pixels: samples lie at pixel centre + jitter
   double seconds = 0;           // scene time of this frame
   double previous_seconds = 0;  // scene time of the previous frame: velocity = this position - that one
-  // Of the picture, width / height; 0: the viewport's. A viewport is rounded to pixels, so frames of one picture at
+  // Width / height of the picture; 0: the viewport's. A viewport is rounded to pixels, so frames of one picture at
   // several resolutions show the same only with the picture's own aspect.
   float aspect = 0;
-  float lod_bias = 0;  // of every texture
+  float lod_bias = 0;  // bias for every texture
   // The pixels with (x + y) % 2 of this are drawn, 0 or 1, into targets that have a checkerboard; absent: all pixels.
   std::optional<int> parity = {};
   // Less work where detail may go; both 0: all of it.

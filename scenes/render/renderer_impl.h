@@ -1,22 +1,60 @@
 // SPDX-License-Identifier: MIT
-// What a Renderer owns. For renderer.cpp and truth.cpp only.
+// The objects of a Renderer. For renderer.cpp and truth.cpp only.
 #pragma once
 
 #include <memory>
 #include <vector>
 
+#include "quincunx/status.h"
+#include "quincunx_gl/handle.h"
+#include "quincunx_gl/render_targets.h"
 #include "render/draw_list.h"
+#include "render/gl_state.h"
 #include "render/gpu_scene.h"
-#include "render/particle_layer.h"
 #include "render/renderer.h"
 #include "render/scene_layout.h"
 #include "render/shadow_map.h"
-#include "render/stream_buffer.h"
 #include "render/view_math.h"
 
 namespace quincunx::scenes {
 
-class TruthTargets;
+// The depth that hides particles which are drawn into a viewport of their own.
+class ParticleLayer {
+ public:
+  static Result<ParticleLayer> create();
+
+  // Makes the particles' viewport transparent black and gives it the frame's depth: of the samples that a texel covers,
+  // the nearest one's and the farthest one's in turns, like the fields of a checkerboard, so that on both sides of an
+  // edge there are texels of both surfaces. Leaves the framebuffer of the particles bound, its viewport set, and depth
+  // state changed.
+  void begin(const gl::RenderTargets& frame, const FrameView& view, const gl::RenderTargets& particles) const;
+
+ private:
+  gl::Program program_;
+  gl::VertexArray nothing_;
+};
+
+// One sub-frame's target and the sum of all, in 32-bit float, at output extent (truth.cpp).
+class TruthTargets {
+ public:
+  static Result<TruthTargets> create(Extent output);
+
+  Extent extent() const { return frame_.extent(); }
+  const gl::RenderTargets& frame() const { return frame_; }
+
+  void clear();                     // the sum
+  void add(float weight);           // weight * frame() to the sum
+  std::vector<float> read() const;  // RGBA, top row first; waits for the GPU
+
+ private:
+  explicit TruthTargets(Extent output);
+
+  gl::RenderTargets frame_;
+  gl::Texture sum_;
+  gl::Framebuffer sum_framebuffer_;
+  gl::Program program_;
+  gl::VertexArray nothing_;
+};
 
 struct Renderer::Impl {
   // The programs of one SurfaceFeatures; blended surfaces write no velocity and have only the first.
@@ -64,7 +102,7 @@ struct Renderer::Impl {
   StreamBuffer frame_stream;
   StreamBuffer instance_stream;
   StreamBuffer particle_stream;
-  // What the last draw_batch() bound, to bind only what changes; -2: unknown.
+  // Objects that the last draw_batch() bound, to bind only what changes; -2: unknown.
   struct Bound {
     GLuint program = 0;
     int material = -2;

@@ -2,13 +2,111 @@
 #include "render/scene_layout.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
-
-#include "render/light_sets.h"
-#include "render/mesh_parts.h"
+#include <numeric>
 
 namespace quincunx::scenes {
+
 namespace {
+
+// The distinct sets of lights that reach something, each made once.
+class LightSets {
+ public:
+  explicit LightSets(const Scene& scene) : scene_(scene) {}
+
+  // The lights that reach a world box, as a bit mask.
+  std::uint32_t reaching(const Bounds& box) const;
+  int index_of(std::uint32_t mask);  // -1 for none
+  // The lights in a mask, rounded up to a count that has a shader variant.
+  static int loop_count(std::uint32_t mask);
+  std::vector<LightsBlock> take() { return std::move(blocks_); }
+
+ private:
+  const Scene& scene_;
+  std::map<std::uint32_t, int> indices_;
+  std::vector<LightsBlock> blocks_;
+};
+
+std::uint32_t LightSets::reaching(const Bounds& box) const {
+  std::uint32_t mask = 0;
+  for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+    const PointLight& light = scene_.lights[i];
+    const glm::vec3 offset = light.position - glm::clamp(light.position, box.low, box.high);
+    if (glm::dot(offset, offset) < light.range * light.range) mask |= 1u << i;
+  }
+  return mask;
+}
+
+int LightSets::index_of(std::uint32_t mask) {
+  if (mask == 0) return -1;
+  const auto [entry, added] = indices_.emplace(mask, static_cast<int>(blocks_.size()));
+  if (!added) return entry->second;
+  LightsBlock block;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+    if ((mask >> i & 1u) == 0) continue;
+    const PointLight& light = scene_.lights[i];
+    block.position[count] = glm::vec4(light.position, 1 / (light.range * light.range));
+    block.intensity[count++] = glm::vec4(light.intensity, 0);
+  }
+  blocks_.push_back(block);
+  return entry->second;
+}
+
+int LightSets::loop_count(std::uint32_t mask) {
+  const int lights = std::popcount(mask);
+  for (const int count : {0, 2, 4, 8}) {
+    if (lights <= count) return count;
+  }
+  return Scene::kMaxPointLights;
+}
+
+struct Triangles {
+  std::vector<glm::vec3> centres;
+  std::vector<std::uint32_t> order;
+};
+
+Triangles triangles_of(const Mesh& mesh) {
+  Triangles triangles;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    glm::vec3 sum(0);
+    for (std::size_t k = 0; k < 3; ++k)
+      sum += mesh.vertices[mesh.indices[i + k]].position;
+    triangles.centres.push_back(sum / 3.0f);
+  }
+  triangles.order.resize(triangles.centres.size());
+  std::iota(triangles.order.begin(), triangles.order.end(), 0u);
+  return triangles;
+}
+
+// Cuts [begin, end) of the order at the median along its longest axis until the limits hold.
+void split(Triangles& triangles, std::size_t begin, std::size_t end, const PartLimits& limits,
+           std::vector<std::uint32_t>& counts) {
+  glm::vec3 low = triangles.centres[triangles.order[begin]];
+  glm::vec3 high = low;
+  for (std::size_t i = begin; i < end; ++i) {
+    low = glm::min(low, triangles.centres[triangles.order[i]]);
+    high = glm::max(high, triangles.centres[triangles.order[i]]);
+  }
+  const glm::vec3 size = high - low;
+  const std::size_t count = end - begin;
+  if (count <= limits.few || (count <= limits.many && glm::length(size) <= limits.metres)) {
+    std::sort(triangles.order.begin() + static_cast<std::ptrdiff_t>(begin),
+              triangles.order.begin() + static_cast<std::ptrdiff_t>(end));
+    counts.push_back(static_cast<std::uint32_t>(3 * count));
+    return;
+  }
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t middle = begin + count / 2;
+  const auto at = [&](std::size_t i) { return triangles.order.begin() + static_cast<std::ptrdiff_t>(i); };
+  std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+    const float ca = triangles.centres[a][axis], cb = triangles.centres[b][axis];
+    return ca != cb ? ca < cb : a < b;
+  });
+  split(triangles, begin, middle, limits, counts);
+  split(triangles, middle, end, limits, counts);
+}
 
 constexpr int kMotionSamples = 32;       // places over the duration at which a moving instance is looked up
 constexpr float kFloorFlatness = 0.02f;  // height over width of what is a floor rather than a caster
@@ -148,7 +246,7 @@ class Layouter {
     layout_.parts.push_back(part);
   }
 
-  // Of a mesh that is cut, and so stands once and still.
+  // Returns the lights that reach a mesh that is cut, and so stands once and still.
   std::uint32_t lights_on_mesh(const Bounds& box, int mesh) const {
     const auto instance = std::find_if(scene_.instances.begin(), scene_.instances.end(),
                                        [&](const Instance& candidate) { return candidate.mesh == mesh; });
@@ -233,6 +331,18 @@ class Layouter {
 };
 
 }  // namespace
+
+MeshParts split_mesh(const Mesh& mesh, const PartLimits& limits) {
+  MeshParts parts;
+  if (mesh.indices.empty()) return parts;
+  Triangles triangles = triangles_of(mesh);
+  split(triangles, 0, triangles.order.size(), limits, parts.counts);
+  for (const std::uint32_t triangle : triangles.order) {
+    for (std::size_t k = 0; k < 3; ++k)
+      parts.indices.push_back(mesh.indices[3 * triangle + k]);
+  }
+  return parts;
+}
 
 std::vector<std::string> SurfaceFeatures::defines() const {
   std::vector<std::string> list;

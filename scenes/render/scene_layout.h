@@ -9,12 +9,30 @@
 #include <vector>
 
 #include "render/frame_block.h"
-#include "render/shadow_fit.h"
+#include "render/view_math.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
 
-// Which variant of the surface shader draws something.
+// When a part of a mesh is cut further: if it has more than `many` triangles, or more than `few` and is longer
+// than `metres`.
+struct PartLimits {
+  std::size_t few = 96;
+  std::size_t many = 2048;
+  float metres = 1e30f;  // diagonal
+};
+
+// The triangles of a mesh in an order in which each part is one range.
+struct MeshParts {
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> counts;  // indices of each part, in order
+};
+
+// Cuts a mesh in space, for culling and for lights that reach only some of it. Deterministic; keeps the order
+// of triangles within a part. An empty mesh has no parts.
+MeshParts split_mesh(const Mesh& mesh, const PartLimits& limits);
+
+// The variant of the surface shader that draws something.
 struct SurfaceFeatures {
   bool textured = false;
   bool base_texture = false;
@@ -50,7 +68,7 @@ struct PlacedInstance {
   Bounds reach;            // world bounds; of a moving one over the whole duration
 };
 
-// What is culled, sorted and drawn: an instance of a part.
+// An instance of a part: the unit that is culled, sorted and drawn.
 struct Piece {
   int instance = 0;
   int part = 0;        // index into SceneLayout::parts
@@ -60,7 +78,7 @@ struct Piece {
 };
 
 struct SceneLayout {
-  std::vector<std::uint32_t> indices;  // of all meshes, the triangles of a part together
+  std::vector<std::uint32_t> indices;  // indices of all meshes, the triangles of a part together
   std::vector<MeshRange> meshes;
   std::vector<MeshRange> parts;
   std::vector<PlacedInstance> instances;

@@ -9,7 +9,7 @@
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
-#include "render/vertex_input.h"
+#include "render/gpu_scene.h"
 
 namespace quincunx::scenes {
 namespace {

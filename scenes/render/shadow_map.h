@@ -11,8 +11,8 @@
 #include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
 #include "render/draw_list.h"
+#include "render/gl_state.h"
 #include "render/gpu_scene.h"
-#include "render/stream_buffer.h"
 
 namespace quincunx::scenes {
 
@@ -21,11 +21,11 @@ class ShadowMap {
   // A map that is not enabled (ShadowFit::enabled) owns nothing.
   static Result<ShadowMap> create(const Scene& scene, const SceneLayout& layout);
 
-  // What of it a frame draws.
+  // The casters that a frame draws.
   enum class Work : std::uint8_t { kNothing, kMoving, kEverything };
 
-  // Of a frame at `seconds`: what was drawn at a time no further away than `most_age` stays, and all of it goes where
-  // the side is another.
+  // Returns the work for a frame at `seconds`: a map drawn at a time no further away than `most_age` stays; at another
+  // `side` everything is drawn.
   Work work_for(const SceneLayout& layout, double seconds, double most_age, int side) const;
 
   // Does it. `placed`: the instances at `seconds`. The frame block, mesh buffers and vertex array are bound. Leaves

@@ -14,7 +14,7 @@ struct TruthSettings {
   int samples = 8;             // n: n * n samples a pixel, >= 1
   double shutter_seconds = 0;  // the shutter is open from seconds - shutter_seconds to seconds; 0: an instant
   ViewWindow window = {};      // the part of the picture that `output` is
-  float aspect = 0;            // of the whole picture, width / height; 0: that of `output`
+  float aspect = 0;            // aspect of the whole picture, width / height; 0: that of `output`
 };
 
 // Linear RGBA, output extent, tightly packed, top row first. Textures are filtered for the sample spacing

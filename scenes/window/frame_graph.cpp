@@ -13,10 +13,17 @@
 namespace quincunx::scenes {
 namespace {
 
+constexpr double kNew = 0.1;  // weight of the newest frame in a running mean
+
+// The first value stands for all before it.
+void follow(double& mean, double value) {
+  mean = mean == 0 ? value : mean + kNew * (value - mean);
+}
+
 constexpr float kAreaHeight = 38;
 constexpr float kTimeHeight = 68;
 constexpr float kGap = 6;
-constexpr float kMarkHeight = 7;  // of a dropped frame
+constexpr float kMarkHeight = 7;  // height of a dropped frame's mark
 constexpr ImU32 kBackground = IM_COL32(255, 255, 255, 14);
 constexpr ImU32 kGrid = IM_COL32(255, 255, 255, 30);
 constexpr ImU32 kAreaColour = IM_COL32(232, 163, 61, 255);
@@ -27,7 +34,7 @@ constexpr ImU32 kTargetColour = IM_COL32(255, 255, 255, 110);
 constexpr ImU32 kDroppedColour = IM_COL32(235, 80, 80, 255);
 constexpr ImU32 kTextColour = IM_COL32(190, 192, 198, 255);
 
-// Of methods, in the order in which they come up.
+// The colours of methods, by name.
 constexpr float kBandHeight = 5;
 constexpr ImU32 kMethodColours[] = {IM_COL32(232, 163, 61, 255),  IM_COL32(90, 160, 235, 255),
                                     IM_COL32(120, 205, 140, 255), IM_COL32(200, 120, 215, 255),
@@ -59,7 +66,7 @@ void draw_frame(const Plot& plot) {
   list->AddLine({plot.corner.x, middle}, {end.x, middle}, kGrid);
 }
 
-// What the upper edge stands for, `below` it.
+// Writes the value of the upper edge, `below` it.
 void draw_label(const Plot& plot, float below, const std::string& text) {
   ImGui::GetWindowDrawList()->AddText({plot.corner.x + 5, plot.corner.y + below}, kTextColour, text.c_str());
 }
@@ -151,6 +158,37 @@ void draw_method_legend(const FrameTrace& trace, const std::vector<std::string>&
 }
 
 }  // namespace
+
+void FrameTrace::add(const FrameTimes& times, Extent output, double interval_ms, int dropped,
+                     const std::string& method) {
+  const FrameReport& report = times.report;
+  TracePoint point = {.area = static_cast<double>(report.render.area()) / static_cast<double>(output.area()),
+                      .draw_ms = times.draw_ms,
+                      .cpu_ms = times.cpu_ms,
+                      .interval_ms = interval_ms,
+                      .dropped = dropped,
+                      .method = method};
+  std::vector<PassTime> passes;
+  for (int i = 0; i < report.pass_count; ++i) {
+    const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
+    const double ms = std::max(pass.ms, 0.0);
+    point.opencl_ms += ms;
+    const std::string name = name_of(pass);
+    const auto known = std::find_if(passes_.begin(), passes_.end(),
+                                    [&](const PassTime& time) { return time.kernel == name; });
+    passes.push_back({name, known == passes_.end() ? 0 : known->ms});
+    follow(passes.back().ms, ms);
+  }
+  passes_ = std::move(passes);
+  follow(mean_.area, point.area);
+  follow(mean_.draw_ms, point.draw_ms);
+  follow(mean_.opencl_ms, point.opencl_ms);
+  follow(mean_.cpu_ms, point.cpu_ms);
+  follow(mean_.interval_ms, point.interval_ms);
+  dropped_ += dropped;
+  if (points_.size() == kLength) points_.erase(points_.begin());
+  points_.push_back(point);
+}
 
 void draw_frame_graph(const FrameTrace& trace, double target_ms) {
   const float width = ImGui::GetContentRegionAvail().x;

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 
-#include "programs/target_file.h"
 #include "quincunx_gl/gl_calls.h"
 #include "render/truth.h"
 #include "tools/program/clock.h"
-#include "tools/program/method_names.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -21,7 +19,7 @@ constexpr const char* kRandom = "random:0.25,1";
 constexpr int kTruthSamples = 4;  // 4 x 4 a pixel: a compromise, because it is drawn for every frame
 
 void choose_method(ResolveSettings& settings, const std::string& name) {
-  tools::choose(settings, tools::method_choices().at(name));
+  apply(parse_variant(name).value(), settings);
 }
 
 }  // namespace
@@ -107,7 +105,7 @@ Status LivePicture::open_source(const FrameSourceSettings& settings) {
 }
 
 Status LivePicture::open_services(const ResolveSettings& wanted) {
-  std::vector<FrontMethod> methods;
+  std::vector<MethodVariant> methods;
   front_.reset();
   choice_.reset();
   if (look_.chooses_method) {
@@ -138,7 +136,8 @@ Status LivePicture::open_compared(const ResolvePlan& plan) {
     if (!image.ok()) return image.status();
     other_image_ = std::move(image).value();
   } else {
-    auto presenter = Presenter::create(device, output(), look_.tone_map, look_.dither, source_->exposure());
+    auto presenter =
+        PicturePresenter::create(device, output(), look_.tone_map, look_.dither, source_->exposure());
     if (!presenter.ok()) return presenter.status();
     truth_presenter_.emplace(std::move(presenter).value());
   }
@@ -231,7 +230,7 @@ Status LivePicture::dispatch(bool reset) {
   return resolves_->finish();
 }
 
-// What the split view shows beside the picture.
+// Brings the other side of the split view.
 Status LivePicture::bring_compared(const FrameView& view) {
   if (!compared_) return {};
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(output().area()) * 4);

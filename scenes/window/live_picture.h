@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "programs/frame_source.h"
-#include "programs/method_resolves.h"
-#include "programs/picture_options.h"
-#include "programs/presenter.h"
+#include "frames/frame_source.h"
+#include "frames/method_resolves.h"
+#include "frames/picture_options.h"
+#include "frames/target_file.h"
 #include "quincunx/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx_gl/frame_timer.h"
@@ -21,7 +21,7 @@
 
 namespace quincunx::scenes {
 
-// What one frame cost.
+// The costs of one frame.
 struct FrameTimes {
   double draw_ms = 0;  // OpenGL's work
   double cpu_ms = 0;   // the processor's, to prepare that
@@ -37,16 +37,16 @@ class LivePicture {
   // From the next draw() on. Makes anew what has to be; nothing where nothing has changed.
   Status configure(const LookSettings& look, const ResolutionSettings& resolution, Extent output);
 
-  // What methods err and cost, where LookSettings::chooses_method; else null.
+  // The methods' errors and costs, where LookSettings::chooses_method; else null.
   const ErrorFront* front() const { return front_ ? &front_->front : nullptr; }
 
-  // What frame `index` is by these settings. `chosen`: by a controller, for ResolutionMode::kController. `choice`: of
-  // the method; where there is none, a frame has the one that was chosen last.
+  // Returns the view of frame `index` by these settings. `chosen`: by a controller, for ResolutionMode::kController.
+  // `choice`: of the method; where there is none, a frame has the one that was chosen last.
   FrameView view_of(std::int64_t index, Extent chosen, const std::optional<QualityChoice>& choice = {});
 
   enum class Keep : std::uint8_t { kNothing, kForFiles };
 
-  // Where the pointer is, in pixels of the picture, from the next draw() on.
+  // Sets the pointer's pixel of the picture, from the next draw() on.
   void point_at(Vec2 pixel) { source_->set_pointer(pixel); }
 
   // Draws frame `index` as `view`, then makes the picture from it and waits for that. `reset`: nothing of the
@@ -54,7 +54,7 @@ class LivePicture {
   Status draw(std::int64_t index, const FrameView& view, Keep keep = Keep::kNothing);
   Status resolve(bool reset = false);
 
-  // Of the last resolve(), until the next draw().
+  // The results of the last resolve(), until the next draw().
   GLuint picture() const { return source_->bridge().presented_texture(); }
   GLuint compared() const { return compared_.get(); }  // 0 where nothing is compared
   const std::uint8_t* pixels() { return source_->bridge().presented_pixels(); }
@@ -66,7 +66,7 @@ class LivePicture {
 
   Extent output() const { return source_->sequence().output(); }
   const ResolvePlan& plan() const { return resolves_->plan(); }
-  // Of the last frame; nothing where no controller chooses methods.
+  // The last frame's; nothing where no controller chooses methods.
   const std::optional<QualityChoice>& choice() const { return choice_; }
   const FrameSource& source() const { return *source_; }
 
@@ -91,7 +91,7 @@ class LivePicture {
   LookSettings look_;
   ResolutionSettings resolution_;
   std::unique_ptr<FrameSource> source_;
-  std::optional<FrameSequence> sequence_;  // of the views; its target is the source's
+  std::optional<FrameSequence> sequence_;  // sequence of the views; its target is the source's
   std::optional<FoundFront> front_;
   std::optional<MethodResolves> resolves_;
   std::optional<QualityChoice> choice_;
@@ -99,7 +99,7 @@ class LivePicture {
 
   std::optional<ResolveService> other_service_;
   Image other_image_;
-  std::optional<Presenter> truth_presenter_;
+  std::optional<PicturePresenter> truth_presenter_;
   gl::Texture compared_;
 
   FrameTimes times_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A file of its own: X11's header has macros of common names.
-#include "window/lost_display.h"
+#include "window/window.h"
 
 #ifdef QUINCUNX_WINDOW_X11
 #include <X11/Xlib.h>

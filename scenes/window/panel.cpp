@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "programs/focus_path.h"
-#include "tools/program/method_names.h"
+#include "frames/focus_path.h"
 #include "window/frame_graph.h"
 #include "window/key_bindings.h"
 
@@ -79,8 +78,8 @@ void draw_head(const FrameTrace& trace, const PanelFacts& facts, bool frozen) {
 
 std::vector<std::string> method_names() {
   std::vector<std::string> names;
-  for (const auto& [name, choice] : tools::method_choices())
-    names.push_back(name);
+  for (const VariantInfo& info : all_variants())
+    names.push_back(info.name);
   return names;
 }
 
@@ -94,8 +93,9 @@ std::vector<std::string> focus_choices(const LookSettings& look) {
 void draw_method(LookSettings& look, const PanelFacts& facts) {
   if (facts.method.empty()) {
     choose_text("method", method_names(), look.method);
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", tools::method_choices().at(look.method).summary.c_str());
+    for (const VariantInfo& info : all_variants()) {
+      if (info.name == look.method && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", info.summary.c_str());
+    }
     return;
   }
   label("method");

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "window/frame_trace.h"
+#include "window/frame_graph.h"
 #include "window/window_settings.h"
 
 namespace quincunx::scenes {
@@ -20,7 +20,7 @@ struct PickedPixel {
   std::array<std::uint8_t, 4> rgba = {};
 };
 
-// What the panel tells; what it changes is in the settings.
+// The facts that the panel shows; the values that it changes are in the settings.
 struct PanelFacts {
   std::vector<std::string> scenes;
   std::int64_t frame = 0;
@@ -33,7 +33,7 @@ struct PanelFacts {
   std::string opengl;
   std::string opencl;
   std::optional<PickedPixel> pixel;  // under the cursor, where the picture is enlarged
-  std::string message;               // of what was done last; may be empty
+  std::string message;               // the latest news for the user; may be empty
 };
 
 void draw_panel(WindowSettings& settings, const FrameTrace& trace, const PanelFacts& facts);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Screen: brings the picture, and a layer over it, to the window's back buffer.
+// The contents of the window: Screen brings the picture, and a layer over it, to the back buffer; Ui draws the
+// interface into that layer.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "quincunx/extent.h"
@@ -10,9 +13,11 @@
 #include "quincunx_gl/handle.h"
 #include "window/window_settings.h"
 
+struct GLFWwindow;
+
 namespace quincunx::scenes {
 
-// Which pixel of the picture the window's top left corner shows, at this zoom.
+// The pixel of the picture that the window's top left corner shows, at this zoom.
 struct ZoomOrigin {
   int x = 0;
   int y = 0;
@@ -21,7 +26,7 @@ ZoomOrigin zoom_origin(const ZoomSettings& zoom, Extent picture);
 
 struct ScreenPicture {
   GLuint picture = 0;   // RGBA8, row 0 on top
-  GLuint compared = 0;  // of the same extent; 0: no split
+  GLuint compared = 0;  // the same extent; 0: no split
   Extent extent = {};
 };
 
@@ -58,6 +63,32 @@ class Screen {
   gl::Texture layer_texture_;
   gl::Framebuffer layer_framebuffer_;
   Extent layer_extent_;
+};
+
+// Dear ImGui in a window: fonts, looks, and when it is drawn. At the window's resolution, whatever the picture has.
+// One at a time; on the window's thread, with its context current.
+class Ui {
+ public:
+  explicit Ui(GLFWwindow* window);
+  ~Ui();
+  Ui(const Ui&) = delete;
+  Ui& operator=(const Ui&) = delete;
+
+  // Calls `content`, which describes the interface by calls of Dear ImGui, and draws it; with kEverySecond
+  // every other call shows the last layer again instead.
+  void draw(const std::function<void()>& content, UiDrawing drawing, Screen& screen, Extent window);
+
+  // Whether what is done with them is meant for the interface, not for what lies below it.
+  bool wants_keys() const;
+  bool wants_pointer() const;
+
+  std::int64_t drawn() const { return drawn_; }  // times that `content` was called
+
+ private:
+  void draw_content(const std::function<void()>& content, GLuint framebuffer, Extent window);
+
+  std::int64_t drawn_ = 0;
+  bool layer_is_fresh_ = false;  // it was drawn in the last call
 };
 
 }  // namespace quincunx::scenes

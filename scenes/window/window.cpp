@@ -11,12 +11,10 @@
 #include <string>
 #include <utility>
 
-#include "window/lost_display.h"
-
 namespace quincunx::scenes {
 namespace {
 
-// Of the last call that failed. GLFW tells by a call-back without a place for a pointer.
+// The error of the last call that failed. GLFW tells it by a call-back without a place for a pointer.
 std::string& last_error() {
   static std::string text;
   return text;

@@ -44,7 +44,7 @@ class Window {
   // Takes what has happened from the display. Waits up to `seconds` for something to happen.
   void poll(double seconds = 0);
 
-  // What was done since the last call, in order.
+  // Input since the last call, in order.
   std::vector<KeyPress> take_keys();
   PointerUse take_pointer();
   void press(const KeyPress& key) { keys_.push_back(key); }  // as if the keyboard had done it
@@ -74,5 +74,9 @@ class Window {
   PointerUse pointer_;
   bool dragging_ = false;
 };
+
+// Makes the program end with exit status 1 and one sentence in the log when the window's X11 display goes away. In
+// lost_display.cpp.
+void end_when_display_is_lost();
 
 }  // namespace quincunx::scenes

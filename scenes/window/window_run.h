@@ -2,8 +2,8 @@
 // run_window: quincunx-render --window.
 #pragma once
 
-#include "programs/render_options.h"
 #include "quincunx/status.h"
+#include "session/render_options.h"
 
 namespace quincunx::scenes {
 

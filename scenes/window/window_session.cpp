@@ -11,7 +11,6 @@
 #include "catalog/scene_catalog.h"
 #include "tools/image/image_io.h"
 #include "tools/program/clock.h"
-#include "tools/program/method_names.h"
 #include "window/key_bindings.h"
 #include "window/window_run.h"
 
@@ -27,9 +26,9 @@ constexpr std::size_t kWarmUp = 32;  // frames before a frozen one, for methods 
 
 // Frames that the picture of one depends on, at most.
 std::int64_t frames_before(const LookSettings& look) {
-  const Method method = tools::method_choices().at(look.method).method;
+  const Method method = parse_variant(look.method)->method;
   const bool compared = look.compares_methods();
-  const Method other = compared ? tools::method_choices().at(look.compared).method : method;
+  const Method other = compared ? parse_variant(look.compared)->method : method;
   const Method most = std::max(method, other);
   if (most == Method::kTemporal || look.chooses_method) return static_cast<std::int64_t>(kWarmUp);
   return most == Method::kQuincunx || look.shading == Shading::kCheckerboard ? 1 : 0;
@@ -46,7 +45,7 @@ std::string unused_name(const std::filesystem::path& base, const std::string& en
 WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   WindowSettings settings;
   settings.look.scene = options.scene.empty() ? list_scenes().front().name : options.scene;
-  settings.look.method = tools::method_name(options.resolve);
+  settings.look.method = name_of(variant_of(options.resolve));
   settings.look.shutter = options.resolve.blur.shutter;
   settings.look.blur_samples = options.resolve.blur.samples;
   settings.look.tone_map = options.resolve.tone_map;
@@ -193,7 +192,7 @@ Status WindowSession::update_pacing() {
   auto pacing =
       frame_pacing_for(wanted, picture_->output(), front != nullptr ? *front : ErrorFront::built_in());
   if (!pacing.ok()) return pacing.status();
-  auto paced = PacedLoop::create(*std::move(pacing).value(), options_.pacing.cost,
+  auto paced = PacedLoop::create(std::move(pacing).value(), options_.pacing.cost,
                                  pass_timer(picture_->source().device()));
   if (!paced.ok()) return paced.status();
   paced_ = std::move(paced).value();
@@ -232,7 +231,7 @@ Status WindowSession::show_next() {
   return {};
 }
 
-// As it was, but for what the settings have changed.
+// Returns the frame's view as it was, but for the settings that have changed.
 FrameView WindowSession::view_again(std::int64_t index) {
   const auto known =
       std::find_if(recent_.begin(), recent_.end(), [&](const auto& recent) { return recent.first == index; });
@@ -243,7 +242,7 @@ FrameView WindowSession::view_again(std::int64_t index) {
   return view;
 }
 
-// The same frame by other settings: with the frames that its picture depends on.
+// Draws the same frame by other settings, with the frames that its picture depends on.
 Status WindowSession::show_again(LivePicture::Keep keep) {
   const std::int64_t first = std::max<std::int64_t>(frame_ - frames_before(settings_.look), 0);
   for (std::int64_t index = first; index <= frame_; ++index) {
@@ -264,7 +263,7 @@ void WindowSession::show_on_screen() {
   ui_->draw([&] { draw_panel(settings_, trace_, told); }, settings_.drawing, *screen_, window);
 }
 
-// Of the picture, under the pointer; outside of it where the pointer is.
+// Returns the picture's pixel under the pointer; one outside of the picture where the pointer is.
 Vec2 WindowSession::pointed_pixel() const {
   const ZoomOrigin origin = zoom_origin(settings_.zoom, picture_->output());
   const auto factor = static_cast<float>(settings_.zoom.factor);

@@ -10,14 +10,13 @@
 #include <string>
 #include <utility>
 
-#include "programs/paced_loop.h"
-#include "programs/render_options.h"
-#include "window/frame_trace.h"
+#include "session/paced_loop.h"
+#include "session/render_options.h"
+#include "window/frame_graph.h"
+#include "window/key_bindings.h"
 #include "window/live_picture.h"
 #include "window/panel.h"
 #include "window/screen.h"
-#include "window/script.h"
-#include "window/ui.h"
 #include "window/window.h"
 #include "window/window_settings.h"
 
@@ -63,7 +62,7 @@ class WindowSession {
 
   std::optional<PacedLoop> paced_;
   FrameTrace trace_;
-  FrameView view_;                                         // of the frame that is shown
+  FrameView view_;                                         // view of the frame that is shown
   std::deque<std::pair<std::int64_t, FrameView>> recent_;  // the last ones by number, oldest first
   std::int64_t frame_ = -1;                                // its number; -1: none yet
   std::int64_t shown_count_ = 0;  // pictures on the screen so far, a frozen frame each time

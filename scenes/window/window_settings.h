@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "programs/frame_pacing.h"
 #include "quincunx/resolve_plan.h"
+#include "session/frame_pacing.h"
 #include "tools/program/jitter.h"
 
 namespace quincunx::scenes {
 
-// What each frame's viewport follows.
+// The source of each frame's viewport.
 enum class ResolutionMode : std::uint8_t {
   kFixed,       // the scale
   kController,  // a controller that holds the target rate
@@ -32,7 +32,7 @@ constexpr float kLargestScale = 2.0f;
 
 struct ResolutionSettings {
   ResolutionMode mode = ResolutionMode::kFixed;
-  float scale = 1;               // of kFixed, per axis, in [kSmallestScale, kLargestScale]
+  float scale = 1;               // scale with kFixed, per axis, in [kSmallestScale, kLargestScale]
   float largest_controlled = 1;  // scale of kController
 
   friend bool operator==(const ResolutionSettings&, const ResolutionSettings&) = default;
@@ -63,7 +63,7 @@ inline const std::vector<std::string> kParticleScales = {kParticlesInFrame, "1",
 // How the picture is made; a change of these makes passes and buffers anew.
 struct LookSettings {
   std::string scene;                       // as open_scene() takes it
-  std::string method;                      // a name of tools::method_choices()
+  std::string method;                      // a name of all_variants()
   bool chooses_method = false;             // a controller does, for each frame; follows from other settings
   std::string compared = kCompareNothing;  // that, "truth", or another method
   float shutter = 0;                       // motion blur, part of a frame's time
@@ -100,7 +100,7 @@ const char* name_of(UiDrawing drawing);  // "every 2nd frame"
 // A part of the picture, enlarged to whole multiples.
 struct ZoomSettings {
   int factor = 1;            // 1, 2, 4 ... kLargestZoom
-  Vec2 centre = {.5f, .5f};  // of the part, as part of the picture
+  Vec2 centre = {.5f, .5f};  // centre of the part, as part of the picture
 };
 
 constexpr int kLargestZoom = 32;

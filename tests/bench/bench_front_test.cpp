@@ -5,7 +5,6 @@
 #include <set>
 
 #include "bench/front/front_points.h"
-#include "bench/front/front_scenes.h"
 #include "catalog/scene_catalog.h"
 
 namespace quincunx::bench {
@@ -31,7 +30,7 @@ TEST(FrontScenes, EachClassHasScenesOfBothKindsAndNoSceneIsThereTwice) {
   }
 }
 
-// Of bilinear at scale 0.5 and 1, in each measured scene and one that is held out.
+// Returns a result of bilinear at scale 0.5 and 1, in each measured scene and one that is held out.
 BenchResult result(double flip, double ms) {
   BenchResult result;
   result.conditions.output = {1000, 500};
@@ -66,7 +65,7 @@ TEST(FrontPoints, AreMeansOverTheScenesOfTheClassAndTheViews) {
   ASSERT_EQ(points->size(), 2 * kSceneClasses);
   for (const FrontPoint& point : points.value()) {
     EXPECT_EQ(point.method.method, Method::kBilinear);
-    EXPECT_DOUBLE_EQ(point.ms_per_megapixel, 3 * point.scale / 0.5);  // of half a megapixel
+    EXPECT_DOUBLE_EQ(point.ms_per_megapixel, 3 * point.scale / 0.5);  // the picture has half a megapixel
     EXPECT_DOUBLE_EQ(point.psnr_db, 30);
     EXPECT_EQ(point.psnr_spread, 0);
   }

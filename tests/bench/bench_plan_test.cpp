@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <set>
 
-#include "bench/speed_error/bench_gallery.h"
-#include "bench/speed_error/disocclusion.h"
+#include "bench/speed_error/bench_page.h"
+#include "bench/speed_error/regions.h"
 #include "catalog/scene_catalog.h"
-#include "tools/program/method_names.h"
 
 namespace quincunx::bench {
 namespace {
@@ -32,11 +31,8 @@ void expect_refused(const std::vector<std::string>& arguments, const std::string
 
 TEST(Plan, MeasuresEveryMethodOfTheTableOnce) {
   std::set<std::string> forms;
-  for (const auto& [name, choice] : tools::method_choices()) {
-    ResolveSettings settings;
-    tools::choose(settings, choice);
-    forms.insert(tools::method_name(settings));
-  }
+  for (const VariantInfo& info : all_variants())
+    forms.insert(info.name);
   std::set<std::string> measured;
   for (const BenchMethod& method : all_methods()) {
     EXPECT_TRUE(measured.insert(method.name).second) << method.name;
@@ -191,7 +187,7 @@ TEST(Disocclusion, IsWhatANearerSurfaceHid) {
   const auto mask = disoccluded_since(now, before);
   EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 1, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(disoccluded_since(now, now), std::vector<std::uint8_t>(8, 0));
-  // What came from outside was not hidden, and what is as near as before neither.
+  // Pixels that came from outside were not hidden, nor were those that are as near as before.
   now.velocity.assign(8, {2, 0});
   EXPECT_EQ(disoccluded_since(now, before), std::vector<std::uint8_t>(8, 0));
 }

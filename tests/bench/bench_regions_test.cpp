@@ -12,7 +12,7 @@
 #include <string>
 
 #include "bench/speed_error/bench_quality.h"
-#include "programs/frame_source.h"
+#include "frames/frame_source.h"
 #include "quincunx_gl/target_readback.h"
 
 namespace quincunx::bench {
@@ -99,7 +99,7 @@ TEST(Regions, EdgesOfMotionAreNearWhereMotionsMeet) {
   EXPECT_EQ(count(edges), 6 * kSize.height);
   EXPECT_EQ(edges[at(7, 0)], 1);
   EXPECT_EQ(edges[at(12, 11)], 1);
-  // What turns or grows has no edge within.
+  // Turning or growing surfaces have no edge within.
   for (std::size_t i = 0; i < geometry.velocity.size(); ++i)
     geometry.velocity[i] = {
         0.3f * static_cast<float>(i % static_cast<std::size_t>(kSize.width)) / kSize.width, 0};

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/sample_result.h"
+#include "bench/speed_error/bench_compare.h"
+#include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_page.h"
-#include "bench/speed_error/bench_plot.h"
 #include "bench/speed_error/bench_result.h"
+#include "bench/speed_error/bench_statistics.h"
 
 namespace quincunx::bench {
 namespace {
@@ -157,5 +160,226 @@ TEST(Page, IsOneFileThatNothingInItEnds) {
   EXPECT_EQ(count("http://"), count("http://www.w3.org/2000/svg"));
 }
 
+TEST(Statistics, MedianAndPercentileOfKnownLists) {
+  EXPECT_EQ(median_of({3, 1, 2}), 2);
+  EXPECT_EQ(median_of({4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(median_of({7}), 7);
+  EXPECT_EQ(least_median_of({{9, 1, 8}, {}, {4, 5, 6, 7}}), 5.5);
+  Samples hundred;
+  for (int i = 100; i >= 1; --i)
+    hundred.push_back(i);
+  EXPECT_EQ(p95_of(hundred), 95);
+  EXPECT_EQ(p95_of({1, 2, 3}), 3);
+  EXPECT_EQ(mean_of({1, 2, 6}), 3);
+  EXPECT_DOUBLE_EQ(deviation_of_mean({1, 3}), 1);  // s = sqrt(2), of two
+}
+
+TEST(Statistics, TheIntervalHoldsTheMedianAndShowsTheSpreadOfRounds) {
+  const Spread steady = spread_of({{5, 5}, {5, 5}, {5, 5}});
+  EXPECT_EQ(steady, (Spread{.median = 5, .p95 = 5, .low = 5, .high = 5}));
+  EXPECT_EQ(relative_noise(steady), 0);
+
+  const Spread wide = spread_of({{1, 1}, {2, 2}, {3, 3}});
+  EXPECT_EQ(wide.median, 2);
+  EXPECT_EQ(wide.low, 1);
+  EXPECT_EQ(wide.high, 3);
+  EXPECT_DOUBLE_EQ(relative_noise(wide), 0.5);
+  EXPECT_EQ(spread_of({{1, 2}, {9, 3}, {5}}), spread_of({{1, 2}, {9, 3}, {5}}));
+  EXPECT_EQ(spread_of({{}, {4}, {}}).median, 4);
+  EXPECT_EQ(spread_of({}), Spread{});
+}
+
+TEST(Statistics, RatiosAreFormedWithinTheirRound) {
+  // A machine twice as slow in the second round changes no ratio.
+  const Spread ratio = ratio_of({{3, 3}, {6, 6}}, {{1, 1}, {2, 2}});
+  EXPECT_EQ(ratio, (Spread{.median = 3, .p95 = 3, .low = 3, .high = 3}));
+}
+
+TEST(Statistics, TheFrontHoldsWhatNothingBeats) {
+  const std::vector<Point> points = {{1, 5}, {2, 3}, {2, 4}, {3, 3}, {4, 1}, {1, 5}};
+  EXPECT_EQ(pareto_front(points), (std::vector<bool>{true, true, false, false, true, true}));
+}
+
+TEST(Statistics, FrontsAreThoseOfTheirSceneScaleAndMeasure) {
+  BenchResult result = testing::sample_result();
+  mark_fronts(result.rows);
+  const auto has = [](const Row& row, const std::string& name) {
+    return std::count(row.front.begin(), row.front.end(), name) == 1;
+  };
+  EXPECT_TRUE(has(result.rows[0], "flip"));
+  EXPECT_TRUE(has(result.rows[1], "flip"));
+  EXPECT_TRUE(has(result.rows[1], "psnr"));
+  EXPECT_FALSE(has(result.rows[1], "ssim"));     // no better, and slower
+  EXPECT_FALSE(has(result.rows[0], "flicker"));  // it has none
+  EXPECT_TRUE(has(result.rows[1], "flicker"));
+}
+
+TEST(Findings, MeansOfRegionsAreThoseOfTheScenesThatHaveThem) {
+  BenchResult result = testing::sample_result();
+  result.scenes.push_back({"other", "", "", 0, 0, {}});
+  Row other = result.rows[0];
+  other.scene = "other";
+  other.quality.region_psnr = {10, {}, 15, {}, {}};
+  result.rows.push_back(other);
+  const MethodMean mean = method_means(result).front();
+  EXPECT_NEAR(mean.region_psnr[0].value(), -10 * std::log10((0.1 + 0.01) / 2), 1e-9);  // 10 and 20 dB
+  EXPECT_NEAR(mean.region_psnr[1].value(), 28, 1e-9);
+  EXPECT_NEAR(mean.region_psnr[2].value(), 15, 1e-9);
+  EXPECT_FALSE(mean.region_psnr[3].has_value());
+}
+
+TEST(Findings, SpeakOfTheSample) {
+  const BenchResult result = testing::sample_result();
+  const auto seventy = seventy_percent(result);
+  ASSERT_TRUE(seventy.has_value());
+  EXPECT_EQ(seventy->scale, 0.7);
+  EXPECT_DOUBLE_EQ(seventy->wall, 0.7);
+  EXPECT_NEAR(typical_noise(result).cost, 0.00375, 1e-12);  // the mean of 0.005 / 1 and 0.005 / 2
+  EXPECT_NEAR(typical_noise(result).ms, 0.0075, 1e-12);
+  EXPECT_FALSE(findings_of(result).empty());
+  EXPECT_TRUE(findings_of(BenchResult{}).empty());
+  EXPECT_NE(text_of(result).find("quincunx:mean"), std::string::npos);
+
+  BenchResult without = result;
+  without.frames.pop_back();  // scale 1
+  EXPECT_FALSE(seventy_percent(without).has_value());
+}
+
+using testing::sample_result;
+using testing::spread;
+
+Comparison compared(const BenchResult& after) {
+  auto comparison = compare(sample_result(), after);
+  EXPECT_TRUE(comparison.ok()) << comparison.status().message();
+  return comparison.value();
+}
+
+void slow_down(Row& row, double factor) {
+  row.speed.processor_ratio = spread(factor * row.speed.processor_ratio.median, 0.005);
+}
+
+TEST(Compare, AResultEqualsItself) {
+  const Comparison comparison = compared(sample_result());
+  EXPECT_TRUE(comparison.changes.empty());
+  EXPECT_FALSE(comparison.worse());
+  EXPECT_GT(comparison.same, 0);
+}
+
+TEST(Compare, ErrorsCountFromTheirThreshold) {
+  BenchResult after = sample_result();
+  after.rows[0].quality.flip += 0.0009;  // below 0.0005 + 0.5 %
+  EXPECT_FALSE(compared(after).worse());
+  after.rows[0].quality.flip += 0.0003;
+  const Comparison worse = compared(after);
+  ASSERT_EQ(worse.changes.size(), 1u);
+  EXPECT_TRUE(worse.worse());
+  EXPECT_EQ(worse.changes[0].measure, "FLIP");
+  EXPECT_EQ(worse.changes[0].verdict, Verdict::kWorse);
+  EXPECT_NE(text_of(worse).find("WORSE"), std::string::npos);
+
+  after = sample_result();
+  after.rows[0].quality.psnr += 1;
+  EXPECT_FALSE(compared(after).worse());
+  EXPECT_EQ(compared(after).changes.size(), 1u);
+  after.rows[0].quality.psnr -= 2;
+  EXPECT_TRUE(compared(after).worse());
+}
+
+TEST(Compare, ARegionCountsThoughTheMeanDoesNotChange) {
+  BenchResult after = sample_result();
+  auto& thin = after.rows[0].quality.region_psnr[static_cast<std::size_t>(Region::kThin)];
+  thin = thin.value() - 0.2;
+  const Comparison worse = compared(after);
+  ASSERT_EQ(worse.changes.size(), 1u);
+  EXPECT_EQ(worse.changes[0].measure, "PSNR of thin things, dB");
+  EXPECT_TRUE(worse.worse());
+  thin.reset();  // from before there were regions
+  EXPECT_TRUE(compared(after).changes.empty());
+}
+
+TEST(Compare, ALongerHistoryIsAnotherMeasurement) {
+  BenchResult other = sample_result();
+  other.conditions.history_warm_up = 6;
+  const auto refused = compare(sample_result(), other);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.status().message().find("--history-warm-up"), std::string::npos);
+  other.conditions.history_warm_up.reset();  // from before there were methods that accumulate
+  EXPECT_TRUE(compare(other, sample_result()).ok());
+}
+
+TEST(Compare, LosingAnInfiniteRatioIsWorse) {
+  BenchResult after = sample_result();
+  after.rows[1].quality.psnr = 90;
+  EXPECT_TRUE(compared(after).worse());
+}
+
+TEST(Compare, OneNonFinitePixelIsWorse) {
+  BenchResult after = sample_result();
+  after.rows[3].quality.non_finite = 1;
+  EXPECT_TRUE(compared(after).worse());
+}
+
+TEST(Compare, ASlowRowCountsWhereTheOthersStand) {
+  BenchResult after = sample_result();
+  slow_down(after.rows[2], 1.02);
+  EXPECT_FALSE(compared(after).worse());
+  slow_down(after.rows[2], 1.2);
+  const Comparison comparison = compared(after);
+  EXPECT_TRUE(comparison.worse());
+  EXPECT_EQ(comparison.changes[0].measure, "cost, copies");
+  EXPECT_EQ(comparison.changes[0].scale, 0.7);
+}
+
+TEST(Compare, ARowWithinTheNoiseOfAllRowsDoesNotCount) {
+  BenchResult after = sample_result();
+  const double factors[] = {1.08, 0.93, 0.92, 1.07, 1.10, 0.95, 0.90, 1.06};
+  for (std::size_t i = 0; i < after.rows.size(); ++i)
+    slow_down(after.rows[i], factors[i]);
+  const Comparison comparison = compared(after);
+  EXPECT_FALSE(comparison.worse());
+  EXPECT_GT(comparison.cost_deviation, 0.05);
+}
+
+TEST(Compare, AMethodThatIsALittleSlowerEverywhereCounts) {
+  BenchResult after = sample_result();
+  for (std::size_t i = 1; i < after.rows.size(); i += 2) {
+    slow_down(after.rows[i], 1.06);
+    after.rows[i].speed.processor_ratio = spread(after.rows[i].speed.processor_ratio.median, 0.2);
+  }
+  const Comparison comparison = compared(after);
+  ASSERT_EQ(comparison.changes.size(), 1u);
+  EXPECT_EQ(comparison.changes[0].scene, "all");
+  EXPECT_EQ(comparison.changes[0].method, "quincunx:mean");
+  EXPECT_TRUE(comparison.worse());
+}
+
+TEST(Compare, CostsOfAnotherMachineAreLeftOut) {
+  BenchResult after = sample_result();
+  for (Row& row : after.rows)
+    slow_down(row, 3);
+  EXPECT_TRUE(compared(after).worse());
+  after.machine.cl_driver = "another";
+  EXPECT_FALSE(compared(after).worse());
+  EXPECT_EQ(compared(after).notes.size(), 1u);
+}
+
+TEST(Compare, NamesWhatOneResultLacks) {
+  BenchResult after = sample_result();
+  after.rows[0].method = "new";
+  const Comparison comparison = compared(after);
+  EXPECT_EQ(comparison.missing, std::vector<std::string>{"pan, 0.5, bilinear"});
+  EXPECT_EQ(comparison.added, std::vector<std::string>{"pan, 0.5, new"});
+  EXPECT_FALSE(comparison.worse());
+}
+
+TEST(Compare, RefusesOtherConditions) {
+  BenchResult after = sample_result();
+  after.conditions.seed = 7;
+  const auto comparison = compare(sample_result(), after);
+  ASSERT_FALSE(comparison.ok());
+  EXPECT_NE(comparison.status().message().find("--seed"), std::string::npos);
+}
+
 }  // namespace
+
 }  // namespace quincunx::bench

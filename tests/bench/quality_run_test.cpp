@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the quality controller promises on scripted loads, pictures and machines.
+// The promises of the quality controller on scripted loads, pictures and machines.
 #include "bench/traces/quality_run.h"
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ class Worked : public ::testing::Test {
   ResolutionLadder ladder_ =
       ResolutionLadder::create({.output = {64, 64}}).value();  // passes take next to nothing
   ContentTrace trace_;
-  static constexpr FrontMethod kPlain = {.method = Method::kBilinear};
+  static constexpr MethodVariant kPlain = {.method = Method::kBilinear};
 };
 
 TEST_F(Worked, AFrameThatFitsErrsAsTheFrontSays) {
@@ -122,7 +122,7 @@ TEST_F(Worked, ADroppedFrameIsAnError) {
 
 TEST_F(Worked, TheOracleIsTheLeastOfAllMethods) {
   double least = 1;
-  for (const FrontMethod& method : ErrorFront::built_in().methods()) {
+  for (const MethodVariant& method : ErrorFront::built_in().methods()) {
     least = std::min(least, ErrorFront::built_in().flip(SceneMix::only(SceneClass::kPan), method, 1).value());
   }
   EXPECT_NEAR(oracle(stage(), ladder_).error, least, 1e-12);

@@ -11,7 +11,7 @@
 namespace quincunx {
 namespace {
 
-constexpr Extent kSmall = {32, 18};  // of the stand-in's scene at 50 %
+constexpr Extent kSmall = {32, 18};  // the stand-in's scene at 50 %
 constexpr Extent kFull = {64, 36};
 constexpr int kFrames = 3;
 

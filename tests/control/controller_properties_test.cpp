@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every controller keeps, whatever it is told.
+// Properties that every controller keeps, whatever it is told.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -47,13 +47,13 @@ TEST(CostTable, TimesOfOneResolutionAreAveragedByAge) {
 TEST(CostTable, WhatWasNotRecordedIsExtrapolated) {
   CostTable table = make(100);
   ASSERT_TRUE(table.record(0, 1, 20).ok());
-  // Of 20 ms a quarter is fixed: 5 + 15 / 2.
+  // A quarter of 20 ms is fixed: 5 + 15 / 2.
   EXPECT_DOUBLE_EQ(*table.predict(0.5, 0.25), 12.5);
   // A second entry a half life later, 10 ms at a quarter: 10 * (.25 + .75 * .5) / (.25 + .75 * .25)
   // = 14.2857.
   ASSERT_TRUE(table.record(100, 0.25, 10).ok());
   EXPECT_NEAR(*table.predict(0.5, 0.25), (0.5 * 12.5 + 14.285714285714286) / 1.5, 1e-12);
-  // What is old is taken for half from itself and for half from all that the table holds.
+  // An old entry is predicted half from itself and half from all that the table holds.
   const double from_both = (0.5 * 20 + 10 * 1 / (0.25 + 0.75 * 0.25)) / 1.5;
   EXPECT_NEAR(*table.predict(1, 0.25), 0.5 * 20 + 0.5 * from_both, 1e-12);
 }

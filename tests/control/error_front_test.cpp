@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: MIT
+// The error front: its values, its file, and the scene mix that it is asked with.
 #include "quincunx/error_front.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <random>
 #include <string>
+
+#include "../tools/own_cache.h"
+#include "../tools/temporary_folder.h"
+#include "quincunx/cache_folder.h"
+#include "quincunx/content_statistics.h"
+#include "quincunx/front_file.h"
 
 namespace quincunx {
 namespace {
 
-const FrontMethod kBilinear = {.method = Method::kBilinear};
-const FrontMethod kFast = {.method = Method::kTemporal, .preset = TemporalPreset::kFast};
+const MethodVariant kBilinear = {.method = Method::kBilinear};
+const MethodVariant kFast = {.method = Method::kTemporal, .preset = TemporalPreset::kFast};
 
 const FrontSource kSource = {.device = "platform device",
                              .driver = "1.2",
@@ -21,7 +30,7 @@ const FrontSource kSource = {.device = "platform device",
                              .truth = "64 samples a pixel",
                              .output = {640, 360}};
 
-FrontPoint point(SceneClass scene_class, const FrontMethod& method, double scale, double flip, double ms) {
+FrontPoint point(SceneClass scene_class, const MethodVariant& method, double scale, double flip, double ms) {
   return {.scene_class = scene_class,
           .method = method,
           .scale = scale,
@@ -33,7 +42,7 @@ FrontPoint point(SceneClass scene_class, const FrontMethod& method, double scale
           .ms_spread = ms / 20};
 }
 
-// Of each class; errors and times grow with the class's number, so that no two are alike.
+// Returns points of each class; errors and times grow with the class's number, so that no two are alike.
 std::vector<FrontPoint> points() {
   std::vector<FrontPoint> all;
   for (std::size_t i = 0; i < kSceneClasses; ++i) {
@@ -151,7 +160,7 @@ TEST(ErrorFront, HasNoAnswerToWhatCannotBe) {
 
 TEST(ErrorFront, TheFrontIsWhatNothingDominates) {
   std::vector<FrontPoint> all = points();
-  // Of more milliseconds and more error than bilinear at the same scale, and then of fewer milliseconds.
+  // Points with more milliseconds and more error than bilinear at the same scale, and then with fewer milliseconds.
   for (std::size_t i = 0; i < kSceneClasses; ++i)
     all.push_back(point(static_cast<SceneClass>(i), {.method = Method::kBSpline}, 1, 0.31, 8));
   all.back().ms_per_megapixel = 2;
@@ -166,25 +175,13 @@ TEST(ErrorFront, TheFrontIsWhatNothingDominates) {
   EXPECT_EQ(ErrorFront::create(kSource, all)->front(SceneClass::kZoom).size(), 5u);
 }
 
-TEST(ErrorFront, NamesGoBothWays) {
-  for (const FrontMethod& method :
-       {kBilinear, kFast, FrontMethod{.method = Method::kQuincunx, .form = TwoFrameForm::kVelocity},
-        FrontMethod{.method = Method::kTemporal, .preset = TemporalPreset::kQuality}}) {
-    const auto again = front_method(name_of(method));
-    ASSERT_TRUE(again.ok()) << again.status().message();
-    EXPECT_EQ(again.value(), method);
-  }
-  EXPECT_EQ(name_of(kFast), "temporal:fast");
-  EXPECT_NE(front_method("temporal").status().message().find("temporal:balanced"), std::string::npos);
-}
-
 TEST(ErrorFront, WhatDoesNotCountForAMethodIsNoDifference) {
-  FrontMethod other = kBilinear;
+  MethodVariant other = kBilinear;
   other.preset = TemporalPreset::kQuality;
   other.form = TwoFrameForm::kMean;
   EXPECT_EQ(other, kBilinear);
   EXPECT_TRUE(make().resolve_ms(other, 1, 1));
-  FrontMethod quality = kFast;
+  MethodVariant quality = kFast;
   quality.preset = TemporalPreset::kQuality;
   EXPECT_FALSE(quality == kFast);
 }
@@ -233,6 +230,7 @@ TEST(ErrorFront, BadFilesAreRefusedInOneSentence) {
            {changed("\"bilinear\",0.5", "\"bilinear\",\"half\""), "must be number"},
            {changed("\"bilinear\",0.5", "\"bilinear\",1.5"), "it must lie in (0, 1]"},
            {changed("\"bilinear\",0.5,", "\"bilinear\","), "is no row of 9 cells"},
+           {changed("\"bilinear\"", "\"temporal\""), "must be 'temporal:balanced'"},
            {good.substr(0, good.size() / 2), "parse error"},
        }) {
     const auto front = ErrorFront::from_json(text);
@@ -249,11 +247,11 @@ TEST(ErrorFront, TheBuiltInOneSaysSo) {
   EXPECT_TRUE(front.is_built_in());
   EXPECT_EQ(front.summary().rfind("built in", 0), 0u) << front.summary();
   EXPECT_TRUE(front.source().scene.empty());
-  // What a controller chooses from: at least a filter and a method that accumulates, and more pixels are better. From
-  // half on that need not hold of a still picture, of which what accumulates has all there is.
+  // A controller has a choice: at least a filter and a method that accumulates, and more pixels are better. From half
+  // on that need not hold for a still picture, which an accumulating method already knows completely.
   EXPECT_TRUE(front.resolve_ms(kBilinear, 0.7, 0.9));
   EXPECT_TRUE(front.resolve_ms(kFast, 0.7, 0.9));
-  for (const FrontMethod& method : front.methods()) {
+  for (const MethodVariant& method : front.methods()) {
     for (std::size_t i = 0; i < kSceneClasses; ++i) {
       const auto only = static_cast<SceneClass>(i);
       const SceneMix mix = SceneMix::only(only);
@@ -264,5 +262,127 @@ TEST(ErrorFront, TheBuiltInOneSaysSo) {
   }
 }
 
+namespace fs = std::filesystem;
+
+// A cache folder of its own.
+class FrontFile : public ::testing::Test {
+ protected:
+  // The figures that are built in, as if measured for `source` and written where those of `place` are looked for.
+  static void write(const FrontKey& place, const FrontKey& source) {
+    const auto points = ErrorFront::built_in().points();
+    const auto front = ErrorFront::create({.device = source.device,
+                                           .driver = source.driver,
+                                           .scene = source.scene,
+                                           .date = "now",
+                                           .command = {},
+                                           .truth = {},
+                                           .output = {640, 360}},
+                                          {points.begin(), points.end()});
+    ASSERT_TRUE(front.ok()) << front.status().message();
+    std::ofstream(*front_path(place)) << front->to_json();
+  }
+
+  static constexpr const char* kScene = "courtyard";
+  const FrontKey any_ = {"platform device", "1.2", ""};
+  const FrontKey scene_ = {"platform device", "1.2", kScene};
+
+ private:
+  testing::TemporaryFolder folder_;
+  testing::OwnCache cache_{folder_.file(".")};
+};
+
+TEST_F(FrontFile, LiesInTheCacheFolderByDeviceDriverAndScene) {
+  EXPECT_EQ(front_path(any_)->parent_path(), *cache_folder());
+  EXPECT_NE(*front_path(any_), *front_path(scene_));
+  EXPECT_NE(*front_path(any_), *front_path({"platform device", "1.3", ""}));
+  EXPECT_NE(*front_path(any_), *front_path({"another device", "1.2", ""}));
+  const testing::OwnCache none("");
+  EXPECT_FALSE(front_path(any_));
+  EXPECT_TRUE(find_front(any_).front.is_built_in());
+}
+
+TEST_F(FrontFile, TheScenesGoesBeforeTheDevicesGoesBeforeTheBuiltIn) {
+  EXPECT_TRUE(find_front(scene_).front.is_built_in());
+  EXPECT_EQ(find_front(scene_).explanation.rfind("built in", 0), 0u);
+  write(any_, any_);
+  EXPECT_FALSE(find_front(scene_).front.is_built_in());
+  EXPECT_EQ(find_front(scene_).front.source().scene, "");
+  write(scene_, scene_);
+  EXPECT_EQ(find_front(scene_).front.source().scene, kScene);
+  EXPECT_EQ(
+      find_front(scene_).explanation,
+      "measured on platform device, driver 1.2, now, for scene courtyard; " + front_path(scene_)->string());
+  EXPECT_EQ(find_front(any_).front.source().scene, "");
+}
+
+TEST_F(FrontFile, WhatIsDamagedOrOfSomethingElseIsPassedOverAndSaidSo) {
+  write(any_, any_);
+  std::ofstream(*front_path(scene_)) << "{";
+  const FoundFront device = find_front(scene_);
+  EXPECT_EQ(device.front.source().scene, "");
+  EXPECT_FALSE(device.front.is_built_in());
+  EXPECT_NE(device.explanation.find(front_path(scene_)->string() + "' was not taken: error front: "),
+            std::string::npos)
+      << device.explanation;
+  write(any_, {"another device", "1.2", ""});
+  const FoundFront built_in = find_front(any_);
+  EXPECT_TRUE(built_in.front.is_built_in());
+  EXPECT_NE(built_in.explanation.find("was not taken: it is of 'another device'"), std::string::npos)
+      << built_in.explanation;
+}
+
+double share(const SceneMix& mix, SceneClass scene_class) {
+  return mix.share[static_cast<std::size_t>(scene_class)];
+}
+
+TEST(ContentStatistics, NothingMovesIsStill) {
+  EXPECT_EQ(share(mix_of({}), SceneClass::kStill), 1);
+}
+
+TEST(ContentStatistics, EachPlaceCountsOnce) {
+  const SceneMix mix = mix_of({.moving = 0.7, .apart = 0.3, .thin = 0.1, .light = 0.2, .zoom = 0.15});
+  EXPECT_NEAR(share(mix, SceneClass::kLight), 0.2, 1e-12);
+  EXPECT_NEAR(share(mix, SceneClass::kThin), 0.1, 1e-12);
+  EXPECT_NEAR(share(mix, SceneClass::kObjects), 0.2, 1e-12);
+  EXPECT_NEAR(share(mix, SceneClass::kZoom), 0.15, 1e-12);
+  EXPECT_NEAR(share(mix, SceneClass::kPan), 0.25, 1e-12);
+  EXPECT_NEAR(share(mix, SceneClass::kStill), 0.1, 1e-12);
+}
+
+TEST(ContentStatistics, EveryMixIsValid) {
+  for (int code = 0; code < 243; ++code) {
+    int rest = code;
+    const auto third = [&rest] {
+      const double value = (rest % 3) * 0.5;
+      rest /= 3;
+      return value;
+    };
+    const ContentStatistics content = {
+        .moving = third(), .apart = third(), .thin = third(), .light = third(), .zoom = third()};
+    const SceneMix mix = mix_of(content);
+    ASSERT_TRUE(mix.valid()) << code;
+    if (content.moving == 0) {
+      ASSERT_EQ(share(mix, SceneClass::kPan), 0);
+      ASSERT_EQ(share(mix, SceneClass::kZoom), 0);
+    }
+  }
+}
+
+TEST(ContentStatistics, BadFieldsAreNamed) {
+  const double nan = std::nan("");
+  const auto message = [](const ContentStatistics& content) { return check(content).message(); };
+  for (const double bad : {nan, -0.1, 1.1}) {
+    EXPECT_EQ(message({.moving = bad}).rfind("content.moving", 0), 0u);
+    EXPECT_EQ(message({.apart = bad}).rfind("content.apart", 0), 0u);
+    EXPECT_EQ(message({.thin = bad}).rfind("content.thin", 0), 0u);
+    EXPECT_EQ(message({.light = bad}).rfind("content.light", 0), 0u);
+    EXPECT_EQ(message({.zoom = bad}).rfind("content.zoom", 0), 0u);
+  }
+  for (const double bad : {nan, -1.0, std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(message({.speed_px = bad}).rfind("content.speed_px", 0), 0u);
+  EXPECT_TRUE(check(ContentStatistics{.moving = 1, .speed_px = 300, .apart = 1}).ok());
+}
+
 }  // namespace
+
 }  // namespace quincunx

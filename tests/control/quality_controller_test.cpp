@@ -1,17 +1,240 @@
 // SPDX-License-Identifier: MIT
-// The quality controller against the front and the machine of quality_program.h.
+// The choice of the method; and the quality controller against a front and a machine that are written down here.
 #include "quincunx/quality_controller.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "quality_program.h"
+#include "control/method_choice.h"
+
+namespace quincunx {
+namespace {
+
+constexpr MethodChoice::Settings kSettings = {.hysteresis = 0.05, .rest_ms = 1000, .fade_frames = 4};
+constexpr double kFrameMs = 20;
+
+class MethodChanges : public ::testing::Test {
+ protected:
+  using Situation = MethodChoice::Situation;
+
+  // Frames in which method `best` would save `gain`.
+  void run(int frames, std::size_t best, double gain, Situation now = {.both_fit = true}) {
+    for (int i = 0; i < frames; ++i) {
+      now.next_frame = ++frame_;
+      now.frame_ms = kFrameMs;
+      now.best = best;
+      now.gain = gain;
+      choice_.advance(now);
+      now.cut = false;
+    }
+  }
+  void grow_old() { run(100, 0, 0); }
+
+  MethodChoice choice_{kSettings, 0};
+  std::uint64_t frame_ = 0;
+};
+
+TEST_F(MethodChanges, AGainWithinTheHysteresisIsLetBe) {
+  grow_old();
+  run(500, 1, 0.04);
+  EXPECT_EQ(choice_.method(), 0u);
+}
+
+TEST_F(MethodChanges, AGainHasToLastFourFrames) {
+  grow_old();
+  for (int i = 0; i < 100; ++i) {
+    run(3, 1, 0.2);
+    run(1, 0, 0);
+  }
+  EXPECT_EQ(choice_.method(), 0u);
+  run(4, 1, 0.2);
+  EXPECT_EQ(choice_.method(), 1u);
+}
+
+TEST_F(MethodChanges, AChangeIsFadedInEvenly) {
+  grow_old();
+  run(4, 1, 0.2);
+  for (int step = 1; step <= 4; ++step) {
+    ASSERT_EQ(choice_.fading_from(), 0u);
+    ASSERT_NEAR(choice_.weight(), step / 5.0, 1e-12);
+    run(1, 0, 0.9);  // nothing turns back on the way
+  }
+  EXPECT_FALSE(choice_.fading_from());
+  EXPECT_EQ(choice_.weight(), 1);
+  EXPECT_EQ(choice_.method(), 1u);
+}
+
+TEST_F(MethodChanges, OneChangeASecond) {
+  grow_old();
+  run(4, 1, 0.2);
+  ASSERT_EQ(choice_.method(), 1u);
+  run(49, 0, 0.2);
+  EXPECT_EQ(choice_.method(), 1u);
+  run(1, 0, 0.2);
+  EXPECT_EQ(choice_.method(), 0u);
+}
+
+TEST_F(MethodChanges, WhatMustBeDoesNotWaitForRest) {
+  grow_old();
+  run(4, 1, 0.2);
+  run(12, 2, 0, {.must = true, .both_fit = false});
+  EXPECT_EQ(choice_.method(), 2u);
+  EXPECT_FALSE(choice_.fading_from());
+}
+
+TEST_F(MethodChanges, HeldFramesChangeNothing) {
+  grow_old();
+  run(50, 1, 0.5, {.held = true, .both_fit = true});
+  EXPECT_EQ(choice_.method(), 0u);
+}
+
+TEST_F(MethodChanges, FastMotionAndTooLittleTimeNeedNoFade) {
+  grow_old();
+  run(4, 1, 0.2, {.masked = true, .both_fit = true});
+  EXPECT_EQ(choice_.method(), 1u);
+  EXPECT_FALSE(choice_.fading_from());
+  run(60, 0, 0.2, {.both_fit = false});
+  EXPECT_EQ(choice_.method(), 0u);
+  EXPECT_FALSE(choice_.fading_from());
+}
+
+TEST_F(MethodChanges, AYoungShotMayChangeOnceAtOnce) {
+  grow_old();
+  run(4, 1, 0.2);
+  run(10, 1, 0);
+  run(1, 2, 0.2, {.both_fit = true, .cut = true});
+  run(1, 2, 0.2);
+  EXPECT_EQ(choice_.method(), 2u);
+  EXPECT_FALSE(choice_.fading_from());
+  run(8, 0, 0.2);
+  EXPECT_EQ(choice_.method(), 2u);
+}
+
+TEST_F(MethodChanges, ACutEndsAFade) {
+  grow_old();
+  run(5, 1, 0.2);
+  ASSERT_TRUE(choice_.fading_from());
+  run(1, 1, 0, {.both_fit = true, .cut = true});
+  EXPECT_FALSE(choice_.fading_from());
+  EXPECT_EQ(choice_.weight(), 1);
+}
+
+TEST_F(MethodChanges, LostFramesShortenAFade) {
+  grow_old();
+  run(4, 1, 0.2);
+  frame_ += 10;
+  run(1, 1, 0);
+  EXPECT_FALSE(choice_.fading_from());
+}
+
+}  // namespace
+}  // namespace quincunx
 
 namespace quincunx::testing {
 namespace {
+
+constexpr MethodVariant kPlain = {.method = Method::kBilinear};
+constexpr MethodVariant kTwo = {.method = Method::kQuincunx};
+constexpr MethodVariant kDear = {.method = Method::kTemporal};
+constexpr double kTargetMs = 20;
+constexpr LadderSettings kLadder = {.output = {1000, 1000}, .order = AxisOrder::kBoth};  // one megapixel
+
+// Milliseconds of a method's passes, of an output of one megapixel.
+double passes_ms(const MethodVariant& method) {
+  return method == kPlain ? 0.5 : method == kTwo ? 2 : 6;
+}
+
+// In a still picture the dear method errs least by far; in light the plain one does; between them, the second.
+double flip(SceneClass scene_class, const MethodVariant& method, double scale) {
+  const bool light = scene_class == SceneClass::kLight;
+  const double at_one = method == kPlain ? (light ? 0.05 : 0.08)
+                        : method == kTwo ? 0.06
+                                         : (light ? 0.09 : 0.03);
+  return at_one * (1 + 0.8 * (1 - scale));
+}
+
+ErrorFront front(double ms_factor = 1) {
+  std::vector<FrontPoint> points;
+  for (std::size_t i = 0; i < kSceneClasses; ++i) {
+    for (const MethodVariant& method : {kPlain, kTwo, kDear}) {
+      for (const double scale : {0.5, 1.0}) {
+        FrontPoint point = {.scene_class = static_cast<SceneClass>(i), .method = method, .scale = scale};
+        point.flip = flip(point.scene_class, method, scale);
+        point.psnr_db = 30;
+        point.ms_per_megapixel = passes_ms(method) * ms_factor;
+        points.push_back(point);
+      }
+    }
+  }
+  FrontSource source;
+  source.device = "a machine written down";
+  source.output = kLadder.output;
+  return ErrorFront::create(source, points).value();
+}
+
+QualitySettings usual_settings() {
+  QualitySettings settings;
+  settings.pacing.ladder = kLadder;
+  settings.pacing.target_ms = kTargetMs;
+  settings.front = front();
+  return settings;
+}
+using Change = std::function<void(QualitySettings&)>;
+
+// A program that draws what it is told to.
+class Program {
+ public:
+  explicit Program(const Change& change = {}) {
+    QualitySettings settings = usual_settings();
+    if (change) change(settings);
+    auto made = make_quality_controller(settings);
+    if (!made.ok()) throw std::invalid_argument(made.status().message());
+    controller_ = std::move(made).value();
+  }
+
+  // Frames whose drawing takes so long at the output resolution.
+  void run(int frames, double full_ms, std::optional<ContentStatistics> content, bool timed = true) {
+    for (int i = 0; i < frames; ++i) {
+      const QualityChoice choice = controller_->choice();
+      const double area = controller_->ladder().area_fraction(choice.render);
+      const double passes =
+          passes_ms(choice.method) + (choice.fading_from ? passes_ms(*choice.fading_from) : 0);
+      QualityFrame frame = {.timing = {.frame = frame_++, .render = choice.render}};
+      frame.timing.gpu_ms = full_ms * (0.2 + 0.8 * area) + passes;
+      frame.timing.cpu_ms = cpu_ms;
+      frame.timing.interval_ms = std::max(kTargetMs, frame.timing.gpu_ms);
+      frame.timing.queued = 1;
+      frame.resolve_ms = timed ? passes : 0;
+      frame.content = content;
+      if (content) content->cut = false;
+      last_ms = frame.timing.gpu_ms;
+      const QualityChoice before = choice;
+      ASSERT_TRUE(controller_->observe(frame).ok());
+      if (!(controller_->choice().method == before.method)) ++changes;
+      if (controller_->choice().fading_from) ++faded;
+    }
+  }
+  QualityController& operator*() { return *controller_; }
+  QualityController* operator->() { return controller_.get(); }
+
+  double cpu_ms = 4;
+  double last_ms = 0;
+  int changes = 0;
+  int faded = 0;
+
+ private:
+  std::unique_ptr<QualityController> controller_;
+  std::uint64_t frame_ = 0;
+};
 
 constexpr ContentStatistics kStill = {};
 constexpr ContentStatistics kLight = {.light = 1};
@@ -34,7 +257,7 @@ TEST(QualityController, FindsTheLeastErrorThatFits) {
       Program program([](auto& s) { s.hysteresis = 0; });
       program.run(300, full_ms, ContentStatistics{.light = light});
       double least = 1;
-      for (const FrontMethod& method : {kPlain, kTwo, kDear}) {
+      for (const MethodVariant& method : {kPlain, kTwo, kDear}) {
         for (double scale = 0.5; scale <= 1; scale += 0.001) {
           if (full_ms * (0.2 + 0.8 * scale * scale) + passes_ms(method) > kTargetMs) continue;
           least = std::min(least, light * flip(SceneClass::kLight, method, scale) +
@@ -73,11 +296,11 @@ TEST(QualityController, WhereNothingFitsTimeCountsTwice) {
     Program program;
     program.run(200, full_ms, kStill);
     EXPECT_EQ(program->choice().render, program->ladder()[0]);
-    const auto cost = [full_ms](const FrontMethod& method) {
+    const auto cost = [full_ms](const MethodVariant& method) {
       const double ms = full_ms * 0.4 + passes_ms(method);
       return flip(SceneClass::kStill, method, 0.5) * ms * ms;
     };
-    for (const FrontMethod& other : {kPlain, kTwo, kDear})
+    for (const MethodVariant& other : {kPlain, kTwo, kDear})
       EXPECT_LE(cost(program->choice().method), cost(other) * 1.001) << full_ms;
   }
 }

@@ -10,7 +10,7 @@
 namespace quincunx {
 namespace {
 
-constexpr int kFirst = 1101, kLast = 1200;  // of task 1
+constexpr int kFirst = 1101, kLast = 1200;  // frames of task 1
 constexpr Extent kPicture = {1280, 720};    // instead of the script's, which takes a minute
 
 class Slurm : public testing::SequenceTest {

@@ -13,7 +13,7 @@
 #include "gltf/loader.h"
 #include "random.h"
 #include "rounds.h"
-#include "scene_check.h"
+#include "scene.h"
 
 namespace quincunx::testing {
 namespace {

@@ -28,7 +28,7 @@ class PretendLateCopies {
   PretendLateCopies(const PretendLateCopies&) = delete;
   PretendLateCopies& operator=(const PretendLateCopies&) = delete;
 
-  int count() const;  // of copies so far
+  int count() const;  // returns the copies so far
   // Makes what is left: whether each copied what the memory held when it was asked for.
   bool copied_what_was_given() const;
 };
@@ -36,7 +36,7 @@ class PretendLateCopies {
 // The host waits for the device.
 void let_copies_through();
 
-// What the call that asks is to return; CL_SUCCESS: it is made.
+// Returns the error for the call that asks; CL_SUCCESS: the call is made.
 cl_int injected_fault();
 
 }  // namespace quincunx::gl::testing

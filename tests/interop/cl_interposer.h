@@ -3,8 +3,8 @@
 // a driver that shares with OpenGL, which no driver on a machine without a GPU does.
 //
 // The stand-in is no simulation of a GPU: it moves texels through host memory when textures change sides.
-// What it does check is the protocol. A texture that is taken twice, or given back without having been taken,
-// is CL_INVALID_GL_OBJECT as the specification has it; an image holds junk while OpenGL owns the texture.
+// It does check the protocol. A texture that is taken twice, or given back without having been taken, is
+// CL_INVALID_GL_OBJECT as the specification has it; an image holds junk while OpenGL owns the texture.
 #pragma once
 
 #include <CL/cl.h>
@@ -16,7 +16,7 @@ struct ClCounts {
   int blocking_waits = 0;  // clFinish, and transfers and maps that block
   int acquires = 0;        // calls of clEnqueueAcquireGLObjects, and of its counterpart
   int releases = 0;
-  int maps = 0;  // of buffers into the host's memory
+  int maps = 0;  // buffers mapped into the host's memory
 };
 
 ClCounts& cl_counts();

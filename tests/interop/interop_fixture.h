@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "frame_layout.h"
 #include "host_copy.h"
-#include "plane.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/gl_calls.h"
 

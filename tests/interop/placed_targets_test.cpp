@@ -7,8 +7,8 @@
 
 #include "cl_interposer.h"
 #include "gl_call_counter.h"
+#include "host_copy.h"
 #include "interop_fixture.h"
-#include "target_pool.h"
 
 namespace quincunx::gl::testing {
 namespace {

@@ -1,26 +1,111 @@
 // SPDX-License-Identifier: MIT
-// quincunx-kernel-bench: the time of each pass, and of the same work by other means, in units of a float4
-// copy.
+// The kernel benchmark: its options, its run, and what it says of it: a table to read and JSON to keep.
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "bench/harness/event_times.h"
-#include "clear_cases.h"
+#include "bench/harness/clocks.h"
+#include "device/opencl.h"
 #include "kernel_cases.h"
-#include "kernel_report.h"
-#include "opencl.h"
 #include "peers.h"
+#include "quincunx/device.h"
 #include "quincunx_gl/egl_context.h"
 #include "stage.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
-#include "tools/program/date.h"
 #include "tools/program/program.h"
 
 namespace quincunx::bench {
 namespace {
+
+struct Run {
+  DeviceInfo device;
+  std::string opengl;   // renderer and version; empty: no peers of it
+  std::string date;     // UTC, "2026-11-21 14:03"
+  std::string command;  // as it was typed
+  int rounds = 0;
+  struct Size {
+    Extent output;
+    std::vector<Figures> figures;  // the first is the copy
+  };
+  std::vector<Size> sizes;
+};
+
+using Json = nlohmann::ordered_json;
+
+double gigabytes_per_second(const Figures& figures) {
+  return static_cast<double>(figures.what.bytes) / figures.ms.median * 1e-6;
+}
+
+double rounded(double value) {
+  return std::stod(fmt::format("{:.4g}", value));
+}
+
+Json json_of(const Timing& timing) {
+  return {
+      {"median", rounded(timing.median)}, {"p95", rounded(timing.p95)}, {"minimum", rounded(timing.minimum)}};
+}
+
+Json json_of(const Figures& figures, const Figures& copy) {
+  const Case& what = figures.what;
+  return {{"name", what.name},
+          {"scale", what.scale},
+          {"wanted", what.wanted > 0 ? Json(what.wanted) : Json(nullptr)},
+          {"ms", json_of(figures.ms)},
+          {"processor_ms", json_of(figures.processor_ms)},
+          {"ratio", rounded(figures.ms.median / copy.ms.median)},
+          {"processor_ratio", rounded(figures.processor_ms.median / copy.processor_ms.median)},
+          {"bytes", what.bytes},
+          {"gigabytes_per_second", rounded(gigabytes_per_second(figures))}};
+}
+
+std::string text_of(const Run::Size& size) {
+  const Figures& copy = size.figures.front();
+  std::string text = fmt::format("\n{}x{}\n{:<40} {:>8} {:>8} {:>8} {:>6} {:>8} {:>6} {:>6} {:>6}\n",
+                                 size.output.width, size.output.height, "case", "median", "p95", "min",
+                                 "ratio", "cpu ms", "ratio", "wanted", "GB/s");
+  for (const Figures& one : size.figures) {
+    const std::string wanted = one.what.wanted > 0 ? fmt::format("{:.2f}", one.what.wanted) : "";
+    text += fmt::format(
+        "{:<40} {:>8.3f} {:>8.3f} {:>8.3f} {:>6.2f} {:>8.3f} {:>6.2f} {:>6} {:>6.1f}\n", one.what.name,
+        one.ms.median, one.ms.p95, one.ms.minimum, one.ms.median / copy.ms.median, one.processor_ms.median,
+        one.processor_ms.median / copy.processor_ms.median, wanted, gigabytes_per_second(one));
+  }
+  return text;
+}
+
+std::string text_of(const Run& run) {
+  std::string text = fmt::format("{} | {} {}\n", run.device.name, run.device.platform, run.device.driver);
+  if (!run.opengl.empty()) text += fmt::format("{}\n", run.opengl);
+  text += fmt::format("{}, {}, {} rounds; ms; ratio = median / median of the float4 copy\n", run.date,
+                      run.command, run.rounds);
+  for (const Run::Size& size : run.sizes)
+    text += text_of(size);
+  return text;
+}
+
+std::string json_of(const Run& run) {
+  Json sizes = Json::array();
+  for (const Run::Size& size : run.sizes) {
+    Json cases = Json::array();
+    for (const Figures& one : size.figures)
+      cases.push_back(json_of(one, size.figures.front()));
+    sizes.push_back({{"output", {size.output.width, size.output.height}}, {"cases", std::move(cases)}});
+  }
+  const Json root = {{"device", run.device.name},
+                     {"platform", run.device.platform},
+                     {"driver", run.device.driver},
+                     {"opengl", run.opengl.empty() ? Json(nullptr) : Json(run.opengl)},
+                     {"date", run.date},
+                     {"command", run.command},
+                     {"rounds", run.rounds},
+                     {"sizes", std::move(sizes)}};
+  return root.dump(2) + "\n";
+}
 
 struct Options {
   std::string device;
@@ -122,6 +207,10 @@ void declare(tools::CommandLine& app, Options& options) {
 }
 
 }  // namespace
+
+// quincunx-kernel-bench: the time of each pass, and of the same work by other means, in units of a float4
+// copy.
+
 }  // namespace quincunx::bench
 
 int main(int argc, char** argv) {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "interleaved.h"
 #include "quincunx/image.h"
+#include "stage.h"
 
 namespace quincunx::bench {
 

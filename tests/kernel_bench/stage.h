@@ -1,22 +1,48 @@
 // SPDX-License-Identifier: MIT
-// Stage: what the kernels of one output size work on. Lives longer than the cases that use it.
+// Cases of the kernel benchmark, their timing, and Stage: the images that the kernels of one output size work on.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "axis_table.h"
-#include "interleaved.h"
-#include "pass.h"
+#include "passes/pass.h"
+#include "passes/tables.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 
 namespace quincunx::bench {
 
+struct Case {
+  std::string name;
+  double scale = 1;                  // render extent / output extent
+  double wanted = 0;                 // aim of the project, in times of the first case; 0: none
+  std::uint64_t bytes = 0;           // read and written, each texel counted once
+  std::function<double()> run = {};  // runs once, to the end, and returns ms on the clock that suits it
+};
+
+struct Timing {
+  double median = 0, p95 = 0, minimum = 0;
+};
+
+struct Figures {
+  Case what;
+  Timing ms;            // as Case::run returned them
+  Timing processor_ms;  // the whole process, all threads: on a CPU what the run cost, however busy it was
+};
+
+// Times many cases side by side, after `warm_rounds` that do not count: every round runs each case once, so that a busy
+// machine slows all alike.
+std::vector<Figures> run_interleaved(const std::vector<Case>& cases, int warm_rounds, int rounds);
+
+// Wall clock of one run, ms.
+double wall_ms(const std::function<void()>& run);
+
 std::uint64_t bytes_of(Extent extent, PixelFormat format);
 Extent scaled(Extent output, double scale);
 
+// Lives longer than the cases that use it.
 class Stage {
  public:
   Stage(Device device, Extent output);

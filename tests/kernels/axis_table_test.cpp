@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "axis_table.h"
+#include "passes/tables.h"
 
 #include <algorithm>
 #include <vector>
@@ -64,7 +64,7 @@ TEST(AxisTable, ASampleMovedRightIsFoundFurtherLeft) {
     EXPECT_EQ(position_of(jittered[x]), position_of(plain[x]) - 0.25);
 }
 
-TEST(AxisTables, KeepWhatWasUsedLatelyAndRefillTheRest) {
+TEST(AxisTables, KeepWhatWasUsedLatelyAndRefillTheRest_small) {
   const Device::Impl& impl = testing::impl();
   AxisTables tables(impl, {10, 6});
   constexpr std::size_t kRowAxis = 12;  // columns in whole blocks of four

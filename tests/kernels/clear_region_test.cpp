@@ -7,8 +7,8 @@
 
 #include "../reference/number_formats.h"
 #include "kernel_fixture.h"
-#include "pass_clear_region.h"
 #include "pass_rig.h"
+#include "passes/pass_clear_region.h"
 
 namespace quincunx {
 namespace {
@@ -48,12 +48,12 @@ void check(PixelFormat format, Storage storage) {
   }
 }
 
-TEST(ClearRegion, EveryFormatInABuffer) {
+TEST(ClearRegion, EveryFormatInABuffer_small) {
   for (const PixelFormat format : kFormats)
     check(format, Storage::kBuffer);
 }
 
-TEST(ClearRegion, EveryFormatInAnImage) {
+TEST(ClearRegion, EveryFormatInAnImage_small) {
   int checked = 0;
   for (const PixelFormat format : kFormats) {
     if (!testing::device().allocate({4, 4}, format, Storage::kImage).ok()) continue;  // this device has none

@@ -80,8 +80,10 @@ TEST_P(CrossFade, PoisonOutsideThePictureAndTightImagesChangeNoBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, CrossFade, ::testing::Values(PixelFormat::kRGBA32F, PixelFormat::kRGBA16F),
-                         [](const auto& variant) { return quincunx::name_of(variant.param); });
+const std::vector<PixelFormat> kFormats = {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F};
+INSTANTIATE_TEST_SUITE_P(Variants, CrossFade, ::testing::ValuesIn(kFormats),
+                         testing::sample_names(kFormats,
+                                               [](PixelFormat f) { return std::string(name_of(f)); }));
 
 }  // namespace
 }  // namespace quincunx

@@ -94,7 +94,8 @@ std::vector<StageVariant> variants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, DisplayLayers, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::sample_names(variants(),
+                                               [](const StageVariant& v) { return testing::name_of(v); }));
 
 }  // namespace
 }  // namespace quincunx

@@ -31,7 +31,7 @@ std::map<std::string, Row>& rows() {
 }
 
 double last_place(PixelFormat format, double value) {
-  if (format == PixelFormat::kRGBA8) return 1;  // of a code
+  if (format == PixelFormat::kRGBA8) return 1;  // one code
   const bool half = format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F;
   const int exponent = std::max(std::ilogb(value), half ? -14 : -126);
   return std::ldexp(1.0, exponent - (half ? 10 : 23));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The largest errors that the kernel tests observe, as the table of docs/numerics.md.
+// The largest errors that the kernel tests observe, as a table for docs/lab/numerics.md.
 //
 // Rows follow from the tests' names: suite and parameters, without what has no part in the error (storage,
 // the format of the inputs). With the environment variable QUINCUNX_ERROR_TABLE the table is written to that

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What references expect of whole frames, each value with its error bound.
+// Whole frames as the references expect them, each value with its error bound.
 #pragma once
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "../reference/far_motion.h"
 #include "error_table.h"
 #include "kernel_fixture.h"
-#include "motion/far_params.h"
+#include "motion/velocity_params.h"
 #include "pass_rig.h"
 
 namespace quincunx {
@@ -369,18 +369,16 @@ TEST_P(FarMotionPasses, PoisonOutsideTheViewportChangesNoBit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Variants, FarMotionPasses,
-    ::testing::Values(Variant{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
-                      Variant{Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
-                      Variant{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA8},
-                      Variant{Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
-                      Variant{Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA8}),
-    [](const auto& instance) {
-      const Variant& v = instance.param;
-      return fmt::format("{}_{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity),
-                         name_of(v.colour));
-    });
+const std::vector<Variant> kVariants = {{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
+                                        {Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
+                                        {Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA8},
+                                        {Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
+                                        {Storage::kImage, PixelFormat::kRG16F, PixelFormat::kRGBA8}};
+INSTANTIATE_TEST_SUITE_P(Variants, FarMotionPasses, ::testing::ValuesIn(kVariants),
+                         testing::sample_names(kVariants, [](const Variant& v) {
+                           return fmt::format("{}_{}_{}", v.storage == Storage::kImage ? "image" : "buffer",
+                                              name_of(v.velocity), name_of(v.colour));
+                         }));
 
 }  // namespace
 }  // namespace quincunx

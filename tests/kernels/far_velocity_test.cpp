@@ -17,7 +17,7 @@ class FarVelocityPass : public testing::CompletedVelocityTest {
  protected:
   FarVelocityPass() : CompletedVelocityTest({.far = FarMotion::kCamera}, "far_velocity") {}
 
-  // Of a pattern of velocities and depths every third sample is far and without motion, every fifth far and every
+  // Makes every third sample of a pattern of velocities and depths far and without motion, every fifth far and every
   // seventh without motion.
   void paint(reference::Frame& frame, const FrameSpec&) const override {
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-#include "filter_table.h"
+#include "passes/tables.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
+#include "resolve_params.h"
 #include "scale_fixture.h"
-#include "scale_params.h"
 
 namespace quincunx {
 namespace {
 
-// Of every filter, at every scale and jitter: what the error bounds of the scale tests count on.
+// The error bounds of the scale tests count on this for every filter, at every scale and jitter.
 TEST(FilterTable, WeightsSumToOne) {
   for (const MethodInfo& method : methods()) {
     if (method.filter.weight == nullptr) continue;

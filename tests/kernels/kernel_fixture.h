@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the kernel tests share: one device, frames on it with their reference twins, comparisons.
+// The common parts of the kernel tests: one device, frames on it with their reference twins, comparisons.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "../reference/passes.h"
-#include "axis_table.h"
-#include "pass.h"
+#include "passes/pass.h"
+#include "passes/tables.h"
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
@@ -38,6 +39,27 @@ std::vector<unsigned char> bytes_of(const std::vector<Element>& elements) {
   return {first, first + elements.size() * sizeof(Element)};
 }
 
+// Names the variants of a suite, and appends "_sample" to those that stand for all: the first of each storage, or of
+// each value of `kind`. Other devices, GPU profiles and memory checkers run samples only (CMakeLists.txt), so the
+// variant that has most of the kernel comes first.
+template <typename Variant, typename Name, typename Kind>
+auto sample_names(const std::vector<Variant>& variants, Name name, Kind kind) {
+  std::set<std::string> kinds;
+  std::vector<std::string> names;
+  for (const Variant& variant : variants)
+    names.push_back(name(variant) + (kinds.insert(kind(variant)).second ? "_sample" : ""));
+  return [names](const auto& instance) { return names.at(instance.index); };
+}
+
+template <typename Variant, typename Name>
+auto sample_names(const std::vector<Variant>& variants, Name name) {
+  return sample_names(variants, name, [](const Variant& variant) -> std::string {
+    if constexpr (requires { variant.storage; })
+      return variant.storage == Storage::kImage ? "image" : "buffer";
+    return "buffer";
+  });
+}
+
 // Owns the images of a test. Buffers have an offset, a pitch and rows beyond what is used; `outside` fills
 // what lies around the rectangle. A tight image ends with its rectangle, so that a memory checker sees a read
 // beyond it.
@@ -59,9 +81,12 @@ class Rig {
 
 enum class Pattern { kImpulse, kConstant, kRamp, kNoise, kExtremes, kNonFinite };
 const std::vector<Pattern>& all_patterns();
-// Those that a picture of this size is tested with at scale number `scale`: all of them, but for the largest pictures
-// one, another at each scale, because the reference is slow.
+// Returns the patterns that a picture of this size is tested with at scale number `scale`: all of them for samples, but
+// for the largest pictures and all other variants one, another at each scale, because the reference is slow.
 std::vector<Pattern> patterns_for(Extent output, std::size_t scale);
+// Returns the sizes of pictures that a variant is tested with; `largest` is one of a sample's only. The other variants
+// differ from it in how texels are read and written, and pixels beyond 64 columns are no others to them.
+std::vector<Extent> sizes_for(Extent largest);
 std::vector<Pixel> pattern_pixels(Pattern pattern, Extent extent, unsigned seed);
 const char* name_of(Pattern pattern);
 
@@ -95,12 +120,12 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
 TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec,
                      const std::vector<Pixel>& colour);
 
-// What lies where nothing may be read.
+// Values that lie where nothing may be read.
 inline constexpr double kPoisons[] = {std::numeric_limits<double>::quiet_NaN(),
                                       std::numeric_limits<double>::infinity(), 1e30};
 
-// What run() makes of a spec's frames is the same whatever lies outside of them, where they fill their images, and
-// twice. The spec has `outside` and `tight`, as FrameSpec; run() reads it anew each time.
+// Expects the same result of run() whatever lies outside of the spec's frames, where they fill their images, and twice.
+// The spec has `outside` and `tight`, as FrameSpec; run() reads it anew each time.
 template <typename Spec, typename Run>
 void expect_same_whatever_is_outside(Spec& spec, const Run& run) {
   const auto clean = run();
@@ -129,8 +154,8 @@ bool holds_non_finite(PixelFormat format);
 // the bright end, where sRGB is steepest.
 double input_rounding(PixelFormat format, double magnitude);
 
-// What rounding to a half adds to an error: half a step of 2^-10 of the value, or of a denormal. In an image it is a
-// whole step, because OpenCL lets a device round towards zero there (1.2, 8.3.2).
+// Returns the error that rounding to a half adds: half a step of 2^-10 of the value, or of a denormal. In an image it
+// is a whole step, because OpenCL lets a device round towards zero there (1.2, 8.3.2).
 double output_rounding(PixelFormat format, double magnitude, Storage storage = Storage::kBuffer);
 
 // The same of a velocity, which is rounded to a float where it is no half.

@@ -62,7 +62,7 @@ class LayFocus : public ::testing::TestWithParam<Variant> {
  protected:
   PixelFormat format() const { return GetParam().format; }
 
-  // Of every weight, 0 and 1 among them.
+  // Returns a mask with every weight, 0 and 1 among them.
   static std::vector<double> mask_of(Extent region) {
     std::vector<double> mask;
     for (int i = 0; i < region.area(); ++i)
@@ -172,14 +172,14 @@ TEST_P(LayFocus, OutsideIsThePictureAndTheMiddleIsTheFocus) {
   }
 }
 
-// What is not finite is no weight of its neighbours: it counts as its stand-in, in its own pixel alone.
+// A value that is not finite does not reach its neighbours: it counts as its stand-in, in its own pixel alone.
 TEST_P(LayFocus, ANonFinitePixelCountsAsItsStandIn) {
   const Placed placed = {"feathered", {24, 24}, {.x = 10, .y = 10, .feather = 6, .mask = {}}};
   const Placed with = with_mask(placed);
   const std::vector<Pixel> picture = testing::pattern_pixels(Pattern::kNoise, kOutput, 3);
   const std::vector<Pixel> focus = testing::pattern_pixels(Pattern::kNoise, placed.region, 8);
   const std::size_t under = reference::index_of(kOutput.width, 12, 20);
-  const std::size_t over = reference::index_of(24, 2, 12);  // of a weight between 0 and 1
+  const std::size_t over = reference::index_of(24, 2, 12);  // has a weight between 0 and 1
   for (const auto& [bad, stand_in] : {std::pair{kNan, 0.0}, {kInfinity, 65504.0}, {-kInfinity, -65504.0}}) {
     for (const bool in_focus : {false, true}) {
       std::vector<Pixel> spoilt = in_focus ? focus : picture;
@@ -221,13 +221,14 @@ TEST_P(LayFocus, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run(picture, focus, placed), run(picture, focus, placed));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Variants, LayFocus,
-    ::testing::Values(Variant{PixelFormat::kRGBA32F, false}, Variant{PixelFormat::kRGBA16F, false},
-                      Variant{PixelFormat::kRGBA32F, true}, Variant{PixelFormat::kRGBA16F, true}),
-    [](const auto& variant) {
-      return std::string(quincunx::name_of(variant.param.format)) + (variant.param.mask ? "_mask" : "");
-    });
+const std::vector<Variant> kVariants = {{PixelFormat::kRGBA32F, true},
+                                        {PixelFormat::kRGBA16F, true},
+                                        {PixelFormat::kRGBA32F, false},
+                                        {PixelFormat::kRGBA16F, false}};
+INSTANTIATE_TEST_SUITE_P(Variants, LayFocus, ::testing::ValuesIn(kVariants),
+                         testing::sample_names(kVariants, [](const Variant& v) {
+                           return std::string(name_of(v.format)) + (v.mask ? "_mask" : "");
+                         }));
 
 }  // namespace
 }  // namespace quincunx

@@ -10,13 +10,13 @@
 
 namespace quincunx::testing {
 
-// What the passes read. Some tiles are layered, of either frame. What no kernel stores is poison: near colours of
-// texels of one layer, and states of tiles that are not layered.
+// The inputs of the passes. Some tiles are layered, in either frame. Values that no kernel stores are poison: near
+// colours of texels of one layer, and states of tiles that are not layered.
 struct LayerStageInputs {
   StageInputs stage;
   reference::ResolveInputs reference;
   FrameInputs previous;        // with depth
-  std::vector<Pixel> picture;  // of the far layer of the previous history
+  std::vector<Pixel> picture;  // far layer of the previous history
 };
 
 std::vector<LayerTile> to_kernel(const std::vector<reference::LayerTile>& tiles);
@@ -34,7 +34,7 @@ class LayerStages {
   // Bytes were 0x7f before.
   struct Resolved {
     std::vector<unsigned char> far, near, states;
-    std::vector<unsigned char> alpha;  // of variants that have it
+    std::vector<unsigned char> alpha;  // only from variants that have it
     std::int64_t non_finite = 0;
   };
   Resolved run_resolve(Rig& rig, const LayerStageInputs& in);

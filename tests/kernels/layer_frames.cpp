@@ -20,7 +20,7 @@ double as_float(double value) {
   return static_cast<double>(static_cast<float>(value));
 }
 
-// What is seen at a place. Motion: this frame's place less the previous one's, output pixels.
+// The surface at a place. Motion: this frame's place less the previous one's, output pixels.
 struct Seen {
   double depth = 0;
   std::array<double, 2> motion = {};
@@ -114,7 +114,7 @@ void add_carried(KernelGrid& grid, const LayerSpec& spec) {
   }
 }
 
-// What reproject tells of the frame: motion edges, either sign, and poison elsewhere where nothing reads it.
+// Returns reproject's findings for the frame: motion edges, either sign, and poison elsewhere where nothing reads it.
 std::vector<Pixel> make_reprojection(const LayerFrames& in, const LayerSpec& spec) {
   std::mt19937 random(spec.seed + 99);
   const reference::ReprojectOptions options{.output_width = spec.output.width,

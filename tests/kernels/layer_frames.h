@@ -21,6 +21,9 @@ struct LayerVariant {
 };
 std::vector<LayerVariant> layer_variants();
 std::string name_of(const LayerVariant& variant);
+inline std::string layer_variant_names(const ::testing::TestParamInfo<LayerVariant>& instance) {
+  return sample_names(layer_variants(), [](const LayerVariant& v) { return name_of(v); })(instance);
+}
 
 enum class Surfaces {
   kWires,  // thin and thick things before a wall and a plane seen at a slant, each with a motion of its own
@@ -41,7 +44,8 @@ struct LayerSpec {
 };
 std::string name_of(const LayerSpec& spec);
 
-// Of every kind of surfaces in many sizes: first frames, and such as follow a viewport of another size.
+// Returns specs with every kind of surfaces in many sizes: first frames, and those that follow a viewport of another
+// size.
 std::vector<LayerSpec> all_layer_specs();
 
 // A buffer with elements behind its end that no kernel may touch.
@@ -85,13 +89,13 @@ struct KernelGrid {
 cl_uint to_key(const reference::RecordCell& cell);
 reference::RecordGrid to_reference(const KernelGrid& grid);
 
-// What a kernel reads.
+// The inputs of a kernel.
 struct LayerFrames {
   FrameInputs current, previous;
   reference::LayerInputs reference;
   KernelGrid before;                // reference.before
-  std::vector<Pixel> reprojection;  // of each sample, its motion edge no less than it is
-  std::vector<float> open_trust;    // of each sample
+  std::vector<Pixel> reprojection;  // one for each sample, its motion edge no less than it is
+  std::vector<float> open_trust;    // one for each sample
 };
 
 class RecordStages {
@@ -115,7 +119,7 @@ class RecordStages {
     std::vector<LayerRecord> records;
     std::vector<Pixel> reprojection;
     std::vector<float> open_trust;
-    std::vector<unsigned char> bytes;  // of all that
+    std::vector<unsigned char> bytes;  // all of the above
   };
   Split run_split(Rig& rig, const LayerFrames& in, const LayerSpec& spec, const KernelGrid& now);
 

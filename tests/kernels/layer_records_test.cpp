@@ -203,7 +203,7 @@ TEST_P(LayerRecords, PoisonOutsideTheViewportChangesNoBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, LayerRecords, ::testing::ValuesIn(testing::layer_variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::layer_variant_names);
 
 }  // namespace
 }  // namespace quincunx

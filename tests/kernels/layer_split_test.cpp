@@ -49,7 +49,7 @@ TEST_P(LayerSplits, MatchTheReference) {
       expect_near(value.split.motion[0], bound.split.motion[0], static_cast<double>(made.motion_x), what);
       expect_near(value.split.motion[1], bound.split.motion[1], static_cast<double>(made.motion_y), what);
       const float trust = in.open_trust[i];
-      const auto mixed = static_cast<float>(reference::kMixedTrust);
+      const auto mixed = static_cast<float>(reference::kMixedTrustMax);
       ASSERT_EQ(value.has_begun ? std::min(trust, mixed) : trust, actual.open_trust[i]) << what;
       begun += value.has_begun && trust > mixed ? 1 : 0;
       if (!value.split.is_split()) {
@@ -80,7 +80,7 @@ TEST_P(LayerSplits, MatchTheReference) {
   EXPECT_GE(split - far, split / 8);
 }
 
-// What came from the previous frame stands among this frame's records afterwards.
+// Records from the previous frame stand among this frame's records afterwards.
 TEST_P(LayerSplits, CarriedRecordsJoinThisFrames) {
   RecordStages stages(GetParam());
   std::int64_t carried = 0;
@@ -191,7 +191,7 @@ TEST_P(LayerSplits, ATightFrameIsReadWithinItsEdges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, LayerSplits, ::testing::ValuesIn(testing::layer_variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::layer_variant_names);
 
 }  // namespace
 }  // namespace quincunx

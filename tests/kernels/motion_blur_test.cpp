@@ -8,7 +8,7 @@
 #include "../reference/motion_blur.h"
 #include "kernel_fixture.h"
 #include "motion/blur_params.h"
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 
 namespace quincunx {
 namespace {
@@ -84,12 +84,17 @@ std::vector<BlurScene> scenes(double pixel) {
   };
 }
 
-class MotionBlur : public ::testing::TestWithParam<std::tuple<Storage, PixelFormat, PixelFormat>> {
+struct Variant {
+  Storage storage;
+  PixelFormat velocity, resolved;
+};
+
+class MotionBlur : public ::testing::TestWithParam<Variant> {
  protected:
   MotionBlur() {
-    settings_.storage = std::get<0>(GetParam());
-    settings_.velocity = std::get<1>(GetParam());
-    settings_.resolved = std::get<2>(GetParam());
+    settings_.storage = GetParam().storage;
+    settings_.velocity = GetParam().velocity;
+    settings_.resolved = GetParam().resolved;
     settings_.method = Method::kBilinear;
     settings_.present = false;
     settings_.blur.shutter = .5f;
@@ -301,17 +306,16 @@ TEST_P(MotionBlur, TheStreakEndsWhereTheShutterEnds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Variants, MotionBlur,
-    ::testing::Values(std::tuple{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA32F},
-                      std::tuple{Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
-                      std::tuple{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
-                      std::tuple{Storage::kImage, PixelFormat::kRG32F, PixelFormat::kRGBA32F}),
-    [](const auto& variant) {
-      return fmt::format("{}_{}_to_{}", std::get<0>(variant.param) == Storage::kImage ? "image" : "buffer",
-                         quincunx::name_of(std::get<1>(variant.param)),
-                         quincunx::name_of(std::get<2>(variant.param)));
-    });
+const std::vector<Variant> kVariants = {{Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA32F},
+                                        {Storage::kBuffer, PixelFormat::kRG32F, PixelFormat::kRGBA32F},
+                                        {Storage::kBuffer, PixelFormat::kRG16F, PixelFormat::kRGBA16F},
+                                        {Storage::kImage, PixelFormat::kRG32F, PixelFormat::kRGBA32F}};
+INSTANTIATE_TEST_SUITE_P(Variants, MotionBlur, ::testing::ValuesIn(kVariants),
+                         testing::sample_names(kVariants, [](const Variant& v) {
+                           return fmt::format("{}_{}_to_{}",
+                                              v.storage == Storage::kImage ? "image" : "buffer",
+                                              name_of(v.velocity), name_of(v.resolved));
+                         }));
 
 }  // namespace
 }  // namespace quincunx

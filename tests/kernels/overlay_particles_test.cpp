@@ -44,8 +44,7 @@ class Overlay : public ::testing::TestWithParam<Variant> {
     settings_.method = v.reactive ? Method::kQuincunx : Method::kBilinear;
     settings_.storage = v.storage;
     settings_.colour = v.colour;
-    settings_.output = settings_.target =
-        settings_.particle_target = {1, 1};  // of the plan; not of the frames
+    settings_.output = settings_.target = settings_.particle_target = {1, 1};  // the plan's; not the frames'
     pass_ = std::make_unique<PassRig>(SceneNeeds{}, settings_, "overlay_particles");
   }
 
@@ -305,17 +304,16 @@ TEST_P(Overlay, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run_bits(rig, below, over), run_bits(rig, below, over));
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Overlay,
-                         ::testing::Values(Variant{Storage::kBuffer, PixelFormat::kRGBA16F, true},
-                                           Variant{Storage::kBuffer, PixelFormat::kRGBA16F, false},
-                                           Variant{Storage::kBuffer, PixelFormat::kRGBA32F, true},
-                                           Variant{Storage::kImage, PixelFormat::kRGBA16F, true}),
-                         [](const auto& instance) {
-                           const Variant& v = instance.param;
+const std::vector<Variant> kVariants = {{Storage::kBuffer, PixelFormat::kRGBA16F, true},
+                                        {Storage::kBuffer, PixelFormat::kRGBA16F, false},
+                                        {Storage::kBuffer, PixelFormat::kRGBA32F, true},
+                                        {Storage::kImage, PixelFormat::kRGBA16F, true}};
+INSTANTIATE_TEST_SUITE_P(Variants, Overlay, ::testing::ValuesIn(kVariants),
+                         testing::sample_names(kVariants, [](const Variant& v) {
                            return fmt::format("{}{}_{}", v.reactive ? "reactive_" : "",
                                               v.storage == Storage::kImage ? "image" : "buffer",
                                               name_of(v.colour));
-                         });
+                         }));
 
 }  // namespace
 }  // namespace quincunx

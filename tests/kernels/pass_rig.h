@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kernel_fixture.h"
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 
 namespace quincunx::testing {
 
@@ -24,7 +24,7 @@ class PassRig {
 
   const PlanFacts& facts() const { return facts_; }
 
-  // Of the next run(), until which it stays; null: none.
+  // Sets the focus for the next run(), until which it stays; null: none.
   void set_focus(const FocusInputs* focus) { focus_ = focus; }
 
   // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.

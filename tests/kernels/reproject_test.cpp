@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What reproject finds for the temporal upscaler: motion edges, and reactive values around each sample.
+// The findings of reproject for the temporal upscaler: motion edges, and reactive values around each sample.
 #include <cmath>
 #include <random>
 
 #include "expected.h"
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
@@ -181,7 +181,7 @@ TEST(TemporalReproject, HistoryOutlivesACameraThatWalksBackwards) {
   EXPECT_EQ(trust_of_wall(.4f, 1, .1), 1) << "what moves along with the camera";
 }
 
-// What reproject alone gives as open trust of each sample: layer_split lowers it afterwards.
+// Returns the open trust of each sample as reproject alone gives it: layer_split lowers it afterwards.
 std::vector<float> open_trust(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs& before) {
   const PassFrame frame = chain.frame(now, &before, {}, rig.counter());
   PassChain::enqueue(*chain.find("reproject"), frame, nullptr);

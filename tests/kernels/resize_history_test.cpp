@@ -30,8 +30,8 @@ using testing::view_of;
 
 constexpr unsigned char kPoison = 0x7f;
 
-// Of the history's size: one that is copied, larger ones, smaller ones, and some that are so small that several places
-// are read.
+// Ratios of the output to the history's size: one that is copied, larger ones, smaller ones, and some that are so small
+// that several places are read.
 constexpr double kRatios[][2] = {{1, 1},   {1.25, 1.25}, {1.7, 1.3}, {3.3, 2},
                                  {.8, .8}, {.66, 1.4},   {.5, .45},  {.2, .9}};
 
@@ -257,7 +257,7 @@ TEST_P(Resize, MatchesTheReferenceAtEverySizeAndRatio) {
   EXPECT_GE(split_, 4000);
 }
 
-// What lies outside the previous viewport in its depth, and what no kernel stores, is poison in all inputs.
+// Depth outside the previous viewport, and all that no kernel stores, is poison in all inputs.
 TEST_P(Resize, PoisonOutsideChangesNoBit) {
   for (const Extent from : {Extent{1, 1}, Extent{1, 9}, Extent{64, 33}}) {
     StageSpec spec{.output = from, .render = {9, 5}, .previous = {5, 9}, .seed = 5};
@@ -288,7 +288,7 @@ TEST_P(Resize, ATightFrameIsReadWithinItsEdges) {
   EXPECT_GT(decided_, 0);
 }
 
-TEST_P(Resize, RecordsKeepTheirPlacesInThePicture) {
+TEST_P(Resize, RecordsKeepTheirPlacesInThePicture_small) {
   const Extent grid{13, 3};
   FrameInputs frame;
   frame.render = grid;
@@ -300,7 +300,7 @@ TEST_P(Resize, RecordsKeepTheirPlacesInThePicture) {
     records[i] = {at + .5f, 2 * at, .25f, -.5f * at, 3, .125f, at, static_cast<int>(i % 2)};
   }
   const cl::Buffer key_buffer = to_device(keys), record_buffer = to_device(records);
-  // Of twice the width and half the height.
+  // The output has twice the width and half the height.
   rigs_[3].run(frame, frame, {64, 20}, {},
                {{Resource::kPreviousRecordKeys, view_of(key_buffer)},
                 {Resource::kPreviousRecords, view_of(record_buffer)}},
@@ -322,7 +322,8 @@ std::vector<StageVariant> variants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, Resize, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::sample_names(variants(),
+                                               [](const StageVariant& v) { return testing::name_of(v); }));
 
 }  // namespace
 }  // namespace quincunx

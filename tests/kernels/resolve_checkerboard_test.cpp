@@ -23,7 +23,7 @@ using testing::Pixel;
 using testing::Rig;
 using testing::TestFrame;
 
-// Of a velocity from depth, over its condition: tests/kernels/velocity_from_depth_test.cpp.
+// Error of a velocity from depth, over its condition: tests/kernels/velocity_from_depth_test.cpp.
 constexpr double kCameraError = (2 * (12 + 4) + 5 + 2) * 0x1p-24;
 
 // A turn and a step forward.
@@ -41,7 +41,7 @@ struct Variant {
   bool reactive;
 };
 
-// What nothing has written to.
+// Returns the value of a texel that nothing has written to.
 double untouched_value(PixelFormat format) {
   return format == PixelFormat::kRGBA8 || format == PixelFormat::kR8 ? .2 : -7;
 }
@@ -160,7 +160,7 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
     return filled;
   }
 
-  // Of all targets.
+  // Returns the bits of all targets.
   std::vector<unsigned char> bits(const Rig& rig, const Filled& filled, Extent render) const {
     std::vector<unsigned char> all;
     for (const ImageView& view : {filled.colour, filled.depth, filled.velocity, filled.reactive}) {
@@ -194,7 +194,7 @@ void Checkerboard::compare(const FrameSpec& spec, const FrameSpec& spec_before, 
   std::vector<Pixel> colour = rig.pixels(filled.colour, spec.render);
   for (std::size_t i = 0; v.colour == PixelFormat::kRGBA8 && i < colour.size(); ++i)
     std::transform(colour[i].begin(), colour[i].end(), colour[i].begin(), in_codes);
-  // Of a code; what other formats round is told by expect_near().
+  // In codes; expect_near() knows what other formats round.
   const double rounding = v.colour == PixelFormat::kRGBA8 ? .5 : 0;
   const std::vector<Pixel> depth = rig.pixels(filled.depth, spec.render);
   const std::vector<Pixel> velocity = rig.pixels(filled.velocity, spec.render);
@@ -303,27 +303,26 @@ TEST_P(Checkerboard, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run_bits(rig, now, before), run_bits(rig, now, before));
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Variants, Checkerboard,
-    ::testing::Values(
-        Variant{Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true},
-        Variant{Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, false, false},
-        Variant{Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG32F, Moves::kAll, true, false},
-        Variant{Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kCamera, false, false},
-        Variant{Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG16F, Moves::kNothing, false, true},
-        Variant{Storage::kBuffer, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kAll, true, true},
-        Variant{Storage::kImage, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true},
-        Variant{Storage::kImage, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kCamera, false, false}),
-    [](const auto& instance) {
-      const Variant& v = instance.param;
-      return fmt::format("{}{}{}_{}_{}_{}",
-                         v.moves == Moves::kAll      ? "moving"
-                         : v.moves == Moves::kCamera ? "camera"
-                                                     : "still",
-                         v.keeps_velocity ? "_velocity" : "", v.reactive ? "_reactive" : "",
-                         v.storage == Storage::kImage ? "image" : "buffer", name_of(v.colour),
-                         name_of(v.velocity));
-    });
+const std::vector<Variant> kVariants = {
+    {Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true},
+    {Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, false, false},
+    {Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG32F, Moves::kAll, true, false},
+    {Storage::kBuffer, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kCamera, false, false},
+    {Storage::kBuffer, PixelFormat::kRGBA32F, PixelFormat::kRG16F, Moves::kNothing, false, true},
+    {Storage::kBuffer, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kAll, true, true},
+    {Storage::kImage, PixelFormat::kRGBA16F, PixelFormat::kRG16F, Moves::kAll, true, true},
+    {Storage::kImage, PixelFormat::kRGBA8, PixelFormat::kRG16F, Moves::kCamera, false, false}};
+INSTANTIATE_TEST_SUITE_P(Variants, Checkerboard, ::testing::ValuesIn(kVariants),
+                         testing::sample_names(kVariants, [](const Variant& v) {
+                           return fmt::format("{}{}{}_{}_{}_{}",
+                                              v.moves == Moves::kAll      ? "moving"
+                                              : v.moves == Moves::kCamera ? "camera"
+                                                                          : "still",
+                                              v.keeps_velocity ? "_velocity" : "",
+                                              v.reactive ? "_reactive" : "",
+                                              v.storage == Storage::kImage ? "image" : "buffer",
+                                              name_of(v.colour), name_of(v.velocity));
+                         }));
 
 }  // namespace
 }  // namespace quincunx

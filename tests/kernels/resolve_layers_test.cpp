@@ -28,7 +28,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
   // One texel of each of the three that the kernel writes.
   struct Texel {
     Pixel far, near, state;
-    double alpha = 1;  // of variants that have it
+    double alpha = 1;  // only from variants that have it
   };
 
   void compare_texel(const LayerStageInputs& in, int x, int y, const Texel& actual, const std::string& what) {
@@ -85,7 +85,7 @@ class ResolveLayers : public ::testing::TestWithParam<StageVariant> {
     }
   }
 
-  // Of a checkerboard where the variant has one.
+  // Returns inputs with a checkerboard where the variant has one.
   static LayerStageInputs inputs(const LayerStages& stages, Rig& rig, StageSpec spec) {
     if (GetParam().checkerboard) spec.parity = static_cast<int>(spec.seed % 2);
     return stages.inputs(rig, spec);
@@ -214,7 +214,8 @@ std::vector<StageVariant> variants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, ResolveLayers, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::sample_names(variants(),
+                                               [](const StageVariant& v) { return testing::name_of(v); }));
 
 }  // namespace
 }  // namespace quincunx

@@ -69,7 +69,7 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
     });
   }
 
-  // Of this frame alone.
+  // Resolves this frame alone.
   Resolved single(Rig& rig, const TestFrame& current, Extent output) {
     ResolveSettings settings = settings_;
     const bool point = GetParam().sampling == Sampling::kPoint;
@@ -239,8 +239,8 @@ TEST_P(Resolve, JitterIsTakenBackInBothFrames) {
 std::vector<Variant> variants() {
   using enum PixelFormat;
   std::vector<Variant> all;
-  for (const VelocitySource velocity : {VelocitySource::kNone, VelocitySource::kTarget}) {
-    for (const bool reactive : {false, true}) {
+  for (const VelocitySource velocity : {VelocitySource::kTarget, VelocitySource::kNone}) {
+    for (const bool reactive : {true, false}) {
       for (const PixelFormat resolved : {kRGBA32F, kRGBA16F}) {
         for (const PixelFormat colour : {kRGBA16F, kRGBA32F, kRGBA8}) {
           all.push_back({velocity, reactive, Storage::kBuffer, colour, kRG16F, resolved});
@@ -257,13 +257,15 @@ std::vector<Variant> variants() {
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()), [](const auto& instance) {
-  const Variant& v = instance.param;
-  const char* weight = v.velocity == VelocitySource::kNone ? "mean" : "velocity";
-  return fmt::format("{}{}{}_{}_{}_{}_to_{}", weight, v.sampling == Sampling::kPoint ? "_point" : "",
-                     v.reactive ? "_reactive" : "", v.storage == Storage::kImage ? "image" : "buffer",
-                     name_of(v.colour), name_of(v.velocity_format), name_of(v.resolved));
-});
+INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()),
+                         testing::sample_names(variants(), [](const Variant& v) {
+                           return fmt::format(
+                               "{}{}{}_{}_{}_{}_to_{}",
+                               v.velocity == VelocitySource::kNone ? "mean" : "velocity",
+                               v.sampling == Sampling::kPoint ? "_point" : "", v.reactive ? "_reactive" : "",
+                               v.storage == Storage::kImage ? "image" : "buffer", name_of(v.colour),
+                               name_of(v.velocity_format), name_of(v.resolved));
+                         }));
 
 // v is counted in pixels of its frame's viewport, whatever the output: at the same uv velocity a larger
 // viewport trusts the previous frame less.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The reprojected form of the two-frame resolve on pictures that move: nothing shifts, nothing stays behind.
 #include "kernel_fixture.h"
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 
 namespace quincunx {
 namespace {
@@ -51,7 +51,7 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
   };
   PassChain chain(testing::device(), facts);
   for (const float jitter : {.25f, -.25f, 0.f}) {
-    // What is at u now was at u - motion: there the previous frame showed the same colour.
+    // The surface at u now was at u - motion: there the previous frame showed the same colour.
     const TestFrame current = ramp(jitter, {91, 46}, 0);
     const TestFrame previous = ramp(-jitter, {100, 50}, 1);
     const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output);

@@ -10,7 +10,7 @@
 #include "../reference/reproject.h"
 #include "expected.h"
 #include "pass_rig.h"
-#include "sample_reach.h"
+#include "passes/frame_params.h"
 #include "two_frame_cases.h"
 
 namespace quincunx {
@@ -33,7 +33,7 @@ double weight_error(double motion) {
   return 2 * (2 * position + 14 * kRounding);
 }
 
-// What follows the weights: normalised (a sum of products and a division), weighed by brightness (two
+// Error of the steps after the weights: normalised (a sum of products and a division), weighed by brightness (two
 // roundings and a division), 8 products and 7 sums.
 constexpr double kBlendError = 24 * kRounding;
 
@@ -153,7 +153,7 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
   }
 
   std::optional<PassChain> chain_;
-  std::vector<reference::Reprojection> reprojections_;  // of the frame resolved last
+  std::vector<reference::Reprojection> reprojections_;  // those of the frame resolved last
   std::int64_t compared_ = 0;
   std::int64_t decided_ = 0;
 };
@@ -242,7 +242,14 @@ TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
 std::vector<Variant> variants() {
   using enum PixelFormat;
   std::vector<Variant> all;
-  for (const bool reactive : {false, true}) {
+  for (const bool reactive : {true, false}) {
+    all.push_back({.reactive = reactive, .residual = true});
+    for (const bool residual : {true, false}) {
+      all.push_back({.reactive = reactive, .residual = residual, .velocity = kRG32F});
+      all.push_back({.reactive = reactive, .residual = residual, .storage = Storage::kImage});
+      all.push_back(
+          {.reactive = reactive, .residual = residual, .storage = Storage::kImage, .colour = kRGBA8});
+    }
     for (const PixelFormat resolved : {kRGBA32F, kRGBA16F}) {
       for (const PixelFormat colour : {kRGBA16F, kRGBA32F, kRGBA8}) {
         all.push_back({.moves = false, .reactive = reactive, .colour = colour, .resolved = resolved});
@@ -250,19 +257,12 @@ std::vector<Variant> variants() {
       }
       all.push_back({.moves = false, .reactive = reactive, .storage = Storage::kImage, .resolved = resolved});
     }
-    for (const bool residual : {false, true}) {
-      all.push_back({.reactive = reactive, .residual = residual, .velocity = kRG32F});
-      all.push_back({.reactive = reactive, .residual = residual, .storage = Storage::kImage});
-      all.push_back(
-          {.reactive = reactive, .residual = residual, .storage = Storage::kImage, .colour = kRGBA8});
-    }
-    all.push_back({.reactive = reactive, .residual = true});
   }
   return all;
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, Reprojected, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return name_of(instance.param); });
+                         testing::sample_names(variants(), [](const Variant& v) { return name_of(v); }));
 
 }  // namespace
 }  // namespace quincunx

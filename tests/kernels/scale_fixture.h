@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "kernel_fixture.h"
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 
 namespace quincunx::testing {
 
@@ -71,7 +71,7 @@ class ScaleRig {
   // Also checks that what lies around the output stays as it was.
   Run run(Rig& rig, const TestFrame& frame, Extent output);
 
-  // What run() should give; the frame must outlive it.
+  // Returns the reference for run(); the frame must outlive it.
   reference::Sampler sampler(const TestFrame& frame, Extent output) const;
 
   // Runs both and compares them.

@@ -32,7 +32,7 @@ TEST_P(Scale, MatchesTheReferenceAtEverySizeScaleAndInput) {
   const double scales[][2] = {{.05, .1}, {.5, .71}, {.71, .5}, {1, 1}, {1.37, .83}, {2, 1.9}};
   const Vec2 jitters[] = {{0, 0}, {.25f, .25f}, {-.25f, .4f}, {-.5f, -1.f}};
   unsigned seed = 0;
-  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, Extent{257, 129}}) {
+  for (const Extent output : testing::sizes_for({257, 129})) {
     for (std::size_t i = 0; i < std::size(scales); ++i) {
       for (const Pattern pattern : testing::patterns_for(output, i)) {
         const Vec2 jitter = jitters[++seed % std::size(jitters)];
@@ -189,8 +189,8 @@ TEST_P(Scale, JitterIsTakenBack) {
   }
 }
 
-// What a filter is known for: its values at whole distances, a sum of 1 at every place but for Lanczos' ripple,
-// nothing beyond its support, and no step where its pieces meet.
+// Filters are known by their values at whole distances, a sum of 1 at every place but for Lanczos' ripple, nothing
+// beyond their support, and no step where their pieces meet.
 TEST(ReferenceFilters, AreWhatTheirSourcesSay) {
   const std::map<std::string, std::array<double, 3>> at_whole_distances = {
       {"bilinear", {1, 0, 0}},    {"b-spline", {2. / 3, 1. / 6, 0}},
@@ -238,7 +238,13 @@ std::vector<ScaleVariant> variants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, Scale, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return name_of(instance.param); });
+                         testing::sample_names(
+                             variants(), [](const ScaleVariant& v) { return testing::name_of(v); },
+                             [](const ScaleVariant& v) {
+                               return std::string(name_of(v.method)) +
+                                      (v.storage == Storage::kImage ? " image" : " buffer") +
+                                      (v.colour == PixelFormat::kRGBA8 ? " encoded" : "");
+                             }));
 
 }  // namespace
 }  // namespace quincunx

@@ -194,8 +194,10 @@ TEST_P(Sharpen, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run(pixels, {100, 70}, .7f), run(pixels, {100, 70}, .7f));
 }
 
-INSTANTIATE_TEST_SUITE_P(Variants, Sharpen, ::testing::Values(PixelFormat::kRGBA32F, PixelFormat::kRGBA16F),
-                         [](const auto& variant) { return quincunx::name_of(variant.param); });
+const std::vector<PixelFormat> kFormats = {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F};
+INSTANTIATE_TEST_SUITE_P(Variants, Sharpen, ::testing::ValuesIn(kFormats),
+                         testing::sample_names(kFormats,
+                                               [](PixelFormat f) { return std::string(name_of(f)); }));
 
 }  // namespace
 }  // namespace quincunx

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <map>
 
+#include "device/program_cache.h"
 #include "pass_rig.h"
-#include "program_cache.h"
+#include "passes/frame_params.h"
 #include "resolve_params.h"
-#include "temporal_pass_params.h"
 
 namespace quincunx::testing {
 
@@ -34,7 +34,7 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                           .step_x = reprojection.step[0],
                                           .step_y = reprojection.step[1],
                                           .is_rigid = reprojection.is_rigid ? 1 : 0,
-                                          .is_copyable = reprojection.is_copyable ? 1 : 0,
+                                          .is_trusted = reprojection.is_trusted ? 1 : 0,
                                           .has_motion_edge = reprojection.has_motion_edge ? 1 : 0};
   static_cast<TileEvidence&>(made) = {.brightening = number(evidence.brightening),
                                       .light = number(evidence.light),
@@ -42,7 +42,7 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                       .neighbour_error = number(evidence.neighbour_error),
                                       .count = static_cast<float>(evidence.count),
                                       .brighter = static_cast<float>(evidence.brighter),
-                                      .startling = static_cast<float>(evidence.startling)};
+                                      .outliers = static_cast<float>(evidence.outliers)};
   static_cast<TileLight&>(made) = {.gain = number(light.gain),
                                    .rejection = number(light.rejection),
                                    .cut = number(light.cut),
@@ -52,8 +52,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .mean_brightening = number(light.mean_brightening),
                                    .suspected_error = number(light.suspected_error),
                                    .suspected_change = number(light.suspected_change),
-                                   .unrest = number(light.unrest),
-                                   .startled = number(light.startled),
+                                   .confirmation = number(light.confirmation),
+                                   .recent_outliers = number(light.recent_outliers),
                                    .holds_back = light.holds_back ? 1 : 0};
   return made;
 }
@@ -81,7 +81,7 @@ reference::Tile to_reference(const KernelTile& tile) {
                            .source_phase = {number(tile.source_phase_x), number(tile.source_phase_y)},
                            .step = {tile.step_x, tile.step_y},
                            .is_rigid = tile.is_rigid != 0,
-                           .is_copyable = tile.is_copyable != 0,
+                           .is_trusted = tile.is_trusted != 0,
                            .has_motion_edge = tile.has_motion_edge != 0},
           .evidence = {.brightening = number(tile.brightening),
                        .light = number(tile.light),
@@ -89,7 +89,7 @@ reference::Tile to_reference(const KernelTile& tile) {
                        .neighbour_error = number(tile.neighbour_error),
                        .count = static_cast<int>(tile.count),
                        .brighter = static_cast<int>(tile.brighter),
-                       .startling = static_cast<int>(tile.startling)},
+                       .outliers = static_cast<int>(tile.outliers)},
           .light = {.gain = number(tile.gain),
                     .rejection = number(tile.rejection),
                     .cut = number(tile.cut),
@@ -99,8 +99,8 @@ reference::Tile to_reference(const KernelTile& tile) {
                     .mean_brightening = number(tile.mean_brightening),
                     .suspected_error = number(tile.suspected_error),
                     .suspected_change = number(tile.suspected_change),
-                    .unrest = number(tile.unrest),
-                    .startled = number(tile.startled),
+                    .confirmation = number(tile.confirmation),
+                    .recent_outliers = number(tile.recent_outliers),
                     .holds_back = tile.holds_back != 0}};
 }
 
@@ -158,7 +158,7 @@ cl::Kernel kernel(const std::string& name, const std::string& options) {
   return built.emplace(name + options, build_kernel(impl(), name, options)).first->second;
 }
 
-// Of a variant with one layer only.
+// Returns the options of a variant with one layer only.
 std::string without_layers(std::string options) {
   const std::string layers = "LAYERS=1";
   const std::size_t found = options.find(layers);

@@ -10,7 +10,7 @@
 #include "kernel_fixture.h"
 #include "layers/layer.h"
 #include "params.h"
-#include "position_table.h"
+#include "passes/tables.h"
 #include "temporal/temporal_params.h"
 
 namespace quincunx::testing {
@@ -38,15 +38,15 @@ struct StageSpec {
   unsigned seed = 1;
   double outside = 0;
   bool tight = false;
-  int parity = -1;  // of a checkerboard's shaded samples; -1: all are
+  int parity = -1;  // that of a checkerboard's shaded samples; -1: all are
 };
 
 std::string name_of(const StageSpec& spec);
-// Of all patterns in many sizes and scales; the largest are few, as references are slow.
+// Returns specs for all patterns in many sizes and scales; the largest are few, as references are slow.
 std::vector<StageSpec> all_stage_specs(const std::vector<Pattern>& patterns);
 
-// What a stage reads. Zones of the picture move as one or each sample on its own; the history's confidences
-// range from 0 to 32, its tiles' phases change from zone to zone.
+// The inputs of a stage. Zones of the picture move as one or each sample on its own; the history's confidences range
+// from 0 to 32, its tiles' phases change from zone to zone.
 struct StageInputs {
   reference::TemporalInputs reference;
   FrameInputs frame;
@@ -81,7 +81,7 @@ LayerSplit to_kernel(const reference::LayerSplit& split);
 LayerTile to_kernel(const reference::LayerTile& tile);
 reference::Tile to_reference(const KernelTile& tile);
 
-// Of resolve_temporal.
+// A variant of resolve_temporal.
 struct ResolveVariant {
   TemporalPreset preset = TemporalPreset::kBalanced;
   std::vector<LayerTile> layers = {};  // none: LAYERS=0
@@ -107,9 +107,9 @@ class TemporalStages {
                                    const TotalLight& total, const std::vector<reference::Tile>& now) const;
 
   struct Result {
-    std::vector<unsigned char> bytes;  // of resolve_temporal also those of alpha
+    std::vector<unsigned char> bytes;  // from resolve_temporal also those of alpha
     std::vector<Pixel> pixels;
-    std::vector<double> alpha;  // of resolve_temporal, where there is one
+    std::vector<double> alpha;  // from resolve_temporal, where there is one
     std::int64_t non_finite = 0;
   };
   // History holds bytes of 0x7f before, the picture -7.
@@ -117,7 +117,7 @@ class TemporalStages {
                      const ResolveVariant& how = {}) const;
   struct Shown {
     TemporalPreset preset = TemporalPreset::kBalanced;
-    bool first = false;  // of all frames
+    bool first = false;  // the first of all frames
   };
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      const Shown& shown) const;

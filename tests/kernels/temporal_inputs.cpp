@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of the temporal upscaler read: zones that move, history, and tiles.
+// The inputs of the temporal upscaler's stages: zones that move, history, and tiles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,7 +104,7 @@ std::vector<Pixel> make_history(const reference::TemporalInputs& in, PixelFormat
   return history;
 }
 
-// Of each sample: whether it has a near layer, in zones of which some move as one.
+// Returns for each sample whether it has a near layer, in zones of which some move as one.
 std::vector<reference::LayerSplit> make_splits(const reference::TemporalInputs& in, unsigned seed) {
   const Zones zones(seed);
   std::mt19937 random(seed + 1);

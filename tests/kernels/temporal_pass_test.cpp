@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pass_chain.h"
+#include "passes/pass_chain.h"
 #include "temporal_fixture.h"
 
 namespace quincunx {
@@ -239,7 +239,7 @@ testing::StageInputs two_surfaces(Rig& rig, const testing::TemporalStages& stage
   return in;
 }
 
-// Of samples that move otherwise a fresh pixel takes next to nothing, of all others what a Gaussian has.
+// A fresh pixel takes next to nothing from samples that move otherwise, and what a Gaussian has from all others.
 TEST(TemporalStill, AFreshPixelShowsOneSurface) {
   const testing::TemporalStages stages({});
   Rig rig;
@@ -258,7 +258,7 @@ TEST(TemporalStill, AFreshPixelShowsOneSurface) {
   EXPECT_LT(largest[1], largest[0] / 0x1p9);
 }
 
-// Whatever history holds, and however sure of it, without trust the pixel is what it is without history.
+// Without trust the pixel is as without history, whatever history holds and however sure it is.
 TEST(TemporalStill, WithoutTrustNothingOfHistoryIsLeft) {
   const testing::TemporalStages stages({});
   Rig rig;
@@ -268,7 +268,7 @@ TEST(TemporalStill, WithoutTrustNothingOfHistoryIsLeft) {
   const auto without = stages.run_resolve(rig, in, in.reference.before).pixels;
   for (std::size_t i = 0; i < with.size(); ++i) {
     for (std::size_t c = 0; c < 4; ++c) {
-      // What replaces history is added to it as a difference: of values below 4, once each.
+      // The replacement of history is added to it as a difference: of values below 4, once each.
       EXPECT_NEAR(with[i][c], without[i][c], 2 * 4 * kRounding) << i << " " << c;
     }
   }

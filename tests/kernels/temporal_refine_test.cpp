@@ -38,7 +38,8 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
  protected:
   static PixelFormat format() { return GetParam().picture; }
 
-  // Of each pixel `confidences`, or if there are none of every kind, side by side; of colours history has NaN.
+  // Refines with `confidences` for the pixels, or if there are none with every kind, side by side; history's colours
+  // are NaN.
   std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent,
                                  const std::vector<double>& confidences = {}, double outside = 1e30,
                                  bool tight = false) {
@@ -147,7 +148,7 @@ std::vector<Pixel> picture_of(Extent extent, const std::function<double(int, int
   return pixels;
 }
 
-// What is left of the stairs: how far the pixels of a slanted line are from their mean.
+// Returns how far the pixels of a slanted line are from their mean: the stairs that are left.
 double stairs(const std::vector<Pixel>& pixels, Extent extent) {
   double sum = 0;
   for (int y = 6; y < 16; y += 2)
@@ -227,15 +228,15 @@ TEST_P(TemporalRefine, TwoRunsAgreeBitForBit) {
   EXPECT_EQ(run(pixels, {100, 70}), run(pixels, {100, 70}));
 }
 
-constexpr Formats kFormats[] = {{PixelFormat::kRGBA32F, PixelFormat::kRGBA32F},
-                                {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F},
-                                {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F},
-                                {PixelFormat::kRGBA16F, PixelFormat::kRGBA16F}};
+const std::vector<Formats> kFormats = {{PixelFormat::kRGBA32F, PixelFormat::kRGBA32F},
+                                       {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F},
+                                       {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F},
+                                       {PixelFormat::kRGBA16F, PixelFormat::kRGBA16F}};
 
-INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine, ::testing::ValuesIn(kFormats), [](const auto& variant) {
-  return fmt::format("{}_of_{}", quincunx::name_of(variant.param.picture),
-                     quincunx::name_of(variant.param.history));
-});
+INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine, ::testing::ValuesIn(kFormats),
+                         testing::sample_names(kFormats, [](const Formats& f) {
+                           return fmt::format("{}_of_{}", name_of(f.picture), name_of(f.history));
+                         }));
 
 }  // namespace
 }  // namespace quincunx

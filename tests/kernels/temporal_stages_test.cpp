@@ -97,7 +97,7 @@ TEST_P(Temporal, SamplesOfACheckerboardMatchTheReference) {
   EXPECT_GE(decided_, compared_ * 3 / 4);
 }
 
-// What is copied without a look at each sample's reprojection is what a look at them gives.
+// Tiles that are copied without a look at each sample's reprojection equal those that are looked at.
 TEST_P(Temporal, CopyableTilesGiveTheSameBits) {
   if (!GetParam().moves) return;  // all are
   const TemporalStages stages(GetParam());
@@ -107,7 +107,7 @@ TEST_P(Temporal, CopyableTilesGiveTheSameBits) {
     auto tiles = stages.tiles(in, spec.seed);
     const auto copied = stages.run_resolve(rig, in, tiles);
     for (reference::Tile& tile : tiles)
-      tile.reprojection.is_copyable = false;
+      tile.reprojection.is_trusted = false;
     EXPECT_EQ(copied.bytes, stages.run_resolve(rig, in, tiles).bytes) << name_of(spec);
   }
 }
@@ -223,7 +223,8 @@ std::vector<StageVariant> variants() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, Temporal, ::testing::ValuesIn(variants()),
-                         [](const auto& instance) { return testing::name_of(instance.param); });
+                         testing::sample_names(variants(),
+                                               [](const StageVariant& v) { return testing::name_of(v); }));
 
 }  // namespace
 }  // namespace quincunx

@@ -20,7 +20,7 @@ void TwoFrameCases::compare_at_every_size_scale_and_input(Extent largest) {
   const double scales[][4] = {{.05, .1, .1, .05}, {.5, .71, .5, .71},   {.71, .5, .9, .6},
                               {1, 1, 1, 1},       {1.37, .83, .5, 1.9}, {2, 1.9, 2, 1.9}};
   unsigned seed = 0;
-  for (const Extent output : {Extent{1, 1}, Extent{7, 5}, Extent{64, 64}, largest}) {
+  for (const Extent output : sizes_for(largest)) {
     for (std::size_t i = 0; i < std::size(scales); ++i) {
       const auto& scale = scales[i];
       for (const Pattern pattern : patterns_for(output, i)) {

@@ -43,7 +43,7 @@ class TwoFrameCases {
   FrameFormats formats_;
 };
 
-// Of a comparison, for its message.
+// Returns the name of a comparison, for its message.
 std::string name_of(const FrameSpec& now, const FrameSpec& before, Extent output);
 
 }  // namespace quincunx::testing

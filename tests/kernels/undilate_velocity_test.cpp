@@ -64,7 +64,7 @@ TEST_P(UndilateVelocityPass, MatchesTheReference) {
   EXPECT_GT(from_camera, 1000);
 }
 
-// What is dilated of velocities that each sample has of its own comes back, wherever a sample of the same surface has
+// Velocities that each sample has of its own come back from their dilation, wherever a sample of the same surface has
 // not lost its own: here, wherever the wires leave one.
 TEST_P(UndilateVelocityPass, TakesADilationBack) {
   Rig rig;

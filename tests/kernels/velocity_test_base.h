@@ -32,7 +32,7 @@ class VelocityTest : public ::testing::TestWithParam<VelocityVariant> {
     pass_ = std::make_unique<PassRig>(needs, settings_, kernel);
   }
 
-  // Of a camera that turns.
+  // Returns a frame of a camera that turns.
   virtual TestFrame turned_frame(Rig& rig, const FrameSpec& spec) const = 0;
 
   std::vector<unsigned char> run(Rig& rig, const TestFrame& frame, bool tight = false) {
@@ -83,15 +83,18 @@ class VelocityTest : public ::testing::TestWithParam<VelocityVariant> {
   std::unique_ptr<PassRig> pass_;
 };
 
+inline const std::vector<VelocityVariant> kVelocityVariants = {{Storage::kBuffer, PixelFormat::kRG16F},
+                                                               {Storage::kBuffer, PixelFormat::kRG32F},
+                                                               {Storage::kImage, PixelFormat::kRG16F}};
+
 inline auto velocity_variants() {
-  return ::testing::Values(VelocityVariant{Storage::kBuffer, PixelFormat::kRG16F},
-                           VelocityVariant{Storage::kBuffer, PixelFormat::kRG32F},
-                           VelocityVariant{Storage::kImage, PixelFormat::kRG16F});
+  return ::testing::ValuesIn(kVelocityVariants);
 }
 
 inline std::string variant_name(const ::testing::TestParamInfo<VelocityVariant>& instance) {
-  const VelocityVariant& v = instance.param;
-  return fmt::format("{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity));
+  return sample_names(kVelocityVariants, [](const VelocityVariant& v) {
+    return fmt::format("{}_{}", v.storage == Storage::kImage ? "image" : "buffer", name_of(v.velocity));
+  })(instance);
 }
 
 }  // namespace quincunx::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a user types: help, lists, and one clear sentence for each mistake.
+// A user's command lines: help, lists, and one clear sentence for each mistake.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -163,7 +163,7 @@ TEST_F(Dump, ADynamicOutputIsShownAsItIsMadeAndAsItIsSeen) {
   EXPECT_EQ(image("d/frame.0003.displayed.png").extent, (Extent{96, 54}));
 }
 
-// Of a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
+// In a still scene the picture of frame n is the history that frame n + 1 reads, but for its smoothing of what is
 // hardly known and the rounding of history to halves.
 TEST_F(Dump, TheHistoryOfTemporalIsWhatWasAccumulated) {
   const std::string run = "-q --scene still --output 64x36 --scale 0.5 --method temporal --format exr ";

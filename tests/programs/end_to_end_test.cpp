@@ -200,7 +200,6 @@ TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
   EXPECT_NE(dumped.find("192"), std::string::npos) << "the last viewport is 192 wide";
 }
 
-// What a run must say of its pacing, whatever this machine makes of the rate.
 TEST_F(EndToEnd, ScoresAreOfThisRunAndChangeNoPixel) {
   const std::string run = "--scene pan --frames 8 --method temporal --scale-path random:0.4,0.8 ";
   render(run + "--out '{}/without.%04d.exr'");

@@ -45,7 +45,7 @@ class Exchange : public ::testing::Test {
     return values;
   }
 
-  // As dumped.
+  // The dumped values.
   int reset_of(int index) const {
     const tools::LoadedImage frame = image(fmt::format("s/f.{:04}.exr", index));
     const tools::Attribute* reset = frame.attribute("quincunx:reset");

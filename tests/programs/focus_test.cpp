@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "programs/focus_path.h"
-#include "programs/frame_source.h"
-#include "programs/picture_options.h"
+#include "frames/focus_path.h"
+#include "frames/frame_source.h"
+#include "frames/picture_options.h"
 #include "render/truth.h"
 
 namespace quincunx::scenes {
@@ -220,7 +220,7 @@ TEST_F(Focused, TheErrorInsideIsThatOfTheLargerScale) {
     EXPECT_LT(error.focused, .9 * error.plain) << scene << ", " << name_of(method);
     EXPECT_NEAR(error.focused / error.whole, 1, .05) << scene << ", " << name_of(method);
   }
-  // What a pan brings into the region has another history there than in a whole picture.
+  // Pixels that a pan brings into the region have another history there than in a whole picture.
   const Measured pan = measure("pan", Method::kTemporal);
   EXPECT_LT(pan.focused, .75 * pan.plain);
   EXPECT_NEAR(pan.focused / pan.whole, 1, .1);

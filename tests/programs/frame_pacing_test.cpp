@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The loop's logic with times that the tests make up.
-#include "programs/frame_pacing.h"
+#include "session/frame_pacing.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "session/paced_loop.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -44,7 +46,7 @@ class Player {
   const tools::PacedFrame& last() const { return pacing.run().frames.back(); }
 
   FramePacing pacing;
-  double now = 1000;  // of a clock that did not begin with the run
+  double now = 1000;  // time of a clock that did not begin with the run
 };
 
 double area(Extent render) {
@@ -73,7 +75,7 @@ TEST(FramePacing, BadSettingsAreNamed) {
   }
 }
 
-// Of light alone `quincunx:reprojected` errs least, of a still picture the temporal methods do.
+// `quincunx:reprojected` errs least where light alone changes, the temporal methods where nothing does.
 TEST(FramePacing, AChangeOfMethodIsNotedWithTheFrameThatBeginsIt) {
   FramePacing pacing = made(settings(ControllerKind::kQuality));
   double now = 0;
@@ -245,6 +247,58 @@ TEST(FramePacing, TheSameTimesGiveTheSameRun) {
   two.play(200, cost);
   for (std::size_t i = 0; i < 200; ++i)
     ASSERT_EQ(one.pacing.run().frames[i].render, two.pacing.run().frames[i].render) << i;
+}
+
+TEST(FramePacing, WithoutADisplayNoFrameWaitsOrMissesARefresh) {
+  FramePacing pacing = FramePacing::free_running({1280, 720});
+  EXPECT_FALSE(pacing.has_display());
+  EXPECT_FALSE(pacing.next());
+  EXPECT_FALSE(pacing.choice());
+  double now = 1000;
+  for (std::uint64_t frame = 0; frame < 20; ++frame) {
+    EXPECT_LE(pacing.free_at().value(), now) << frame;
+    EXPECT_EQ(pacing.begin(now, {640, 360}), frame);
+    EXPECT_LE(pacing.free_at().value(), now) << "the next one may begin before this one is finished";
+    now += 70;
+    pacing.finish(frame, now);
+    pacing.observe(frame, pacing.busy_ms(frame));
+    const tools::PacedFrame& finished = pacing.run().frames.back();
+    EXPECT_EQ(finished.busy_ms, 70);
+    EXPECT_EQ(finished.missed, 0);
+    EXPECT_EQ(finished.shown_ms, finished.finished_ms);
+  }
+  EXPECT_TRUE(made(settings()).has_display());
+}
+
+TEST(FrameMeter, MeasuresNoDeviceWhosePassesHaveNoEvents) {
+  for (const PassTimer passes : {PassTimer::kHostClock, PassTimer::kNone}) {
+    const auto chosen = FrameMeter::create(FrameCost::kAuto, passes);
+    ASSERT_TRUE(chosen.ok()) << chosen.status().message();
+    EXPECT_FALSE(chosen->measures_device());
+    const auto refused = FrameMeter::create(FrameCost::kDevice, passes);
+    ASSERT_FALSE(refused.ok());
+    EXPECT_EQ(refused.status().code(), StatusCode::kUnsupported);
+    EXPECT_NE(refused.status().message().find("--frame-cost"), std::string::npos);
+  }
+}
+
+TEST(CameraStreak, IsNothingForACameraThatStandsStill) {
+  EXPECT_EQ(camera_streak_px({}, 0.1f, {1280, 720}, 1), 0);
+}
+
+TEST(CameraStreak, OfAShiftIsTheShift) {
+  CameraMotion motion;
+  motion.clip_to_previous_clip[12] = 0.1f;  // every point was a twentieth of the width further right
+  // Single precision: a few roundings of values up to 1.
+  EXPECT_NEAR(camera_streak_px(motion, 0.1f, {1000, 500}, 0.5f), 0.5 * 0.05 * 1000, 1e-3);
+}
+
+TEST(CameraStreak, LeavesOutWhatWasBehindTheCamera) {
+  CameraMotion motion;
+  motion.clip_to_previous_clip[15] = -1;
+  EXPECT_EQ(camera_streak_px(motion, 0.1f, {1000, 500}, 1), 0);
+  motion.clip_to_previous_clip[15] = std::nanf("");
+  EXPECT_EQ(camera_streak_px(motion, 0.1f, {1000, 500}, 1), 0);
 }
 
 }  // namespace

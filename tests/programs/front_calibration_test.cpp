@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 // quincunx-render --calibrate: what methods err and cost in one scene.
-#include "programs/front_calibration.h"
+#include "session/calibration.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "program_run.h"
-#include "programs/front_feed.h"
-#include "programs/front_methods.h"
-#include "programs/front_reference.h"
 #include "tools/own_cache.h"
 
 namespace quincunx::scenes {
@@ -63,8 +60,8 @@ class FrontCalibrationRun : public ::testing::Test {
   ::quincunx::testing::OwnCache cache_{folder_.file("cache")};
 };
 
-constexpr FrontMethod kBilinear = {.method = Method::kBilinear};
-constexpr FrontMethod kBest = {.method = Method::kTemporal, .preset = TemporalPreset::kQuality};
+constexpr MethodVariant kBilinear = {.method = Method::kBilinear};
+constexpr MethodVariant kBest = {.method = Method::kTemporal, .preset = TemporalPreset::kQuality};
 constexpr SceneMix kHeld = SceneMix::only(SceneClass::kStill);
 constexpr SceneMix kMoving = SceneMix::only(SceneClass::kObjects);
 
@@ -78,10 +75,10 @@ TEST_F(FrontCalibrationRun, KeepsTheScenesFrontAndExplainsIt) {
   const ErrorFront front = kept();
   EXPECT_EQ(front.source().scene, "wheel");
   EXPECT_EQ(front.source().output, (Extent{128, 72}));
-  ASSERT_EQ(front.methods().size(), front_methods().size());
-  for (std::size_t i = 0; i < front_methods().size(); ++i)
-    EXPECT_EQ(name_of(front.methods()[i]), front_methods()[i]);
-  EXPECT_EQ(front.points().size(), kSceneClasses * front_methods().size() * 3) << "at 0.5, 0.75 and 1";
+  ASSERT_EQ(front.methods().size(), front_variants().size());
+  for (std::size_t i = 0; i < front_variants().size(); ++i)
+    EXPECT_EQ(front.methods()[i], front_variants()[i]);
+  EXPECT_EQ(front.points().size(), kSceneClasses * front_variants().size() * 3) << "at 0.5, 0.75 and 1";
   EXPECT_LT(front.flip(kHeld, kBest, 0.5).value(), front.flip(kHeld, kBilinear, 0.5).value());
   EXPECT_LT(front.flip(kHeld, kBest, 0.5).value(), front.flip(kMoving, kBest, 0.5).value());
   EXPECT_LT(front.flip(kMoving, kBilinear, 1).value(), front.flip(kMoving, kBilinear, 0.5).value());
@@ -109,7 +106,7 @@ TEST_F(FrontCalibrationRun, WhereTruthIsTooDearTheBestMethodStandsForIt) {
             "temporal:quality at scale 1 of 64x36 pixels in the middle, as truth takes too long");
   EXPECT_EQ(front.flip(kMoving, kBest, 1), 0) << "it is held against itself";
   EXPECT_GT(front.flip(kMoving, kBilinear, 1).value(), 0);
-  EXPECT_EQ(front.points().size(), kSceneClasses * front_methods().size());
+  EXPECT_EQ(front.points().size(), kSceneClasses * front_variants().size());
 }
 
 TEST_F(FrontCalibrationRun, WhatCannotBeMeasuredIsRefused) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Frames whose method changes on the way: what a viewer sees of it.
-#include "programs/method_resolves.h"
+#include "frames/method_resolves.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "programs/picture_options.h"
+#include "frames/picture_options.h"
 #include "tools/image/flip.h"
 
 namespace quincunx::scenes {
@@ -21,15 +21,15 @@ constexpr int kBefore = 20;  // frames of the old method
 constexpr int kFade = 6;
 constexpr int kFrames = 36;
 
-const FrontMethod kOld = {.method = Method::kTemporal};
-const FrontMethod kNew = {.method = Method::kBilinear};
+const MethodVariant kOld = {.method = Method::kTemporal};
+const MethodVariant kNew = {.method = Method::kBilinear};
 
 struct Played {
   std::vector<double> steps;  // FLIP between a frame and the one before, of frames 1 ...
   std::vector<FrameReport> reports;
 };
 
-QualityChoice choice_at(int frame, const FrontMethod& from, const FrontMethod& to, bool fades) {
+QualityChoice choice_at(int frame, const MethodVariant& from, const MethodVariant& to, bool fades) {
   QualityChoice choice = {.render = {100, 56}, .method = frame < kBefore ? from : to};
   const int faded = frame - kBefore + 1;
   if (!fades || faded < 1 || faded > kFade) return choice;
@@ -38,7 +38,7 @@ QualityChoice choice_at(int frame, const FrontMethod& from, const FrontMethod& t
   return choice;
 }
 
-// As FLIP takes it: red, green and blue of the presented picture.
+// Returns red, green and blue of the presented picture, as FLIP takes it.
 std::vector<float> shown(Device device, const Image& picture) {
   std::vector<std::uint8_t> codes(static_cast<std::size_t>(kOutput.area()) * 4);
   EXPECT_TRUE(device.download(picture.view(), kOutput, codes.data()).ok());
@@ -50,7 +50,7 @@ std::vector<float> shown(Device device, const Image& picture) {
 }
 
 // The scene `still`, so that nothing but the method changes the picture.
-Played play(const FrontMethod& from, const FrontMethod& to, bool fades) {
+Played play(const MethodVariant& from, const MethodVariant& to, bool fades) {
   PictureOptions options;
   options.scene = "still";
   options.output = kOutput;
@@ -89,7 +89,7 @@ double largest(const Played& run, int first, int last) {  // steps to these fram
   return *std::max_element(run.steps.begin() + first - 1, run.steps.begin() + last);
 }
 
-// Of a change at once there is one step; a fade spreads it over its frames, and each is a small part of it.
+// A change at once is one step; a fade spreads it over its frames, and each is a small part of it.
 TEST(MethodResolves, AFadeHasNoStepThatIsSeen) {
   for (const auto& [from, to] : {std::pair{kOld, kNew}, {kNew, kOld}}) {
     const Played at_once = play(from, to, false);

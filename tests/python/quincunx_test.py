@@ -129,10 +129,10 @@ class Pictures(unittest.TestCase):
 
 
 class Example(unittest.TestCase):
-    """The example of docs/c_interface.md, with smaller pictures."""
+    """The example of docs/integrate.md, with smaller pictures."""
 
     def test_it_resolves_a_sequence(self):
-        code = re.search(r"```python\n(.*?)```", read(ROOT, "docs", "c_interface.md"), re.S).group(1)
+        code = re.search(r"```python\n(.*?)```", read(ROOT, "docs", "integrate.md"), re.S).group(1)
         self.assertIn("(1280, 720)", code)
         self.assertLessEqual(len([line for line in code.splitlines() if line.strip()]), 10)
         size, count, back = (128, 72), 24, os.getcwd()

@@ -6,18 +6,18 @@
 //         counts as its colour and 1 if it is nearer than D, else as 0
 //   where W < .15 and A > .02: M <- M + (F / A - M) (1 - W / .15)
 //   F + (1 - A) M, A in [0, 1]; pixels of one layer stay what they are
-// Source: found by measuring (docs/temporal.md).
+// Source: found by measuring (docs/lab/layers.md).
 #include <cmath>
 #include <cstddef>
 
 #include "resolve_layers.h"
+#include "temporal/reseed.h"
 
 namespace quincunx::reference {
 namespace {
 
 constexpr double kDisplaySharpness = -.75;  // Keys' a, as of temporal_display
-constexpr double kUnknownFar = .15;         // confidence of the far layer below which the near one stands in
-constexpr double kLeastCoverage = .02;      // from which the near layer has a colour
+constexpr double kShownCoverageMin = .02;   // from which the near layer has a colour
 
 template <typename Real>
 PixelOf<Real> near_at_centre(const LayerHistory& history, const LayerTile& tile, int x, int y) {
@@ -45,8 +45,8 @@ PixelOf<Real> display_layers(const LayerHistory& history, const Pixel& picture, 
   const auto near = near_at_centre<Real>(history, tile, x, y);
   const Real coverage = clamp(near[3], 0, 1);
   const Real confidence = std::abs(history.far[history.texel(x, y)][3]);
-  const Real unknown = clamp(1 - confidence / kUnknownFar, 0, 1);
-  if (seamless(unknown > 0) && coverage > kLeastCoverage) {
+  const Real unknown = clamp(1 - confidence / kConfidenceMin, 0, 1);
+  if (seamless(unknown > 0) && coverage > kShownCoverageMin) {
     for (std::size_t c = 0; c < 3; ++c)
       far[c] += (near[c] / near[3] - far[c]) * unknown;
     far[3] += (near[3] / near[3] - far[3]) * unknown;

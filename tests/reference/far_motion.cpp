@@ -57,7 +57,7 @@ Real luma_of(const Pixel& colour) {
   return max(.25 * (red + 2 * Real(sanitised(colour[1])) + Real(sanitised(colour[2]))), 0);
 }
 
-// Of the previous frame at a place among its samples.
+// Returns the previous frame's luma at a place among its samples.
 template <typename Real>
 Real luma_between(const Frame& frame, const std::array<Real, 2>& at) {
   const int x = floor_within(at[0], 0, frame.width - 1);

@@ -29,11 +29,11 @@ struct FarInputs {
   Frame previous;  // colour, depth
   int output_width = 0;
   int output_height = 0;
-  FarModel<double> model = {};  // of the frame before, or of this one
+  FarModel<double> model = {};  // fitted to the frame before, or to this one
   bool is_known = false;
 };
 
-// Of cell (x, y).
+// Returns the sums of cell (x, y).
 template <typename Real>
 FarSums<Real> far_surroundings(const FarInputs& in, int cell_x, int cell_y);
 

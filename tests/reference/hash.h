@@ -15,7 +15,7 @@ inline std::uint32_t pcg(std::uint32_t value) {
   return word / 0x400000u ^ word;
 }
 
-// Of pixel (x, y): Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020.
+// Returns random bits for pixel (x, y): Jarzynski and Olano, "Hash Functions for GPU Rendering", 2020.
 inline std::uint32_t random_of(int x, int y, std::uint32_t seed) {
   const std::uint32_t row = pcg(static_cast<std::uint32_t>(y) + pcg(seed));
   return pcg(row + static_cast<std::uint32_t>(x));

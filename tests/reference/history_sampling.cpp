@@ -9,9 +9,9 @@ namespace quincunx::reference {
 namespace {
 
 // Output pixels by which the phases of copied texels may differ from the phase that their tile assumes.
-constexpr double kSamePhase = .02;
+constexpr double kCopiedPhaseErrorMax = .02;
 // Output pixels: beyond any viewport, and small enough for an int.
-constexpr double kFarthestMotion = 65536;
+constexpr double kSourceDistanceMax = 65536;
 
 // The tile that holds texel (x, y), clamped to the edge.
 const TileReprojection& reprojection_before(const TemporalInputs& in, int x, int y) {
@@ -29,7 +29,7 @@ bool can_copy(const TemporalInputs& in, const TileReprojection& tile, int x, int
   for (const int column : {first, first + kTile - 1}) {
     const TileReprojection& from = reprojection_before(in, column, row);
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      if (std::abs(from.phase[axis] - tile.source_phase[axis]) > kSamePhase) return false;
+      if (std::abs(from.phase[axis] - tile.source_phase[axis]) > kCopiedPhaseErrorMax) return false;
     }
   }
   return true;
@@ -55,7 +55,7 @@ HistoryPlace<Real> history_place(const TemporalInputs& in, const TileReprojectio
   std::array<int, 2> near;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Real moved = Real(motion[axis]) * in.reprojection_scale(static_cast<int>(axis));
-    way[axis] = clamp(moved, -kFarthestMotion, kFarthestMotion) + tile.phase[axis];
+    way[axis] = clamp(moved, -kSourceDistanceMax, kSourceDistanceMax) + tile.phase[axis];
     near[axis] = pixel[axis] + truncate_within(way[axis] + .5, -pixel[axis], size[axis] - 1 - pixel[axis]);
   }
   // The texels there hold their picture at a phase of their own.
@@ -111,18 +111,22 @@ Real cubic_of(const At& at, int x, int y, const std::array<Real, 2>& fraction, d
   return clamp(result, low, high);
 }
 
-// Of the six texels around a place, `f` past the third: Hermite's cubic, with slopes of .9 of the difference of the
-// two nearest texels of each less .25 of that of the next.
+// Returns the weights of the six texels around a place, `f` past the third: Hermite's cubic, with slopes of .9 of the
+// difference of the two nearest texels of each less .25 of that of the next.
 template <typename Real>
 std::array<Real, 6> six_weights(const Real& f) {
-  constexpr double kNear = .9;
-  constexpr double kFar = .25;
+  constexpr double kLongCubicNearSlope = .9;
+  constexpr double kLongCubicFarSlope = .25;
   const Real rest = 1 - f;
   const Real before = f * rest * rest;
   const Real after = -f * f * rest;
   const Real next = f * f * (3 - 2 * f);
-  return {kFar * before,         kFar * after - kNear * before, 1 - next - kNear * after,
-          next + kNear * before, kNear * after - kFar * before, -(kFar * after)};
+  return {kLongCubicFarSlope * before,
+          kLongCubicFarSlope * after - kLongCubicNearSlope * before,
+          1 - next - kLongCubicNearSlope * after,
+          next + kLongCubicNearSlope * before,
+          kLongCubicNearSlope * after - kLongCubicFarSlope * before,
+          -(kLongCubicFarSlope * after)};
 }
 
 // Held in the range of the middle 4 x 4.
@@ -200,21 +204,6 @@ FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReproject
 }
 
 template <typename Real>
-PixelOf<Real> foretell(const TemporalInputs& in, const TileReprojection& tile,
-                       const Reprojection& reprojection, int x, int y, const std::array<Real, 2>& away) {
-  const auto from = history_place<Real>(in, tile, reprojection, x, y);
-  const Split<Real> across = split(from.fraction[0] + away[0]);
-  const Split<Real> down = split(from.fraction[1] + away[1]);
-  PixelOf<Real> foretold = {};
-  for (std::size_t c = 0; c < 3; ++c) {
-    foretold[c] = linear_of<Real>([&](int i, int j) { return in.history_clamped(i, j)[c]; },
-                                  from.texel[0] + across.whole, from.texel[1] + down.whole,
-                                  {across.fraction, down.fraction});
-  }
-  return foretold;
-}
-
-template <typename Real>
 PixelOf<Real> sample_cubic(const TemporalInputs& in, int x, int y, const std::array<Real, 2>& fraction,
                            double a) {
   PixelOf<Real> result = {};
@@ -233,10 +222,6 @@ template FetchedHistory<double> fetch_history(const TemporalInputs&, const TileR
                                               const Reprojection&, const TemporalOptions&, int, int);
 template FetchedHistory<Bounded> fetch_history(const TemporalInputs&, const TileReprojection&,
                                                const Reprojection&, const TemporalOptions&, int, int);
-template PixelOf<double> foretell(const TemporalInputs&, const TileReprojection&, const Reprojection&, int,
-                                  int, const std::array<double, 2>&);
-template PixelOf<Bounded> foretell(const TemporalInputs&, const TileReprojection&, const Reprojection&, int,
-                                   int, const std::array<Bounded, 2>&);
 template PixelOf<double> sample_cubic(const TemporalInputs&, int, int, const std::array<double, 2>&, double);
 template PixelOf<Bounded> sample_cubic(const TemporalInputs&, int, int, const std::array<Bounded, 2>&,
                                        double);

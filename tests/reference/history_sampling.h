@@ -6,10 +6,10 @@
 
 namespace quincunx::reference {
 
-// Keys' a of the history: -1 scores .04 dB above -.75 (docs/temporal.md).
+// Keys' a of the history: -1 scores .04 dB above -.75 (docs/lab/temporal.md).
 constexpr double kHistorySharpness = -1;
 
-// Of the four texels around a place, `f` past the second.
+// Returns the weights of the four texels around a place, `f` past the second.
 template <typename Real>
 std::array<Real, 4> cubic_weights(const Real& f, double a) {
   const Real rest = 1 - f;
@@ -37,12 +37,6 @@ template <typename Real>
 FetchedHistory<Real> fetch_history(const TemporalInputs& in, const TileReprojection& tile,
                                    const Reprojection& reprojection, const TemporalOptions& options, int x,
                                    int y);
-
-// What history foretells of a sample that lies `away` output pixels from where output pixel (x, y)'s picture lies:
-// bilinear between four texels. The fourth channel is not used.
-template <typename Real>
-PixelOf<Real> foretell(const TemporalInputs& in, const TileReprojection& tile,
-                       const Reprojection& reprojection, int x, int y, const std::array<Real, 2>& away);
 
 // History at texel (x, y) + fraction, fraction within [0, 1], by the cubic of Keys, "Cubic Convolution
 // Interpolation for Digital Image Processing", 1981, with his parameter `a`; clamped to the range of the

@@ -10,12 +10,12 @@ namespace quincunx::reference {
 namespace {
 
 // Texels: a place of a rigid layer that is this near to a texel is that texel.
-constexpr double kCopied = .06;
-// Of the larger depth: a near layer of another depth is another thing's; a far one may be seen at a slant.
-constexpr double kNearDepths = .1;
-constexpr double kFarDepths = .2;
-constexpr double kCrossingDepths = .05;  // the same of near layers that may cross
-constexpr double kMostEmpty = 1;         // confidence that there is no near layer where there was but one
+constexpr double kCopiedOffsetMax = .06;
+// Parts of the larger depth: a near layer of another depth is another thing's; a far one may be seen at a slant.
+constexpr double kNearDepthStepMax = .1;
+constexpr double kFarDepthStepMax = .2;
+constexpr double kCrossingDepthStepMax = .05;  // the same of near layers that may cross
+constexpr double kEmptyConfidenceMax = 1;  // confidence that there is no near layer where there was but one
 constexpr double kFarthestPlace = 65536;
 
 template <typename Real>
@@ -28,7 +28,7 @@ template <typename Real>
 LayerTap<Real> far_of(const LayerHistory& history, int x, int y) {
   const Pixel& texel = history.far[history.texel(x, y)];
   const double alpha = history.alpha.empty() ? 1 : history.alpha[history.texel(x, y)];
-  return {{texel[0], texel[1], texel[2], 1}, std::clamp(std::abs(texel[3]), 0.0, kMostConfidence), alpha};
+  return {{texel[0], texel[1], texel[2], 1}, std::clamp(std::abs(texel[3]), 0.0, kConfidenceMax), alpha};
 }
 
 // A surface that stands alone now: of two layers of a texel the one that has its depth.
@@ -37,16 +37,16 @@ LayerTap<Real> only_tap(const LayerHistory& history, const LayerWish& wish, int 
   const auto state = state_at<Real>(history, x, y);
   LayerTap<Real> tap = far_of<Real>(history, x, y);
   if (!state.has_two()) {
-    tap.is_valid = !wish.tests_depth || state.far_depth <= Real(wish.near_depth) * (1 + kFarDepths);
+    tap.is_valid = !wish.tests_depth || state.far_depth <= Real(wish.near_depth) * (1 + kFarDepthStepMax);
     return tap;
   }
   if (wish.near_depth > state.between()) {
     tap.value = as<Real>(history.near[history.texel(x, y)]);
     tap.confidence = state.near_confidence * tap.value[3];
     tap.alpha = 1;
-    tap.is_valid = are_alike<Real>(state.near_depth, wish.near_depth, kNearDepths);
+    tap.is_valid = are_alike<Real>(state.near_depth, wish.near_depth, kNearDepthStepMax);
   } else {
-    tap.is_valid = tap.confidence > 0 && are_alike<Real>(state.far_depth, wish.near_depth, kFarDepths);
+    tap.is_valid = tap.confidence > 0 && are_alike<Real>(state.far_depth, wish.near_depth, kFarDepthStepMax);
   }
   return tap;
 }
@@ -55,16 +55,16 @@ LayerTap<Real> only_tap(const LayerHistory& history, const LayerWish& wish, int 
 template <typename Real>
 LayerTap<Real> far_tap(const LayerHistory& history, const LayerWish& wish, int x, int y) {
   const auto state = state_at<Real>(history, x, y);
-  const Real least = Real(wish.far_depth) * (1 - kFarDepths);
+  const Real least = Real(wish.far_depth) * (1 - kFarDepthStepMax);
   const Real most = .5 * (Real(wish.near_depth) + wish.far_depth);
   if (state.has_two() && wish.far_depth > state.between()) {  // it was the near layer
     const Pixel& near = history.near[history.texel(x, y)];
     const Real coverage = near[3];
-    const Real divisor = max(coverage, kSolid);
+    const Real divisor = max(coverage, kNearCoverageMin);
     return {{near[0] / divisor, near[1] / divisor, near[2] / divisor, 1},
             state.near_confidence * coverage,
             1,
-            coverage >= kSolid && state.near_depth >= least && state.near_depth <= most};
+            coverage >= kNearCoverageMin && state.near_depth >= least && state.near_depth <= most};
   }
   LayerTap<Real> tap = far_of<Real>(history, x, y);
   tap.is_valid = tap.confidence > 0 && state.far_depth >= least && state.far_depth <= most;
@@ -79,18 +79,18 @@ LayerTap<Real> near_tap(const LayerHistory& history, const LayerWish& wish, int 
   const bool was_near = state.has_two() && wish.near_depth > state.between();
   const Real shown = was_near ? state.near_depth : state.far_depth;
   LayerTap<Real> tap = far_of<Real>(history, x, y);
-  const double nearer = wish.may_cross ? kCrossingDepths : kNearDepths;
-  const bool is_behind = wish.may_cross && !(shown >= Real(wish.near_depth) * (1 - kCrossingDepths));
+  const double nearer = wish.may_cross ? kCrossingDepthStepMax : kNearDepthStepMax;
+  const bool is_behind = wish.may_cross && !(shown >= Real(wish.near_depth) * (1 - kCrossingDepthStepMax));
   if (!(shown <= Real(wish.near_depth) * (1 + nearer))) {  // something hid it, or has no depth
     tap.is_valid = false;
   } else if (is_behind || !(shown > between)) {
     tap.value = {};
-    tap.confidence = min(tap.confidence, kMostEmpty);
+    tap.confidence = min(tap.confidence, kEmptyConfidenceMax);
   } else if (was_near) {
     tap.value = as<Real>(history.near[history.texel(x, y)]);
     tap.confidence = state.near_confidence;
   } else if (state.has_two()) {
-    tap.confidence = min(tap.confidence, kMostEmpty);
+    tap.confidence = min(tap.confidence, kEmptyConfidenceMax);
   }
   return tap;
 }
@@ -186,7 +186,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
     bool is_copied = true;
     for (std::size_t axis = 0; axis < 2; ++axis) {
       nearest[axis] = floor_within(from[axis] + .5, 0, size[axis]);
-      is_copied = is_copied && abs(from[axis] - nearest[axis]) < kCopied;
+      is_copied = is_copied && abs(from[axis] - nearest[axis]) < kCopiedOffsetMax;
     }
     if (is_copied) {
       const auto tap =
@@ -210,7 +210,7 @@ FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, cons
     });
     fetched.value = blended.value;
     fetched.alpha = blended.alpha;
-    fetched.confidence = clamp(blended.value[3], 0, kMostConfidence);
+    fetched.confidence = clamp(blended.value[3], 0, kConfidenceMax);
     fetched.value[3] = 1;
   } else {
     const auto blended = blend_taps(history, texel, fraction, kHistorySharpness,

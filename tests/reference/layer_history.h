@@ -13,14 +13,14 @@
 
 namespace quincunx::reference {
 
-// What a texel of a layered tile is, besides its colours, as it is stored: depths as their fourth roots.
+// A texel of a layered tile, besides its colours, as it is stored: depths as their fourth roots.
 struct StoredState {
   double far_root = 0, near_root = 0, near_confidence = 0;
 };
 
 template <typename Real>
 struct LayerStateOf {
-  Real far_depth = 0;   // of what the far layer, or the only one, shows
+  Real far_depth = 0;   // depth of the far layer, or of the only one
   Real near_depth = 0;  // 0: there is one layer
   Real near_confidence = 0;
 
@@ -30,10 +30,10 @@ struct LayerStateOf {
 
 // All that a frame leaves to the next, and its samples.
 struct LayerHistory {
-  int width = 0;  // of the output
+  int width = 0;  // width of the output
   int height = 0;
   std::vector<Pixel> far;     // colour and confidence W of the far, or only, layer; -W where there are two
-  std::vector<double> alpha;  // of the far, or only, layer; empty: 1
+  std::vector<double> alpha;  // alpha of the far, or only, layer; empty: 1
   std::vector<Pixel> near;    // premultiplied colour and coverage, where there are two
   std::vector<StoredState> states;  // in layered tiles
   std::vector<Tile> tiles;
@@ -41,14 +41,15 @@ struct LayerHistory {
   Frame frame;  // its extent, jitter and depth
 
   std::size_t texel(int x, int y) const { return index_of(width, x, y); }
-  std::size_t tile(int x, int y) const;  // of the texel
+  std::size_t tile(int x, int y) const;  // returns the texel's tile
   bool has_two(int x, int y) const;      // whether the texel has two layers
   double spacing(int axis) const {       // output pixels between neighbouring samples
     return axis == 0 ? static_cast<double>(width) / frame.width : static_cast<double>(height) / frame.height;
   }
 };
 
-// Of a texel. Where none is stored it has one layer, which shows what the sample nearest to its picture does.
+// Returns the state of a texel. Where none is stored it has one layer, of the depth of the sample nearest to its
+// picture.
 template <typename Real>
 LayerStateOf<Real> state_at(const LayerHistory& history, int x, int y);
 
@@ -63,14 +64,14 @@ PixelOf<Real> near_texel(const LayerHistory& history, const Real& between, int x
 }
 
 // Coverage from which a near layer may stand for a surface alone.
-constexpr double kSolid = .3;
+constexpr double kNearCoverageMin = .3;
 
-// What a layer has of a texel.
+// A texel of a layer.
 template <typename Real>
 struct LayerTap {
   PixelOf<Real> value = {};
   Real confidence = 0;
-  Real alpha = 1;        // of the far layer; a near one is opaque where it covers
+  Real alpha = 1;        // alpha of the far layer; a near one is opaque where it covers
   bool is_valid = true;  // false: the texel shows another surface
 };
 
@@ -84,8 +85,8 @@ struct BlendedTaps {
 
 // Parts of 1: of all taps' weights, below which they are no cubic any more; of the middle four's, below which nothing
 // is known.
-constexpr double kLeastTaps = .5;
-constexpr double kNoTaps = 1e-3;
+constexpr double kCubicWeightMin = .5;
+constexpr double kBilinearWeightMin = 1e-3;
 
 // Keys' cubic at texel (x, y) + fraction, with his parameter `a`, over those of the 4 x 4 texels that are valid, in the
 // range of the middle four of those. Confidence is bilinear, 0 where a texel is not valid. `tap`: LayerTap of a texel.
@@ -122,9 +123,9 @@ BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 
       is_first = false;
     }
   }
-  if (is_first || middle_weights < kNoTaps) return {};
+  if (is_first || middle_weights < kBilinearWeightMin) return {};
   blended.is_known = true;
-  const bool is_cubic = weights >= kLeastTaps;
+  const bool is_cubic = weights >= kCubicWeightMin;
   for (std::size_t c = 0; c < 5; ++c) {
     Real& channel = c < 4 ? blended.value[c] : blended.alpha;
     channel = is_cubic ? clamp(sum[c] / weights, low[c], high[c]) : middle[c] / middle_weights;
@@ -132,7 +133,7 @@ BlendedTaps<Real> blend_taps(const LayerHistory& history, const std::array<int, 
   return blended;
 }
 
-// What a pixel wants of history.
+// The kinds of layers that a pixel asks history for.
 enum class Layer {
   kOnly,  // a surface of depth near_depth, alone
   kFar,   // the one of depth far_depth behind another
@@ -141,8 +142,8 @@ enum class Layer {
 struct LayerWish {
   Layer layer = Layer::kOnly;
   double near_depth = 0, far_depth = 0;
-  bool may_cross = false;  // of kNear: another near layer of the tile may cross it
-  // Of kOnly: texels of one layer must not be nearer. Set by fetch_layer where the texel there has two, as then no
+  bool may_cross = false;  // for kNear: another near layer of the tile may cross it
+  // With kOnly: texels of one layer must not be nearer. Set by fetch_layer where the texel there has two, as then no
   // trust tells.
   bool tests_depth = false;
 };
@@ -151,12 +152,12 @@ template <typename Real>
 struct FetchedLayer {
   PixelOf<Real> value = {};  // premultiplied colour and coverage
   Real confidence = 0;       // 0: nothing is known
-  Real alpha = 1;            // of the far layer
+  Real alpha = 1;            // alpha of the far layer
   Real between = 0;          // as of FetchedHistory
   bool was_split = false;    // the texel at that place has two layers
 };
 
-// What history holds at `place`, output pixels of the previous frame; `is_rigid`: the layer that wishes.
+// Returns the layer of history at `place`, output pixels of the previous frame; `is_rigid`: the layer that wishes.
 template <typename Real>
 FetchedLayer<Real> fetch_layer(const LayerHistory& history, LayerWish wish, const std::array<Real, 2>& place,
                                bool is_rigid);

@@ -9,7 +9,13 @@
 //              place + v whose depth differs by no more than .03 d; 0 if there is none, or it is above v / 4
 //   carried    a thin record younger than 8 frames: motion += drift, place -= motion, into the cell that holds it.
 //              There the youngest record stays, and of those as young that of the first cell
-// Source: found by measuring (docs/temporal.md).
+// turn_records: what becomes of a record of the previous frame that is carried over, where the thing that it is of has
+// stopped, started or turned about.
+//   found      the new record nearest to the place of the record in this frame (`advanced`), of those in the 7 x 7
+//              cells around that differ by no more than .03 of its depth from it; of two alike the first
+//   turned     if |v - motion| > .25 px + |v| / 4, v: motion of what was found. If a sample showed the record in the
+//              previous frame, its motion becomes v and its drift 0. Else it is not thin any more
+// Source: found by measuring (docs/lab/layers.md).
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,10 +25,14 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kSlant = .5;        // of the step of depth to a neighbour
-constexpr double kSameRecord = 1.5;  // samples of the previous frame
-constexpr double kDriftKept = .7;    // of a change of motion
-constexpr double kMostDrift = .25;   // of the motion: more is no steady change
+constexpr double kSlantRiseMax = .5;            // part of the step of depth to a neighbour
+constexpr double kSameRecordDistanceMax = 1.5;  // samples of the previous frame
+constexpr double kDriftShare = .7;              // part of a change of motion
+constexpr double kDriftMax = .25;               // part of the motion: more is no steady change
+constexpr double kSuddenMotionMin = .25;        // px a frame, and a part
+constexpr double kSuddenMotionShare = .25;      // part of the new motion: less is no sudden change
+constexpr int kTurnedRecordCells = 3;           // cells around a record
+constexpr int kBeyond = 8;                      // samples: no record that far outside the viewport is found
 
 template <typename Real>
 Real squared_length(const std::array<Real, 2>& a) {
@@ -37,7 +47,7 @@ bool is_near(const LayerInputs& in, const SurfaceOf<Real>& own, int x, int y) {
       if (!other.is_known) continue;
       const Real step = Real(own.depth) - other.depth;
       const Real rise = Real(layer_depth_at(in, x - column, y - row)) - own.depth;
-      if (!(step > kLayerGap * Real(own.depth)) || rise > kSlant * step) continue;
+      if (!(step > kLayerGapMin * Real(own.depth)) || rise > kSlantRiseMax * step) continue;
       if (move_apart(own.motion, other.motion)) return true;
     }
   }
@@ -47,7 +57,7 @@ bool is_near(const LayerInputs& in, const SurfaceOf<Real>& own, int x, int y) {
 template <typename Real>
 bool is_thin(const LayerInputs& in, double depth, int x, int y) {
   const auto is_same = [&](int column, int row) {
-    return layer_depth_at(in, column, row) > Real(depth) * (1 - kLayerGap);
+    return layer_depth_at(in, column, row) > Real(depth) * (1 - kLayerGapMin);
   };
   for (const int row : {-1, 1}) {
     for (const int column : {-1, 1}) {
@@ -66,7 +76,7 @@ const LayerRecord* record_before(const LayerInputs& in, const std::array<Real, 2
   const int middle_x = floor_within(columns.coordinate(place[0]) + .5, -2, in.previous_width + 1);
   const int middle_y = floor_within(rows.coordinate(place[1]) + .5, -2, in.previous_height + 1);
   const LayerRecord* found = nullptr;
-  Real least = kSameRecord * kSameRecord;
+  Real least = kSameRecordDistanceMax * kSameRecordDistanceMax;
   for (int y = std::max(middle_y - 1, 0); y <= std::min(middle_y + 1, in.previous_height - 1); ++y) {
     for (int x = std::max(middle_x - 1, 0); x <= std::min(middle_x + 1, in.previous_width - 1); ++x) {
       const std::size_t i = index_of(in.previous_width, x, y);
@@ -74,12 +84,48 @@ const LayerRecord* record_before(const LayerInputs& in, const std::array<Real, 2
       const LayerRecord& record = in.before.records[i];
       const Real distance = squared_length<Real>(
           {(record.place[0] - place[0]) / columns.spacing, (record.place[1] - place[1]) / rows.spacing});
-      if (abs(Real(record.depth) - depth) > kLayerGap * Real(depth) || !(distance < least)) continue;
+      if (abs(Real(record.depth) - depth) > kLayerGapMin * Real(depth) || !(distance < least)) continue;
       least = distance;
       found = &record;
     }
   }
   return found;
+}
+
+// Null if there is none.
+template <typename Real>
+const LayerRecord* new_record_at(const LayerInputs& in, const RecordGrid& now,
+                                 const LayerRecordOf<Real>& record) {
+  const auto [columns, rows] = axes_of<Real>(in);
+  const std::array<Real, 2> at = {clamp(columns.coordinate(record.place[0]), -kBeyond, 65536),
+                                  clamp(rows.coordinate(record.place[1]), -kBeyond, 65536)};
+  const int middle_x = floor_within(at[0] + .5, -kTurnedRecordCells - 1, in.frame.width + kTurnedRecordCells);
+  const int middle_y =
+      floor_within(at[1] + .5, -kTurnedRecordCells - 1, in.frame.height + kTurnedRecordCells);
+  const LayerRecord* found = nullptr;
+  Real least = 0;
+  for (int y = std::max(middle_y - kTurnedRecordCells, 0);
+       y <= std::min(middle_y + kTurnedRecordCells, in.frame.height - 1); ++y) {
+    for (int x = std::max(middle_x - kTurnedRecordCells, 0);
+         x <= std::min(middle_x + kTurnedRecordCells, in.frame.width - 1); ++x) {
+      const std::size_t i = index_of(in.frame.width, x, y);
+      if (!now.cells[i].has_record()) continue;
+      const LayerRecord& other = now.records[i];
+      if (abs(Real(other.depth) - record.depth) > kLayerGapMin * Real(record.depth)) continue;
+      const Real distance = squared_length<Real>({x - at[0], y - at[1]});
+      if (found != nullptr && !(distance < least)) continue;
+      least = distance;
+      found = &other;
+    }
+  }
+  return found;
+}
+
+template <typename Real>
+bool moves_otherwise(const LayerRecordOf<Real>& record, const LayerRecord& now) {
+  const std::array<Real, 2> motion = {now.motion[0], now.motion[1]};
+  const Real most = kSuddenMotionMin + kSuddenMotionShare * sqrt(squared_length(motion));
+  return squared_length<Real>({motion[0] - record.motion[0], motion[1] - record.motion[1]}) > most * most;
 }
 
 }  // namespace
@@ -99,7 +145,7 @@ SurfaceOf<Real> surface_at(const LayerInputs& in, int x, int y) {
   const std::array<int, 2> output = {in.output_width, in.output_height};
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const Real motion = velocity[axis] * Real(-in.frame.velocity_scale[axis] * output[axis]);
-    surface.motion[axis] = clamp(motion, -kFarthestLayerMotion, kFarthestLayerMotion);
+    surface.motion[axis] = clamp(motion, -kSurfaceMotionMax, kSurfaceMotionMax);
   }
   return surface;
 }
@@ -118,9 +164,9 @@ std::optional<LayerRecordOf<Real>> layer_record(const LayerInputs& in, int x, in
   const std::array<Real, 2> place_before = {record.place[0] + own.motion[0], record.place[1] + own.motion[1]};
   const LayerRecord* before = record_before(in, place_before, own.depth);
   if (before == nullptr) return record;
-  const std::array<Real, 2> drift = {kDriftKept * (own.motion[0] - before->motion[0]),
-                                     kDriftKept * (own.motion[1] - before->motion[1])};
-  if (squared_length(drift) > kMostDrift * kMostDrift * squared_length(own.motion)) return record;
+  const std::array<Real, 2> drift = {kDriftShare * (own.motion[0] - before->motion[0]),
+                                     kDriftShare * (own.motion[1] - before->motion[1])};
+  if (squared_length(drift) > kDriftMax * kDriftMax * squared_length(own.motion)) return record;
   record.drift = drift;
   return record;
 }
@@ -137,10 +183,27 @@ LayerRecordOf<Real> advanced(const LayerRecord& before) {
 }
 
 template <typename Real>
+LayerRecord turned_record(const LayerInputs& in, const RecordGrid& now, int before) {
+  const RecordCell& cell = in.before.cells[static_cast<std::size_t>(before)];
+  LayerRecord record = in.before.records[static_cast<std::size_t>(before)];
+  if (!cell.has_record() || cell.age >= kRecordAgeMax || !record.is_thin) return record;
+  const auto going = advanced<Real>(record);
+  const LayerRecord* found = new_record_at<Real>(in, now, going);
+  if (found == nullptr || !moves_otherwise(going, *found)) return record;
+  if (cell.age > 0) {
+    record.is_thin = false;
+  } else {
+    record.motion = found->motion;
+    record.drift = {};
+  }
+  return record;
+}
+
+template <typename Real>
 std::optional<int> advected_cell(const LayerInputs& in, int before) {
   const auto i = static_cast<std::size_t>(before);
   const RecordCell& cell = in.before.cells[i];
-  if (!cell.has_record() || cell.age >= kOldestRecord || !in.before.records[i].is_thin) return {};
+  if (!cell.has_record() || cell.age >= kRecordAgeMax || !in.before.records[i].is_thin) return {};
   const auto record = advanced<Real>(in.before.records[i]);
   const auto [columns, rows] = axes_of<Real>(in);
   const int x = floor_within(columns.coordinate(record.place[0]) + .5, -1, in.frame.width);
@@ -167,6 +230,8 @@ template std::optional<LayerRecordOf<double>> layer_record(const LayerInputs&, i
 template std::optional<LayerRecordOf<Bounded>> layer_record(const LayerInputs&, int, int);
 template LayerRecordOf<double> advanced(const LayerRecord&);
 template LayerRecordOf<Bounded> advanced(const LayerRecord&);
+template LayerRecord turned_record<double>(const LayerInputs&, const RecordGrid&, int);
+template LayerRecord turned_record<Bounded>(const LayerInputs&, const RecordGrid&, int);
 template std::optional<int> advected_cell<double>(const LayerInputs&, int);
 template std::optional<int> advected_cell<Bounded>(const LayerInputs&, int);
 

@@ -4,8 +4,8 @@
 //   split       if |v(r) - v(b)| > .05 px: the layers are r's and b's
 //   begun       r is of age 0, and no cell of the 5 x 5 around where it comes from has a record of the previous frame
 //   far motion  the sample's own if its depth is below half-way between the layers, else b's
-// Of two alike the first counts, row by row.
-// Source: found by measuring (docs/temporal.md).
+// The first of two alike counts, row by row.
+// Source: found by measuring (docs/lab/layers.md).
 #include <algorithm>
 #include <cstddef>
 
@@ -15,9 +15,9 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kRecordReach = 1.7;  // samples
-constexpr double kAgeCost = .4;       // samples, squared, for each frame of a record's age
-constexpr int kKnownReach = 2;        // cells
+constexpr double kRecordDistanceMax = 1.7;  // samples
+constexpr double kRecordAgeCost = .4;       // samples, squared, for each frame of a record's age
+constexpr int kKnownRecordCells = 2;        // cells
 
 template <typename Real>
 LayerRecordOf<Real> record_of(const LayerInputs& in, const RecordGrid& now, std::size_t i) {
@@ -34,16 +34,18 @@ struct FoundRecord {
   int age = 0;
 };
 
-// That of sample (x, y).
+// Finds that of sample (x, y).
 template <typename Real>
 std::optional<FoundRecord<Real>> find_record(const LayerInputs& in, const RecordGrid& now, int x, int y) {
   const auto [columns, rows] = axes_of<Real>(in);
   std::optional<FoundRecord<Real>> found;
   Real least = 0;
   // A record lies within half a sample of its cell's centre.
-  constexpr int kReach = 2;
-  for (int row = std::max(y - kReach, 0); row <= std::min(y + kReach, in.frame.height - 1); ++row) {
-    for (int column = std::max(x - kReach, 0); column <= std::min(x + kReach, in.frame.width - 1); ++column) {
+  constexpr int kSampleReachMax = 2;
+  for (int row = std::max(y - kSampleReachMax, 0); row <= std::min(y + kSampleReachMax, in.frame.height - 1);
+       ++row) {
+    for (int column = std::max(x - kSampleReachMax, 0);
+         column <= std::min(x + kSampleReachMax, in.frame.width - 1); ++column) {
       const std::size_t i = index_of(in.frame.width, column, row);
       const RecordCell& cell = now.cells[i];
       if (!cell.has_record()) continue;
@@ -54,8 +56,8 @@ std::optional<FoundRecord<Real>> find_record(const LayerInputs& in, const Record
         const Real apart_y = rows.coordinate(record.place[1]) - y;
         distance = apart_x * apart_x + apart_y * apart_y;
       }
-      if (!(distance <= Real(kRecordReach) * kRecordReach)) continue;
-      const Real cost = distance + kAgeCost * Real(cell.age);
+      if (!(distance <= Real(kRecordDistanceMax) * kRecordDistanceMax)) continue;
+      const Real cost = distance + kRecordAgeCost * Real(cell.age);
       if (found && !(cost < least)) continue;
       least = cost;
       found = {record, cell.age};
@@ -71,13 +73,13 @@ bool was_known(const LayerInputs& in, const LayerRecordOf<Real>& record) {
   const SampleAxis<Real> rows(in.output_height, in.previous_height, in.previous_jitter[1]);
   // Outside all cells it does not matter where.
   const int middle_x = floor_within(columns.coordinate(record.place[0] + record.motion[0]) + .5,
-                                    -kKnownReach - 1, in.previous_width + kKnownReach);
+                                    -kKnownRecordCells - 1, in.previous_width + kKnownRecordCells);
   const int middle_y = floor_within(rows.coordinate(record.place[1] + record.motion[1]) + .5,
-                                    -kKnownReach - 1, in.previous_height + kKnownReach);
-  for (int y = std::max(middle_y - kKnownReach, 0);
-       y <= std::min(middle_y + kKnownReach, in.previous_height - 1); ++y) {
-    for (int x = std::max(middle_x - kKnownReach, 0);
-         x <= std::min(middle_x + kKnownReach, in.previous_width - 1); ++x) {
+                                    -kKnownRecordCells - 1, in.previous_height + kKnownRecordCells);
+  for (int y = std::max(middle_y - kKnownRecordCells, 0);
+       y <= std::min(middle_y + kKnownRecordCells, in.previous_height - 1); ++y) {
+    for (int x = std::max(middle_x - kKnownRecordCells, 0);
+         x <= std::min(middle_x + kKnownRecordCells, in.previous_width - 1); ++x) {
       if (in.before.cells[index_of(in.previous_width, x, y)].has_record()) return true;
     }
   }
@@ -94,7 +96,7 @@ std::optional<SurfaceOf<Real>> find_behind(const LayerInputs& in, double depth, 
       const int distance = row * row + column * column;
       if (found && distance >= least) continue;
       const auto other = surface_at<Real>(in, x + column, y + row);
-      if (!other.is_known || !(other.depth < Real(depth) * (1 - kLayerGap))) continue;
+      if (!other.is_known || !(other.depth < Real(depth) * (1 - kLayerGapMin))) continue;
       least = distance;
       found = other;
     }
@@ -121,8 +123,7 @@ LayerSampleOf<Real> layer_split(const LayerInputs& in, const RecordGrid& now, in
   const std::array<double, 2> to_previous = {static_cast<double>(in.previous_width) / in.output_width,
                                              static_cast<double>(in.previous_height) / in.output_height};
   for (std::size_t axis = 0; axis < 2; ++axis)
-    sample.far_motion[axis] =
-        clamp(motion[axis] * to_previous[axis], -kFarthestLayerMotion, kFarthestLayerMotion);
+    sample.far_motion[axis] = clamp(motion[axis] * to_previous[axis], -kSurfaceMotionMax, kSurfaceMotionMax);
   const auto [columns, rows] = axes_of<Real>(in);
   const int tiles_x = (in.output_width + kTile - 1) / kTile;
   const int tiles_y = (in.output_height + kTile - 1) / kTile;

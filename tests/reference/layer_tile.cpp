@@ -11,7 +11,7 @@
 //               are nearer in the mean than `between` there, goes on with the near layer's phase
 //   hidden      texels come from such a tile, and the far layer is not rigid or has gone on so: no sample of it
 //               judges history
-// Source: found by measuring (docs/temporal.md).
+// Source: found by measuring (docs/lab/layers.md).
 #include <cmath>
 #include <cstddef>
 
@@ -20,8 +20,8 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr int kFetchReach = 3;    // texels around the place of a pixel that fetching history may read
-constexpr int kFarthestTile = 8;  // tiles: what comes from places farther apart counts as split
+constexpr int kFetchReach = 3;      // texels around the place of a pixel that fetching history may read
+constexpr int kSourceTilesMax = 8;  // tiles: what comes from places farther apart counts as split
 
 bool is_marked(const TemporalInputs& in, int tile_x, int tile_y) {
   for (int y = std::max(tile_y - 1, 0); y <= std::min(tile_y + 1, in.tiles_y() - 1); ++y) {
@@ -54,7 +54,7 @@ bool comes_from_split(const TemporalInputs& in, int tile_x, int tile_y) {
       tiles_before<Real>(tile_x, motion.least[0], motion.most[0], in.reprojection_scale(0), in.tiles_x());
   const SampleRange rows =
       tiles_before<Real>(tile_y, motion.least[1], motion.most[1], in.reprojection_scale(1), in.tiles_y());
-  if (columns.last - columns.first > kFarthestTile || rows.last - rows.first > kFarthestTile) return true;
+  if (columns.last - columns.first > kSourceTilesMax || rows.last - rows.first > kSourceTilesMax) return true;
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
       if (in.layers_before[index_of(in.tiles_x(), x, y)].is_split) return true;
@@ -63,7 +63,7 @@ bool comes_from_split(const TemporalInputs& in, int tile_x, int tile_y) {
   return false;
 }
 
-// Of the far, or only, layer.
+// Returns the mean depth of the far, or only, layer.
 template <typename Real>
 Real mean_depth(const TemporalInputs& in, int tile_x, int tile_y) {
   const auto [columns, rows] = samples_of_tile<Real>(in, tile_x, tile_y);
@@ -102,12 +102,12 @@ LayerTileOf<Real> near_layer(const TemporalInputs& in, int tile_x, int tile_y) {
   tile.is_split = true;
   tile.between = between / count;
   tile.motion_range = max(Real(most[0]) - least[0], Real(most[1]) - least[1]);
-  if (tile.motion_range > kRigid) return tile;
+  if (tile.motion_range > kRigidMotionRangeMax) return tile;
 
   std::array<Real, 2> motion;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     motion[axis] = .5 * (Real(most[axis]) + least[axis]);
-    if (abs(motion[axis]) < kStill) motion[axis] = 0;
+    if (abs(motion[axis]) < kStillMotionMax) motion[axis] = 0;
   }
   tile.is_rigid = true;
   const std::size_t from = tile_before(in, tile_x, tile_y, motion);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The second layer of history, kernel by kernel: the specification, which docs/temporal.md explains. Each
+// The second layer of history, kernel by kernel: the specification, which docs/layers.md explains. Each
 // function makes what one work-item makes of a sample or a record. error_bound.h tells what `Real` may be.
 //
 // Where a *near* surface moves apart from a *far* one, a texel keeps the history of either. Lengths are output
@@ -32,18 +32,18 @@ template <typename Real>
 struct LayerSplitOf {
   double near_depth = 0;  // 0: there is one layer
   double far_depth = 0;
-  std::array<Real, 2> motion = {};  // of the near layer
+  std::array<Real, 2> motion = {};  // motion of the near layer
 
   bool is_split() const { return near_depth > 0; }
 };
 using LayerSplit = LayerSplitOf<double>;
 
-// What a tile has besides its TileReprojection, which is the far layer's.
+// The layers of a tile, besides its TileReprojection, which is the far layer's.
 template <typename Real>
 struct LayerTileOf {
-  std::array<Real, 2> phase = {};  // of the near layer's texels; 0 unless rigid
+  std::array<Real, 2> phase = {};  // phase of the near layer's texels; 0 unless rigid
   Real between = 0;                // mean of the depths half-way between the layers of its samples
-  Real motion_range = 0;           // of its samples' near layers, on the axis where it is larger
+  Real motion_range = 0;           // range over its samples' near layers, on the axis where it is larger
   bool is_rigid = false;           // the near layer
   bool is_split = false;           // a sample in it or next to it has two layers
   bool is_layered = false;         // split, or texels of two layers may be where it was
@@ -52,7 +52,7 @@ using LayerTile = LayerTileOf<double>;
 
 // A cell of a grid of records. Each sample of a viewport has one.
 struct RecordCell {
-  int age = -1;    // of the cell's record: frames since a sample showed it; -1: the cell has none
+  int age = -1;    // frames since a sample showed the cell's record; -1: the cell has none
   int origin = 0;  // the cell that it comes from: of age 0 this one, else one of the previous frame's grid
 
   bool has_record() const { return age >= 0; }
@@ -60,7 +60,7 @@ struct RecordCell {
 
 struct RecordGrid {
   std::vector<RecordCell> cells;
-  std::vector<LayerRecord> records;  // of each cell that has one
+  std::vector<LayerRecord> records;  // one for each cell, where it has one
 };
 
 struct LayerInputs {
@@ -70,7 +70,7 @@ struct LayerInputs {
   std::array<double, 2> previous_jitter = {};
   int output_width = 0;
   int output_height = 0;
-  RecordGrid before;  // of the previous frame
+  RecordGrid before;  // records of the previous frame
 };
 
 // layer_records: of sample (x, y), if it is one of a near surface.
@@ -92,7 +92,7 @@ std::optional<int> advected_cell(const LayerInputs& in, int before);
 // The grid of this frame's records after those of the previous one have come.
 std::vector<RecordCell> advect_records(const LayerInputs& in, std::vector<RecordCell> cells);
 
-// What layer_split finds at a sample.
+// The findings of layer_split at a sample.
 template <typename Real>
 struct LayerSampleOf {
   LayerSplitOf<Real> split = {};
@@ -109,12 +109,13 @@ LayerSampleOf<Real> layer_split(const LayerInputs& in, const RecordGrid& now, in
 
 // ---- What these share.
 
-constexpr double kLayerGap = .03;     // of the nearer one's depth: surfaces closer together are one layer
-constexpr double kMixedTrust = .2;    // of history that holds both layers, at most
-constexpr int kOldestRecord = 8;      // frames for which a record outlives its sample
-constexpr double kLayerMotion = .05;  // output pixels a frame: surfaces whose motion differs by less are, too
+constexpr double kLayerGapMin = .03;   // part of the nearer depth: surfaces closer together are one layer
+constexpr double kMixedTrustMax = .2;  // trust in history that holds both layers, at most
+constexpr int kRecordAgeMax = 8;       // frames for which a record outlives its sample
+constexpr double kLayerMotionMin =
+    .05;  // output pixels a frame: surfaces whose motion differs by less are, too
 
-constexpr double kFarthestLayerMotion = 65504;  // pixels a frame: beyond any picture
+constexpr double kSurfaceMotionMax = 65504;  // pixels a frame: beyond any picture
 
 // Depth and motion of a sample.
 template <typename Real>
@@ -133,7 +134,7 @@ template <typename Real>
 bool move_apart(const std::array<Real, 2>& a, const std::array<Real, 2>& b) {
   const Real dx = a[0] - b[0];
   const Real dy = a[1] - b[1];
-  return dx * dx + dy * dy > Real(kLayerMotion) * kLayerMotion;
+  return dx * dx + dy * dy > Real(kLayerMotionMin) * kLayerMotionMin;
 }
 
 // The centres of an axis's samples: i * spacing + start.

@@ -9,7 +9,7 @@ namespace quincunx::reference {
 namespace {
 
 constexpr int kTile = 32;
-constexpr int kSamples = 8;  // of a tile, on each axis
+constexpr int kSamples = 8;  // samples of a tile, on each axis
 constexpr double kMoving = .25;
 constexpr double kApart = 1;
 constexpr double kFastest = 255;
@@ -143,7 +143,7 @@ class Counter {
   }
 
   const Frame& frame_;
-  int width_, height_;  // of the output
+  int width_, height_;  // size of the output
   bool reactive_;
   int tiles_x_, tiles_y_, reach_x_, reach_y_;
   double largest_ = 1e-30;  // velocity on an axis, output pixels

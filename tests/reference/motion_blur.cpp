@@ -19,9 +19,9 @@ namespace quincunx::reference {
 namespace {
 
 constexpr int kTile = 32;                     // output pixels on either axis
-constexpr int kUnits = 64;                    // of a streak, in an output pixel
+constexpr int kUnits = 64;                    // units of a streak, in an output pixel
 constexpr int kLongest = 8 * kTile * kUnits;  // units: longer streaks are cut
-constexpr int kSteps = 256;                   // of the shutter's time
+constexpr int kSteps = 256;                   // steps of the shutter's time
 constexpr float kNearer = 1.01f;              // ratio of depths from which one surface is nearer
 
 int units_of(double velocity, float scale) {

@@ -22,7 +22,7 @@ struct BlurInput {
   std::array<float, 2> scale = {};
   int output_width = 0;
   int output_height = 0;
-  int most_samples = 8;  // of a pixel
+  int most_samples = 8;  // samples of a pixel
 };
 
 struct BlurTile {

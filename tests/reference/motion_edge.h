@@ -8,8 +8,8 @@ namespace quincunx::reference {
 
 // Output pixels a frame: a difference of velocity from which a motion edge counts, and from which it counts
 // fully. docs/temporal.md, section reproject.
-constexpr double kMotionEdgeBegins = .15;
-constexpr double kMotionEdgeEnds = .6;
+constexpr double kRejectedEdgeMin = .15;
+constexpr double kRejectedEdgeMax = .6;
 
 // 0 below `low`, 1 above `high`, 3 t^2 - 2 t^3 between.
 template <typename Real>
@@ -21,7 +21,7 @@ Real smooth_step(const Real& x, double low, double high) {
 // In [0, 1], of a difference of velocity.
 template <typename Real>
 Real motion_edge_strength(const Real& motion_edge) {
-  return smooth_step(motion_edge, kMotionEdgeBegins, kMotionEdgeEnds);
+  return smooth_step(motion_edge, kRejectedEdgeMin, kRejectedEdgeMax);
 }
 
 }  // namespace quincunx::reference

@@ -58,7 +58,7 @@ enum class Curve { kClamp, kReinhard, kAces };
 // the fit of Narkowicz, "ACES Filmic Tone Mapping Curve", 2015.
 Pixel present(const Pixel& resolved, Curve curve, double exposure);
 
-// What the dither adds at a pixel before its codes are truncated, in [0, 1).
+// Returns the dither's offset at a pixel before its codes are truncated, in [0, 1).
 double dither_offset(int x, int y);
 
 }  // namespace quincunx::reference

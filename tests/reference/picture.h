@@ -18,7 +18,7 @@ template <typename Real>
 using PixelOf = std::array<Real, 4>;
 using Pixel = PixelOf<double>;
 
-// Of element (x, y) among rows of `width` elements.
+// Returns the index of element (x, y) among rows of `width` elements.
 inline std::size_t index_of(int width, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }

@@ -33,7 +33,7 @@ constexpr double kSlopeTolerance = 2;     // times the change of depth to the ne
 // pixel holds has come from that far. In this frame, and in the previous one.
 constexpr int kReactiveReach = 1;
 constexpr int kReactiveReachBefore = 2;
-constexpr double kReactiveUnit = 1. / 255;  // of the codes that reactive values are stored in
+constexpr double kReactiveUnit = 1. / 255;  // step of the codes that reactive values are stored in
 
 // ---- Depth.
 
@@ -63,7 +63,7 @@ Real depth_slope(const Frame& frame, int x, int y) {
 // How many times nearer what a sample shows was if it stands still, at least 1.
 template <typename Real>
 Real nearer_before(const Frame& frame, int x, int y) {
-  constexpr double kLeastApproach = .25;  // of the distances before and after the camera's step
+  constexpr double kLeastApproach = .25;  // ratio of the distances before and after the camera's step
   const auto& matrix = frame.clip_to_previous_clip;
   const auto last_row = [&](int column) {
     return matrix[static_cast<std::size_t>(column) * 4 + 3] / matrix[10];
@@ -82,7 +82,7 @@ struct DepthRange {
   double most = 0;
 };
 
-// Of the 2 x 2 samples around a place in texel coordinates, clamped to the edge.
+// Returns the range of depths of the 2 x 2 samples around a place in texel coordinates, clamped to the edge.
 template <typename Real>
 DepthRange depths_around(const Frame& frame, const std::array<Real, 2>& at) {
   const int x = floor_within(at[0], 0, std::max(frame.width - 2, 0));
@@ -119,7 +119,7 @@ Real inside(const Real& at, const Axis& axis) {
 
 // ---- What takes trust.
 
-// Of the texels up to `reach` away from (x, y): a code of 8 bits, 255 for 1.
+// Returns the largest reactive value of the texels up to `reach` away from (x, y): a code of 8 bits, 255 for 1.
 double largest_reactive(const Frame& frame, int x, int y, int reach) {
   double largest = 0;
   for (int row = std::max(y - reach, 0); row <= std::min(y + reach, frame.height - 1); ++row) {

@@ -10,7 +10,7 @@
 
 namespace quincunx::reference {
 
-// Of one sample: what it shows was at its own place + (x, y), in pixels of the previous frame.
+// The reprojection of one sample: its surface was at its own place + (x, y), in pixels of the previous frame.
 template <typename Real>
 struct ReprojectionOf {
   Real x = 0;
@@ -30,11 +30,11 @@ struct ReprojectOptions {
   // The extent of the output, for motion edges in its pixels and what follows from them; 0: none are wanted.
   int output_width = 0;
   int output_height = 0;
-  // Of each texel of the previous frame; empty: there were none.
+  // Motion edges of the previous frame's texels; empty: there were none.
   std::vector<double> motion_edges_before = {};
 };
 
-// Of sample (x, y) of the current frame's viewport.
+// Returns the reprojection of sample (x, y) of the current frame's viewport.
 template <typename Real>
 ReprojectionOf<Real> reproject(const Frame& current, const Frame& previous, const ReprojectOptions& options,
                                int x, int y);

@@ -8,7 +8,7 @@
 // resize_layers: the same of the near layer with its own phase, where the texel nearest to c has two layers.
 // resize_tiles: a tile has motion edges, layers and splits where a tile of the history under it has, no phase, and the
 //   light of the tile under its centre.
-// Source: share and limit were found by measuring (docs/dual.md).
+// Source: share and limit were found by measuring (docs/lab/options.md).
 #include "resize_history.h"
 
 #include <algorithm>
@@ -18,10 +18,10 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kDenser = 1.5;        // texels a pixel, from which one place would skip some
-constexpr int kMostPlaces = 4;         // on an axis
-constexpr double kMostConfidence = 8;  // of history that was resampled
-constexpr double kMostGrown = 1;       // where pixels are more than texels
+constexpr double kSinglePlaceRatioMax = 1.5;   // texels a pixel, from which one place would skip some
+constexpr int kMostPlaces = 4;                 // on an axis
+constexpr double kResampledConfidenceMax = 8;  // most confidence in history that was resampled
+constexpr double kGrownConfidenceMax = 1;      // where pixels are more than texels
 
 // One axis of a pixel among the texels.
 struct Axis {
@@ -31,13 +31,13 @@ struct Axis {
 
   double ratio() const { return static_cast<double>(texels) / pixels; }
   int places() const {
-    return ratio() <= kDenser ? 1 : std::min(static_cast<int>(std::ceil(ratio())), kMostPlaces);
+    return ratio() <= kSinglePlaceRatioMax ? 1 : std::min(static_cast<int>(std::ceil(ratio())), kMostPlaces);
   }
-  // Of the pixel's centre, 0 at the first texel's.
+  // Returns the place of the pixel's centre, 0 at the first texel's.
   double centre() const { return (2.0 * pixel + 1) * texels / (2.0 * pixels) - .5; }
-  // Of two equally near ones the first.
+  // Returns the nearest texel, the first of two equally near ones.
   int nearest() const { return std::clamp(static_cast<int>(std::ceil(centre() - .5)), 0, texels - 1); }
-  // Of the pixel's i-th place.
+  // Returns the pixel's i-th place.
   template <typename Real>
   Split<Real> place(int i, double phase) const {
     const int whole = static_cast<int>(std::floor(centre()));
@@ -72,11 +72,12 @@ void mean_over_places(const Axes& axes, const std::array<double, 2>& phase, Valu
   }
 }
 
-// Of a texel's confidence.
+// Returns the confidence that is left of a texel's.
 template <typename Real>
 Real confidence_left(const Axes& axes, const Real& known) {
   const double texels = axes[0].ratio() * axes[1].ratio();  // a pixel
-  return min(abs(known) * Real(std::min(texels, 1.0)), texels < 1 ? kMostGrown : kMostConfidence);
+  return min(abs(known) * Real(std::min(texels, 1.0)),
+             texels < 1 ? kGrownConfidenceMax : kResampledConfidenceMax);
 }
 
 // The history's tiles under one of the output's on an axis.

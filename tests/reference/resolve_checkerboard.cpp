@@ -21,7 +21,7 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kLargestMotion = 65504;
-constexpr double kLargestDifference = 65504;  // of colours, in the weight of a pair
+constexpr double kLargestDifference = 65504;  // largest difference of colours, in the weight of a pair
 constexpr double kLeastDifference = 1e-12;
 
 struct Place {
@@ -47,7 +47,7 @@ bool is_surface(const Frame& frame, Place at) {
   return is_inside(frame, at) && std::isfinite(depth_at(frame, at));
 }
 
-// Of those that are surfaces the first that no other exceeds; else the first that is inside.
+// Returns the first place that no other exceeds among those that are surfaces; else the first that is inside.
 template <typename Exceeds>
 Place first_of(const Frame& frame, const std::array<Place, 4>& places, Exceeds exceeds) {
   std::optional<Place> found;
@@ -188,7 +188,7 @@ bool is_finite(const Pixel& pixel) {
   return std::all_of(pixel.begin(), pixel.end(), [](double value) { return std::isfinite(value); });
 }
 
-// What a pair of neighbours has.
+// A pair of neighbours.
 template <typename Real>
 struct Pair {
   PixelOf<Real> mean = {};

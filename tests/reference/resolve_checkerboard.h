@@ -29,7 +29,7 @@ struct FilledPixel {
   Real near_trust = 0, far_trust = 0;
 };
 
-// Of pixel (x, y), which is not shaded.
+// Returns the filled pixel (x, y), which is not shaded.
 template <typename Real>
 FilledPixel<Real> resolve_checkerboard(const CheckerboardInputs& in, int x, int y);
 

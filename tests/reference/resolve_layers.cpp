@@ -4,7 +4,7 @@
 // depth b and a near one of depth a, D = (a + b) / 2 lying between them.
 //   one layer  as in resolve_temporal, steps fetch history to accumulate, but texels of two layers give the one of
 //              n's depth (fetch_layer), and where the texel that n moved from had two, trust is open trust
-//              (startling samples are held back as there)
+//              (outliers are held back as there)
 //   far layer  fetch history     the far surface, at the place that it moved from
 //              limit confidence, reject, relight     as in resolve_temporal, trust being open trust
 //              reseed            where W < .15: as in resolve_temporal, of the samples behind D alone; where there is
@@ -19,25 +19,24 @@
 //              reseed            where W < .15: f = 1 - W / .15; F <- F + f (Gaussian of 3 x 3 samples - F); W <- .15;
 //                                without any valid sample F <- F (1 - f), W <- 0
 //              accumulate        as in resolve_temporal, the sample nearest to p + R'; W at most 8
-// Source: found by measuring (docs/temporal.md).
+// Source: found by measuring (docs/lab/layers.md).
 #include "resolve_layers.h"
 
 #include <cmath>
 #include <cstddef>
 
 #include "temporal/accumulate.h"
+#include "temporal/limit_confidence.h"
 #include "temporal/rectify.h"
-#include "temporal/relight.h"
 #include "temporal/reseed.h"
 
 namespace quincunx::reference {
 namespace {
 
-// Of the distance between samples: the near layer's reach, at least kReach. +.2 dB on turning spokes.
-constexpr double kCrossingMotion =
-    1;  // output pixels a frame: near layers of a tile that move apart by more may cross
-constexpr double kNearReach = .6;
-constexpr double kMostNear = 8;  // confidence: it is resampled more often than not; 32 gives no more
+constexpr double kCrossingMotionMin =
+    1;  // px a frame: near layers of a tile that move apart by more may cross
+constexpr double kNearReach =
+    .6;  // times the distance between samples: the near layer's, at least kSampleReachMax
 
 // An output pixel of this frame.
 template <typename Real>
@@ -46,7 +45,7 @@ struct LayeredPixel {
   const Tile* tile = nullptr;
   const LayerTile* layers = nullptr;
   LayerSplit split;
-  double depth = 0;  // of the sample nearest to the far, or only, layer's picture
+  double depth = 0;  // depth of the sample nearest to the far, or only, layer's picture
   double open_trust = 0;
   Real between = 0;  // D
 };
@@ -66,7 +65,7 @@ Side side_of(const Frame& frame, const Real& between, int x, int y) {
   return depth < between ? Side::kFar : Side::kNeither;
 }
 
-// What the near layer has of a sample on either side.
+// Returns the near layer's share of a sample on either side.
 Pixel near_sample(const Pixel& sample, Side side, bool has_alpha) {
   return side == Side::kNear ? Pixel{sample[0], sample[1], sample[2], has_alpha ? sample[3] : 1} : Pixel{};
 }
@@ -112,15 +111,15 @@ LayerSeed<Real> seed_of_layer(const Frame& frame, const Neighbourhood<Real>& nea
 template <typename Real>
 void reseed_far(const LayeredPixel<Real>& pixel, const Frame& frame, const Neighbourhood<Real>& near,
                 Known<Real>& known) {
-  if (!seamless(known.confidence < kReseedBelow)) return;
+  if (!seamless(known.confidence < kConfidenceMin)) return;
   const auto seed = seed_of_layer(frame, near, pixel.between, Layer::kFar, true);
   if (!seed.is_known) return;
-  const Real share = max(1 - known.confidence / kReseedBelow, 0);
+  const Real share = max(1 - known.confidence / kConfidenceMin, 0);
   for (std::size_t c = 0; c < 3; ++c)
     known.colour[c] += (seed.value[c] - known.colour[c]) * share;
   known.alpha += (seed.value[3] - known.alpha) * share;
   known.inertia = kSeedInertia * share;
-  known.confidence = max(known.confidence, kReseedBelow);
+  known.confidence = max(known.confidence, kConfidenceMin);
 }
 
 template <typename Real>
@@ -141,7 +140,7 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
   const auto fetched = fetch_layer(in.past, wish, place, tile.is_rigid);
   FetchedHistory<Real> history;
   history.between = fetched.between;
-  if (fetched.value[3] > kSolid) {
+  if (fetched.value[3] > kNearCoverageMin) {
     for (std::size_t c = 0; c < 3; ++c)
       history.known.texel[c] = fetched.value[c] / fetched.value[3];
     history.known.texel[3] = fetched.confidence;
@@ -192,7 +191,7 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
   const LayerSplit& s = pixel.split;
   const std::array<Real, 2> place = {Real(pixel.x + .5) + pixel.layers->phase[0] + s.motion[0],
                                      Real(pixel.y + .5) + pixel.layers->phase[1] + s.motion[1]};
-  const bool may_cross = pixel.layers->motion_range > kCrossingMotion;
+  const bool may_cross = pixel.layers->motion_range > kCrossingMotionMin;
   const auto fetched = fetch_layer(in.past, {Layer::kNear, s.near_depth, s.far_depth, may_cross}, place,
                                    pixel.layers->is_rigid);
   NearTexel<Real> near{fetched.value, fetched.confidence};
@@ -201,8 +200,8 @@ NearTexel<Real> fetch_near(const ResolveInputs& in, const LayeredPixel<Real>& pi
   const auto gain = between_tiles<Real>(in.now, in.tiles, pixel.x, pixel.y, &TileLight::gain);
   near.confidence = near.confidence / (1 + kResamplingCost * fetched.between * near.confidence);
   near.confidence =
-      min(near.confidence,
-          min(most_confidence(min(pixel.open_trust, 1 - Real(pixel.tile->light.new_cut))), kMostNear));
+      min(near.confidence, min(most_confidence(min(pixel.open_trust, 1 - Real(pixel.tile->light.new_cut))),
+                               kResampledConfidenceMax));
   for (std::size_t c = 0; c < 3; ++c)
     near.value[c] *= gain;
   return near;
@@ -216,15 +215,15 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
 
   // Reseed.
   Real inertia = 0;
-  if (seamless(near.confidence < kReseedBelow)) {
+  if (seamless(near.confidence < kConfidenceMin)) {
     const auto seed = seed_of_layer(frame, around, pixel.between, Layer::kNear, in.has_alpha());
-    const Real share = max(1 - near.confidence / kReseedBelow, 0);
+    const Real share = max(1 - near.confidence / kConfidenceMin, 0);
     for (std::size_t c = 0; c < 4; ++c)
       near.value[c] += (seed.value[c] - near.value[c]) * share;
     inertia = kSeedInertia * share;
     if (seed.is_known)
-      near.confidence = max(near.confidence, kReseedBelow);
-    else if (near.confidence < kReseedBelow)
+      near.confidence = max(near.confidence, kConfidenceMin);
+    else if (near.confidence < kConfidenceMin)
       near.confidence = 0;
   }
 
@@ -233,16 +232,17 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   if (side != Side::kNeither) {
     const Pixel sample =
         near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
-    const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kReach);
+    const double reach =
+        std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kSampleReachMax);
     const Real weight = sample_weight(as<Real>(sample), around.x.past * in.now.spacing(0),
                                       around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;
-    const Real share = weight / max(total + inertia, kLeastWeight);
+    const Real share = weight / max(total + inertia, kWeightSumMin);
     for (std::size_t c = 0; c < 4; ++c)
       near.value[c] += (sample[c] - near.value[c]) * share;
     near.confidence = total;
   }
-  near.confidence = min(near.confidence, kMostNear);
+  near.confidence = min(near.confidence, kResampledConfidenceMax);
   return near;
 }
 

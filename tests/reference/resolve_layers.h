@@ -9,13 +9,13 @@
 
 namespace quincunx::reference {
 
-// What resolve_layers reads.
+// The inputs of resolve_layers.
 struct ResolveInputs {
   TemporalInputs now;  // its frame with depth; what it holds of history counts for nothing
   std::vector<Tile> tiles;
   std::vector<LayerTile> layers;
-  std::vector<double> open_trust;  // of each sample: trust without a comparison of depths
-  std::vector<LayerSplit> splits;  // of each sample
+  std::vector<double> open_trust;  // one for each sample: trust without a comparison of depths
+  std::vector<LayerSplit> splits;  // one for each sample
   LayerHistory past;
 
   bool has_alpha() const { return !past.alpha.empty(); }
@@ -25,7 +25,7 @@ struct ResolveInputs {
 template <typename Real>
 struct LayeredTexelOf {
   PixelOf<Real> far = {};  // colour and W of the far, or only, layer; -W where there are two
-  Real alpha = 1;          // of the far, or only, layer
+  Real alpha = 1;          // alpha of the far, or only, layer
   PixelOf<Real> near = {};
   std::array<Real, 3> state = {};  // as StoredState
   bool is_split = false;           // else there is no near layer

@@ -20,7 +20,7 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kBrightFrom = 2;  // linear light: brighter samples have less weight
-// Of a sample's distance weight: one that is smaller may be 0 in single precision.
+// Least distance weight of a sample that counts: a smaller one may be 0 in single precision.
 constexpr double kNegligible = 1e-5;
 
 // Render pixels at which a sample's weight reaches 0.

@@ -7,8 +7,7 @@
 //                     e = smooth_step(motion edge, .1, 1)
 //   reject            d = max(1 - trust, strength of the motion edge, rejection of the tile)
 //   relight           m <- gain m
-//   hold back         where the tile does, W >= .15 and s is startling for m (temporal/startling.h), s is below what
-//                     history has at the place of s, bilinear, times gain, with the alpha of history
+//   hold back         where the tile does, W >= .15 and s is an outlier for m, w is 0
 //   rectify           where d > 0: m moves by d of the way into mean +- .75 standard deviations of a cross of
 //                     five samples, as c / (1 + max c); W <- W (1 - d min(1, distance / (deviation + .02)))
 //   reseed            where W < .15: f = 1 - W / .15; m <- m + f (Gaussian of 3 x 3 samples - m); W <- .15
@@ -16,13 +15,13 @@
 //   accumulate        m <- m + (s - m) w / (W + w + .85 f); W <- min(W + w, 32);
 //                     w = (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2), d the distance of s
 // Source: accumulation and rectification after Karis, "High-Quality Temporal Supersampling", 2014, and AMD
-// FidelityFX Super Resolution 2.2.1; the rest found by measuring (docs/temporal.md, whose dB are cited here).
+// FidelityFX Super Resolution 2.2.1; the rest found by measuring (docs/lab/temporal.md, whose dB are cited here).
 #include <cmath>
 
 #include "history_sampling.h"
 #include "temporal/accumulate.h"
+#include "temporal/limit_confidence.h"
 #include "temporal/rectify.h"
-#include "temporal/relight.h"
 #include "temporal/reseed.h"
 
 namespace quincunx::reference {
@@ -44,13 +43,8 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
                     max(1 - trust, motion_edge_strength(Real(motion_edge)))};
   reject(in, tiles, x, y, known);
   relight(in, tiles, x, y, known.colour);
-  PixelOf<Real> taken = as<Real>(sample);
-  if (holds_back(tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].light, known, sample)) {
-    taken = foretell<Real>(in, tile, reprojection, x, y,
-                           {-near.x.past * in.spacing(0), -near.y.past * in.spacing(1)});
-    relight(in, tiles, x, y, taken);
-    taken[3] = known.alpha;
-  }
+  const bool is_held_back =
+      holds_back(tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].light, known, sample);
   if (seamless(known.rejection > 0)) {
     rectify_alpha(frame, near.x.sample, near.y.sample, known);
     rectify(box_around<Real>(frame, near.x.sample, near.y.sample), known);
@@ -58,11 +52,11 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
   reseed(in, near, known);
 
   Real weight = 0;
-  if (is_valid(taken)) {
-    weight = sample_weight<Real>(taken, near.x.past * in.spacing(0), near.y.past * in.spacing(1),
+  if (is_valid(sample) && !is_held_back) {
+    weight = sample_weight<Real>(as<Real>(sample), near.x.past * in.spacing(0), near.y.past * in.spacing(1),
                                  reach_of(stands_still(tile), known.confidence));
   }
-  return accumulate(known, taken, weight);
+  return accumulate(known, as<Real>(sample), weight);
 }
 
 template HistoryTexel<double> resolve_temporal(const TemporalInputs&, const std::vector<Tile>&,

@@ -33,8 +33,8 @@ struct Filter {
 const Filter& filter_named(std::string_view name);
 std::span<const Filter> all_filters();
 
-// What one output column or row reads of its axis: each texel that has a weight, once, and the texels next to
-// the centre, to whose range the result is clamped where ringing is.
+// The taps of one output column or row on its axis: each texel that has a weight, once, and the texels next to the
+// centre, to whose range the result is clamped where ringing is.
 struct AxisFilter {
   std::vector<Tap> taps;
   int inner_first = 0;

@@ -22,11 +22,11 @@ constexpr int kTile = 8;  // output pixels on either axis
 template <typename Real>
 struct TileReprojectionOf {
   std::array<Real, 2> phase = {};           // output pixels, within [-.5, .5]; 0 unless rigid
-  std::array<double, 2> source_phase = {};  // of the texels that are copied
+  std::array<double, 2> source_phase = {};  // phase of the texels that are copied
   std::array<int, 2> step = {};             // texel (x, y) is a copy of (x - step[0], y - step[1])
   bool is_rigid = false;
-  bool is_copyable = false;      // rigid, all its samples are trusted, and no motion edge is near
-  bool has_motion_edge = false;  // one above kMotionEdgeBegins
+  bool is_trusted = false;       // rigid, all its samples are trusted, and no motion edge is near
+  bool has_motion_edge = false;  // one above kRejectedEdgeMin
 };
 using TileReprojection = TileReprojectionOf<double>;
 
@@ -34,7 +34,7 @@ inline bool stands_still(const TileReprojection& tile) {
   return tile.is_rigid && tile.phase[0] == 0 && tile.phase[1] == 0 && tile.step[0] == 0 && tile.step[1] == 0;
 }
 
-// What a tile's samples s say of the history h at their place, n being the mean of their four neighbours:
+// The evidence of a tile's samples s about the history h at their place, n being the mean of their four neighbours:
 // sums over the samples that judge, of luma, each divided by 1 + s + h, or 1 + s + n.
 template <typename Real>
 struct TileEvidenceOf {
@@ -43,27 +43,27 @@ struct TileEvidenceOf {
   Real history_error = 0;    // |s - h|: history's as a forecast of the sample
   Real neighbour_error = 0;  // |s - n|: the neighbours'
   int count = 0;             // samples
-  int brighter = 0;   // those that are brighter than history by more than noise, less those that are darker
-  int startling = 0;  // those that are startling, with two of their neighbours
+  int brighter = 0;  // those that are brighter than history by more than noise, less those that are darker
+  int outliers = 0;  // those that are outliers, with two of their neighbours
 };
 using TileEvidence = TileEvidenceOf<double>;
 
-// What is made of it.
+// The conclusions from the evidence.
 template <typename Real>
 struct TileLightOf {
   Real gain = 1;       // relighting gain: history times this has this frame's light
-  Real rejection = 0;  // of history, in [0, 1]
+  Real rejection = 0;  // rejection of history, in [0, 1]
   Real cut = 0,
        new_cut = 0;      // how far the whole picture is another one, now or of late, and by how much more
   Real persistence = 0;  // in [-1, 1]: of a coherent change of light, over frames
   Real flicker = 0;      // how far a sample's luma goes to and fro from frame to frame: aliasing
-  Real mean_brightening = 0;  // of a sample
-  // What rejection by error and by change would be by this frame alone, from 0 on; that by change with the
-  // sign of the change.
+  Real mean_brightening = 0;  // mean over the samples
+  // Rejection by error and by change as it would be by this frame alone, from 0 on; that by change with the sign of the
+  // change.
   Real suspected_error = 0, suspected_change = 0;
-  Real unrest = 0;          // 1 where a suspicion is confirmed; it fades
-  Real startled = 0;        // 1 where samples are startling, or beside; it fades
-  bool holds_back = false;  // startling samples are held back: they are the first ones
+  Real confirmation = 0;     // 1 where a suspicion is confirmed; it fades
+  Real recent_outliers = 0;  // 1 where samples are outliers, or beside; it fades
+  bool holds_back = false;   // outliers are held back: they are the first ones
 };
 using TileLight = TileLightOf<double>;
 
@@ -83,25 +83,25 @@ struct TotalLightOf {
 };
 using TotalLight = TotalLightOf<double>;
 
-// What the kernels read.
+// The inputs of the kernels.
 struct TemporalInputs {
   Frame frame;  // colour, jitter; reactive where nothing moves
   int previous_width = 0;
   int previous_height = 0;
-  std::vector<Reprojection> reprojections;  // of each sample of the frame; empty: nothing moves
-  std::vector<double> reactive_before;      // of the previous viewport, where frame.reactive counts
+  std::vector<Reprojection> reprojections;  // one for each sample of the frame; empty: nothing moves
+  std::vector<double> reactive_before;      // the previous viewport's, where frame.reactive counts
   int output_width = 0;
   int output_height = 0;
-  // Of each output pixel: red, green, blue and confidence, which is negative where there are two layers.
+  // Red, green, blue and confidence of each output pixel; confidence is negative where there are two layers.
   std::vector<Pixel> history;
-  std::vector<double> history_alpha;  // of each output pixel; empty: the picture is opaque
-  std::vector<Tile> before;           // of the previous frame
-  int parity = -1;       // of a checkerboard: sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
+  std::vector<double> history_alpha;  // one for each output pixel; empty: the picture is opaque
+  std::vector<Tile> before;           // tiles of the previous frame
+  int parity = -1;       // on a checkerboard sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
   int judged_apart = 2;  // one of this many samples judges history: 1, 2 or 4
-  // What temporal_tiles reads of the second layer; empty: there is none.
-  std::vector<LayerSplit> splits;        // of each sample
-  std::vector<int> split_marks;          // of each tile: not 0 if a sample in it is split
-  std::vector<LayerTile> layers_before;  // of each tile, of the previous frame
+  // The second layer's inputs of temporal_tiles; empty: there is none.
+  std::vector<LayerSplit> splits;        // one for each sample
+  std::vector<int> split_marks;          // one for each tile: not 0 if a sample in it is split
+  std::vector<LayerTile> layers_before;  // one for each tile of the previous frame
 
   bool has_layers() const { return !splits.empty(); }
   int tiles_x() const { return (output_width + kTile - 1) / kTile; }
@@ -131,7 +131,7 @@ PixelOf<Real> as(const Pixel& pixel) {
 }
 template <typename Real>
 TileEvidenceOf<Real> as(const TileEvidence& e) {
-  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter, e.startling};
+  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter, e.outliers};
 }
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
@@ -144,8 +144,8 @@ TileLightOf<Real> as(const TileLight& l) {
           l.mean_brightening,
           l.suspected_error,
           l.suspected_change,
-          l.unrest,
-          l.startled,
+          l.confirmation,
+          l.recent_outliers,
           l.holds_back};
 }
 template <typename Real>
@@ -168,8 +168,8 @@ TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, in
 template <typename Real>
 TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
                                    int tile_x, int tile_y);
-// What a tile has of two layers, and how its far layer is reprojected then: `reprojection`, or with the phase of
-// the near layer that it was.
+// The two layers of a tile, and the reprojection of its far layer then: `reprojection`, or with the phase of the near
+// layer that it was.
 template <typename Real>
 struct LayeredTileOf {
   LayerTileOf<Real> layers = {};
@@ -179,14 +179,14 @@ struct LayeredTileOf {
 template <typename Real>
 LayeredTileOf<Real> layer_tile(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
                                int tile_x, int tile_y);
-// Of every tile, row by row.
+// Returns every tile, row by row.
 std::vector<Tile> temporal_tiles(const TemporalInputs& in);
 
 struct LightInputs {
   int tiles_x = 0;
   int tiles_y = 0;
-  std::vector<Tile> before;  // of the previous frame: their light
-  std::vector<Tile> tiles;   // of this frame: their motion edges and evidence
+  std::vector<Tile> before;  // tiles of the previous frame: their light
+  std::vector<Tile> tiles;   // tiles of this frame: their motion edges and evidence
   TotalLight total = {};
 };
 

@@ -5,7 +5,7 @@
 //          the eight neighbours n, e = .3 exp(-2 W). In place of a neighbour of the other kind, one layer or two, it
 //          takes the pixel's own texel: one holds a blade, the other the sky behind it
 //   alpha  that of history in the same way, or 1
-// Source: found by measuring (docs/temporal.md): smoothing what little is known of is worth .1 dB.
+// Source: found by measuring (docs/lab/temporal.md): smoothing what little is known of is worth .1 dB.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,11 +15,11 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kDisplaySharpness = -.75;  // Keys' a
-constexpr double kSmoothedBelow = 1.5;      // confidence; above it smoothing would not be seen
-constexpr double kCentreWeight = .02;       // of the pixel, besides its confidence
-constexpr double kNeighbourWeight = .3;     // of each neighbour where nothing is known
-constexpr double kFalloff = 2;              // of the neighbours' weight, for each unit of confidence
+constexpr double kDisplaySharpness = -.75;        // Keys' a
+constexpr double kSmoothedConfidenceMax = 1.5;    // confidence; above it smoothing would not be seen
+constexpr double kSmoothingOwnWeight = .02;       // weight of the pixel, besides its confidence
+constexpr double kSmoothingNeighbourWeight = .3;  // weight of each neighbour where nothing is known
+constexpr double kSmoothingFalloff = 2;  // fall of the neighbours' weight, for each unit of confidence
 
 // History at the pixel's centre.
 template <typename Real>
@@ -43,8 +43,8 @@ HistoryTexel<Real> picture_at(const TemporalInputs& in, const TileReprojection& 
 // `at(x, y)`: what is smoothed, of a texel.
 template <typename Real, typename At>
 Real smoothed(const At& at, int x, int y, const Real& centre, const Real& confidence) {
-  const Real neighbour = kNeighbourWeight * bell(kFalloff * confidence);
-  const Real own = confidence + kCentreWeight;
+  const Real neighbour = kSmoothingNeighbourWeight * bell(kSmoothingFalloff * confidence);
+  const Real own = confidence + kSmoothingOwnWeight;
   Real sum = centre * own;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -81,7 +81,8 @@ PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>
                                const DisplayOptions& options, int x, int y) {
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
   HistoryTexel<Real> shown = picture_at<Real>(in, tile, x, y);
-  if (options.smooth && std::abs(in.history_clamped(x, y)[3]) < kSmoothedBelow) smooth(in, x, y, shown);
+  if (options.smooth && std::abs(in.history_clamped(x, y)[3]) < kSmoothedConfidenceMax)
+    smooth(in, x, y, shown);
   return {shown.texel[0], shown.texel[1], shown.texel[2], shown.alpha};
 }
 

@@ -8,20 +8,20 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kLargest = 65504;
-constexpr double kSharpening = .05;       // of one layer where all is known
-constexpr double kSharpeningYoung = .35;  // and more, divided by the confidence and kSharpeningYouth
-constexpr double kSharpeningYouth = .6;
-constexpr double kAlong = .03;
-constexpr double kAlongYoung = .5;  // divided by the confidence and kAlongYouth
-constexpr double kAlongYouth = .15;
-constexpr double kAlongLayered = .2;  // of two layers
-constexpr double kAcrossLayered = -.12;
-constexpr double kGradientFloor = 1e-3;
-constexpr double kLeastRest = 0x1p-16;  // of 1 - tone, against a division by 0 on the way back
+constexpr double kFiniteHalfMax = 65504;
+constexpr double kSharpening = .05;     // with one layer where all is known
+constexpr double kSharpeningNew = .35;  // and more, divided by the confidence and kSharpeningNewConfidence
+constexpr double kSharpeningNewConfidence = .6;
+constexpr double kEdgeSmoothing = .03;
+constexpr double kEdgeSmoothingNew = .5;  // divided by the confidence and kEdgeSmoothingNewConfidence
+constexpr double kEdgeSmoothingNewConfidence = .15;
+constexpr double kEdgeSmoothingLayered = .2;  // with two layers
+constexpr double kEdgeSharpeningLayered = -.12;
+constexpr double kEdgeGradientFloor = 1e-3;
+constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
 
 double cleaned(double value) {
-  return std::isnan(value) ? 0 : std::clamp(value, -kLargest, kLargest);
+  return std::isnan(value) ? 0 : std::clamp(value, -kFiniteHalfMax, kFiniteHalfMax);
 }
 
 template <typename Real>
@@ -73,7 +73,7 @@ Edge<Real> edge_at(const TonePicture<Real>& tone, int x, int y) {
       xy += weight * (gx * gy);
     }
   }
-  const Real scale = 1 / (xx + yy + kGradientFloor);
+  const Real scale = 1 / (xx + yy + kEdgeGradientFloor);
   Edge<Real> edge = {(xx - yy) * scale, 2 * xy * scale, 0};
   edge.coherence = sqrt(edge.cosine * edge.cosine + edge.sine * edge.sine);
   return edge;
@@ -84,12 +84,12 @@ struct Strengths {
   Real sharpening = 0, along = 0, across = 0;
 };
 
-// Of a pixel of a confidence as history stores it: even -0 tells of two layers.
+// Returns the strengths for a pixel of a confidence as history stores it: even -0 tells of two layers.
 template <typename Real>
 Strengths<Real> strengths_of(double confidence) {
-  if (std::signbit(confidence)) return {0, kAlongLayered, kAcrossLayered};
-  return {kSharpening + kSharpeningYoung / (Real(confidence) + kSharpeningYouth),
-          kAlong + kAlongYoung / (Real(confidence) + kAlongYouth), 0};
+  if (std::signbit(confidence)) return {0, kEdgeSmoothingLayered, kEdgeSharpeningLayered};
+  return {kSharpening + kSharpeningNew / (Real(confidence) + kSharpeningNewConfidence),
+          kEdgeSmoothing + kEdgeSmoothingNew / (Real(confidence) + kEdgeSmoothingNewConfidence), 0};
 }
 
 // Channel c of the pixel, in tone space.
@@ -128,9 +128,9 @@ PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>&
     out[c] = refined(tone, edge, by, x, y, c);
     brightest = max(brightest, out[c]);
   }
-  const Real scale = 1 / max(1 - brightest, kLeastRest);
+  const Real scale = 1 / max(1 - brightest, kToneRestMin);
   for (std::size_t c = 0; c < 3; ++c)
-    out[c] = min(max(out[c] * scale, -kLargest), kLargest);
+    out[c] = min(max(out[c] * scale, -kFiniteHalfMax), kFiniteHalfMax);
   out[3] = picture.pixels[index_of(picture.width, x, y)][3];
   return out;
 }

@@ -7,8 +7,8 @@
 //   evidence      sum of (s - h) k, h k, |s - h| k, k = 1 / (1 + s + h), and of |s - n| / (1 + s + n): luma of
 //                 the sample s, of history h at its place, of the mean n of its four neighbours
 //                 Samples of two layers, and those of hidden tiles (layer_tile.cpp), say nothing
-//   startling     how many of those samples are, and two of their four neighbours with them
-// Source: found by measuring (docs/temporal.md): carrying a phase instead of resampling gives .7 dB, and 1.6
+//   outliers      how many of those samples are, and two of their four neighbours with them
+// Source: found by measuring (docs/lab/temporal.md): carrying a phase instead of resampling gives .7 dB, and 1.6
 // to 2.2 dB on pans.
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 #include <cstddef>
 
 #include "motion_edge.h"
-#include "temporal/startling.h"
+#include "temporal/frame_samples.h"
 #include "tile_samples.h"
 
 namespace quincunx::reference {
@@ -24,13 +24,13 @@ namespace {
 
 // Output pixels of a motion edge up to which a tile's samples need not be looked at: where limit_confidence
 // in resolve_temporal.cpp begins to act.
-constexpr double kNoMotionEdge = .1;
+constexpr double kCostlyEdgeMin = .1;
 // Trust of a sample, and confidence of history, from which the one judges the other. A texel reseeded in the
 // last frame has .15, and counts.
-constexpr double kTrusted = .9;
-constexpr double kKnown = .1;
-// Change of luma that says nothing. Not to count smaller ones is worth .03 dB (docs/temporal.md).
-constexpr double kNoise = .01;
+constexpr double kJudgingTrustMin = .9;
+constexpr double kJudgedConfidenceMin = .1;
+// Change of luma that says nothing. Not to count smaller ones is worth .03 dB (docs/lab/temporal.md).
+constexpr double kLumaChangeMin = .01;
 
 // The previous frame's tile at an output position, clamped to the edge.
 template <typename Real>
@@ -63,12 +63,12 @@ Real neighbour_error(const TemporalInputs& in, int x, int y, const Real& own) {
   return abs(own - n) / (1 + own + n);
 }
 
-// How many of a sample's neighbours are startling.
+// Returns how many of a sample's neighbours are outliers.
 template <typename Real>
-int startling_neighbours(const TemporalInputs& in, int x, int y, const Pixel& history) {
+int outlier_neighbours(const TemporalInputs& in, int x, int y, const Pixel& history) {
   int count = 0;
   for (const Pixel& sample : neighbours_of(in, x, y)) {
-    if (is_valid(sample) && is_startling(sample, as<Real>(history))) ++count;
+    if (is_valid(sample) && is_outlier(sample, as<Real>(history))) ++count;
   }
   return count;
 }
@@ -102,11 +102,11 @@ bool is_of_near_layer(const TemporalInputs& in, int x, int y) {
   return !(Bounded(in.frame.depth[i]) < .5 * (Bounded(split.near_depth) + split.far_depth));
 }
 
-// What the sample (x, y) says.
+// Adds the evidence of sample (x, y).
 template <typename Real>
 void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile, int x, int y,
                   TileEvidenceOf<Real>& evidence) {
-  if (!in.reprojections.empty() && !(in.reprojection_at(x, y).trust > kTrusted)) return;
+  if (!in.reprojections.empty() && !(in.reprojection_at(x, y).trust > kJudgingTrustMin)) return;
   if (is_of_near_layer(in, x, y)) return;
   const std::array<Real, 2> at = place_in_history(in, tile, x, y);
   if (at[0] < 0 || at[1] < 0 || at[0] >= in.output_width || at[1] >= in.output_height) return;
@@ -114,7 +114,7 @@ void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile
   const int row = floor_within(at[1], 0, in.output_height - 1);
   const Pixel& history = in.history_clamped(column, row);
   const Pixel& sample = texel_clamped(in.frame, x, y);
-  if (std::abs(history[3]) < kKnown || !is_valid(sample)) return;
+  if (std::abs(history[3]) < kJudgedConfidenceMin || !is_valid(sample)) return;
   const Real s = luma(as<Real>(sample));
   const Real h = luma(as<Real>(history));
   const Real scale = 1 / (1 + s + h);
@@ -123,11 +123,11 @@ void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile
   evidence.light += h * scale;
   evidence.history_error += abs(change);
   evidence.neighbour_error += neighbour_error(in, x, y, s);
-  if (change > kNoise) ++evidence.brighter;
-  if (change < -kNoise) --evidence.brighter;
+  if (change > kLumaChangeMin) ++evidence.brighter;
+  if (change < -kLumaChangeMin) --evidence.brighter;
   ++evidence.count;
-  if (is_startling(sample, as<Real>(history)) && startling_neighbours<Real>(in, x, y, history) >= 2)
-    ++evidence.startling;
+  if (is_outlier(sample, as<Real>(history)) && outlier_neighbours<Real>(in, x, y, history) >= 2)
+    ++evidence.outliers;
 }
 
 }  // namespace
@@ -136,11 +136,11 @@ template <typename Real>
 TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, int tile_y) {
   TileReprojectionOf<Real> tile;
   if (in.reprojections.empty()) {
-    tile.is_rigid = tile.is_copyable = true;
+    tile.is_rigid = tile.is_trusted = true;
     return tile;
   }
   const MotionRange range = motion_in(in, samples_around_tile<Real>(in, tile_x, tile_y));
-  tile.has_motion_edge = Real(range.motion_edge) > kMotionEdgeBegins;
+  tile.has_motion_edge = Real(range.motion_edge) > kRejectedEdgeMin;
   if (!range.is_known) return tile;
 
   const std::array<int, 2> middle = {tile_x * kTile + kTile / 2, tile_y * kTile + kTile / 2};
@@ -148,14 +148,14 @@ TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, in
   std::array<Real, 2> from;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double scale = in.reprojection_scale(static_cast<int>(axis));
-    if ((Real(range.most[axis]) - range.least[axis]) * scale > kRigid) return tile;
+    if ((Real(range.most[axis]) - range.least[axis]) * scale > kRigidMotionRangeMax) return tile;
     motion[axis] = .5 * (Real(range.most[axis]) + range.least[axis]) * scale;
-    if (abs(motion[axis]) < kStill) motion[axis] = 0;
+    if (abs(motion[axis]) < kStillMotionMax) motion[axis] = 0;
     from[axis] = middle[axis] + motion[axis];
   }
   const TileReprojection& source = tile_before(in, from);
   tile.is_rigid = true;
-  tile.is_copyable = range.is_trusted && Real(range.motion_edge) <= kNoMotionEdge;
+  tile.is_trusted = range.is_trusted && Real(range.motion_edge) <= kCostlyEdgeMin;
   for (std::size_t axis = 0; axis < 2; ++axis) {
     tile.source_phase[axis] = source.phase[axis];
     const Real place = source.phase[axis] - motion[axis];

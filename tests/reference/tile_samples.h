@@ -13,9 +13,9 @@ namespace quincunx::reference {
 
 // Output pixels by which the motion of a rigid tile's samples may differ: what velocity in halves is off by
 // stays below.
-constexpr double kRigid = .05;
+constexpr double kRigidMotionRangeMax = .05;
 // Output pixels of motion that are the rounding of a velocity of 0.
-constexpr double kStill = 1e-4;
+constexpr double kStillMotionMax = 1e-4;
 
 struct SampleRange {
   int first = 0;
@@ -25,7 +25,7 @@ struct SampleRange {
 // The samples whose centres lie in a tile; at least one, the nearest.
 template <typename Real>
 SampleRange samples_in(int tile, double spacing, double jitter, int count) {
-  const double start = (.5 + jitter) * spacing;  // of sample 0
+  const double start = (.5 + jitter) * spacing;  // place of sample 0
   const auto sample_at = [&](int corner) { return (Real(corner) - start) / spacing; };
   const int first = ceil_within(sample_at(tile * kTile), 0, count - 1);
   return {first, ceil_within(sample_at((tile + 1) * kTile), first + 1, count) - 1};
@@ -48,7 +48,7 @@ std::array<SampleRange, 2> samples_around_tile(const TemporalInputs& in, int til
   return {with_neighbours(columns, in.frame.width), with_neighbours(rows, in.frame.height)};
 }
 
-// Of the samples in both ranges; motion in pixels of the previous frame.
+// The range of motion of the samples in both ranges, in pixels of the previous frame.
 struct MotionRange {
   std::array<double, 2> least = {1e9, 1e9};
   std::array<double, 2> most = {-1e9, -1e9};

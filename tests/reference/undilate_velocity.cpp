@@ -10,8 +10,8 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr int kReach = 8;
-constexpr double kSameSurface = 1. / 32;  // of a depth
+constexpr int kSampleReachMax = 8;
+constexpr double kSameSurface = 1. / 32;  // part of a depth
 constexpr double kLargest = 65504;        // the largest half
 
 std::size_t texel(const Frame& frame, int x, int y) {
@@ -31,7 +31,8 @@ struct Place {
   int x, y;
 };
 
-// Of those that lie `ring` columns or rows from (x, y) the one of the closest dilated depth to that sample's depth.
+// Returns, of the samples `ring` columns or rows from (x, y), the one whose dilated depth is closest to that sample's
+// depth.
 std::optional<Place> closest_in_ring(const Frame& frame, int x, int y, int ring, double tolerance) {
   const double depth = frame.depth[texel(frame, x, y)];
   std::optional<Place> place;
@@ -72,7 +73,7 @@ std::vector<CompletedVelocity> undilate_velocity(const Frame& frame) {
       if (!(nearest > own && own >= 0)) continue;
       const bool is_covered = nearest - own > own * kSameSurface;
       std::optional<Place> place;
-      for (int ring = 1; ring <= (is_covered ? kReach : 1) && !place; ++ring)
+      for (int ring = 1; ring <= (is_covered ? kSampleReachMax : 1) && !place; ++ring)
         place = closest_in_ring(frame, x, y, ring, is_covered ? own * kSameSurface : 0);
       if (place)
         velocities.back().velocity = frame.velocity[texel(frame, place->x, place->y)];

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLargest = 65504;  // the largest half
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Of the surface that is seen at (u, v).
+// Returns the velocity of the surface that is seen at (u, v).
 CameraVelocity velocity_at(const Frame& frame, double u, double v, double depth) {
   const std::array<double, 4> clip = {2 * u - 1, 1 - 2 * v, depth, 1};
   std::array<double, 4> previous = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a renderer may hand over otherwise than as surfaces on a sky: a background without velocity or without
+// Scenes in which a renderer hands over other things than surfaces on a sky: a background without velocity or without
 // anything, and faults of one frame.
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "catalog/scene_catalog.h"
 #include "render/truth.h"
 #include "render_fixture.h"
-#include "scene_check.h"
+#include "scene.h"
 
 namespace quincunx::scenes::testing {
 namespace {

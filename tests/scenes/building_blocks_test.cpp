@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the procedural scenes are made of: solids, lettering, textures, baked occlusion, randomness.
+// The parts of the procedural scenes: solids, lettering, textures, baked occlusion, randomness.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What load_gltf makes of materials, textures and lights.
+// The results of load_gltf for materials, textures and lights.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ TEST_F(GltfLook, FactorsAndModes) {
   EXPECT_EQ(defaults.emissive, glm::vec3(0));
   EXPECT_FALSE(defaults.unlit);
   EXPECT_EQ(scene.meshes[1].material, 1);
-  EXPECT_EQ(scene.meshes[2].material, 2);  // of primitives that name none
+  EXPECT_EQ(scene.meshes[2].material, 2);  // the mesh of primitives that name none
   EXPECT_EQ(scene.materials[2].base_colour, glm::vec4(1));
   EXPECT_EQ(scene.materials[2].metallic, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What load_gltf makes of containers, accessors and primitives.
+// The results of load_gltf for containers, accessors and primitives.
 #include <gtest/gtest.h>
 
 #include <filesystem>

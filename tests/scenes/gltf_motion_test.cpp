@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What load_gltf makes of node trees, animations and cameras.
+// The results of load_gltf for node trees, animations and cameras.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,6 @@
 #include "../tools/temporary_folder.h"
 #include "gltf/loader.h"
 #include "gltf_fixture.h"
-#include "orbit_camera.h"
 
 namespace quincunx::testing {
 namespace {

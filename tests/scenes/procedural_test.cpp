@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "catalog/scene_catalog.h"
-#include "scene_check.h"
+#include "render_fixture.h"
+#include "scene.h"
 
 namespace quincunx::scenes {
 namespace {
 
 constexpr std::size_t kMostTriangles = 300'000;  // software rasterisers must draw every scene
 constexpr int kLargestTexture = 1024;
-constexpr float kUnitTolerance = 1e-3f;  // of a normal: fp32 through a few products of rotations
+constexpr float kUnitTolerance = 1e-3f;  // normal's length: fp32 through a few products of rotations
 // Metres: phases are exact at the end of the loop, positions are not (fp32 at a radius of 30 m: 2e-6 m an
 // operation).
 constexpr float kLoopTolerance = 1e-4f;
@@ -206,7 +207,7 @@ struct ExpectedNeeds {
   bool objects, camera, transparents;
 };
 
-// What each scene's reason promises.
+// The needs that each scene's reason promises.
 constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>(
     {{"courtyard", true, true, true}, {"chart", false, false, false},  {"pan", false, true, false},
      {"wires", false, true, false},   {"wheel", true, false, false},   {"occluders", true, false, false},
@@ -217,7 +218,7 @@ constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>(
      {"jolts", true, true, false},    {"backdrop", true, true, false}, {"cutout", true, true, false},
      {"faults", true, false, false}});
 
-// What moves within a frame, by looking, must be what the scene declares.
+// The motion within a frame, found by looking, must be the motion that the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
   const Scene scene = open();
   const SceneNeeds needs = needs_of(scene);
@@ -322,7 +323,7 @@ TEST(SceneCatalog, JoltsChangeMotionFromOneFrameToTheNext) {
   }
   EXPECT_EQ(parts.size(), 5u);
   for (const Motion& part : parts) {
-    // Of a point off the axis of what turns, in metres.
+    // Returns the place of a point off the axis of a turning part, in metres.
     const auto place = [&](int frame) {
       return glm::vec3(part(frame * kFrame) * glm::vec4(0.4f, 0.3f, 0, 1));
     };
@@ -376,3 +377,77 @@ TEST(SceneCatalog, OccludersPassTensOfPixelsAFrame) {
 
 }  // namespace
 }  // namespace quincunx::scenes
+
+// Pixels of the scenes that are hard for history: the scenes are as hard as their reason says.
+namespace quincunx::scenes::testing {
+namespace {
+
+constexpr Extent kSize{240, 134};
+constexpr double kFrame = 1.0 / 60;
+
+class HardSceneTest : public RenderTest {
+ protected:
+  // Two frames that follow on each other.
+  void draw_two(const std::string& name) {
+    Renderer renderer = renderer_of(open_scene(name).value());
+    before_ = draw(renderer, view_of_size(kSize, {}, 0, -kFrame), kSize);
+    now_ = draw(renderer, view_of_size(kSize, {}, kFrame, 0), kSize);
+  }
+
+  // Part of all pixels.
+  template <typename Condition>
+  double part(const Condition& holds) const {
+    int count = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x)
+        count += holds(x, y) ? 1 : 0;
+    }
+    return static_cast<double>(count) / static_cast<double>(kSize.area());
+  }
+
+  float brightest(int x, int y) const {
+    const glm::vec3 c = now_.rgb(x, y);
+    return std::max({c.r, c.g, c.b});
+  }
+
+  Picture before_;
+  Picture now_;
+};
+
+TEST_F(HardSceneTest, StillStands) {
+  draw_two("still");
+  EXPECT_EQ(now_.colour, before_.colour);
+  EXPECT_EQ(part([this](int x, int y) { return now_.v(x, y) != glm::vec2(0); }), 0);
+}
+
+// A shadow that comes or goes changes light by more than half, where nothing moves.
+TEST_F(HardSceneTest, ShadowsChangeWhatStandsStill) {
+  draw_two("shadows");
+  const double changed = part([this](int x, int y) {
+    const float then = before_.rgb(x, y).g;
+    const float ratio = now_.rgb(x, y).g / std::max(then, 1e-6f);
+    return now_.v(x, y) == glm::vec2(0) && before_.v(x, y) == glm::vec2(0) && (ratio > 2 || ratio < 0.5f);
+  });
+  EXPECT_GT(changed, 0.01);
+  EXPECT_LT(changed, 0.1);
+  EXPECT_GT(part([this](int x, int y) { return now_.v(x, y) != glm::vec2(0); }), 0.05) << "the vases turn";
+}
+
+TEST_F(HardSceneTest, SparklesAreFewSmallAndFarBrighterThanWhite) {
+  draw_two("sparkles");
+  const auto sparkles = [this](int x, int y) { return brightest(x, y) > 20; };
+  const double bright = part(sparkles);
+  EXPECT_GT(bright, 0.0002);
+  EXPECT_LT(bright, 0.02);
+  const double alone = part([&](int x, int y) {
+    const bool inside = x > 0 && y > 0 && x + 1 < kSize.width && y + 1 < kSize.height;
+    return inside && sparkles(x, y) && !sparkles(x - 1, y) && !sparkles(x + 1, y) && !sparkles(x, y - 1) &&
+           !sparkles(x, y + 1);
+  });
+  EXPECT_GT(alone, 0.5 * bright) << "most are a pixel each";
+  EXPECT_GT(part([this](int x, int y) { return brightest(x, y) > 200; }), 0.0001);
+  EXPECT_GT(part([&](int x, int y) { return sparkles(x, y) && now_.v(x, y) != glm::vec2(0); }), 0.8 * bright);
+}
+
+}  // namespace
+}  // namespace quincunx::scenes::testing

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a run says of itself: which method it takes and why, and what its frames suffer from.
+// A run's account of itself: which method it takes and why, and what its frames suffer from.
 #include <nlohmann/json.hpp>
 
 #include "sequence_fixture.h"
 #include "tools/exr_files.h"
 #include "tools/program/jitter.h"
-#include "tools/sequence/sequence_method.h"
+#include "tools/sequence/resolve_advice.h"
 
 namespace quincunx {
 namespace {
@@ -155,7 +155,7 @@ TEST_F(Advice, DwaIsNamedWithWhatItLoses) {
   }
 }
 
-// What the files say of alpha, of their data windows and of the camera, as the run understands it.
+// The listing names alpha, data windows and the camera of the files, as the run understands them.
 TEST_F(Advice, TheListingSaysWhatTheFramesAre) {
   const auto expect_said = [&](const testing::ExrPart& part, const std::string& what) {
     testing::write_exr_parts(input(1), {part});

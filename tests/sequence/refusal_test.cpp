@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What can be wrong with a sequence or a command line: one clear sentence, an exit code, nothing
-// half-written.
+// Errors of a sequence or a command line: one clear sentence, an exit code, nothing half-written.
 #include <fstream>
 
 #include "sequence_fixture.h"
@@ -207,7 +206,7 @@ TEST_F(Refusal, BadFramesMayBeSkipped) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("frame 2 is missing"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("f.0005.exr' cannot be read"), std::string::npos) << result.err;
-  // What follows a gap has no history.
+  // A frame after a gap has no history.
   write_bytes(input(5), whole);
   resolve_to("cold", "--frames 3,6 --warm-up 0");
   resolve_to("warm", "--frames 4,7");

@@ -225,7 +225,7 @@ TEST_F(Run, JitterOfAFileIsThatOfAttributes) {
   }
 }
 
-// Of a sky alone, all motion is that which the camera gives what is infinitely far away.
+// With a sky alone, all motion is that which the camera gives to points infinitely far away.
 TEST_F(Run, FarMotionFromTheCameraMovesASky) {
   for (int number = 1; number <= 3; ++number) {
     testing::FrameFile file = frame_of_camera(number, 0);
@@ -245,7 +245,7 @@ TEST_F(Run, FarMotionFromTheCameraMovesASky) {
   }
 }
 
-// What still cameras say is the same as what no motion says; a moving one takes the other frame away.
+// Still cameras say the same as no motion; a moving one takes the other frame away.
 TEST_F(Run, CameraMotionComesFromDepthAndMatrices) {
   for (const auto& [number, place] : {std::pair{1, 0.0f}, {2, 0.0f}, {3, 2.0f}})
     write_frame(input(number), frame_of_camera(number, place));
@@ -393,7 +393,8 @@ TEST_F(Run, TheReportSaysWhatItCost) {
   EXPECT_NE(testing::read_file(folder_.file("r/run.html")).find("\"pictures\":null"), std::string::npos);
 }
 
-// Of seven frames with a truth the page keeps six at most, each with its maps; the maps of ghosts where motion is read.
+// From seven frames with a truth the page keeps six at most, each with its maps; the maps of ghosts where motion is
+// read.
 TEST_F(Run, ThePageHasFramesBesideTheirTruth) {
   write_frames(1, 7);
   resolve_to("t", "--method bilinear --store float");

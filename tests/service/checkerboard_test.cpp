@@ -157,6 +157,23 @@ TEST(Checkerboard, AResetForgetsWhatCameBefore) {
   EXPECT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0);
 }
 
+// Where targets are images, so are the service's own filled ones.
+TEST(Checkerboard, ImagesMakeThePicturesOfBuffers) {
+  for (const SceneNeeds& needs : {kMoving, SceneNeeds{}}) {
+    ResolveSettings settings{.method = Method::kTemporal, .shading = Shading::kCheckerboard};
+    ServiceRig buffers(needs, settings, kExtent, kExtent);
+    settings.storage = Storage::kImage;
+    ServiceRig images(buffers.device(), needs, settings, kExtent, kExtent);
+    for (int i = 0; i < 3; ++i) {
+      HostFrame frame = ramp(i % 2);
+      frame.reset = i == 2;
+      const std::vector<Pixel> expected = buffers.resolve(frame);
+      const std::vector<Pixel> actual = images.resolve(frame);
+      EXPECT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0) << i;
+    }
+  }
+}
+
 // The caller may use the same images for each frame: the service has its own of the previous one.
 TEST(Checkerboard, TheSameImagesMayHoldEveryFrame) {
   ServiceRig rig(kMoving, {.method = Method::kQuincunx, .shading = Shading::kCheckerboard}, kExtent, kExtent);

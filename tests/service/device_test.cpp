@@ -1,14 +1,29 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/device.h"
-
+// A device: opening, images and transfers; its profile; the cache of its programs.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <numeric>
+#include <random>
 #include <vector>
+
+#include "../tools/own_cache.h"
+#include "device/device_profile_file.h"
+#include "device/program_cache.h"
+#include "embedded_files.h"
+#include "passes/pass.h"
+#include "quincunx/device.h"
+#include "quincunx/device_profile.h"
+#include "quincunx/resolve_service.h"
 
 namespace quincunx {
 namespace {
+
+namespace fs = std::filesystem;
 
 TEST(Device, ListsAndOpens) {
   const std::vector<DeviceInfo> devices = Device::list();
@@ -99,6 +114,32 @@ TEST(Device, CopiesAPartOfAPitchedImageAndNothingElse) {
   EXPECT_EQ(after, expected);
 }
 
+// Some drivers take such rows for tight.
+TEST(Device, CopiesAsManyRowsAsARowHasBytes) {
+  auto device = Device::open();
+  ASSERT_TRUE(device.ok());
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    constexpr Extent kPart = {29, 64};
+    constexpr std::size_t kRow = 64;
+    auto image = device->allocate({64, 64}, PixelFormat::kR8, storage);
+    ASSERT_TRUE(image.ok()) << image.status().message();
+    const std::vector<std::uint8_t> before(kRow * 64, 7);
+    ASSERT_TRUE(device->upload(image->view(), {64, 64}, before.data()).ok());
+    std::vector<std::uint8_t> sent(kRow * kPart.height);
+    for (std::size_t i = 0; i < sent.size(); ++i)
+      sent[i] = static_cast<std::uint8_t>(i % 251);
+    ASSERT_TRUE(device->upload(image->view(), kPart, sent.data(), kRow).ok());
+    std::vector<std::uint8_t> whole(before.size()), part(before.size(), 9);
+    ASSERT_TRUE(device->download(image->view(), {64, 64}, whole.data()).ok());
+    ASSERT_TRUE(device->download(image->view(), kPart, part.data(), kRow).ok());
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      const bool inside = static_cast<int>(i % kRow) < kPart.width;
+      ASSERT_EQ(whole[i], inside ? sent[i] : 7) << i;
+      ASSERT_EQ(part[i], inside ? sent[i] : 9) << i;
+    }
+  }
+}
+
 TEST(Device, BadAllocationsAreRefused) {
   auto device = Device::open();
   ASSERT_TRUE(device.ok());
@@ -113,5 +154,336 @@ TEST(Device, BadAllocationsAreRefused) {
   EXPECT_FALSE(device->download({}, {1, 1}, texels).ok());
 }
 
+// Device profiles: as files, as what a device is opened with, and that no picture depends on them.
+
+constexpr WorkShape kTile = {.group_width = 8, .group_height = 4, .pixels_per_item = 1};
+
+// A cache of its own, and what is logged.
+class DeviceProfiles : public ::testing::Test {
+ protected:
+  DeviceProfiles()
+      : folder_(fs::temp_directory_path() / ("quincunx-profile-test-" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+  }
+  ~DeviceProfiles() override { fs::remove_all(folder_); }
+
+  static Device open() { return Device::open().value(); }
+
+  static DeviceProfile tuned() {
+    DeviceProfile profile;
+    profile.source = ProfileSource::kTuned;
+    profile.date = "2026-11-22 21:05 UTC";
+    profile.driver = open().info().driver;
+    profile.shape = {.group_width = 2, .group_height = 2, .pixels_per_item = 8};
+    profile.passes["scale_point"] = kTile;
+    return profile;
+  }
+
+  static std::string text_of(const fs::path& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  }
+
+  // Returns the warnings of opening the device.
+  static std::string warnings_of_opening(DeviceProfile& used) {
+    ::testing::internal::CaptureStdout();
+    used = open().profile();
+    return ::testing::internal::GetCapturedStdout();
+  }
+
+  fs::path folder_;
+  testing::OwnCache cache_{folder_.string()};
+};
+
+TEST_F(DeviceProfiles, WhatWasKeptIsUsedFromThenOn) {
+  const DeviceProfile before = open().profile();
+  EXPECT_NE(before.source, ProfileSource::kTuned);
+  const Status kept = keep_profile(open(), tuned());
+  ASSERT_TRUE(kept.ok()) << kept.message();
+  const Device device = open();
+  EXPECT_EQ(device.profile(), tuned());
+  EXPECT_EQ(device.profile().describe(), "tuned 2026-11-22 21:05 UTC");
+  EXPECT_EQ(device.profile().shape_of("scale_point"), kTile);
+  EXPECT_EQ(device.profile().shape_of("sharpen"), tuned().shape);
+  const auto borrowed = Device::borrow(device.context(), device.id(), device.queue());
+  ASSERT_TRUE(borrowed.ok());
+  EXPECT_EQ(borrowed->profile(), tuned());
+  fs::remove(*profile_path(device));
+  EXPECT_EQ(open().profile(), before);
+}
+
+TEST_F(DeviceProfiles, WithoutACacheFolderNoneIsKept) {
+  cache_.use("");
+  EXPECT_FALSE(profile_path(open()).has_value());
+  const Status kept = keep_profile(open(), tuned());
+  EXPECT_EQ(kept.code(), StatusCode::kUnsupported);
+  EXPECT_NE(kept.message().find("QUINCUNX_CACHE_DIR"), std::string::npos) << kept.message();
+}
+
+TEST_F(DeviceProfiles, AFileThatCannotBeWrittenIsNamed) {
+  std::ofstream(folder_) << "a file where the folder would be";
+  const Status kept = keep_profile(open(), tuned());
+  EXPECT_EQ(kept.code(), StatusCode::kIoFailure);
+  EXPECT_NE(kept.message().find(folder_.string()), std::string::npos) << kept.message();
+}
+
+TEST_F(DeviceProfiles, ABadFileIsOneSentenceAndPassedOver) {
+  const DeviceProfile plain = open().profile();
+  ASSERT_TRUE(keep_profile(open(), tuned()).ok());
+  const fs::path path = *profile_path(open());
+  const std::string good = text_of(path);
+  const auto with = [&good](const std::string& what, const std::string& instead) {
+    std::string text = good;
+    const std::size_t at = text.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return text.replace(at, what.size(), instead);
+  };
+  const std::string driver = "\"driver\": \"" + open().info().driver + "\"";
+  const struct {
+    std::string text, says;
+  } bad[] = {{"", "no JSON"},
+             {good.substr(0, good.size() / 2), "no JSON"},
+             {"[]", "has no quincunx_device_profile"},
+             {with("profile\": 1", "profile\": 2"), "reads 1"},
+             {with(driver, "\"driver\": \"another\""), "driver 'another'"},
+             {with("\"device\": \"", "\"device\": \"not "), "device 'not "},
+             {with("\"date\"", "\"day\""), "has no date"},
+             {with("\"pixels\": 8", "\"pixels\": -1"), "pixels of shape is -1"},
+             {with("\"pixels\": 1", "\"pixels\": 1.5"), "pixels of scale_point is 1.5"},
+             {with("\"group\"", "\"groups\""), "shape has no group"},
+             {with("\"scale_point\": {", "\"scale_point\": 3, \"sharpen\": {"), "scale_point has no group"}};
+  for (const auto& [text, says] : bad) {
+    std::ofstream(path, std::ios::trunc) << text;
+    DeviceProfile used;
+    const std::string warning = warnings_of_opening(used);
+    EXPECT_EQ(used, plain) << text;
+    EXPECT_NE(warning.find(says), std::string::npos) << text << " -> " << warning;
+    EXPECT_NE(warning.find(path.string()), std::string::npos) << warning;
+    EXPECT_EQ(std::count(warning.begin(), warning.end(), '\n'), 1) << warning;
+  }
+}
+
+TEST_F(DeviceProfiles, SidesOfAGroupHaveTheirRange) {
+  for (const int side : {0, -3, WorkShape::kMostOfGroup + 1, 1, WorkShape::kMostOfGroup}) {
+    DeviceProfile profile = tuned();
+    profile.shape.group_width = side;
+    const bool fits = side >= 1 && side <= WorkShape::kMostOfGroup;
+    EXPECT_EQ(parse_profile(profile_text({owner_of(open().info()), profile})).ok(), fits) << side;
+  }
+}
+
+TEST(WorkShapes, AGroupIsHalvedUntilItFits) {
+  const auto halved = [](int width, int height, std::size_t most) {
+    const WorkShape shape =
+        with_smaller_group({.group_width = width, .group_height = height, .pixels_per_item = 3}, most);
+    EXPECT_EQ(shape.pixels_per_item, 3);
+    return std::pair(shape.group_width, shape.group_height);
+  };
+  EXPECT_EQ(halved(16, 8, 128), std::pair(16, 8));
+  EXPECT_EQ(halved(16, 8, 127), std::pair(8, 8));
+  EXPECT_EQ(halved(16, 8, 32), std::pair(8, 4));
+  EXPECT_EQ(halved(1, 1024, 256), std::pair(1, 256));
+  EXPECT_EQ(halved(3, 5, 1), std::pair(1, 1));
+  EXPECT_EQ(halved(1, 1, 0), std::pair(1, 1));
+}
+
+TEST(ShippedProfiles, AreWholeAndOneForEachPlatformAndKind) {
+  std::vector<std::string> seen;
+  for (const EmbeddedFile& shipped : shipped_profile_files()) {
+    const auto file = parse_profile(std::string(shipped.text));
+    ASSERT_TRUE(file.ok()) << shipped.name << ": " << file.status().message();
+    EXPECT_FALSE(file.value().profile.passes.empty()) << shipped.name;
+    seen.push_back(file.value().owner.platform + "/" + file.value().owner.kind);
+  }
+  EXPECT_FALSE(seen.empty());
+  std::sort(seen.begin(), seen.end());
+  EXPECT_EQ(std::adjacent_find(seen.begin(), seen.end()), seen.end());
+}
+
+// Frames of a service that has most kinds of passes, as bits of the last presented picture and of the history.
+std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfile& profile, Method method) {
+  constexpr Extent kRender = {83, 41}, kOutput = {131, 67};
+  ResolveSettings settings{.method = method, .output = kOutput, .target = kRender};
+  settings.quincunx.form = TwoFrameForm::kReprojected;
+  settings.sharpness = 0.5f;
+  settings.blur.shutter = 0.5f;
+  settings.far = FarMotion::kEvidence;
+  const ResolvePlan plan = plan_for({.moving_objects = true, .transparents = true}, settings).value();
+  const Device own = device.with_profile(profile);
+  ResolveService service = ResolveService::create(own, plan).value();
+  std::mt19937 random(1);
+  const auto filled = [&](PixelFormat format, std::uint16_t least, std::uint16_t span) {
+    Image image = own.allocate(kRender, format).value();
+    std::vector<std::uint16_t> bits(static_cast<std::size_t>(kRender.area()) * bytes_per_pixel(format) / 2 +
+                                    1);
+    for (std::uint16_t& word : bits)
+      word = static_cast<std::uint16_t>(least + random() % span);
+    EXPECT_TRUE(own.upload(image.view(), kRender, bits.data()).ok());
+    return image;
+  };
+  struct Frame {
+    Image colour, velocity, depth, reactive;
+  };
+  std::vector<Frame> frames;  // kept: the next frame may read them
+  for (int i = 0; i < 4; ++i) {
+    frames.push_back({filled(settings.colour, 0x3400, 0x800), filled(settings.velocity, 0x1c00, 0x400),
+                      filled(PixelFormat::kR32F, 0x3e00, 0x100), filled(PixelFormat::kR8, 0, 0x100)});
+  }
+  const Image resolved = own.allocate(kOutput, settings.resolved).value();
+  const Image blurred = own.allocate(kOutput, settings.resolved).value();
+  const Image presented = own.allocate(kOutput, PixelFormat::kRGBA8).value();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const FrameReport report = service.dispatch({.colour = frames[i].colour.view(),
+                                                 .depth = frames[i].depth.view(),
+                                                 .velocity = frames[i].velocity.view(),
+                                                 .reactive = frames[i].reactive.view(),
+                                                 .render = kRender,
+                                                 .jitter = {0.25f, i % 2 == 0 ? 0.25f : -0.25f},
+                                                 .frame_index = i},
+                                                {resolved.view(), presented.view(), blurred.view()});
+    EXPECT_TRUE(report.ok()) << report.status.message();
+  }
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(kOutput.area()) * 20);
+  EXPECT_TRUE(own.download(blurred.view(), kOutput, bytes.data()).ok());
+  EXPECT_TRUE(own.download(presented.view(), kOutput, bytes.data() + kOutput.area() * 16).ok());
+  return bytes;
+}
+
+TEST(WorkShapes, NoBitOfAPictureDependsOnThem) {
+  const Device device = Device::open().value();
+  std::vector<DeviceProfile> profiles(4);
+  profiles[0].shape = {.group_width = 1, .group_height = 4, .pixels_per_item = 0};
+  profiles[1].shape = {.group_width = 16, .group_height = 8, .pixels_per_item = 1};
+  profiles[2].shape = {.group_width = 3, .group_height = 2, .pixels_per_item = 24};
+  profiles[3].shape = {.group_width = 1, .group_height = 1, .pixels_per_item = 0};
+  profiles[3].passes["present"] = kTile;
+  profiles[3].passes["temporal_display"] = kTile;
+  for (const Method method : {Method::kBilinear, Method::kLanczos2, Method::kQuincunx, Method::kTemporal}) {
+    const auto expected = pictures_with(device, profiles[0], method);
+    for (std::size_t i = 1; i < profiles.size(); ++i)
+      EXPECT_EQ(pictures_with(device, profiles[i], method), expected) << name_of(method) << ", profile " << i;
+  }
+}
+
+// The cache of compiled programs.
+
+constexpr const char* kKernel = "scale_point";
+constexpr const char* kOptions = "-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT=HALF -D OUTPUT_FORMAT=FLOAT";
+
+class ProgramCache : public ::testing::Test {
+ protected:
+  ProgramCache() : folder_(fs::temp_directory_path() / ("quincunx-cache-test-" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+  }
+  ~ProgramCache() override { fs::remove_all(folder_); }
+
+  std::vector<fs::path> entries() const {
+    std::vector<fs::path> found;
+    if (!fs::exists(folder_)) return found;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      found.push_back(entry.path());
+    return found;
+  }
+
+  // Returns the counts of one build: {compiled, loaded}.
+  CacheCounts build(const std::string& options = kOptions) const {
+    const CacheCounts before = cache_counts();
+    EXPECT_NE(build_kernel(impl_, kKernel, options)(), nullptr);
+    const CacheCounts after = cache_counts();
+    return {after.compiled - before.compiled, after.loaded - before.loaded};
+  }
+
+  fs::path folder_;
+  testing::OwnCache cache_{folder_.string()};
+  Device device_ = Device::open().value();
+  Device::Impl impl_ = keeping_no_programs();
+
+ private:
+  Device::Impl keeping_no_programs() const {
+    Device::Impl impl = *device_.impl();
+    impl.keeps_programs = false;
+    return impl;
+  }
+};
+
+TEST_F(ProgramCache, CompilesOnceThenLoads) {
+  const CacheCounts first = build();
+  EXPECT_EQ(first.compiled, 1);
+  EXPECT_EQ(first.loaded, 0);
+  ASSERT_EQ(entries().size(), 1u);
+  const CacheCounts second = build();
+  EXPECT_EQ(second.compiled, 0);
+  EXPECT_EQ(second.loaded, 1);
+}
+
+TEST_F(ProgramCache, OtherOptionsAreAnotherEntry) {
+  build();
+  EXPECT_EQ(build("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT=FLOAT -D OUTPUT_FORMAT=FLOAT").compiled, 1);
+  EXPECT_EQ(entries().size(), 2u);
+}
+
+TEST_F(ProgramCache, ADamagedEntryIsRebuiltAndReplaced) {
+  build();
+  const fs::path entry = entries().at(0);
+  const auto size = fs::file_size(entry);
+  for (const std::uintmax_t kept : {std::uintmax_t{0}, std::uintmax_t{10}, size / 2}) {
+    fs::resize_file(entry, kept);
+    EXPECT_EQ(build().compiled, 1) << "cut to " << kept;
+    EXPECT_EQ(fs::file_size(entry), size);
+    EXPECT_EQ(build().loaded, 1);
+  }
+  {
+    std::fstream file(entry, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(size / 2));
+    file.write("damage", 6);
+  }
+  EXPECT_EQ(build().compiled, 1);
+}
+
+TEST_F(ProgramCache, AFolderThatCannotBeWrittenOnlyCostsTime) {
+  const fs::path file = folder_.string() + "-file";
+  std::ofstream(file) << "not a folder";
+  cache_.use((file / "below").string());
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_EQ(build().compiled, 1);
+  fs::remove(file);
+}
+
+TEST_F(ProgramCache, AnEmptyNameTurnsItOff) {
+  cache_.use("");
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(ProgramCache, ADriverThatKeepsItsProgramsGetsTheSource) {
+  impl_.keeps_programs = true;
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_EQ(build().compiled, 1);
+  EXPECT_TRUE(entries().empty());
+}
+
+TEST_F(ProgramCache, ABuildFailureShowsKernelOptionsAndLog) {
+  try {
+    build("-D SOURCE_FORMAT=NONSENSE");
+    FAIL() << "a misspelt option must not compile";
+  } catch (const BuildError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find(kKernel), std::string::npos);
+    EXPECT_NE(text.find("NONSENSE"), std::string::npos);
+    EXPECT_NE(text.find("SOURCE_FORMAT must be"), std::string::npos) << text;
+  }
+}
+
+TEST(KernelSource, ExpandsEachIncludeOnce) {
+  const std::string source = kernel_source("resolve_quincunx");
+  EXPECT_EQ(source.find("#include"), std::string::npos);
+  const std::string guard = "typedef struct TexelLayout {";
+  ASSERT_NE(source.find(guard), std::string::npos);
+  EXPECT_EQ(source.find(guard), source.rfind(guard));
+  EXPECT_THROW(kernel_source("no_such_kernel"), std::out_of_range);
+}
+
 }  // namespace
+
 }  // namespace quincunx

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <random>
 
-#include "random_frame.h"
+#include "service_fixture.h"
 #include "temporal_scene.h"
 
 namespace quincunx {
@@ -116,7 +116,7 @@ struct Change {
   Extent before, after;
 };
 
-// Of a change: after it; with either size all the time; with no history after it.
+// Courses around a change: after it; with either size all the time; with no history after it.
 enum Course { kChanged, kAfter, kBefore, kReset, kRuns };
 
 constexpr Extent kSamples{80, 48};
@@ -151,7 +151,7 @@ Errors errors_of(const Change& change, Course run) {
 
 class ChangeOfOutput : public ::testing::TestWithParam<Change> {};
 
-// The figures are in docs/dual.md; QUINCUNX_DUAL_TABLE=1 prints them.
+// The figures are in docs/lab/options.md; QUINCUNX_DUAL_TABLE=1 prints them.
 TEST_P(ChangeOfOutput, HistorySurvives) {
   const Change& change = GetParam();
   Errors errors[kRuns];

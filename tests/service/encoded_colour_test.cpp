@@ -33,7 +33,7 @@ HostFrame noise_frame(Extent render, Vec2 jitter, unsigned seed) {
 struct Case {
   const char* name;
   ResolveSettings settings;
-  double weight_sum;  // of the weights' magnitudes on one axis, at most
+  double weight_sum;  // sum of the weights' magnitudes on one axis, at most
 };
 
 const Case kCases[] = {
@@ -51,7 +51,7 @@ const Case kCases[] = {
 
 class EncodedColour : public ::testing::TestWithParam<Case> {};
 
-// docs/numerics.md derives both bounds: half a code at the bright end, where sRGB is steepest, times the sum of the
+// docs/testing.md derives both bounds: half a code at the bright end, where sRGB is steepest, times the sum of the
 // weights' magnitudes; and half a code of the picture where no weight is negative, so that rounding to whole codes
 // leaves one.
 TEST_P(EncodedColour, StaysWithinTheQuantisation) {

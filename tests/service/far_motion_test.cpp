@@ -117,9 +117,9 @@ TEST(FarMotion, FromEvidenceItIsNearlyAsGoodAsDrawn) {
     expect_as_good_as_drawn(FarMotion::kEvidence, pan, 1, 1);
 }
 
-// Of this pan the fit is worse: with temporal the sky loses 5 to 6 dB to drawn motion, and gains as much over none at
-// all as this tells. Silhouettes with a layer of their own have less to gain: a sky that is taken for another picture
-// leaves them alone.
+// The fit is worse for this pan: with temporal the sky loses 5 to 6 dB to drawn motion, and gains over none at all as
+// much as is expected here. Silhouettes with a layer of their own have less to gain: a sky that is taken for another
+// picture leaves them alone.
 TEST(FarMotion, FromEvidenceASkyIsBetterThanWithoutMotion) {
   const TemporalScene scene = scene_under({-2.3, .4}, 1);
   for (const ResolveSettings& settings : kMethods) {
@@ -134,7 +134,7 @@ TEST(FarMotion, FromEvidenceASkyIsBetterThanWithoutMotion) {
   }
 }
 
-// What all of this is for: as it was drawn the sky is smeared, and so is what stands before it.
+// All of this serves one purpose: as it was drawn the sky is smeared, and so are the things before it.
 TEST(FarMotion, WithoutItASkyIsMuchWorse) {
   for (const Place pan : {Place(-2.3, .4), Place(-6.2, 0)}) {
     const TemporalScene scene = scene_under(pan, 1);
@@ -159,8 +159,8 @@ TEST(FarMotion, ADrawnSkyIsLeftAlone) {
   }
 }
 
-// What hangs behind the scene and moves with the camera does not move in the picture, whatever all else does. The
-// match of its colours tells.
+// A picture that hangs behind the scene and moves with the camera does not move on the screen, whatever all else does.
+// The match of its colours tells.
 TEST(FarMotion, FromEvidenceAPictureThatHangsBehindStandsStill) {
   for (const Place pan : {Place(-2.3, .4), Place(-6.2, 0)}) {
     TemporalScene scene = scene_under(pan, 1);

@@ -8,7 +8,6 @@
 #include <random>
 #include <string>
 
-#include "random_frame.h"
 #include "service_fixture.h"
 
 namespace quincunx {

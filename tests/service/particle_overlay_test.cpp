@@ -4,7 +4,6 @@
 #include <limits>
 #include <random>
 
-#include "random_frame.h"
 #include "service_fixture.h"
 
 namespace quincunx {
@@ -26,11 +25,11 @@ struct Run {
 // Images for particles, at most as large as the frame's targets.
 class Particles {
  public:
-  explicit Particles(Device& device)
+  explicit Particles(Device& device, Storage storage = Storage::kBuffer)
       : device_(device),
-        colour_(device.allocate(kTarget, PixelFormat::kRGBA32F).value()),
-        depth_(device.allocate(kTarget, PixelFormat::kR32F).value()),
-        reactive_(device.allocate(kTarget, PixelFormat::kR8).value()) {}
+        colour_(device.allocate(kTarget, PixelFormat::kRGBA32F, storage).value()),
+        depth_(device.allocate(kTarget, PixelFormat::kR32F, storage).value()),
+        reactive_(device.allocate(kTarget, PixelFormat::kR8, storage).value()) {}
 
   void fill(Extent extent, const HostFrame& frame) {
     put<Pixel>(colour_, extent, frame.colour);
@@ -192,6 +191,25 @@ const Run kRuns[] = {
 
 INSTANTIATE_TEST_SUITE_P(Methods, ParticleOverlay, ::testing::ValuesIn(kRuns),
                          [](const auto& instance) { return instance.param.name; });
+
+// Where targets are images, so are the service's own that hold the particles as well.
+TEST(ParticleImages, MakeThePicturesOfBuffers) {
+  ResolveSettings settings{.method = Method::kTemporal, .particle_target = kTarget};
+  ServiceRig buffers({}, settings, kOutput, kTarget);
+  settings.storage = Storage::kImage;
+  ServiceRig images(buffers.device(), {}, settings, kOutput, kTarget);
+  Particles in_buffers(buffers.device()), in_images(images.device(), Storage::kImage);
+  std::mt19937 random(17);
+  for (int i = 0; i < 3; ++i) {
+    const HostFrame frame = random_frame(random, kTarget);
+    const HostFrame over = particles_of(frame, frame.render);
+    in_buffers.fill(frame.render, over);
+    in_images.fill(frame.render, over);
+    const std::vector<Pixel> expected = resolve(buffers, frame, in_buffers, frame.render);
+    const std::vector<Pixel> actual = resolve(images, frame, in_images, frame.render);
+    EXPECT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0) << i;
+  }
+}
 
 TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
   ResolveSettings settings{

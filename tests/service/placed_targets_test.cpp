@@ -5,7 +5,6 @@
 #include <cstring>
 #include <random>
 
-#include "random_frame.h"
 #include "service_fixture.h"
 
 namespace quincunx {

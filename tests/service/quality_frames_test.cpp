@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a controller that chooses methods needs of a service: what frames show, and pictures that fade into each other.
+// Demands of a controller that chooses methods on a service: what frames show, and pictures that fade into each other.
 #include <gtest/gtest.h>
 
 #include "service_fixture.h"

@@ -8,7 +8,6 @@
 #include <limits>
 #include <random>
 
-#include "random_frame.h"
 #include "service_fixture.h"
 
 namespace quincunx {
@@ -40,7 +39,7 @@ HostFrame poison(float value) {
   return frame;
 }
 
-// Of a checkerboard: the pixels that are not shaded hold `value`.
+// Returns the frame as a checkerboard: the pixels that are not shaded hold `value`.
 HostFrame with_holes(const HostFrame& frame, float value) {
   HostFrame holed = frame;
   const auto is_hole = [parity = frame.parity](int x, int y) { return (x + y) % 2 != parity; };
@@ -61,8 +60,8 @@ Extent random_output(std::mt19937& random, int frame) {
   return kept;
 }
 
-// What lies outside the viewport, or in pixels that are not shaded, changes no bit of any frame, and no frame has a
-// value that is not finite.
+// Values outside the viewport, or in pixels that are not shaded, change no bit of any frame, and no frame has a value
+// that is not finite.
 TEST_P(RandomResolution, PoisonOutsideNeverShows) {
   const LongRun& run = GetParam();
   ServiceRig clean({}, run.settings, kOutput, kTarget);

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "plan/pass_spec.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {
@@ -317,6 +319,24 @@ TEST(ResolvePlan, AnEditedPlanIsRefusedByName) {
     ASSERT_FALSE(service.ok()) << what;
     EXPECT_NE(service.status().message().find(what), std::string::npos) << service.status().message();
   }
+}
+
+// plan_for() makes no plan that leaves anything out; see also the plans of settings_combinations_test.cpp, which are
+// all made.
+TEST(ResolvePlan, WhatIsKeptOverADynamicOutputIsResized) {
+  ResolveSettings wanted = settings(Method::kTemporal);
+  wanted.least_output = {640, 360};
+  const std::vector<PassSpec> passes =
+      list_passes(PlanFacts({.transparents = false, .background = false}, wanted)).passes;
+  EXPECT_EQ(unresized(passes), std::nullopt);
+  int resizing = 0;
+  for (const std::string kernel : {"resize_history", "resize_tiles", "resize_layers"}) {
+    std::vector<PassSpec> fewer = passes;
+    resizing +=
+        static_cast<int>(std::erase_if(fewer, [&](const PassSpec& pass) { return pass.kernel == kernel; }));
+    EXPECT_NE(unresized(fewer), std::nullopt) << kernel;
+  }
+  EXPECT_EQ(resizing, 3);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -202,10 +203,36 @@ class ServiceRig {
   ResolvePlan plan_;
   std::optional<ResolveService> service_;
   std::array<Slot, 3> slots_;
-  Image memory_;  // of placed targets
+  Image memory_;  // memory of placed targets
   Image resolved_;
   Image presented_;
   std::uint64_t count_ = 0;
 };
+
+// Makes a frame of any size from 1x1 to `target`, of noise with a bright spot, moving anywhere: in a row of them
+// nothing stays the same.
+inline HostFrame random_frame(std::mt19937& random, Extent target) {
+  const auto below = [&](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
+  const auto unit = [&] { return static_cast<float>(random() % 4096) / 4096; };
+  const auto salt = static_cast<unsigned>(random());
+  const auto noise = [salt](int x, int y, int c) {
+    const unsigned mixed = (static_cast<unsigned>(x) * 73856093u) ^ (static_cast<unsigned>(y) * 19349663u) ^
+                           (static_cast<unsigned>(c) * 83492791u) ^ salt;
+    return static_cast<float>((mixed * 2654435761u) >> 16) / 65536;
+  };
+  HostFrame frame;
+  frame.render = {1 + below(target.width), 1 + below(target.height)};
+  frame.jitter = {unit() - .5f, unit() - .5f};
+  frame.colour = [=](int x, int y) {
+    const float bright = noise(x, y, 3) > .995f ? 65504.f : 1.f;
+    return Pixel{bright * noise(x, y, 0), noise(x, y, 1), -noise(x, y, 2), 1};
+  };
+  const float speed = std::ldexp(1.f, -below(20));
+  frame.velocity = [=](int x, int y) { return Vec2{speed * (noise(x, y, 4) - .5f), speed * noise(x, y, 5)}; };
+  frame.depth = [=](int x, int y) { return noise(x / 4, y / 4, 6); };
+  frame.reactive = [=](int x, int y) { return static_cast<std::uint8_t>(noise(x, y, 7) > .8f ? 200 : 0); };
+  frame.reset = below(50) == 0;
+  return frame;
+}
 
 }  // namespace quincunx::testing

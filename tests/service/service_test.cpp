@@ -52,7 +52,7 @@ TEST(Service, AStillSceneIsBitStableFromFrameThree) {
   ServiceRig rig({}, Method::kQuincunx, {64, 48}, {64, 48});
   const auto frame = [&](int index) {
     const float j = index % 2 == 0 ? -0.25f : 0.25f;
-    // What a renderer would give: the pattern sampled at the jittered positions.
+    // The input as a renderer would give it: the pattern sampled at the jittered positions.
     return HostFrame{
         .render = {46, 34}, .jitter = {j, j}, .colour = [j](int x, int y) {
           return Pixel{std::sin(0.3f * (static_cast<float>(x) + j)), static_cast<float>(y) + j, 1, 1};

@@ -40,7 +40,7 @@ Place local_place(const Surface& surface, Place place, int frame) {
   return surface.turn == Place(1) ? place - centre : (place - centre) / std::pow(surface.turn, frame);
 }
 
-// What of a surface is at `place` in a frame was there in the frame before.
+// Returns where the point of a surface that is at `place` in a frame was in the frame before.
 Place previous_place(const Surface& surface, Place place, int frame) {
   const Place moved = place - surface.centre - surface.velocity * static_cast<double>(frame);
   return place - (surface.velocity + moved - moved / surface.turn);
@@ -73,7 +73,7 @@ CameraMotion camera_of(const Surface& sky, Extent output, int frame) {
   const auto to_ndc = [=](Place place) {
     return Place(2 * place.real() / output.width - 1, 1 - 2 * place.imag() / output.height);
   };
-  const auto before = [&](double x, double y) {  // of a place in normalised device coordinates
+  const auto before = [&](double x, double y) {  // x, y: normalised device coordinates
     const Place place((x + 1) / 2 * output.width, (1 - y) / 2 * output.height);
     return to_ndc(previous_place(sky, place, frame));
   };

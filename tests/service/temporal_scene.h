@@ -58,7 +58,7 @@ int halton_phases(Extent output, Extent render);  // 8 samples to each output pi
 // c / (1 + c), sRGB encoded.
 double tone_of(float colour);
 
-// Of a part of two pictures: which pixels count; none: all.
+// The pixels that count in a comparison of two pictures; none: all.
 using Mask = std::function<bool(int x, int y)>;
 double squared_error(const std::vector<Pixel>& a, const std::vector<Pixel>& b, Extent output,
                      const Mask& mask = {});
@@ -97,7 +97,7 @@ class TemporalRun {
   TemporalScene scene_;
   ServiceRig rig_;
   int frame_ = 0;
-  int phases_ = 0;  // of the lowest scale so far
+  int phases_ = 0;  // jitter phases at the lowest scale so far
 };
 
 }  // namespace quincunx::testing

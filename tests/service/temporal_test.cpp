@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What must hold for the pictures of kTemporal, on analytic sequences with exact velocity and truth.
+// Requirements for the pictures of kTemporal, on analytic sequences with exact velocity and truth.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -156,7 +156,8 @@ Mask free_of(const TemporalScene& scene, std::size_t which, int frame, int frame
   };
 }
 
-// What a pixel remembers of a thing that has gone is the difference that the thing's colour makes there.
+// Returns the trail of a thing that has gone: the largest difference that its colour makes to a pixel that is free of
+// it.
 double trail_of(TemporalScene scene, const ResolveSettings& settings, std::size_t which, int free_frames) {
   scene.surfaces[which].texture = testing::plain_texture(.02f, .02f, .02f);
   TemporalRun dark(scene, settings);
@@ -172,7 +173,7 @@ double trail_of(TemporalScene scene, const ResolveSettings& settings, std::size_
   return most;
 }
 
-// Of a rectangle that moves at all speeds, over a background that pans and one that does not.
+// Runs a rectangle that moves at all speeds, over a background that pans and one that does not.
 void expect_no_trail(bool reactive, const testing::Texture& background, int free_frames) {
   for (const auto& [preset, settings] : kPresets) {
     for (const double speed : {.4, 1.3, 3.7, 11.3}) {
@@ -203,7 +204,7 @@ TEST(Temporal, TransparentsLeaveNoTrail) {
   expect_no_trail(true, testing::noise_texture(9), 2);
 }
 
-// Of wires over a background that moves otherwise, and over one that moves with them.
+// Wires pass over a background that moves otherwise, and over one that moves with them.
 TEST(Temporal, ThinWiresFlickerLittle) {
   for (const bool together : {false, true}) {
     for (const Place velocity : {Place(.37, 0), Place(1.2, .4)}) {

@@ -74,6 +74,23 @@ TEST_F(Validate, WhatThePlanDoesNotReadMayBeMissing) {
   EXPECT_TRUE(check({.moving_objects = false, .transparents = false}).ok());
 }
 
+// The service makes each sample's own velocity from the caller's, which it needs all the same.
+TEST_F(Validate, DilatedVelocityIsNeededAsOwnVelocityIs) {
+  settings_.drawn_velocity = DrawnVelocity::kDilated;
+  for (const Method method : {Method::kQuincunx, Method::kTemporal}) {
+    for (const FarMotion far : {FarMotion::kAsDrawn, FarMotion::kCamera, FarMotion::kEvidence}) {
+      settings_.method = method;
+      settings_.far = far;
+      inputs_.velocity = view(PixelFormat::kRG16F);
+      EXPECT_TRUE(check().ok()) << check().message();
+      inputs_.velocity.extent = {907, 512};
+      EXPECT_EQ(check().message(), "velocity.extent is 907x512; it must hold the viewport of 908x512");
+      inputs_.velocity = {};
+      EXPECT_EQ(check().message(), "velocity is missing; the plan needs it as RG16F");
+    }
+  }
+}
+
 TEST_F(Validate, EachBadFieldIsNamed) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   struct Case {

@@ -19,8 +19,8 @@ struct ExrPart {
   tools::ImageWindow data;
   tools::ImageWindow display;
   std::vector<std::string> channels;
-  std::vector<OIIO::TypeDesc> types;  // of each channel
-  std::vector<float> pixels;          // of the data window, channels interleaved
+  std::vector<OIIO::TypeDesc> types;  // one for each channel
+  std::vector<float> pixels;          // pixels of the data window, channels interleaved
   int tile = 0;                       // side of the tiles; 0: scanlines
   std::string compression = "zip";
 };

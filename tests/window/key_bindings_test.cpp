@@ -8,8 +8,7 @@
 #include <set>
 #include <string>
 
-#include "tools/program/method_names.h"
-#include "window/frame_trace.h"
+#include "window/frame_graph.h"
 #include "window/screen.h"
 
 namespace quincunx::scenes {
@@ -67,7 +66,7 @@ TEST(KeyBindings, FilterAndResolveReachEveryMethod) {
   std::set<std::string> reached;
   for (const std::string key : {"f", "r"}) {
     WindowSettings settings = usual();
-    for (std::size_t i = 0; i < tools::method_choices().size(); ++i) {
+    for (std::size_t i = 0; i < all_variants().size(); ++i) {
       press(settings, key);
       reached.insert(settings.look.method);
     }
@@ -76,7 +75,7 @@ TEST(KeyBindings, FilterAndResolveReachEveryMethod) {
     press(settings, "shift+" + key);
     EXPECT_EQ(settings.look.method, before);
   }
-  EXPECT_EQ(reached.size(), tools::method_choices().size());
+  EXPECT_EQ(reached.size(), all_variants().size());
 }
 
 TEST(KeyBindings, RoundTheWholeOfModesAndBack) {
@@ -145,6 +144,40 @@ TEST(FrameTrace, KeepsTheLastFramesAndCountsDroppedOnes) {
   ASSERT_EQ(trace.passes().size(), 2u);
   EXPECT_DOUBLE_EQ(trace.passes()[0].ms, 2) << "the mean of equal values is that value";
   EXPECT_DOUBLE_EQ(trace.mean().draw_ms, 4);
+}
+
+void expect_refused(const std::string& text, const std::string& part) {
+  const auto script = Script::parse(text);
+  ASSERT_FALSE(script.ok()) << text;
+  EXPECT_EQ(script.status().code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(script.status().message().find(part), std::string::npos) << script.status().message();
+}
+
+TEST(Script, TakesEveryActionAndComments) {
+  const auto script = Script::parse(
+      "# a comment\n\n3 key shift+m # and one behind\n  1\tkey period\r\n4 resize 320x200\n5 minimise\n6 "
+      "restore\n");
+  EXPECT_TRUE(script.ok()) << script.status().message();
+  EXPECT_TRUE(Script::parse("").ok());
+}
+
+TEST(Script, SaysWhichLineIsWrongAndWhy) {
+  expect_refused("1 key m\n\nkey m\n", "line 3: write a turn");
+  expect_refused("-1 key m", "line 1: write a turn");
+  expect_refused("1", "line 1: write a turn");
+  expect_refused("1 jump", "'jump' is no action");
+  expect_refused("1 key", "no key is called ''");
+  expect_refused("1 key xyz", "no key is called 'xyz'");
+  expect_refused("1 key m n", "'n' is one word too many");
+  expect_refused("1 resize 0x5", "'0x5' is no size");
+  expect_refused("1 minimise now", "'now' is one word too many");
+}
+
+TEST(Script, NamesTheFileThatCannotBeRead) {
+  const auto script = Script::read("/nowhere/keys");
+  ASSERT_FALSE(script.ok());
+  EXPECT_EQ(script.status().code(), StatusCode::kIoFailure);
+  EXPECT_NE(script.status().message().find("/nowhere/keys"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the window shows and writes, and that every setting can be changed while it runs.
+// The window's pictures and files; every setting can be changed while it runs.
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -52,7 +52,7 @@ TEST_F(Window, AFocusShowsTheSameBits) {
   ASSERT_EQ(run_window(focused + "--frames 6 --hide-ui -q"), 0) << said();
   EXPECT_EQ(image("captures/screenshot.0005.png").pixels, image("focused.0005.png").pixels);
 
-  // What the pointer is on from frame 1 to 2; this method needs nothing of the frames before.
+  // The pointer's place from frame 1 to 2; this method needs nothing of the frames before.
   std::filesystem::remove_all(path("captures"));
   write_script("1 key g\n3 key g\n5 key s\n");
   const std::string single = "--scene wheel --scale 0.5 --method mitchell ";

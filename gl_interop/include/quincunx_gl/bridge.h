@@ -31,8 +31,8 @@ QUINCUNX_API const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
   Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
-  Extent target = {};                // of the inputs
-  Extent output = {};                // of the presented picture
+  Extent target = {};                // size of the inputs
+  Extent output = {};                // size of the presented picture
   bool depth = false;                // hand depth over
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values
@@ -67,7 +67,7 @@ class QUINCUNX_API Bridge {
 
   virtual Interop kind() const = 0;                      // kGl or kCopy
   const std::string& reason() const { return reason_; }  // one sentence: why this backend
-  virtual Storage storage() const = 0;                   // of the inputs
+  virtual Storage storage() const = 0;                   // storage of the inputs
   int slots() const { return settings_.slots; }
 
   // The framebuffer of a slot, for a frame of the viewport `render`: its top left part, or with placed targets the
@@ -91,7 +91,7 @@ class QUINCUNX_API Bridge {
   virtual GLuint presented_texture() const = 0;        // RGBA8, row 0 on top
   virtual const std::uint8_t* presented_pixels() = 0;  // RGBA8, tightly packed; valid until begin_present()
 
-  // What the frames lie in, without the presented picture: what is allocated now.
+  // Returns what is allocated now for the frames, without the presented picture.
   struct Memory {
     std::uint64_t gl_bytes = 0;      // render targets
     std::uint64_t opencl_bytes = 0;  // what OpenCL reads, where that is not the render targets themselves

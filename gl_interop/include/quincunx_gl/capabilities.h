@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the current OpenGL context can do beyond what OpenGL 4.5 and OpenGL ES 3.1 have in common.
+// Abilities of the current OpenGL context beyond those that OpenGL 4.5 and OpenGL ES 3.1 have in common.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ struct Capabilities {
   std::string missing;  // what the renderer needs and the context lacks; empty: nothing
 };
 
-// Of the context that is current on this thread; found once for each context.
+// Returns those of the context that is current on this thread; found once for each context.
 QUINCUNX_API const Capabilities& capabilities();
 
 // Finds them anew. EglContext does, whose context may lie where one that is gone has lain.

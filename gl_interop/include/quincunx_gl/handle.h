@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Move-only owners of GL object names. Of OpenGL ES a name is an object only once it was bound (gl_calls.h).
+// Move-only owners of GL object names. In OpenGL ES a name is an object only once it was bound (gl_calls.h).
 #pragma once
 
 #include <epoxy/gl.h>

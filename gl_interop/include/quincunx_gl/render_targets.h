@@ -31,7 +31,7 @@ class QUINCUNX_API RenderTargets {
   explicit RenderTargets(const TargetNeeds& needs);
 
   Extent extent() const { return extent_; }
-  std::uint64_t bytes() const;  // of all textures
+  std::uint64_t bytes() const;  // sum over all textures
   GLuint framebuffer() const { return framebuffer_.get(); }
   GLuint colour() const { return colour_.get(); }
   PixelFormat colour_format() const { return colour_format_; }

@@ -19,7 +19,7 @@ struct DetailSettings {
   int levels = 4;            // in [2, 64]; 0 is the full detail, levels - 1 the least
   double full_area = 0.8;    // area fraction from which detail is full
   double least_area = 0.3;   // area fraction to which it falls to the least; in (0, full_area)
-  double hysteresis = 0.25;  // of a level, that has to be passed before it is left; in [0, 1]
+  double hysteresis = 0.25;  // part of a level that has to be passed before it is left; in [0, 1]
   int rest_frames = 30;      // at least, between two changes; at least 0
 };
 

@@ -29,7 +29,7 @@ struct WorkShape {
   // A group, in work-items. A group that is larger than a kernel can have on the device is halved until it is not.
   int group_width = 1;
   int group_height = 4;
-  // Of a row that one work-item makes, rounded up to a kernel's block; 0: the whole row.
+  // Pixels of a row that one work-item makes, rounded up to a kernel's block; 0: the whole row.
   int pixels_per_item = 0;
 
   friend bool operator==(const WorkShape&, const WorkShape&) = default;
@@ -39,9 +39,9 @@ enum class ProfileSource { kDefault, kShipped, kTuned };
 
 struct QUINCUNX_API DeviceProfile {
   ProfileSource source = ProfileSource::kDefault;
-  std::string date;    // of the measurement, "2026-11-22 21:05 UTC"; empty for kDefault
+  std::string date;    // date of the measurement, "2026-11-22 21:05 UTC"; empty for kDefault
   std::string driver;  // it was measured with; empty for kDefault
-  WorkShape shape;     // of every pass that has none of its own
+  WorkShape shape;     // shape of every pass that has none of its own
   std::map<std::string, WorkShape, std::less<>> passes;  // by the kernel's name
 
   const WorkShape& shape_of(std::string_view kernel) const;
@@ -52,7 +52,7 @@ struct QUINCUNX_API DeviceProfile {
   friend bool operator==(const DeviceProfile&, const DeviceProfile&) = default;
 };
 
-// Of a device of which nothing was measured. Pure.
+// Returns the profile of a device of which nothing was measured. Pure.
 QUINCUNX_API DeviceProfile default_profile(const Device& device);
 
 // The file of a tuned profile: JSON, of this device with this driver. It need not exist. Nothing where there is no

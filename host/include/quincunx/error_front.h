@@ -20,7 +20,8 @@
 
 namespace quincunx {
 
-// What a picture does, as far as it makes methods err differently. docs/quality.md says which scenes stand for each.
+// Kind of motion or change in a picture that makes methods err differently. docs/control.md says which scenes stand for
+// each.
 enum class SceneClass : std::uint8_t {
   kStill,    // nothing moves
   kPan,      // the camera moves, everything else stands
@@ -44,30 +45,17 @@ struct SceneMix {
   QUINCUNX_API bool valid() const;  // to within 1e-6
 };
 
-// A method with that which changes its error and cost. `form` counts for kQuincunx alone, `preset` for kTemporal alone.
-struct FrontMethod {
-  Method method = Method::kBilinear;
-  TwoFrameForm form = TwoFrameForm::kReprojected;
-  TemporalPreset preset = TemporalPreset::kBalanced;
-
-  QUINCUNX_API friend bool operator==(const FrontMethod& a, const FrontMethod& b);
-};
-QUINCUNX_API std::string name_of(
-    const FrontMethod& method);  // "bilinear", "quincunx:reprojected", "temporal:fast"
-// Errors: kInvalidArgument for another name; the message lists those that there are.
-QUINCUNX_API Result<FrontMethod> front_method(const std::string& name);
-
 // Errors are against supersampled truth, exposed and tone mapped, as docs/bench.md defines them. A spread is the
 // standard deviation between what a mean was taken over: the scenes of the class, or the frames of one scene.
 struct FrontPoint {
   SceneClass scene_class = SceneClass::kStill;
-  FrontMethod method = {};
+  MethodVariant method = {};
   double scale = 1;  // per axis, in (0, 1]
   double flip = 0;   // mean FLIP, [0, 1]
   double flip_spread = 0;
   double psnr_db = 0;  // at most kHighestPsnr, which stands for no error
   double psnr_spread = 0;
-  double ms_per_megapixel = 0;  // of the output: all resolve passes but present, above 0
+  double ms_per_megapixel = 0;  // time per megapixel of the output: all resolve passes but present, above 0
   double ms_spread = 0;
 
   static constexpr double kHighestPsnr = 100;
@@ -89,7 +77,7 @@ struct FrontSource {
 
 class QUINCUNX_API ErrorFront {
  public:
-  static constexpr int kFormat = 1;  // of the JSON; a reader refuses others
+  static constexpr int kFormat = 1;  // version of the JSON; a reader refuses others
 
   // In any order. Each method needs at least one point in every class, and one at most at a scale of a class. Errors:
   // kInvalidArgument, naming the point.
@@ -110,9 +98,8 @@ class QUINCUNX_API ErrorFront {
   std::string summary() const;  // one clause: where its figures come from, and when
 
   std::span<const FrontPoint> points() const { return points_; }  // by class, method and scale
-  std::span<const FrontMethod> methods() const {
-    return methods_;
-  }  // each once, in the order of growing effort
+  // Each once, in the order of growing effort.
+  std::span<const MethodVariant> methods() const { return methods_; }
 
   // The points of a class that no other of it dominates: none has at most its scale (so at most its cost of drawing),
   // its milliseconds and its FLIP, and less of one of them.
@@ -121,19 +108,19 @@ class QUINCUNX_API ErrorFront {
   // The expected mean FLIP of such a picture. Between measured scales it is interpolated linearly; below the lowest
   // and above the highest it is that of the nearest. Nothing for a method without points, an invalid mix, or a scale
   // that is not above 0.
-  std::optional<double> flip(const SceneMix& mix, const FrontMethod& method, double scale) const;
+  std::optional<double> flip(const SceneMix& mix, const MethodVariant& method, double scale) const;
 
   // The same of the resolve passes' milliseconds, the mean over the classes, for an output of so many megapixels
   // (10^6 pixels, above 0).
-  std::optional<double> resolve_ms(const FrontMethod& method, double scale, double output_megapixels) const;
+  std::optional<double> resolve_ms(const MethodVariant& method, double scale, double output_megapixels) const;
 
  private:
   ErrorFront(FrontSource source, std::vector<FrontPoint> points);
-  std::span<const FrontPoint> curve(SceneClass scene_class, const FrontMethod& method) const;
+  std::span<const FrontPoint> curve(SceneClass scene_class, const MethodVariant& method) const;
 
   FrontSource source_;
   std::vector<FrontPoint> points_;
-  std::vector<FrontMethod> methods_;
+  std::vector<MethodVariant> methods_;
   bool built_in_ = false;
 };
 

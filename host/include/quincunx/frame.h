@@ -64,8 +64,8 @@ struct FrameInputs {
   float fade_weight = 1;
 };
 
-// Where the results go. At least one is needed; each has the plan's output extent. Of `resolved` and `blurred` a frame
-// of a smaller output writes the top left part only.
+// Where the results go. At least one is needed; each has the plan's output extent. A frame of a smaller output writes
+// the top left part only of `resolved` and `blurred`.
 struct FrameOutputs {
   ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent; sharpened as planned
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
@@ -85,14 +85,14 @@ struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"
   double ms = -1;           // device time; -1: not known (yet)
   std::uint64_t bytes = 0;  // read and written in this frame, each texel counted once
-  bool in_focus = false;    // of the focus's region, which has passes of its own
+  bool in_focus = false;    // a pass of the focus's region, which has passes of its own
 };
 
 // "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 60;  // 30 of the picture and 30 of its focus
+  static constexpr int kMaxPasses = 60;  // the largest plan has 33 for the picture and 21 for its focus
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;

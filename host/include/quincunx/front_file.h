@@ -14,7 +14,7 @@
 
 namespace quincunx {
 
-// What a front was measured on, and for.
+// Device, driver and scene that a front was measured on, and for.
 struct FrontKey {
   std::string device;  // FrontSource::device: "platform name" of the OpenCL device
   std::string driver;

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Method: the ways to make the picture from the frames, their forms, and what each is called.
 //
-// The names stand here and nowhere else: command lines, reports and benchmarks read them from methods() and
-// name_of(). All functions are safe to call from any thread; the text that they return lives for ever.
+// The names stand here and nowhere else: command lines, files, reports and benchmarks take them from all_variants(),
+// parse_variant() and name_of(). All functions are safe to call from any thread; text that they do not return by value
+// lives for ever.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "quincunx/export.h"
+#include "quincunx/status.h"
 
 namespace quincunx {
 
@@ -42,7 +46,7 @@ struct MethodInfo {
   Method method;
   const char* name;             // "catmull-rom": lower case, no spaces, no colon
   const char* summary;          // what it does, in a few words
-  SeparableFilter filter = {};  // of a method that is nothing but a separable filter
+  SeparableFilter filter = {};  // the method's own, if it is nothing but a separable filter
 };
 
 // Every method once, in the order of Method, which is that of growing effort.
@@ -64,25 +68,25 @@ enum class Sampling : std::uint8_t {
   kBilinear,  // four samples
 };
 
-// What kTemporal spends. Each is the best picture found at its cost; docs/temporal.md has the figures.
+// Effort of kTemporal. Each is the best picture found at its cost; docs/temporal.md has the figures.
 enum class TemporalPreset : std::uint8_t { kFast, kBalanced, kQuality };
 
-// What the resolved picture of kTemporal shows.
+// Content of kTemporal's resolved picture.
 enum class TemporalView : std::uint8_t {
   kPicture,
   kConfidence,  // how much is known of a pixel: 1 (white) is all that is ever kept
   kRejection,   // why history is doubted: red hidden, off screen or reactive; green a motion edge; blue a
                 // change
   kPhase,       // where between texels history was read: red x, green y; blue: how far it moved
-  // Of the two layers of history that pixels have where surfaces move apart; without them no plan is made.
+  // Views of the two layers of history that pixels have where surfaces move apart; without layers no plan is made.
   kLayers,    // red where there are two, green the near one's coverage, blue the far one's confidence
   kCoverage,  // the near layer's
   kNear,      // the near layer alone, premultiplied
   kFar,       // the picture without it
 };
 
-// What moves samples that are infinitely far away and have a velocity of exactly 0, as many renderers write it for the
-// sky whatever the camera does.
+// Source of the motion of samples that are infinitely far away and have a velocity of exactly 0, as many renderers
+// write it for the sky whatever the camera does.
 enum class FarMotion : std::uint8_t {
   kAsDrawn,  // nothing: they stand still in the picture
   kCamera,   // the camera's rotation, from FrameInputs::camera
@@ -94,6 +98,41 @@ enum class DrawnVelocity : std::uint8_t {
   kOwn,      // that of the surface that it shows
   kDilated,  // that of the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
 };
+
+// A method with the settings that change its picture and its cost. `form` and `sampling` count for kQuincunx alone, and
+// sampling not for kReprojected; `preset` counts for kTemporal alone. A field that does not count makes no difference.
+struct MethodVariant {
+  Method method = Method::kBilinear;
+  TwoFrameForm form = TwoFrameForm::kVelocity;
+  Sampling sampling = Sampling::kBilinear;
+  TemporalPreset preset = TemporalPreset::kBalanced;
+
+  // In the order of growing effort.
+  QUINCUNX_API friend std::strong_ordering operator<=>(const MethodVariant& a, const MethodVariant& b);
+  friend bool operator==(const MethodVariant& a, const MethodVariant& b) { return (a <=> b) == 0; }
+};
+
+struct VariantInfo {
+  MethodVariant variant;
+  std::string name;     // "bilinear", "quincunx:reprojected", "temporal:fast"
+  std::string summary;  // what it does, in a few words
+};
+
+// Every variant that has a name of its own, once, in the order of growing effort.
+QUINCUNX_API std::span<const VariantInfo> all_variants();
+
+// The name in all_variants(); the method's where there is none: kMean of nearest samples.
+QUINCUNX_API std::string name_of(const MethodVariant& variant);
+
+// The variant of a name in all_variants(), or of a method's name, which stands for its default settings: "temporal" is
+// "temporal:balanced". Errors: kInvalidArgument for another name; the message lists those of all_variants().
+QUINCUNX_API Result<MethodVariant> parse_variant(const std::string& name);
+
+struct ResolveSettings;
+QUINCUNX_API MethodVariant variant_of(const ResolveSettings& settings);
+
+// Sets the method and the fields that count for it; leaves all others as they are.
+QUINCUNX_API void apply(const MethodVariant& variant, ResolveSettings& settings);
 
 enum class ToneMap { kClamp, kReinhard, kAces };
 

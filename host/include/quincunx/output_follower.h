@@ -16,10 +16,10 @@ namespace quincunx {
 
 struct OutputSettings {
   Extent display = {};        // the largest output; both sides in [1, 32768]
-  double min_scale = 0.5;     // of the smallest output, per axis, of the display; in (0, 1]
+  double min_scale = 0.5;     // smallest output as a fraction of the display, per axis; in (0, 1]
   int steps = 8;              // at most so many for each axis, of equal size; at least 1
   double most_filled = 0.64;  // see dual_output()
-  double hysteresis = 0.15;   // of the render area: so much less before the output falls; in [0, 1)
+  double hysteresis = 0.15;   // fraction of the render area that is lost before the output falls; in [0, 1)
   int rest_frames = 30;       // at least, between two changes, until a viewport has more pixels; at least 0
 };
 

@@ -2,7 +2,7 @@
 // The default resolution controller: it predicts the next frame's time and spends what the display's queue
 // allows.
 //
-// What it knows of the world is
+// Its model of the world has three parts:
 //   a level: the time that a frame would take at the output resolution;
 //   how much of that does not scale with the pixels;
 //   the backlog: how far the device is behind the display, from 0 (it waits for a free buffer) to the slack
@@ -12,7 +12,7 @@
 // while there is slack; two in a row are a step and answered at once. docs/control.md has the whole algorithm
 // and its measured table.
 //
-// What it makes use of, if told: interval_ms or queued (else the backlog is only computed), next_frame
+// It makes use of the following, if told: interval_ms or queued (else the backlog is only computed), next_frame
 // (timers that come back late), missed_vsyncs (surprises make it careful until the queue is seen full again),
 // cpu_ms, blur_px.
 #pragma once
@@ -43,8 +43,8 @@ struct BlurAware {
 struct PredictiveSettings {
   LadderSettings ladder = {};
   double target_ms = 1000.0 / 60;
-  // Of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there is no slack: every
-  // frame has to fit, and recurring slow frames lower the resolution.
+  // Buffers of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there is no slack:
+  // every frame has to fit, and recurring slow frames lower the resolution.
   int buffers = 3;
   double fixed_part = 0.25;                             // first guess of what does not scale, in [0, 0.9]
   std::optional<CostTable> calibration = std::nullopt;  // replaces that guess, if it spans enough resolutions

@@ -35,35 +35,35 @@ struct QualitySettings {
   PredictiveSettings pacing =
       {};  // ladder, target, buffers, and what the predictive controller takes besides
   ErrorFront front = ErrorFront::built_in();
-  std::vector<FrontMethod> methods =
+  std::vector<MethodVariant> methods =
       {};                    // to choose from, each with points in `front`; empty: all of the front
   double hysteresis = 0.03;  // part of the expected error that a change has to save, in [0, 1)
   double rest_seconds = 1;   // between two changes of method, in [0, 60]
   int fade_frames = 6;       // over which a change is faded in, in [0, 60]; 0: at once
 };
 
-// What is known of one past frame.
+// One past frame, as far as it is known.
 struct QualityFrame {
   FrameTiming timing;                             // gpu_ms: with the resolve
-  double resolve_ms = 0;                          // of gpu_ms, what the method's passes took; 0: not known
+  double resolve_ms = 0;                          // the method's passes' part of gpu_ms; 0: not known
   std::optional<ContentStatistics> content = {};  // nothing: as the frame before
 };
 
 // How to draw and resolve the next frame.
 struct QualityChoice {
   Extent render;  // as ResolutionController::next()
-  FrontMethod method;
+  MethodVariant method;
   // Resolve with this, too, and show `weight` of `method` and the rest of this.
-  std::optional<FrontMethod> fading_from = {};
+  std::optional<MethodVariant> fading_from = {};
   double weight = 1;  // in (0, 1]; 1 unless fading
 };
 
 // A method at a scale, and what is expected of it.
 struct QualityPair {
-  FrontMethod method;
+  MethodVariant method;
   double scale = 1;  // per axis, the root of the area fraction
   double flip = 0;
-  double ms = 0;  // of the whole frame
+  double ms = 0;  // the whole frame's
 };
 
 // Why the last choice was made.
@@ -79,7 +79,7 @@ struct QualityReasons {
 
 class QUINCUNX_API QualityController : public ResolutionController {
  public:
-  using ResolutionController::observe;  // of a frame of which neither resolve_ms nor content is known
+  using ResolutionController::observe;  // takes a frame whose resolve_ms and content are not known
 
   // As the base's. Errors, besides: kInvalidArgument for a resolve_ms that is negative or not below gpu_ms, or content
   // outside its ranges; nothing has changed then.

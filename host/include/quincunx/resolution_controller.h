@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // ResolutionController: from the times of past frames to the render extent of the next one.
 //
-// What all controllers share: the ladder they choose from, the target, and the checks of what they are told.
+// Common to all controllers are the ladder they choose from, the target, and the checks of what they are told.
 // A controller is pure: it has no clock, no device and no random numbers, so that the same calls in the same
 // order give the same extents on every machine. Not thread safe: one thread at a time calls an object.
 //
@@ -22,7 +22,7 @@
 
 namespace quincunx {
 
-// What is known of one past frame. Zero, or kUnknownQueue, means not known unless a comment says otherwise.
+// Times of one past frame. Zero, or kUnknownQueue, means not known unless a comment says otherwise.
 struct FrameTiming {
   static constexpr int kUnknownQueue = -1;
 

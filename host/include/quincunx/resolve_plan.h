@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // ResolvePlan: the passes, buffers and bytes that follow from what a scene needs.
 //
-// Planning is pure: no device, no allocation on one. What a plan leaves out is neither allocated nor
+// Planning is pure: no device, no allocation on one. Parts that a plan leaves out are neither allocated nor
 // dispatched nor compiled, and explain() says why. A value; any thread may use its own copy.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace quincunx {
 
-// What the scene will ever do while this plan is used.
+// Everything that the scene will ever do while this plan is used.
 struct SceneNeeds {
   bool moving_objects = true;  // anything but the camera moves
   bool camera_motion = true;
@@ -58,7 +58,7 @@ struct MotionBlurSettings {
 // A part of the picture that is drawn a second time, at a larger scale, and resolved with a history of its own: see
 // FocusInputs.
 struct FocusSettings {
-  Extent extent = {};  // of the region in output pixels; 0x0: there is none
+  Extent extent = {};  // size of the region in output pixels; 0x0: there is none
   Extent target = {};  // the allocated size of its inputs, at least its largest viewport; 0x0: as extent
   bool mask = false;   // FocusInputs::mask is given
 
@@ -87,17 +87,17 @@ struct ResolveSettings {
   // 0x0: the inputs' colour holds everything. Else particles are drawn apart, into a viewport of their own within
   // images of this size, at most the target's: see FrameInputs::particle_colour.
   Extent particle_target = {};
-  PixelFormat colour = PixelFormat::kRGBA16F;    // of the input: RGBA8, RGBA16F or RGBA32F
-  PixelFormat velocity = PixelFormat::kRG16F;    // of the input: RG16F or RG32F
-  PixelFormat resolved = PixelFormat::kRGBA32F;  // of the resolved picture: RGBA16F or RGBA32F
-  Storage storage = Storage::kBuffer;            // of the inputs; see ResolvePlan::presented_storage()
-  Targets targets = Targets::kViewport;          // of the inputs and the service's own images of a viewport
+  PixelFormat colour = PixelFormat::kRGBA16F;    // the input's: RGBA8, RGBA16F or RGBA32F
+  PixelFormat velocity = PixelFormat::kRG16F;    // the input's: RG16F or RG32F
+  PixelFormat resolved = PixelFormat::kRGBA32F;  // the resolved picture's: RGBA16F or RGBA32F
+  Storage storage = Storage::kBuffer;            // the inputs'; see ResolvePlan::presented_storage()
+  Targets targets = Targets::kViewport;          // the inputs' and the service's own images'
   Shading shading = Shading::kFull;              // kCheckerboard: the other half is filled first
   bool present = true;                           // run the present pass
   bool clear = false;                            // ResolveService::clear() will be called
-  ToneMap tone_map = ToneMap::kAces;             // of the present pass; with RGBA8 colour of the renderer
-  bool dither = true;                            // of the present pass: +- half a code value, fixed pattern
-  // Of filters that ring (SeparableFilter::rings): stay in the range of the 2x2 samples next to the centre.
+  ToneMap tone_map = ToneMap::kAces;             // the present pass's; with RGBA8 colour the renderer's
+  bool dither = true;                            // the present pass's: +- half a code value, fixed pattern
+  // Filters that ring (SeparableFilter::rings) stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;                             // kNoise, kNoiseOffset: another pattern every frame
@@ -160,7 +160,7 @@ struct LeftOut {
   friend bool operator==(const LeftOut&, const LeftOut&) = default;
 };
 
-// What plan_for() made. To change a plan, change the settings and plan again: ResolveService::create() refuses one
+// A plan that plan_for() made. To change it, change the settings and plan again: ResolveService::create() refuses one
 // that differs from what plan_for() makes of its needs and settings.
 struct QUINCUNX_API ResolvePlan {
   SceneNeeds needs;
@@ -180,13 +180,13 @@ struct QUINCUNX_API ResolvePlan {
   bool undilates_velocity() const;    // settings.drawn_velocity counts: velocity is drawn and read
   bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
-  // Of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an image of that
-  // size is not made again and so needs no such memory.
+  // Returns the storage of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an
+  // image of that size is not made again and so needs no such memory.
   Storage presented_storage() const;
-  // Of the focus's region: the same settings for a picture of its extent, with all pixels shaded. FocusInputs::frame is
-  // a frame of this plan. Nothing where there is no focus.
+  // Returns the plan of the focus's region: the same settings for a picture of its extent, with all pixels shaded.
+  // FocusInputs::frame is a frame of that plan. Nothing where there is no focus.
   std::optional<ResolvePlan> focus_plan() const;
-  // Of the caller's images of one frame, which are at most this large: both kinds of targets need as much for it.
+  // Returns the bytes of the caller's images for one frame, at the largest viewport; the same for both kinds of target.
   std::uint64_t frame_bytes() const;
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.

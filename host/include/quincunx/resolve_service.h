@@ -75,7 +75,8 @@ class QUINCUNX_API ResolveService {
   // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
   Status clear(const ImageView& image, Extent render, const float value[4]);
 
-  // Of the last frame, for inspection: waits for it. Errors: kInvalidArgument where the plan does not blur.
+  // Returns the last frame's kinds of tiles, for inspection: waits for that frame. Errors: kInvalidArgument where the
+  // plan does not blur.
   Result<TileKinds> tile_kinds() const;
 
   // The history that kTemporal's next frame finds, for inspection: R, G, B, linear, and as alpha the confidence, the

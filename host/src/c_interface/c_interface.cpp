@@ -1,20 +1,98 @@
 // SPDX-License-Identifier: MIT
 // The functions of quincunx.h. Each checks its pointers, calls the library and lets no exception out.
-#include "quincunx/quincunx.h"
-
+#include <exception>
 #include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
 
-#include "c_interface/c_objects.h"
+#include "c_interface/c_frame.h"
 #include "c_interface/c_settings.h"
 #include "c_interface/sized_struct.h"
+#include "quincunx/quincunx.h"
+#include "quincunx/resolve_service.h"
+
+struct quincunx_device {
+  quincunx::Device device;
+};
+
+struct quincunx_plan {
+  quincunx::ResolvePlan plan;
+  std::string text;
+};
+
+struct quincunx_service {
+  quincunx::c::HostImages host;  // before the service, which waits for its frames when it ends
+  quincunx::ResolveService service;
+};
 
 using quincunx::Status;
-using quincunx::c::guarded;
-using quincunx::c::null;
+using quincunx::StatusCode;
 
 namespace {
 
-// What a *_create hands out: NULL unless `make` gives an object.
+thread_local std::string message;  // text of quincunx_last_error()
+
+quincunx_status code_of(StatusCode code) {
+  switch (code) {
+    case StatusCode::kOk:
+      return QUINCUNX_OK;
+    case StatusCode::kInvalidArgument:
+      return QUINCUNX_INVALID_ARGUMENT;
+    case StatusCode::kUnsupported:
+      return QUINCUNX_UNSUPPORTED;
+    case StatusCode::kDeviceFailure:
+      return QUINCUNX_DEVICE_FAILURE;
+    case StatusCode::kIoFailure:
+      return QUINCUNX_IO_FAILURE;
+  }
+  return QUINCUNX_INTERNAL;
+}
+
+// Keeps the message for this thread, and returns the code for the caller.
+quincunx_status report(const Status& status) {
+  if (!status.ok()) message = status.message();
+  return code_of(status.code());
+}
+
+quincunx_status report(quincunx_status code, const char* text) noexcept {
+  try {
+    message = text;
+  } catch (...) {
+    message.clear();
+  }
+  return code;
+}
+
+// Within a catch.
+quincunx_status report_exception() noexcept {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return report(QUINCUNX_OUT_OF_MEMORY, "out of host memory");
+  } catch (const std::exception& error) {
+    return report(QUINCUNX_INTERNAL, error.what());
+  } catch (...) {
+    return report(QUINCUNX_INTERNAL, "an unknown error in the library");
+  }
+}
+
+// Runs what gives a Status, and lets no exception out.
+template <typename Call>
+quincunx_status guarded(const Call& call) noexcept {
+  try {
+    return report(call());
+  } catch (...) {
+    return report_exception();
+  }
+}
+
+Status null(const char* what) {
+  return Status::invalid(std::string(what) + " is NULL; it must point to one");
+}
+
+// Hands out the object of a *_create: NULL unless `make` gives one.
 template <typename Object, typename Make>
 quincunx_status create(const char* name, Object** to, const Make& make) noexcept {
   if (to != nullptr) *to = nullptr;
@@ -46,7 +124,7 @@ const char* quincunx_version(void) {
 }
 
 const char* quincunx_last_error(void) {
-  return quincunx::c::last_error();
+  return message.c_str();
 }
 
 quincunx_status quincunx_settings_init(quincunx_settings* settings) {

@@ -16,7 +16,7 @@ struct SceneSettings {
 quincunx_settings to_c(const SceneSettings& settings);
 
 // Errors: kInvalidArgument for a struct_size that is none, and for a number that is no value of its field; the
-// message names the field. What plan_for() checks is left to it.
+// message names the field. Checks that plan_for() makes are left to it.
 Result<SceneSettings> from_c(const quincunx_settings* settings);
 
 // struct_size is 0.

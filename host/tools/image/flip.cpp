@@ -174,7 +174,7 @@ class Viewing {
 
   const Detectors& detectors() const { return detectors_; }
 
-  // What the eye still sees of the picture, in place.
+  // Blurs the picture to what the eye still sees of it, in place.
   void blur(Opponent& picture, Extent extent) const {
     picture.y = blurred(picture.y, extent, kLuminance);
     picture.cx = blurred(picture.cx, extent, kRedGreen);

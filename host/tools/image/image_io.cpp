@@ -20,7 +20,7 @@ namespace quincunx::tools {
 
 namespace {
 
-constexpr int kPngCompressionLevel = 1;  // of 9: the frame loop waits for it
+constexpr int kPngCompressionLevel = 1;  // level 1 out of 9: the frame loop waits for it
 constexpr int kPngFilterUp = 0x20;  // libpng's PNG_FILTER_UP: 2.5 times faster than trying all, no larger
 constexpr int kPngSmallest = 9;
 constexpr int kPngFilterAll = 0xf8;      // libpng's PNG_ALL_FILTERS: the best of five for each row

@@ -42,7 +42,7 @@ enum class ChannelType : std::uint8_t { kHalf, kFloat };
 // The data is converted where `stored` differs from `type`; it stays the caller's.
 struct Channel {
   std::string name;                       // "R", "backward.u", "reactive.mask"
-  ChannelType type = ChannelType::kHalf;  // of the data in memory
+  ChannelType type = ChannelType::kHalf;  // type of the data in memory
   const void* data = nullptr;
   std::size_t pixel_stride = 0;
   std::size_t row_stride = 0;
@@ -76,7 +76,7 @@ Status write_exr(const std::string& path, Extent extent, std::span<const Channel
 struct LoadedImage {
   Extent extent;
   std::vector<std::string> channels;
-  std::vector<ChannelType> stored;  // of each channel in the file; kFloat for integer files
+  std::vector<ChannelType> stored;  // type of each channel in the file; kFloat for integer files
   std::vector<float> pixels;  // interleaved, extent.area() * channels.size(); 8-bit files: 0 to 1, as encoded
   std::vector<Attribute> attributes;  // those of a type that AttributeValue holds
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Image metrics: how far a picture is from the truth, in the terms of the field.
+// Image metrics: how far a picture is from the truth, in the terms of the field, and where it changes from one frame to
+// the next as it should not.
 //
 // Pictures are linear light, scene referred. Each is prepared once as a MeasuredPicture and then compared as
 // often as needed, so that one truth serves every method of a benchmark. Functions of two pictures expect one
@@ -37,8 +38,8 @@ class MeasuredPicture {
   std::int64_t non_finite_ = 0;
 };
 
-// Of linear RGBA that is not exposed yet. What is transparent is laid over grey (0.18, after exposure), so that alpha
-// counts.
+// Returns the picture of linear RGBA that is not exposed yet. Transparent pixels are laid over grey (0.18, after
+// exposure), so that alpha counts.
 MeasuredPicture measured(Extent extent, std::vector<float> rgba, float exposure);
 
 // Peak signal-to-noise ratio, dB, of all colour values: linear ones clipped to [0, 1], or tone-mapped ones.
@@ -84,8 +85,24 @@ struct PictureScores {
   double error_p99 = 0;
   double relative_error = 0;
   WorstWindow worst_window;
-  std::int64_t non_finite = 0;  // of the picture
+  std::int64_t non_finite = 0;  // pixels of the picture with a NaN or infinite colour
 };
 PictureScores measure(const MeasuredPicture& picture, const MeasuredPicture& truth);
+
+// For each pixel |(picture - previous) - (truth - previous_truth)| of luma, whose mean is flicker(). All of one extent.
+std::vector<float> flicker_map(const MeasuredPicture& picture, const MeasuredPicture& previous,
+                               const MeasuredPicture& truth, const MeasuredPicture& previous_truth);
+
+// uv velocity of a frame (this position - previous position, +v down), rows top-down; as many as the extent's area.
+struct MotionField {
+  Extent extent;
+  std::span<const Vec2> velocity;
+};
+
+// For each pixel |picture - previous| of luma, previous read (bilinear) where motion says that the pixel was; 0 where
+// that is off screen. Trails and ghosts show, and whatever motion does not explain: what is uncovered, changes of
+// light, edges that alias otherwise.
+std::vector<float> ghost_map(const MeasuredPicture& picture, const MeasuredPicture& previous,
+                             const MotionField& motion);
 
 }  // namespace quincunx::tools

@@ -16,7 +16,7 @@ constexpr const char* kSansPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans.t
 constexpr const char* kSansBoldPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 constexpr int kSubpixels = 64;  // FreeType's unit: 26.6 fixed point
 
-// The character at `at`, which moves behind it. What is not UTF-8 becomes the replacement character.
+// Returns the character at `at`, which moves behind it. Bytes that are not UTF-8 become the replacement character.
 char32_t next_character(const std::string& text, std::size_t& at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
   const unsigned char lead = byte(at);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the scripts of every page use. The first of them.
+// Holds the parts that the scripts of every page share; loaded first.
 "use strict";
 
 const page = JSON.parse(document.getElementById("data").textContent);

@@ -3,6 +3,7 @@
 // figures. Every page has the same head and tail.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
@@ -15,7 +16,7 @@ namespace quincunx::tools {
 // The files of this folder, which every page may use.
 std::span<const EmbeddedFile> embedded_page_files();
 
-// What a page has of its own. Files are looked for among its own, then among those of this folder.
+// Parts that a page has of its own. Files are looked for among its own, then among those of this folder.
 struct PageParts {
   std::span<const EmbeddedFile> files;
   const char* title = nullptr;  // text without "<" and "&"
@@ -26,5 +27,8 @@ struct PageParts {
 // page.html with page.css and the parts; and the figures, whatever names they hold. Throws std::out_of_range for a
 // file that is not there.
 std::string page_from_template(const PageParts& parts, const nlohmann::ordered_json& figures);
+
+// Bytes as text (RFC 4648, with padding), as pages carry pictures.
+std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace quincunx::tools

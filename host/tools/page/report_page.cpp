@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tools/page/base64.h"
 #include "tools/page/page_template.h"
 #include "tools/program/atomic_file.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "tools/page/report_pictures.h"
+#include "tools/page/scored_frames.h"
 #include "tools/program/run_report.h"
 
 namespace quincunx::tools {

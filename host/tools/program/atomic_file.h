@@ -34,9 +34,8 @@ class AtomicFile {
   std::string temporary_;  // empty: nothing to remove
 };
 
-// Of the name (without folder) of a temporary file that a process left behind which is no longer there: the
-// name that the file was meant to get. Nothing for any other name. Processes of other machines that share the
-// folder cannot be seen.
+// Returns the name that a temporary file (`name`, without folder) was meant to get, if the process that left it behind
+// is no longer there. Nothing for any other name. Processes of other machines that share the folder cannot be seen.
 std::optional<std::string> abandoned_target(const std::string& name);
 
 // Writes a text file whole or not at all. Errors: kIoFailure.

@@ -28,7 +28,7 @@ struct UsageError {
   std::string reason;
 };
 
-// What is wrong with a text, in one sentence; empty when nothing is.
+// A function that tells what is wrong with a text, in one sentence; empty when nothing is.
 using Complaint = std::function<std::string(const std::string& text)>;
 
 // A view of one option of a CommandLine, which must outlive it.
@@ -45,7 +45,7 @@ class Option {
 
   Option type_name(const std::string& name) const;  // what --help calls its value
   Option show_default() const;                      // --help tells the target's present value
-  Option delimiter(char separator) const;           // of a list's values in one word
+  Option delimiter(char separator) const;           // between a list's values in one word
   Option expected(int fewest, int most) const;      // how many values it takes
 
   Option needs(const Option& other) const;
@@ -99,13 +99,25 @@ class CommandLine {
   void print_manual(const std::string& form) const;
 
   std::unique_ptr<CLI::App> app_;
-  std::vector<std::function<void()>> checks_;  // of when_read()
+  std::vector<std::function<void()>> checks_;  // the checks of when_read()
   std::string version_;
   std::map<std::string, std::vector<std::string>> words_;
 };
 
 // The text as a number, as options read them; nothing where it is none.
 std::optional<double> number_in(const std::string& text);
+
+// The values of an enum by their names. They count from 0, and name_of() says "unknown" of the first number beyond.
+template <typename Enum>
+const std::map<std::string, Enum>& choices() {
+  static const auto by_name = [] {
+    std::map<std::string, Enum> all;
+    for (int i = 0; name_of(static_cast<Enum>(i)) != std::string("unknown"); ++i)
+      all[name_of(static_cast<Enum>(i))] = static_cast<Enum>(i);
+    return all;
+  }();
+  return by_name;
+}
 
 // An option that takes one of a few names, whatever the case of its letters; set() gets the name's value.
 // `names` must outlive the parsing.

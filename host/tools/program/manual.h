@@ -8,7 +8,7 @@
 
 namespace quincunx::tools {
 
-// What completes a value.
+// Kind of completion of a value.
 enum class ValueKind { kNone, kAny, kWord, kFile, kFolder };
 
 struct OptionText {
@@ -16,7 +16,7 @@ struct OptionText {
   std::string value;                  // as --help has it, for example "NAME Needs: --truth"; may be empty
   std::string description;            // one line
   ValueKind kind = ValueKind::kNone;  // kNone: a flag
-  std::vector<std::string> words;     // of kWord
+  std::vector<std::string> words;     // choices of kWord
 };
 
 struct ProgramText {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,8 @@ struct PacedFrame {
   // Where a controller chooses the method, too; else empty.
   std::string method = {};       // the picture was made with
   std::string fading_from = {};  // and with this, of which the picture has the rest; empty: nothing
-  double weight = 1;             // of `method` in the picture, [0, 1]
-  double resolve_ms = 0;         // of busy_ms, what the method's passes took; 0: not known
+  double weight = 1;             // weight of `method` in the picture, [0, 1]
+  double resolve_ms = 0;         // part of busy_ms that the method's passes took; 0: not known
   std::optional<ContentStatistics> content = {};  // what the frame showed, as the controller was told
 };
 
@@ -58,7 +59,7 @@ struct PacingRun {
 struct PacingSummary {
   double achieved_fps = 0;   // frames shown a second, from the first to the last; 0 for a single frame
   int dropped = 0;           // refreshes without a new frame
-  int dropped_at_start = 0;  // of these, those of the first second: a controller comes down from the top
+  int dropped_at_start = 0;  // those in the first second: a controller comes down from the top
   double mean_busy_ms = 0;
   double median_busy_ms = 0;
   double p95_busy_ms = 0;
@@ -66,7 +67,7 @@ struct PacingSummary {
   double mean_area = 0;  // pixels drawn over pixels of the output
   double least_area = 0;
   double largest_area = 0;
-  double changes_per_second = 0;  // of the render extent, in display time
+  double changes_per_second = 0;  // changes of the render extent, in display time
   double method_changes_per_second = 0;
 };
 
@@ -76,5 +77,10 @@ PacingSummary summary_of(const PacingRun& run);
 // how much faster than them it was; then graphs of the scale and of the busy time of the first. For no runs,
 // none.
 std::string pacing_text(const std::vector<PacingRun>& runs);
+
+// Draws a run's render ratio as a graph of at most 80 columns by 9 rows, each line ending in a newline: one mark for
+// each column of frames at their mean, the axis from the lowest to the highest mean, labelled. Pure. Empty for no
+// values.
+std::string ratio_graph(std::span<const double> ratios);
 
 }  // namespace quincunx::tools

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "tools/program/program.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <charconv>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 
 #include "quincunx/device.h"
+#include "quincunx/device_profile.h"
 
 namespace quincunx::tools {
 
@@ -66,6 +69,17 @@ std::string command_line_text(const std::string& program, int argc, const char* 
     line += plain ? " " + word : " '" + word + "'";
   }
   return line;
+}
+
+std::string date_now() {
+  return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::time(nullptr)));
+}
+
+std::string device_lines(const Result<Device>& device) {
+  if (!device.ok()) return fmt::format("Device         none: {}\n", device.status().message());
+  const DeviceInfo& info = device.value().info();
+  return fmt::format("Device         {}, {} {}\nProfile        {}\n", info.name, info.platform, info.driver,
+                     device.value().profile().describe());
 }
 
 }  // namespace quincunx::tools

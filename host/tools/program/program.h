@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What every command line program does alike: exit codes, log, reading of sizes, its own command line.
+// Common parts of the command line programs: exit codes, log, reading of sizes, their own command lines.
 #pragma once
 
 #include <string>
 
+#include "quincunx/device.h"
 #include "quincunx/extent.h"
 #include "quincunx/status.h"
 
@@ -20,10 +21,11 @@ void set_up_log(bool quiet, int verbosity);
 // Logs the message; kUsage where the caller asked for what can never work, else kFailed.
 int fail(const Status& status);
 
-// What main() returns: the exit code of `run`. An exception that reaches here is reported as an internal error.
+// Runs a program for main() and returns the exit code of `run`. An exception that reaches here is reported as an
+// internal error.
 int run_program(const char* program, int (*run)(int argc, char** argv), int argc, char** argv);
 
-// "1280x720" into `extent`. What is wrong with the text, in one sentence; empty when nothing is.
+// Reads "1280x720" into `extent`. Returns what is wrong with the text, in one sentence; empty when nothing is.
 std::string parse_extent(const std::string& text, Extent& extent);
 
 // The OpenCL devices on stdout, as --list-devices has them.
@@ -31,5 +33,11 @@ void print_opencl_devices();
 
 // As it was typed, quoted for a shell where need be.
 std::string command_line_text(const std::string& program, int argc, const char* const* argv);
+
+std::string date_now();  // UTC, "2026-11-21 14:03 UTC"
+
+// Lines for --explain, as ResolvePlan::explain() words them: the device that a program opened and which profile cuts
+// its work, or why there is none.
+std::string device_lines(const Result<Device>& device);
 
 }  // namespace quincunx::tools

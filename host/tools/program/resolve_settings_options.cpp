@@ -2,13 +2,14 @@
 #include "tools/program/resolve_settings_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/program/command_line.h"
-#include "tools/program/method_names.h"
 
 namespace quincunx::tools {
 namespace {
@@ -20,21 +21,41 @@ std::string complain_beyond_one(const std::string& text) {
   return fmt::format("'{}' is no number from 0 to 1", text);
 }
 
+// Every name that parse_variant() knows.
+const std::map<std::string, MethodVariant>& variants_by_name() {
+  static const auto by_name = [] {
+    std::map<std::string, MethodVariant> all;
+    for (const MethodInfo& info : methods())
+      all[info.name] = parse_variant(info.name).value();
+    for (const VariantInfo& info : all_variants())
+      all[info.name] = info.variant;
+    return all;
+  }();
+  return by_name;
+}
+
+// All of them in one line: "point, bilinear, ... or temporal[:fast|:balanced|:quality]".
+std::string method_list() {
+  std::vector<std::string> words;
+  for (const MethodInfo& info : methods()) {
+    std::string endings;
+    for (const VariantInfo& form : all_variants()) {
+      if (form.variant.method == info.method && form.name != info.name)
+        endings += (endings.empty() ? "" : "|") + form.name.substr(form.name.find(':'));
+    }
+    words.push_back(endings.empty() ? info.name : fmt::format("{}[{}]", info.name, endings));
+  }
+  const std::string last = words.back();
+  words.pop_back();
+  return fmt::format("{} or {}", fmt::join(words, ", "), last);
+}
+
 }  // namespace
 
 void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std::string& default_method) {
-  static const std::map<std::string, ToneMap> kToneMaps = {
-      {"clamp", ToneMap::kClamp}, {"reinhard", ToneMap::kReinhard}, {"aces", ToneMap::kAces}};
-
-  static const std::map<std::string, TemporalView> kViews = {
-      {"picture", TemporalView::kPicture},     {"confidence", TemporalView::kConfidence},
-      {"rejection", TemporalView::kRejection}, {"phase", TemporalView::kPhase},
-      {"layers", TemporalView::kLayers},       {"coverage", TemporalView::kCoverage},
-      {"near", TemporalView::kNear},           {"far", TemporalView::kFar}};
-
-  add_choice(app, "--method", method_choices(),
+  add_choice(app, "--method", variants_by_name(),
              fmt::format("{} (default: {})", method_list(), default_method),
-             [&settings](const MethodChoice& choice) { choose(settings, choice); });
+             [&settings](const MethodVariant& variant) { apply(variant, settings); });
   app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
                  "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
       .non_negative()
@@ -45,12 +66,10 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .non_negative()
       .show_default()
       .type_name("K");
-  static const std::map<std::string, FarMotion> kFarMotions = {
-      {"drawn", FarMotion::kAsDrawn}, {"camera", FarMotion::kCamera}, {"evidence", FarMotion::kEvidence}};
-  add_choice(app, "--far", settings.far, kFarMotions,
+  add_choice(app, "--far", settings.far, choices<FarMotion>(),
              "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence "
              "(default: drawn)");
-  add_choice(app, "--view", settings.temporal.view, kViews,
+  add_choice(app, "--view", settings.temporal.view, choices<TemporalView>(),
              "What temporal shows: picture, confidence, rejection, phase, layers, coverage, near or far "
              "(default: picture)");
   app.add_option("--blur", settings.blur.shutter,
@@ -72,7 +91,8 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .show_default()
       .type_name("A");
   app.add_flag("!--still-noise", settings.noise_moves, "The same noise in every frame");
-  add_choice(app, "--tone-map", settings.tone_map, kToneMaps, "clamp, reinhard or aces (default: aces)");
+  add_choice(app, "--tone-map", settings.tone_map, choices<ToneMap>(),
+             "clamp, reinhard or aces (default: aces)");
   app.add_flag("!--no-dither", settings.dither, "Round to 8 bits without dither");
 }
 
@@ -81,7 +101,7 @@ std::string resolve_settings_text(const ResolveSettings& settings) {
       "{}, view {}, far {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness "
       "{}, blur {} of {} "
       "samples",
-      method_name(settings), name_of(settings.temporal.view), name_of(settings.far),
+      name_of(variant_of(settings)), name_of(settings.temporal.view), name_of(settings.far),
       name_of(settings.drawn_velocity), settings.quincunx.velocity_weight,
       settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
       settings.sharpness, settings.blur.shutter, settings.blur.samples);

@@ -15,7 +15,7 @@ class CommandLine;
 void add_resolve_options(CommandLine& app, ResolveSettings& settings,
                          const std::string& default_method = "quincunx");
 
-// What these options come to, as far as linear pixels depend on it: "quincunx:velocity, velocity weight 1".
+// Returns these options as text, as far as linear pixels depend on them: "quincunx:velocity, velocity weight 1".
 std::string resolve_settings_text(const ResolveSettings& settings);
 
 }  // namespace quincunx::tools

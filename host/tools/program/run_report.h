@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "quincunx/extent.h"
+#include "quincunx/frame.h"
+#include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "tools/program/pacing_report.h"
@@ -56,14 +58,14 @@ struct ScoreRow {
   double flip = 0;
   double error_p99 = 0;
   double flicker = -1;  // against the frame before; -1: that one has no truth
-  // Of a paced run: FLIP at each further refresh that showed it, against the truth of that refresh's time.
+  // FLIP of a paced run at each further refresh that showed the frame, against the truth of that refresh's time.
   std::vector<double> repeated_flip = {};
 };
 
 // The mean of each column over the rows that know it; -1 for a flicker that none knows.
 ScoreRow mean_of(std::span<const ScoreRow> rows);
 
-// What a display showed: the mean FLIP over its refreshes, frames that were shown again included.
+// Error of a display: the mean FLIP over its refreshes, frames that were shown again included.
 struct ShownError {
   std::int64_t refreshes = 0;
   double flip = 0;
@@ -110,11 +112,11 @@ struct RunReport {
   std::vector<PacingRun> pacing;      // this run against a display, then those it is compared with; or none
   std::vector<BusyTime> busy;         // kinds of work that overlap
   std::vector<ScoreRow> scores;       // where there is a truth
-  std::vector<LeftOut> left_out;      // of the plan
+  std::vector<LeftOut> left_out;      // parts that the plan leaves out
   std::vector<std::string> warnings;  // sentences: what the picture suffers from, and what would be better
   std::vector<std::string> files;     // what was written, for the reader
   double wall_seconds = -1;
-  std::int64_t peak_memory_bytes = -1;  // of the process
+  std::int64_t peak_memory_bytes = -1;  // peak of the process
 };
 
 // About 60 lines of at most 100 columns, whatever the number of frames: a graph of the ratio and at most 12
@@ -123,5 +125,13 @@ std::string to_text(const RunReport& report);
 
 // Everything, each frame on its own row of "frames".
 std::string to_json(const RunReport& report);
+
+// Gathers the service's reports of the frames per kernel, in the order of first use, timed by `timer`. A kernel of
+// which no time is known is "not timed".
+std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports, PassTimer timer);
+
+// Fills in what the service measured; a frame has an OpenCL time where all its passes have one. Both are in
+// frame order; rows without a report stay as they are.
+void add_measured(std::span<FrameRow> rows, std::span<const FrameReport> reports);
 
 }  // namespace quincunx::tools

@@ -44,7 +44,6 @@ double WorkQueue::busy_seconds() const {
 }
 
 void WorkQueue::run() {
-  using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return stop_ || !jobs_.empty(); });

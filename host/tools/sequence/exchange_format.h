@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Exchange format: the arithmetic between what the renderer holds and what an EXR sequence says
-// (docs/inputs.md). Pure; thread-safe.
+// Exchange format: the arithmetic between the library's motion, depth and camera and those of an EXR sequence, of this
+// project or of other renderers (docs/inputs.md). Pure; thread-safe.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
 #include "quincunx/extent.h"
+#include "quincunx/frame.h"
+#include "quincunx/status.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx::tools {
 
@@ -24,5 +32,45 @@ float reversed_depth(float z, float near_plane);
 // in pixels of an image of this extent, +v up.
 Vec2 backward_from_velocity(Vec2 velocity, Extent extent);
 Vec2 velocity_from_backward(Vec2 backward, Extent extent);
+
+enum class VelocityConvention : std::uint8_t {
+  kNuke,     // previous - this position, pixels of the image, +u right, +v up: the exchange format
+  kBlender,  // X and Y of the Vector pass, which are the same
+  kFsr2,     // previous - this position, pixels of the image, y down
+  kNdc,      // this - previous position in normalised device coordinates, -1 to 1, y up
+  kScale,    // this - previous position in uv, y down, after multiplication by a scale
+};
+
+struct VelocityUnits {
+  VelocityConvention convention = VelocityConvention::kNuke;
+  Vec2 scale = {1, 1};  // factor of kScale
+};
+
+enum class DepthKind : std::uint8_t {
+  kLinear,          // distance along the view axis
+  kDevice,          // 0 at the near plane, 1 far away
+  kDeviceReversed,  // 1 at the near plane, 0 far away: the library's own
+};
+
+const char* name_of(VelocityConvention convention);  // "nuke"
+const char* name_of(DepthKind kind);                 // "device-reversed"
+std::optional<DepthKind> depth_kind_named(std::string_view name);
+
+// In place, to uv velocity (this position - previous position, +y down) of an image of this extent. Each
+// value meets one rounding: a division by the extent where pixels are meant.
+void to_velocity(const VelocityUnits& units, Extent extent, std::span<Vec2> motion);
+
+// In place, to reversed infinite depth. kDeviceReversed stays bit for bit. `near_plane` counts for kLinear
+// only, in the unit of the values; distances that are not positive mean that nothing was seen, as very large
+// ones do.
+void to_reversed_depth(DepthKind kind, float near_plane, std::span<float> depth);
+
+// Returns the depth of a pixel that no file says anything about: infinitely far away.
+float nothing_seen(DepthKind kind);
+
+// Returns the camera's motion between two frames from their attribute worldToNDC, for depth that is `near_plane` /
+// distance, whatever the z of the matrices means: that of a point follows from its distance alone. Exactly the identity
+// for equal matrices. Nothing where `now` cannot be inverted.
+std::optional<CameraMotion> camera_motion(const Matrix& now, const Matrix& before, float near_plane);
 
 }  // namespace quincunx::tools

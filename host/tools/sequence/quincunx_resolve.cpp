@@ -8,11 +8,9 @@
 
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
-#include "tools/program/device_lines.h"
-#include "tools/program/method_names.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
-#include "tools/sequence/frame_numbers.h"
+#include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/resolve_report.h"
 
@@ -38,7 +36,7 @@ int print_listing(const ResolveOptions& options, const ResolveTask& task) {
   return status.ok() ? kDone : kFailed;
 }
 
-// What a careful user would want to know before the first frame.
+// Tells what a careful user would want to know before the first frame.
 void say_first(const ResolveOptions& options, const ResolveTask& task) {
   for (const ScannedFrame& frame : task.scan.frames) {
     if (!frame.problem.empty()) spdlog::warn("{}; it is skipped", frame.problem);
@@ -48,7 +46,7 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
                  frame_numbers_text(task.stale));
   }
   if (!task.method_reason.empty())
-    spdlog::info("method {}: {} (--method takes another)", method_name(task.plan.settings),
+    spdlog::info("method {}: {} (--method takes another)", name_of(variant_of(task.plan.settings)),
                  task.method_reason);
   for (const std::string& warning : advice_on(task))
     spdlog::warn("{}", warning);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report of a run of quincunx-resolve.
+// Texts of quincunx-resolve: the list of --dry-run, and the report of a run.
 #pragma once
 
 #include <span>
@@ -10,6 +10,13 @@
 #include "tools/sequence/sequence_resolver.h"
 
 namespace quincunx::tools {
+
+// Returns the text of --dry-run: for a person, listing every file where `verbose`, or JSON.
+std::string listing_text(const ResolveTask& task, bool verbose);
+std::string listing_json(const ResolveTask& task);
+
+// Describes the good frames, of which there must be one: "at most 454x255, half colour, with alpha, camera known".
+std::string summary_of(const SequenceScan& scan);
 
 RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const Device& device,
                          const SequenceOutcome& outcome, std::span<const ScoreRow> scores);

@@ -6,9 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tools/program/method_names.h"
 #include "tools/program/resolve_settings_options.h"
-#include "tools/sequence/sequence_method.h"
+#include "tools/sequence/resolve_advice.h"
 
 namespace quincunx::tools {
 namespace {
@@ -61,7 +60,7 @@ void settle_method(const ResolveOptions& options, ResolveTask& task) {
   if (options.method_named) return;
   const JitterKind jitter = kind_of(jitters_about(task.input, task.format, task.asked.front()));
   const MethodDefault suited = default_method(task.format, jitter, task.resolve);
-  choose(task.resolve, method_choices().at(suited.name));
+  apply(suited.method, task.resolve);
   task.method_reason = suited.why;
 }
 
@@ -106,7 +105,7 @@ std::vector<std::int64_t> left_to_do(const ResolveOptions& options, ResolveTask&
   return left;
 }
 
-// Of the frames that an uninterrupted run reads, those that the frames left to do depend on.
+// Returns those frames, out of the ones that an uninterrupted run reads, that the frames left to do depend on.
 std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTask& task,
                                   const std::vector<std::int64_t>& left, int history) {
   const int warm_up = options.warm_up.value_or(history);

@@ -3,24 +3,61 @@
 // to be read, resolved and written, before anything of it is done.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "tools/sequence/resolve_options.h"
+#include "quincunx/resolve_plan.h"
+#include "tools/image/image_io.h"
+#include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_scan.h"
-#include "tools/sequence/sequence_scores.h"
 
 namespace quincunx::tools {
+
+// Options that the command line gives.
+struct ResolveOptions {
+  std::string input;          // pattern
+  std::string out;            // pattern; may be empty with --dry-run, --explain and --truth
+  SequenceInput sequence;     // how the frames are to be understood, but for the jitter
+  std::string jitter;         // as JitterSource::parse() takes it
+  ResolveSettings resolve;    // sizes and formats follow from the frames
+  bool method_named = false;  // else it follows from the frames, too
+  ChannelType stored = ChannelType::kHalf;
+  float exposure = 0;
+  std::string truth;         // pattern; empty: none
+  std::string truth_colour;  // its layer, as SequenceInput has it
+
+  std::optional<std::vector<std::int64_t>> frames;  // absent: all there are
+  std::optional<int> warm_up;                       // absent: what the method looks back
+  bool resume = false;
+  bool skip_bad_frames = false;
+
+  bool dry_run = false;
+  bool explain = false;
+  bool list_devices = false;
+  int threads = 1;
+  std::string device;
+  std::string report;  // base name of .txt and .json; empty: none
+  bool json = false;
+  bool quiet = false;
+  int verbosity = 0;
+
+  std::string command_line;  // as typed, for the report
+};
+
+// Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
+// instead.
+std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& options);
 
 struct ResolveTask {
   FramePattern input;
   SequenceFormat format = {};
   std::vector<std::int64_t> asked = {};  // for
-  std::vector<std::int64_t> there = {};  // of them, by --resume
+  std::vector<std::int64_t> there = {};  // frames of `asked` that are there, by --resume
   std::vector<std::int64_t> stale = {};  // by --resume, too: there, but made otherwise; made again
-  SequenceScan scan = {};                // of the rest and their history
+  SequenceScan scan = {};                // scan of the rest and their history
   ResolveSettings resolve = {};          // as asked for, with the method settled
   std::string method_reason = {};        // why this one; empty: it was asked for
   ResolvePlan plan = {};                 // for the largest frame
@@ -35,12 +72,5 @@ struct ResolveTask {
 // Reads headers, no pixels, and writes nothing. Errors: kInvalidArgument for what the command line should
 // have said otherwise, kIoFailure where the first frame cannot be used.
 Result<ResolveTask> prepare(const ResolveOptions& options);
-
-// What the good frames are, of which there must be one: "at most 454x255, half colour, with alpha, camera known".
-std::string summary_of(const SequenceScan& scan);
-
-// What --dry-run prints: text for a person, listing every file where `verbose`, or JSON.
-std::string listing_text(const ResolveTask& task, bool verbose);
-std::string listing_json(const ResolveTask& task);
 
 }  // namespace quincunx::tools

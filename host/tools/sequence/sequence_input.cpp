@@ -3,8 +3,100 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <initializer_list>
+#include <vector>
+
 namespace quincunx::tools {
 namespace {
+
+bool has_all(const ImageHeader& header, const std::string& prefix, std::initializer_list<const char*> names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const char* name) { return header.find(prefix + name).has_value(); });
+}
+
+// One channel Y, without what would make it the luminance of a colour or a direction's second part.
+bool is_grey(const ImageHeader& header, const std::string& prefix) {
+  const auto others = {"R", "G", "B", "RY", "BY", "X"};
+  return has_all(header, prefix, {"Y"}) && std::none_of(others.begin(), others.end(), [&](const char* name) {
+           return header.find(prefix + name).has_value();
+         });
+}
+
+std::string prefix_of(const std::string& layer) {
+  return layer.empty() ? "" : layer + ".";
+}
+
+// Layers that hold a picture, in the file's order.
+std::vector<std::string> colour_layers(const ImageHeader& header) {
+  std::vector<std::string> layers;
+  for (const ImagePart& part : header.parts) {
+    for (const HeaderChannel& channel : part.channels) {
+      const std::size_t dot = channel.name.rfind('.');
+      const std::string layer = dot == std::string::npos ? part.name : channel.name.substr(0, dot);
+      const std::string prefix = prefix_of(layer);
+      const bool holds_picture = has_all(header, prefix, {"R", "G", "B"}) || is_grey(header, prefix);
+      const bool known = layer.empty() || std::find(layers.begin(), layers.end(), layer) != layers.end();
+      if (holds_picture && !known) layers.push_back(layer);
+    }
+  }
+  return layers;
+}
+
+// How a sentence about missing colour ends.
+std::string layers_text(const ImageHeader& header, const std::string& option) {
+  std::string text;
+  for (const std::string& layer : colour_layers(header))
+    text += text.empty() ? fmt::format("; {} takes a layer of it: {}", option, layer) : ", " + layer;
+  return text;
+}
+
+// Looks channels up one after another and keeps the first thing that is wrong.
+class Search {
+ public:
+  Search(const std::string& path, const ImageHeader& header) : path_(path), header_(header) {}
+
+  // `advice` ends the sentence where there is no such channel.
+  std::optional<ChannelPlace> find(const std::string& name, const std::string& advice = "") {
+    if (!status_.ok()) return std::nullopt;
+    const auto place = header_.find(name);
+    if (!place) {
+      complain(fmt::format("has no channel '{}'; it has {}{}", name, header_.channel_names(), advice));
+      return std::nullopt;
+    }
+    check(name, *place);
+    return place;
+  }
+
+  const std::optional<ImageWindow>& display() const { return display_; }
+  bool dwa() const { return dwa_; }
+  const Status& status() const { return status_; }
+
+ private:
+  void check(const std::string& name, ChannelPlace place) {
+    const ImagePart& part = header_.parts[place.part];
+    dwa_ |= part.compression.starts_with("dwa");
+    if (part.deep) {
+      complain(fmt::format("holds deep pixels in channel '{}'; flat ones are needed", name));
+    } else if (header_.at(place).integer) {
+      complain(fmt::format("holds integers in channel '{}'; half or float is needed", name));
+    } else if (display_ && part.display.extent != display_->extent) {
+      complain(fmt::format("has channel '{}' at {}x{} pixels, but its colour at {}x{}", name,
+                           part.display.extent.width, part.display.extent.height, display_->extent.width,
+                           display_->extent.height));
+    } else if (!display_) {
+      display_ = part.display;
+    }
+  }
+
+  void complain(const std::string& what) { status_ = Status::io(fmt::format("'{}' {}", path_, what)); }
+
+  const std::string& path_;
+  const ImageHeader& header_;
+  std::optional<ImageWindow> display_;
+  bool dwa_ = false;
+  Status status_;
+};
 
 Status settle_motion(const SequenceInput& input, const std::string& path, const ImageHeader& first,
                      const FrameAttributes& attributes, SequenceFormat& format) {
@@ -37,6 +129,51 @@ std::string optional_channel(const std::optional<std::string>& wanted, const std
 }
 
 }  // namespace
+
+std::array<std::string, 4> colour_channels_in(const ImageHeader& header, const std::string& layer) {
+  const std::string prefix = prefix_of(layer);
+  if (is_grey(header, prefix)) return {prefix + "Y", prefix + "Y", prefix + "Y", prefix + "A"};
+  return {prefix + "R", prefix + "G", prefix + "B", prefix + "A"};
+}
+
+std::string colour_text(const ChannelNames& names) {
+  const auto& colour = names.colour;
+  if (colour[0] == colour[1]) return fmt::format("grey {},{}", colour[0], colour[3]);
+  return fmt::format("colour {},{},{},{}", colour[0], colour[1], colour[2], colour[3]);
+}
+
+bool leaves_pixels_open(const ImagePart& part) {
+  const ImageWindow& data = part.data;
+  const ImageWindow& display = part.display;
+  return data.x > display.x || data.y > display.y ||
+         data.x + data.extent.width < display.x + display.extent.width ||
+         data.y + data.extent.height < display.y + display.extent.height;
+}
+
+Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
+                                    const ChannelNames& names, const std::string& option) {
+  Search search(path, header);
+  ChannelPlaces places;
+  const std::string advice = layers_text(header, option);
+  for (std::size_t i = 0; i < 3; ++i)
+    places.colour[i] = search.find(names.colour[i], advice);
+  if (header.find(names.colour[3])) places.colour[3] = search.find(names.colour[3]);
+  if (names.has_velocity()) {
+    for (std::size_t i = 0; i < 2; ++i)
+      places.velocity[i] = search.find(names.velocity[i]);
+  }
+  if (names.has_depth()) places.depth = search.find(names.depth);
+  if (names.has_reactive()) places.reactive = search.find(names.reactive);
+  if (!search.status().ok()) return search.status();
+  places.display = *search.display();
+  places.dwa = search.dwa();
+  places.background = !places.colour[3];
+  for (const auto& place : places.colour)
+    places.background &= !place || !leaves_pixels_open(header.parts[place->part]);
+  for (const auto& place : places.colour)
+    places.half_colour &= !place || header.at(*place).stored == ChannelType::kHalf;
+  return places;
+}
 
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sequence input: what a command line says of a sequence, and what that comes to with the first frame at
-// hand.
+// Sequence input: which channels of a file are colour, motion, depth and reactive values; what a command line says of a
+// sequence, and what that comes to with the first frame at hand. Pure.
 #pragma once
 
 #include <array>
@@ -9,16 +9,60 @@
 #include <string>
 
 #include "quincunx/resolve_plan.h"
+#include "tools/image/image_reader.h"
+#include "tools/sequence/exchange_format.h"
 #include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/sequence_attributes.h"
-#include "tools/sequence/sequence_channels.h"
-#include "tools/sequence/sequence_conventions.h"
-#include "tools/sequence/sequence_jitter.h"
 
 namespace quincunx::tools {
 
-// Stands for a near plane that nobody names: nearer than any surface, in whatever unit. What compares depths
-// compares their ratios, and a power of two keeps those exact.
+// By name. An empty name: this kind of value is not read.
+struct ChannelNames {
+  std::array<std::string, 4> colour = {"R", "G", "B", "A"};  // A may be missing in the file: 1
+  std::array<std::string, 2> velocity;                       // both or none
+  std::string depth;
+  std::string reactive;
+
+  bool has_velocity() const { return !velocity[0].empty(); }
+  bool has_depth() const { return !depth.empty(); }
+  bool has_reactive() const { return !reactive.empty(); }
+};
+
+// Those of the exchange format.
+inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
+inline const std::string kDepthChannel = "Z";
+inline const std::string kReactiveChannel = "reactive.mask";
+
+// "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
+// first three. Where the file has neither they are R, G and B.
+std::array<std::string, 4> colour_channels_in(const ImageHeader& header, const std::string& layer);
+
+// "colour R,G,B,A", "grey Y,A".
+std::string colour_text(const ChannelNames& names);
+
+// Where they are in one file.
+struct ChannelPlaces {
+  std::array<std::optional<ChannelPlace>, 4> colour;  // only A may be absent
+  std::array<std::optional<ChannelPlace>, 2> velocity;
+  std::optional<ChannelPlace> depth;
+  std::optional<ChannelPlace> reactive;
+  ImageWindow display;  // display window of the parts in use
+  bool half_colour = true;
+  bool background = true;  // colour covers the display window, and there is no alpha
+  bool dwa = false;        // some of the channels are compressed with loss, by what their names end in
+};
+
+// Whether pixels of the display window lie outside the data window.
+bool leaves_pixels_open(const ImagePart& part);
+
+// Errors: kIoFailure, one sentence with `path` and the channel: one that is missing, deep, of integers, or
+// in a part of another size. Where colour is missing the sentence says which layers would do; `option` is the one that
+// names a layer of these files.
+Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& header,
+                                    const ChannelNames& names, const std::string& option = "--colour");
+
+// Stands for a near plane that nobody names: nearer than any surface, in whatever unit. Passes that compare depths
+// compare their ratios, and a power of two keeps those exact.
 inline constexpr float kUnknownNear = 0x1p-10f;
 
 // Where motion comes from.
@@ -32,7 +76,7 @@ enum class MotionSource : std::uint8_t {
 struct SequenceInput {
   std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
   MotionSource motion = MotionSource::kAutomatic;
-  std::array<std::string, 2> velocity;  // of kChannels
+  std::array<std::string, 2> velocity;  // names of kChannels
   std::optional<VelocityUnits> units;   // needed for other channels than backward.u/.v
   std::optional<std::string> depth;     // absent: Z where there is one; empty: none
   std::optional<DepthKind> depth_kind;  // absent: the attribute depthKind, else linear
@@ -62,7 +106,7 @@ struct SequenceFormat {
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes);
 
-// What a scene of this format needs of the resolve: only what the frames bring can be used.
+// Returns the needs of a scene of this format: only what the frames bring can be used.
 SceneNeeds needs_of(const SequenceFormat& format);
 
 // Forgets the channels that the plan does not read. Errors: kIoFailure where the plan reads depth, but the

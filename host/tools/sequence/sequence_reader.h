@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sequence reader: one file of a sequence as the library wants a frame, in host memory.
+// Sequence reader: one file of a sequence as the library wants a frame, in host memory, and what is wrong with a
+// sequence that shows in no header, only in the pixels of its frames.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/resolve_plan.h"
 #include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_scan.h"
 
@@ -23,7 +25,7 @@ struct SequenceFrame {
   std::vector<float> depth;            // reversed infinite; empty where not read
   std::vector<std::uint8_t> reactive;  // empty where not read
   std::optional<Matrix> world_to_ndc;
-  std::vector<Attribute> kept;  // of the file: camera, rate and the like: the resolved frame's too
+  std::vector<Attribute> kept;  // the file's (camera, rate and the like); the resolved frame's too
 };
 
 // Reads the channels of `format` of the file that `expected` was scanned from. Where the data window leaves
@@ -31,5 +33,32 @@ struct SequenceFrame {
 // `colour`: RGBA16F or RGBA32F; halves stay what they were either way. Errors: kIoFailure, naming `path`.
 Status read_frame(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
                   PixelFormat colour, SequenceFrame& frame);
+
+// Sees frames one after another. One thread.
+class SequenceWatch {
+ public:
+  SequenceWatch(const ResolvePlan& plan, float near_plane) : plan_(plan), near_plane_(near_plane) {}
+
+  // Sentences, each once in a sequence; most often none. `reset`: nothing of the frame before counts.
+  std::vector<std::string> see(const SequenceFrame& frame, bool reset);
+
+ private:
+  struct Cells {
+    std::int64_t number = 0;
+    Extent render;
+    std::vector<float> means;  // mean of each 16x16 pixels, tone-mapped, in [0, 1]
+  };
+
+  std::string see_motion(const SequenceFrame& frame, bool reset);
+  std::string see_sky(const SequenceFrame& frame, bool reset);
+  Cells cells_of(const SequenceFrame& frame) const;
+
+  ResolvePlan plan_;
+  float near_plane_ = 0;
+  bool motion_is_known_ = false;  // some motion was not 0, or the sentence was said
+  bool sky_is_known_ = false;     // the sentence was said
+  std::optional<Cells> first_;    // the first of the frames that are compared
+  std::optional<Matrix> last_world_to_ndc_;
+};
 
 }  // namespace quincunx::tools

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "tools/program/clock.h"
-#include "tools/sequence/sequence_camera.h"
+#include "tools/sequence/exchange_format.h"
 
 namespace quincunx::tools {
 namespace {

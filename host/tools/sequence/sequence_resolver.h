@@ -14,37 +14,34 @@
 #include <vector>
 
 #include "quincunx/resolve_service.h"
-#include "tools/program/read_ahead.h"
 #include "tools/program/run_report.h"
 #include "tools/program/work_queue.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_reader.h"
-#include "tools/sequence/sequence_scores.h"
-#include "tools/sequence/sequence_watch.h"
 
 namespace quincunx::tools {
 
-// What is to be done, settled and checked.
+// The resolving that is to be done, settled and checked.
 struct SequenceJob {
   FramePattern input;
   SequenceFormat format;
   SequenceScan scan;
   std::optional<SequenceOutput> output;  // absent: frames are only scored
-  float exposure = 0;                    // of PNG; 0: 1
+  float exposure = 0;                    // exposure of a PNG; 0: 1
   int threads = 1;                       // that read, and that write, at least one of each
   bool skip_bad_frames = false;
   SequenceScores* scores = nullptr;  // not owned; null: none
 };
 
-// What came of it.
+// Outcome of a job.
 struct SequenceOutcome {
   std::vector<std::int64_t> resolved;  // and written
   std::vector<std::int64_t> skipped;   // wanted, but bad
-  std::vector<FrameRow> rows;          // of the resolved frames
-  std::vector<FrameReport> reports;    // of all that were dispatched, as far as they are known
+  std::vector<FrameRow> rows;          // one for each resolved frame
+  std::vector<FrameReport> reports;    // one for each that was dispatched, as far as it is known
   std::vector<double> upload_ms, resolve_ms;
   std::vector<BusyTime> busy;
-  std::vector<std::string> warnings;  // of what showed in the pixels
+  std::vector<std::string> warnings;  // notes on what showed in the pixels
   double wall_seconds = 0;
 };
 
@@ -54,8 +51,8 @@ class SequenceResolver {
   static Result<std::unique_ptr<SequenceResolver>> create(const Device& device, const ResolvePlan& plan,
                                                           SequenceJob job);
 
-  // Resolves and writes every wanted frame. `progress` is told how many frames are through. Where `stop`
-  // becomes true the run ends after the frame at hand, as an error. Whatever ends it, the files are whole.
+  // Resolves and writes every wanted frame. `progress` is told how many frames are through. Where `stop` becomes true
+  // the run ends after the frame at hand, as an error. However it ends, the files are whole.
   Status run(const std::function<void(std::int64_t)>& progress, const std::atomic<bool>& stop);
 
   const SequenceOutcome& outcome() const { return outcome_; }

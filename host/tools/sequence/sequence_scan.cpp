@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "tools/image/exr_blocks.h"
-#include "tools/sequence/frame_numbers.h"
+#include "tools/image/image_reader.h"
+#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::tools {
 namespace {

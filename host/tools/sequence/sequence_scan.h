@@ -35,14 +35,14 @@ struct SequenceScan {
   std::vector<std::int64_t> history() const;  // read, but not wanted
   std::vector<std::int64_t> bad() const;
   Extent target() const;      // holds the largest good frame; empty: there is none
-  bool half_colour() const;   // of all good frames
-  bool background() const;    // of all good frames
+  bool half_colour() const;   // for all good frames
+  bool background() const;    // for all good frames
   bool has_matrices() const;  // all good frames know worldToNDC
   Status problem() const;     // kIoFailure: the first one and how many more; ok: none
 };
 
-// What is asked for when no frames are named: from the first file of the pattern to the last, without gap.
-// Errors: kInvalidArgument as of FramePattern::frames_on_disk(), kIoFailure where there is no file.
+// Returns the frames that are asked for when none are named: from the first file of the pattern to the last, without
+// gap. Errors: kInvalidArgument as of FramePattern::frames_on_disk(), kIoFailure where there is no file.
 Result<std::vector<std::int64_t>> all_frames(const FramePattern& pattern);
 
 // The wanted frames and, before each, up to `warm_up` frames of history as far as the sequence reaches back.

@@ -2,6 +2,7 @@
 // For resolve_checkerboard: the colours of eight pixels that are not shaded.
 #pragma once
 
+#include "bits.h"
 #include "checkerboard/pasts.h"
 
 #define LEAST_DIFFERENCE 1e-12f    // squared: two pairs that are equal count alike
@@ -77,7 +78,7 @@ static inline float16 over_channels(float16 value) {
 
 // Squared.
 static inline float16 difference_of(float16 a, float16 b) {
-  const float16 apart = clamp(a - b, -INFINITY_STAND_IN, INFINITY_STAND_IN);
+  const float16 apart = clamp(a - b, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   return over_channels(apart * apart);
 }
 

@@ -3,15 +3,15 @@
 // trusted.
 #pragma once
 
+#include "bits.h"
 #include "checkerboard/surfaces.h"
 #include "motion/camera_velocity.h"
-#include "texel_blocks.h"
+#include "texels/surfaces.h"
 
-// What previous depth is the surface's, found on the bench's scenes.
-#define DEPTH_TOLERANCE 0.02f      // of the surface's reversed depth
-#define RANGE_TOLERANCE 0.5f       // of the difference of nearest and farthest neighbour
-#define LEAST_TOLERANCE 1e-9f      // what is beyond is not told from infinity
-#define FARTHEST_MOTION 65504.0f   // pixels of the previous frame: beyond any viewport
+// Tolerances within which a previous depth is the surface's, found on the bench's scenes.
+#define DEPTH_TOLERANCE 0.02f      // fraction of the surface's reversed depth
+#define RANGE_TOLERANCE 0.5f       // fraction of the difference of nearest and farthest neighbour
+#define LEAST_TOLERANCE 1e-9f      // reversed depth that is not told from infinity
 
 typedef struct VelocitiesAround {
   VelocityBits left, right, above, below;
@@ -160,16 +160,16 @@ static inline Past no_past() {
   return past;
 }
 
-// Of surfaces of these depths that move so; `whole`: trust where all agrees.
+// Returns the past of surfaces of these depths and motions; `whole`: trust where all agrees.
 IN_REGISTERS static inline Past past_of(const CheckerboardParams* params, DEPTH_TEXELS previous, int x, int y,
                                         float8 depth, Motion motion, int8 is_surface, float8 range, float8 whole) {
   const int8 known = is_surface & ~non_finite_depths(motion.x) & ~non_finite_depths(motion.y);
   const float8 moved_x = as_float8(as_int8(motion.x) & known) * params->motion_x;
   const float8 moved_y = as_float8(as_int8(motion.y) & known) * params->motion_y;
   const float8 at_x = convert_float8(every_other(x)) * params->step_x + params->start_x +
-                      clamp(moved_x, -FARTHEST_MOTION, FARTHEST_MOTION);
+                      clamp(moved_x, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   const float8 at_y =
-      (float)y * params->step_y + params->start_y + clamp(moved_y, -FARTHEST_MOTION, FARTHEST_MOTION);
+      (float)y * params->step_y + params->start_y + clamp(moved_y, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   Past past;
   past.places = places_at(params, at_x, at_y);
   const float8 before = depth_between(params, previous, past.places);

@@ -3,6 +3,7 @@
 // their neighbours are shaded.
 #pragma once
 
+#include "bits.h"
 #include "checkerboard/every_other.h"
 
 // Instead of the depth of a neighbour that is no surface: farther than all surfaces, those outside the viewport last.
@@ -86,12 +87,12 @@ static inline DepthsAround settled_depths(const CheckerboardParams* params, Dept
   return settled;
 }
 
-// What is no surface is as far in front, so that it is not the farthest.
+// Turns the depth of no surface into one as far in front, so that it is not the farthest.
 static inline float8 turned_over(float8 settled) {
   return select(settled, -settled, settled <= NO_SURFACE);
 }
 
-// Of each two that are equal the first counts.
+// Returns the nearest and the farthest of the surfaces around; the first of two that are equal counts.
 static inline Surfaces surfaces_of(DepthsAround d) {
   const int8 right_is_nearer = d.right > d.left, below_is_nearer = d.below > d.above;
   const float8 across = max(d.left, d.right), down = max(d.above, d.below);

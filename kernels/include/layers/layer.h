@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the second layer of history keeps. Host and kernels share these structs.
+// The second layer of history. Host and kernels share these structs.
 //
 // Where two surfaces at different depths that move differently meet, a texel has two histories: of the *far* layer,
 // whose place is that of the one history elsewhere, and of the *near* layer, premultiplied and with a coverage, which
@@ -26,13 +26,22 @@ QUINCUNX_CHECK_SIZE(LayerRecord, 32);
 // The two layers at a sample.
 typedef struct LayerSplit {
   float near_depth, far_depth;  // reversed; near_depth 0: there is one layer
-  float motion_x, motion_y;     // of the near layer, output pixels, as of a record
+  float motion_x, motion_y;     // the near layer's, output pixels, as that of a record
 } LayerSplit;
 QUINCUNX_CHECK_SIZE(LayerSplit, 16);
 
-// What a tile has besides its TileReprojection, which is the far layer's.
+static inline bool is_split(LayerSplit split) {
+  return split.near_depth > 0.0f;
+}
+
+// Returns a depth half-way between the layers.
+static inline float between_of(LayerSplit split) {
+  return 0.5f * (split.near_depth + split.far_depth);
+}
+
+// The near layer of a tile, whose TileReprojection is the far layer's.
 typedef struct LayerTile {
-  float phase_x, phase_y;  // of the near layer's texels; 0 if it is not rigid
+  float phase_x, phase_y;  // offset of the near layer's texels; 0 if it is not rigid
   float between;           // mean of the depths half-way between the layers of its samples
   float motion_range;      // how far the near layers of its samples move apart: on the larger axis, output pixels
   int is_rigid;            // 0 or 1: the near layer
@@ -42,8 +51,8 @@ typedef struct LayerTile {
 QUINCUNX_CHECK_SIZE(LayerTile, 28);
 
 typedef struct LayerParams {
-  int width, height;                    // of this frame's viewport, in samples
-  int previous_width, previous_height;  // of the previous one
+  int width, height;                    // size of this frame's viewport, in samples
+  int previous_width, previous_height;  // size of the previous one
   TexelLayout velocity;
   TexelLayout depth;
   TexelLayout reprojection;
@@ -57,13 +66,13 @@ typedef struct LayerParams {
 } LayerParams;
 QUINCUNX_CHECK_SIZE(LayerParams, 16 + 24 + 48 + 12);
 
-// The previous frame, and depth of both, for resolve_layers.
-typedef struct LayerPastParams {
-  TexelLayout depth0, depth1;
-  int width, height;  // of the previous viewport
-  float spacing_x, spacing_y, start_x, start_y;  // of its samples
-} LayerPastParams;
-QUINCUNX_CHECK_SIZE(LayerPastParams, 16 + 8 + 16);
+// The samples of the last frame that a history holds.
+typedef struct HistorySamples {
+  TexelLayout depth;
+  int width, height;                             // size of its viewport
+  float spacing_x, spacing_y, start_x, start_y;  // sample i lies at (i * spacing + start), output pixels
+} HistorySamples;
+QUINCUNX_CHECK_SIZE(HistorySamples, 32);
 
 #ifdef __cplusplus
 }  // namespace quincunx

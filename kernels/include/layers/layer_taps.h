@@ -1,96 +1,208 @@
 // SPDX-License-Identifier: MIT
-// What texels of history have of the layers that eight pixels of a row want: one texel of each at a time.
+// Taps: texels of history as the layers that eight pixels of a row want have them, one texel of each pixel at a time;
+// and sums of them over the 4x4 texels around the pixels' places.
 #pragma once
 
-#include "layers/layer_row.h"
+#include "layers/constants.h"
+#include "layers/past_layers.h"
+#include "temporal/constants.h"
 
-#define NEAR_DEPTHS 0.1f       // of the larger depth: a near layer of another depth is another thing's
-#define CROSSING_DEPTHS 0.05f  // the same of near layers that may cross: those that do are close together
-#define FAR_DEPTHS 0.2f        // the same of a far layer, which may be seen at a slant
-#define SOLID 0.3f             // coverage from which a near layer may stand for a surface alone
-#define EMPTY_CONFIDENCE 1.0f  // at most: that there is no near layer where there was but one
-
-typedef enum LayerKind {
-  kFarLayer,   // of split pixels the far layer, of the others the surface that they have alone
-  kNearLayer,  // of split pixels
-} LayerKind;
-
-// What eight pixels want of history.
+// Layers of history that eight pixels want.
 typedef struct LayerWishes {
   LayerKind kind;
   int8 is_split;                 // lanes with two layers
-  float8 near_depth, far_depth;  // of a surface alone its own depth and any
-  float least_part, most_part;   // of a near layer's depth: texels within that range show the same thing
+  float8 near_depth, far_depth;  // for a surface alone its own depth and any
+  float least_part, most_part;   // fractions of a near layer's depth: texels within that range show the same thing
 } LayerWishes;
 
-// Of each pixel one texel as the layer has it: premultiplied colour and coverage, confidence, and whether it is the
-// surface that is wished for.
-typedef struct LayerTaps {
-  float8 red, green, blue, coverage, confidence;
+// Premultiplied colours and coverages of eight pixels, by channel.
+typedef struct LayerColours {
+  float8 red, green, blue, coverage;
   float8 alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
+} LayerColours;
+
+// One texel of each pixel as the layer has it.
+typedef struct LayerTaps {
+  LayerColours colours;
+  float8 confidence;
   int8 has_two;  // it has two layers
-  int8 valid;
+  int8 valid;    // it has the surface that is wished for, or says that nothing of it is there
 } LayerTaps;
 
 static inline int8 are_alike(float8 a, float8 b, float tolerance) {
   return fabs(a - b) <= tolerance * max(a, b);
 }
 
-// Of a texel for each pixel. `tests_depth`: lanes of surfaces alone whose texels of one layer must not be nearer, as no
-// trust tells.
-static inline LayerTaps far_taps(const EightLayers* texels, const LayerWishes* wishes, int8 tests_depth) {
-  const float8 far_depth = texels->far_depth, near_depth = texels->near_depth;
-  const float8 stored = texels->confidence, coverage = texels->coverage;
-  const float8 confidence = min(fabs(stored), MOST_CONFIDENCE);
+// Looks for far layers, and for surfaces alone, in a column of the pixels' neighbourhoods. `tests_depth`: lanes of
+// surfaces alone whose texels of one layer must not be nearer, as no trust tells.
+static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, int8 tests_depth) {
+  const float8 far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const float8 stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
+  const float8 confidence = min(fabs(stored), CONFIDENCE_MAX);
   const int8 split = wishes->is_split, two = as_int8(stored) >> 31;
   const float8 wanted = select(wishes->near_depth, wishes->far_depth, split);
   const int8 is_near = two & (wanted > 0.5f * (far_depth + near_depth));
   const float8 shown = select(far_depth, near_depth, is_near);
   const int8 known = confidence > 0.0f;
 
-  const int8 far_valid = (shown >= wanted * (1.0f - FAR_DEPTHS)) &
+  const int8 far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
                          (shown <= 0.5f * (wishes->near_depth + wishes->far_depth)) &
-                         select(known, coverage >= SOLID, is_near);
-  const int8 alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTHS)),
-                                  select(known & are_alike(shown, wanted, FAR_DEPTHS),
-                                         are_alike(shown, wanted, NEAR_DEPTHS), is_near), two);
+                         select(known, coverage >= NEAR_COVERAGE_MIN, is_near);
+  const int8 alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
+                                  select(known & are_alike(shown, wanted, FAR_DEPTH_STEP_MAX),
+                                         are_alike(shown, wanted, NEAR_DEPTH_STEP_MAX), is_near), two);
 
-  const float8 solid = select((float8)(1.0f), 1.0f / max(coverage, (float8)(SOLID)), split);
+  // Behind another surface only the colour of a near layer is wanted.
+  const float8 whole = select((float8)(1.0f), 1.0f / max(coverage, (float8)(NEAR_COVERAGE_MIN)), split);
   LayerTaps taps;
-  taps.red = select(texels->red, texels->near_red * solid, is_near);
-  taps.green = select(texels->green, texels->near_green * solid, is_near);
-  taps.blue = select(texels->blue, texels->near_blue * solid, is_near);
-  taps.coverage = select((float8)(1.0f), coverage, is_near & ~split);
-  taps.confidence = select(confidence, texels->near_confidence * coverage, is_near);
-  taps.alpha = select(texels->alpha, (float8)(1.0f), is_near);
+  taps.colours.red = select(in_column(row->far.red, column), in_column(row->near.red, column) * whole, is_near);
+  taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
+  taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
+  taps.colours.coverage = select((float8)(1.0f), coverage, is_near & ~split);
+  taps.colours.alpha = select(in_column(row->alpha, column), (float8)(1.0f), is_near);
+  taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
   return taps;
 }
 
-static inline LayerTaps near_taps(const EightLayers* texels, const LayerWishes* wishes) {
-  const float8 far_depth = texels->far_depth, near_depth = texels->near_depth;
-  const float8 stored = texels->confidence;
-  const float8 confidence = min(fabs(stored), MOST_CONFIDENCE);
+// Looks for near layers.
+static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWishes* wishes) {
+  const float8 far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const float8 stored = in_column(row->far.last, column);
+  const float8 confidence = min(fabs(stored), CONFIDENCE_MAX);
   const int8 two = as_int8(stored) >> 31;
   const int8 is_near = two & (wishes->near_depth > 0.5f * (far_depth + near_depth));
   const float8 shown = select(far_depth, near_depth, is_near);
   const int8 is_ours = (shown > 0.5f * (wishes->near_depth + wishes->far_depth)) &
                        (shown >= wishes->near_depth * wishes->least_part);
-  const float8 nothing = (float8)(0.0f);
-  const float8 little = min(confidence, EMPTY_CONFIDENCE);
+  const float8 none = (float8)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
+  const LayerChannels *far = &row->far, *near = &row->near;
 
   LayerTaps taps;
-  taps.red = select(nothing, select(texels->red, texels->near_red, is_near), is_ours);
-  taps.green =
-      select(nothing, select(texels->green, texels->near_green, is_near), is_ours);
-  taps.blue =
-      select(nothing, select(texels->blue, texels->near_blue, is_near), is_ours);
-  taps.coverage = select(nothing, select((float8)(1.0f), texels->coverage, is_near), is_ours);
-  taps.confidence = select(select(little, confidence, is_ours & ~two), texels->near_confidence,
+  taps.colours.red = select(none, select(in_column(far->red, column), in_column(near->red, column), is_near), is_ours);
+  taps.colours.green =
+      select(none, select(in_column(far->green, column), in_column(near->green, column), is_near), is_ours);
+  taps.colours.blue =
+      select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
+  taps.colours.coverage = select(none, select((float8)(1.0f), in_column(near->last, column), is_near), is_ours);
+  taps.colours.alpha = (float8)(1.0f);
+  taps.confidence = select(select(empty, confidence, is_ours & ~two), in_column(row->near_confidence, column),
                            is_ours & is_near);
-  taps.alpha = (float8)(1.0f);
   taps.has_two = two;
   taps.valid = shown <= wishes->near_depth * wishes->most_part;  // nothing stood before it
   return taps;
+}
+
+static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, int8 was_split) {
+  return wishes->kind == kNearLayer ? near_taps(row, column, wishes) : far_taps(row, column, wishes, was_split);
+}
+
+// ---- Sums.
+
+typedef struct LayerSums {
+  LayerColours cubic, bilinear;  // over the valid taps
+  LayerColours least, most;      // range of the valid ones of the middle four
+  float8 weight, middle_weight;  // sums over the valid taps
+  float8 confidence;             // bilinear; an invalid tap is not known
+  // Confidence of all taps as it is stored, for pixels without a texel of two layers.
+  float8 stored, least_stored, most_stored;
+  int8 has_two;                  // a tap has two layers
+} LayerSums;
+
+static inline LayerColours all_colours(float value) {
+  const float8 all = (float8)(value);
+  const LayerColours colours = {all, all, all, all, all};
+  return colours;
+}
+
+static inline LayerSums no_taps(void) {
+  const float8 none = (float8)(0.0f);
+  const LayerSums sums = {all_colours(0.0f), all_colours(0.0f), all_colours(FLT_MAX), all_colours(-FLT_MAX),
+                          none, none, none, none, (float8)(FLT_MAX), (float8)(-FLT_MAX), (int8)(0)};
+  return sums;
+}
+
+static inline void add_colours(LayerColours* sum, const LayerColours* colours, float8 weight) {
+  sum->red += colours->red * weight;
+  sum->green += colours->green * weight;
+  sum->blue += colours->blue * weight;
+  sum->coverage += colours->coverage * weight;
+#if ALPHA
+  sum->alpha += colours->alpha * weight;
+#endif
+}
+
+// Takes `chosen` in `lanes`, `otherwise` in the others.
+static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, int8 lanes) {
+  const LayerColours colours = {
+      select(otherwise.red, chosen.red, lanes), select(otherwise.green, chosen.green, lanes),
+      select(otherwise.blue, chosen.blue, lanes), select(otherwise.coverage, chosen.coverage, lanes),
+      select(otherwise.alpha, chosen.alpha, lanes)};
+  return colours;
+}
+
+static inline LayerColours min_colours(LayerColours a, LayerColours b) {
+  const LayerColours colours = {min(a.red, b.red), min(a.green, b.green), min(a.blue, b.blue),
+                                min(a.coverage, b.coverage), min(a.alpha, b.alpha)};
+  return colours;
+}
+
+static inline LayerColours max_colours(LayerColours a, LayerColours b) {
+  const LayerColours colours = {max(a.red, b.red), max(a.green, b.green), max(a.blue, b.blue),
+                                max(a.coverage, b.coverage), max(a.alpha, b.alpha)};
+  return colours;
+}
+
+// Adds a texel of each pixel with its weight in the cubic.
+static inline void add_taps(LayerSums* sums, const LayerTaps* taps, float8 weight) {
+  const float8 counted = select((float8)(0.0f), weight, taps->valid);
+  add_colours(&sums->cubic, &taps->colours, counted);
+  sums->weight += counted;
+  sums->stored += taps->confidence * weight;
+  sums->has_two |= taps->has_two;
+}
+
+// Adds one of the middle four, too, with its weight in the bilinear blend.
+static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, float8 weight) {
+  const int8 valid = taps->valid;
+  const float8 counted = select((float8)(0.0f), weight, valid);
+  add_colours(&sums->bilinear, &taps->colours, counted);
+  sums->middle_weight += counted;
+  sums->confidence += taps->confidence * counted;
+  sums->least_stored = min(sums->least_stored, taps->confidence);
+  sums->most_stored = max(sums->most_stored, taps->confidence);
+  sums->least = min_colours(sums->least, select_colours(all_colours(FLT_MAX), taps->colours, valid));
+  sums->most = max_colours(sums->most, select_colours(all_colours(-FLT_MAX), taps->colours, valid));
+}
+
+// Blends one channel: the cubic, held in the range of the middle four; bilinear where the cubic has lost most of its
+// weights; `nothing` where the middle four have lost theirs.
+static inline float8 blend_channel(float8 cubic, float8 bilinear, float8 least, float8 most, const LayerSums* sums,
+                                   float nothing) {
+  const float8 held = min(max(cubic / sums->weight, least), most);
+  const float8 blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
+  return select(blended, (float8)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+}
+
+static inline LayerColours blend_colours(const LayerSums* sums) {
+  const LayerColours *cubic = &sums->cubic, *bilinear = &sums->bilinear, *least = &sums->least, *most = &sums->most;
+  LayerColours colours;
+  colours.red = blend_channel(cubic->red, bilinear->red, least->red, most->red, sums, 0.0f);
+  colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums, 0.0f);
+  colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums, 0.0f);
+  colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums, 0.0f);
+  colours.alpha = (float8)(1.0f);
+#if ALPHA
+  colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums, 1.0f);
+#endif
+  return colours;
+}
+
+// Blends confidence: that of surfaces alone among texels of one layer by the cubic, as in resolve_temporal; else
+// bilinear.
+static inline float8 blend_confidence(const LayerSums* sums, int8 is_alone) {
+  const float8 cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
+  const float8 known = select(sums->confidence, (float8)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+  return select(known, cubic, is_alone & ~sums->has_two);
 }

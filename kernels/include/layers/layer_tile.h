@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The near layer of a tile, and whether a tile has to do with two layers at all.
+// The near layer of a tile, and whether texels of two layers may be where a tile comes from.
 #pragma once
 
-#include "layers/split.h"
+#include "layers/constants.h"
+#include "layers/layer.h"
+#include "temporal/constants.h"
 #include "temporal/reproject_tile.h"
 
-enum {
-  kFetchReach = 3,   // texels around the place of a pixel in the previous frame that fetching may read
-  kFarthestTile = 8  // tiles: where samples of one tile come from places farther apart, layers are not looked for
-};
-
-// What temporal_tiles reads and knows of layers.
+// Inputs of temporal_tiles that tell of layers.
 typedef struct LayerInputs {
   TexelLayout depth;
   __global const LayerSplit* splits;
@@ -28,13 +25,14 @@ static inline bool is_marked(const TemporalTileParams* params, __global const in
   return any != 0;
 }
 
-// Whether a tile between two output positions was split in the previous frame.
+// Returns whether a tile between two output positions was split in the previous frame. Also true where they are too
+// far apart to look at every tile between them.
 static inline bool was_split(const TemporalTileParams* params, __global const LayerTile* previous, float2 from,
                              float2 to) {
   const float2 most = (float2)((float)params->tiles_x, (float)params->tiles_y) - 1.0f;
   const float2 first = clamp(floor(from / (float)kTemporalTile), 0.0f, most);
   const float2 last = clamp(floor(to / (float)kTemporalTile), 0.0f, most);
-  if (last.x - first.x > (float)kFarthestTile || last.y - first.y > (float)kFarthestTile) return true;
+  if (last.x - first.x > (float)SOURCE_TILES_MAX || last.y - first.y > (float)SOURCE_TILES_MAX) return true;
   int any = 0;
   for (int y = (int)first.y; y <= (int)last.y; ++y) {
     for (int x = (int)first.x; x <= (int)last.x; ++x) any |= previous[y * params->tiles_x + x].is_split;
@@ -42,7 +40,7 @@ static inline bool was_split(const TemporalTileParams* params, __global const La
   return any != 0;
 }
 
-// Of the far, or only, layer.
+// Returns the mean depth of the samples' far, or only, layers.
 static inline float mean_depth(const TemporalTileParams* params, DEPTH_TEXELS depth, const LayerInputs* in,
                                SampleRange samples) {
   float sum = 0.0f;
@@ -56,47 +54,24 @@ static inline float mean_depth(const TemporalTileParams* params, DEPTH_TEXELS de
   return sum / (float)(count.x * count.y);
 }
 
-// The phase of what a tile takes over that moves by `motion`: place = source phase - motion, without whole texels.
-static inline float2 phase_after(float2 source_phase, float2 motion) {
-  const float2 place = source_phase - motion;
-  return place - floor(place + 0.5f);
-}
-
-static inline float2 settled(float2 motion) {
-  return select(motion, (float2)(0.0f), fabs(motion) < (float2)(STILL_MOTION));
-}
-
-// Where the middle of the tile was, as a tile of the previous frame.
-static inline int source_tile(const TemporalTileParams* params, float2 corner, float2 motion) {
-  const float2 source = corner + 0.5f * (float)kTemporalTile + motion;
-  return tile_at(params, source.x, source.y);
-}
-
-// The motion that a rigid tile was found to have.
+// Returns the motion that a rigid tile was found to have.
 static inline float2 motion_of(TileReprojection tile) {
   return (float2)(tile.source_phase_x - tile.phase_x - (float)tile.step_x,
                   tile.source_phase_y - tile.phase_y - (float)tile.step_y);
 }
 
-// A rigid tile of a thing that was a near layer where it comes from goes on with that layer's phase. Returns whether
-// it does.
+// Gives a rigid tile of a thing that was a near layer where it comes from that layer's phase. Returns whether it was
+// one.
 static inline bool take_near_phase(const TemporalTileParams* params, DEPTH_TEXELS depth, const LayerInputs* in,
                                    SampleRange samples, float2 corner, TileReprojection* tile) {
   const float2 motion = motion_of(*tile);
   const LayerTile before = in->previous[source_tile(params, corner, motion)];
   if (!before.is_split || !(mean_depth(params, depth, in, samples) > before.between)) return false;
-  const float2 place = (float2)(before.phase_x, before.phase_y) - motion;
-  const float2 step = floor(place + 0.5f);
-  tile->source_phase_x = before.phase_x;
-  tile->source_phase_y = before.phase_y;
-  tile->phase_x = place.x - step.x;
-  tile->phase_y = place.y - step.y;
-  tile->step_x = (int)step.x;
-  tile->step_y = (int)step.y;
+  take_phase(tile, (float2)(before.phase_x, before.phase_y), motion);
   return true;
 }
 
-// The near layer of a tile's samples and the next ones around it.
+// Finds the near layer of a tile's samples and the next ones around it.
 static inline LayerTile near_layer_of(const TemporalTileParams* params, const LayerInputs* in, SampleRange around,
                                       float2 corner, __global const TileReprojection* previous_tiles) {
   float2 least = (float2)(65536.0f), most = (float2)(-65536.0f);
@@ -118,22 +93,22 @@ static inline LayerTile near_layer_of(const TemporalTileParams* params, const La
   tile.is_split = 1;
   tile.between = between / count;
   tile.motion_range = max(most.x - least.x, most.y - least.y);
-  if (!(tile.motion_range <= RIGID_RANGE)) return tile;
-  const float2 motion = settled(0.5f * (most + least));
+  if (!(tile.motion_range <= RIGID_MOTION_RANGE_MAX)) return tile;
+  const float2 motion = without_rounding(0.5f * (most + least));
   const int from = source_tile(params, corner, motion);
   const LayerTile before = in->previous[from];
   const bool was_near = before.is_split && near_depth / count > before.between;
   const float2 source_phase = was_near ? (float2)(before.phase_x, before.phase_y)
                                        : (float2)(previous_tiles[from].phase_x, previous_tiles[from].phase_y);
-  const float2 phase = phase_after(source_phase, motion);
+  const float2 phase = carry_phase(source_phase, motion).phase;
   tile.phase_x = phase.x;
   tile.phase_y = phase.y;
   tile.is_rigid = 1;
   return tile;
 }
 
-// The layers of a tile whose far layer is `tile`, which may change. `hidden`: what the samples show is a near layer
-// in history.
+// Finds the layers of a tile whose far layer is `tile`, which may change. Sets `hidden` if history has what the samples
+// show as a near layer.
 static inline LayerTile layer_tile(const TemporalTileParams* params, DEPTH_TEXELS depth, const LayerInputs* in,
                                    SampleRange samples, ReprojectionRange found, int2 at, float2 corner,
                                    __global const TileReprojection* previous_tiles, TileReprojection* tile,
@@ -142,7 +117,7 @@ static inline LayerTile layer_tile(const TemporalTileParams* params, DEPTH_TEXEL
   if (is_marked(params, in->marks, at.x, at.y))
     layers = near_layer_of(params, in, widened(params, samples), corner, previous_tiles);
   const float2 scale = (float2)(params->motion_x, params->motion_y);
-  const float reach = (float)kFetchReach;
+  const float reach = (float)FETCH_REACH;
   const bool from_split = was_split(params, in->previous, corner + found.least.xy * scale - reach,
                                     corner + (float)kTemporalTile + found.most.xy * scale + reach);
   layers.is_layered = layers.is_split || from_split;

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Eight output pixels of a row, each with one layer or two.
+// Eight output pixels of a row, each with one layer or two: what this frame's samples around them say.
 #pragma once
 
+#include "arithmetic.h"
 #include "layers/fetch_layers.h"
-#include "temporal/nearest_samples.h"
+#include "temporal/constants.h"
+#include "temporal/frame_samples.h"
+#include "temporal/reseed.h"
 
-// What the samples nearest to them say.
+// Eight pixels as the samples nearest to them say.
 typedef struct LayeredPixels {
   int8 is_split;                 // lanes with two layers
-  float8 near_depth, far_depth;  // of their layers; of a surface alone the near one is its own
-  float8 motion_x, motion_y;     // of the near layer
+  float8 near_depth, far_depth;  // depths of their layers; for a surface alone the near one is its own
+  float8 motion_x, motion_y;     // motion of the near layer
   float8 between;                // a depth between the layers
-  float8 depth;                  // of the sample
+  float8 depth;                  // the sample's own
   float8 open_trust;
 } LayeredPixels;
 
@@ -43,20 +46,99 @@ static inline LayerWishes far_wishes_of(const LayeredPixels* pixels) {
   return wishes;
 }
 
-// `may_cross`: one of the tile's near layers may cross another that is nearly as deep.
+// Returns the wishes of near layers of a tile where `may_cross`: another one that is nearly as deep may cross them.
 static inline LayerWishes near_wishes_of(const LayeredPixels* pixels, bool may_cross) {
   const LayerWishes wishes = {kNearLayer,
                               pixels->is_split,
                               pixels->near_depth,
                               pixels->far_depth,
-                              may_cross ? 1.0f - CROSSING_DEPTHS : 0.0f,
-                              1.0f + (may_cross ? CROSSING_DEPTHS : NEAR_DEPTHS)};
+                              may_cross ? 1.0f - CROSSING_DEPTH_STEP_MAX : 0.0f,
+                              1.0f + (may_cross ? CROSSING_DEPTH_STEP_MAX : NEAR_DEPTH_STEP_MAX)};
   return wishes;
 }
 
-// Where the pixels from (x, y) on come from, with a phase and motions.
+// Returns where the pixels from (x, y) on come from, with a phase and motions.
 static inline LayerPlaces places_from(int x, int y, float phase_x, float phase_y, float8 motion_x, float8 motion_y) {
   const float8 columns = (float8)(0.5f, 1.5f, 2.5f, 3.5f, 4.5f, 5.5f, 6.5f, 7.5f);
   const LayerPlaces places = {((float)x + columns + phase_x) + motion_x, ((float)y + 0.5f + phase_y) + motion_y};
   return places;
+}
+
+// ---- Seeds: what this frame's samples around a pixel show of a layer.
+
+// This frame's samples around a pixel.
+typedef struct SeedSamples {
+  SourceFrame frame;
+  TexelLayout depth;
+  int x, y;              // the one nearest to its picture
+  float from_x, from_y;  // from there to its picture, in samples
+} SeedSamples;
+
+typedef struct Seed {
+  float4 mean;  // alpha in w
+  bool any;     // whether any sample is the layer's and valid; else the mean is 0
+} Seed;
+
+// Returns the Gaussian of the 3x3 samples, clamped to the edge: of the far layer's, those behind the depth `between`;
+// or of all valid ones as the near layer has them, in which one of the far layer's says that nothing of the near one is
+// there.
+static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DEPTH_TEXELS depth, LayerKind kind,
+                                 float between) {
+  float4 sum = (float4)(0.0f);
+  float weights = 0.0f;
+  for (int i = 0; i < 9; ++i) {
+    const int column = i % 3 - 1, row = i / 3 - 1;
+    const int x = clamp(in->x + column, 0, in->frame.width - 1), y = clamp(in->y + row, 0, in->frame.height - 1);
+    float4 sample = load_colour(colour, in->frame.colour, x, y);
+    const float own = load_depth(depth, in->depth, x, y);
+    const bool is_near = own > between, is_far = own < between;
+    if (!is_valid(sample) || !(is_far || (is_near && kind == kNearLayer))) continue;
+    if (kind == kNearLayer) {
+      if (!ALPHA) sample.w = 1.0f;
+      if (is_far) sample = (float4)(0.0f);
+    }
+    const float away_x = (float)column - in->from_x, away_y = (float)row - in->from_y;
+    const float weight = bell((float8)((away_x * away_x + away_y * away_y) * SEED_FALLOFF)).s0 * luma_weight(sample);
+    sum += sample * weight;
+    weights += weight;
+  }
+  const Seed seed = {weights > 0.0f ? sum / weights : (float4)(0.0f), weights > 0.0f};
+  return seed;
+}
+
+// Reseeds the layers of `lanes` with samples of theirs. A far layer stays what it is where there is none. Returns their
+// inertia: how much each resists this frame's sample, as a weight.
+static inline float8 reseed_layer(LayerKind kind, int8 lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
+                                  DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
+                                  const NearestSamples* nearest, EightTexels* history, float8* alpha, float8* known) {
+  float4 texel[8];
+  float confidence[8], inertia[8], between[8], from_x[8], alphas[8];
+  int is_reseeded[8], x[8];
+  vstore16(history->left, 0, (float*)texel);
+  vstore16(history->right, 1, (float*)texel);
+  vstore8(*known, 0, confidence);
+  vstore8((float8)(0.0f), 0, inertia);
+  vstore8(pixels->between, 0, between);
+  vstore8(nearest->from_x, 0, from_x);
+  vstore8(*alpha, 0, alphas);
+  vstore8(nearest->x, 0, x);
+  vstore8(lanes, 0, is_reseeded);
+  for (int i = 0; i < 8; ++i) {
+    if (is_reseeded[i] == 0) continue;
+    const SeedSamples samples = {*frame, layout, x[i], nearest->y, from_x[i], nearest->from_y};
+    const Seed seed = seed_of_layer(&samples, colour, depth, kind, between[i]);
+    if (!seed.any && kind == kFarLayer) continue;
+    const float share = 1.0f - confidence[i] / CONFIDENCE_MIN;
+    texel[i] += (seed.mean - texel[i]) * share;
+    alphas[i] += (seed.mean.w - alphas[i]) * share;
+    inertia[i] = SEED_INERTIA * share;
+    confidence[i] = seed.any ? CONFIDENCE_MIN : 0.0f;
+  }
+  history->left = vload16(0, (const float*)texel);
+  history->right = vload16(1, (const float*)texel);
+  *known = vload8(0, confidence);
+#if ALPHA
+  *alpha = vload8(0, alphas);
+#endif
+  return vload8(0, inertia);
 }

@@ -1,36 +1,53 @@
 // SPDX-License-Identifier: MIT
-// History of two layers, and what its texels are.
+// A history of two layers: what its texels are, and rows of them. A row has twelve texels where eight pixels see it
+// between texels, and eight where they see it on texels. All may lie anywhere and are clamped to the edge.
 #pragma once
 
+#include "bits.h"
 #include "layers/layer.h"
 #include "temporal/fetch_history.h"
-#include "temporal/history_alpha.h"
+#include "temporal/history.h"
 
-// The previous frame's layers.
+typedef enum LayerKind {
+  kFarLayer,   // the far layer of split pixels, the only surface of the others
+  kNearLayer,  // the near layer of split pixels
+} LayerKind;
+
+// A frame's layers, and what they follow from where they are not stored.
 typedef struct PastLayers {
   HistoryLayer far;                        // colour and confidence
   AlphaPlane alpha;                        // with ALPHA: the far layer's
   HistoryLayer near;                       // premultiplied colour and coverage
   __global const half* states;             // see LayerState
-  __global const TileReprojection* tiles;  // of the far layer
+  __global const TileReprojection* tiles;  // the far layer's
   __global const LayerTile* layer_tiles;
   int tiles_x, tiles_y;
-  // Where the samples of that frame lie: sample i at (i * spacing + start), output pixels.
-  int width, height;
-  float2 spacing, start;
+  HistorySamples samples;
 } PastLayers;
 
-// What a texel is, besides its colours. The confidence of a texel of two layers is stored with a minus sign, even 0.
+// Returns the layers of a history of width x height texels. Without ALPHA `alpha` is not read.
+static inline PastLayers past_layers(int width, int height, HistorySamples samples, HISTORY_TEXELS far,
+                                     HISTORY_TEXELS alpha, HISTORY_TEXELS near, __global const half* states,
+                                     __global const TileReprojection* tiles, __global const LayerTile* layer_tiles) {
+  const PastLayers past = {{far, width, height},
+                           {alpha, width, height},
+                           {near, width, height},
+                           states,
+                           tiles,
+                           layer_tiles,
+                           (width + kTemporalTile - 1) / kTemporalTile,
+                           (height + kTemporalTile - 1) / kTemporalTile,
+                           samples};
+  return past;
+}
+
+// A texel's state, besides its colours. The confidence of a texel of two layers is stored with a minus sign, even 0.
 // The rest is stored in layered tiles only, in four halves, depths as fourth roots: so a half holds them to .2 %.
 typedef struct LayerState {
-  float far_depth;        // of what the far layer, or the only one, shows
+  float far_depth;        // depth of the far layer, or of the only one
   float near_depth;       // 0: there is one layer
   float near_confidence;
 } LayerState;
-
-static inline float between_layers(LayerState state) {
-  return 0.5f * (state.far_depth + state.near_depth);
-}
 
 static inline LayerState load_state(__global const half* states, int index) {
   const float4 stored = vload_half4(index, states);
@@ -39,14 +56,18 @@ static inline LayerState load_state(__global const half* states, int index) {
   return state;
 }
 
-// The first `count` of eight.
+// Four states as they are stored.
+static inline float16 four_states(float4 far, float4 near, float4 near_confidence) {
+  return (float16)(far.x, near.x, near_confidence.x, 0.0f, far.y, near.y, near_confidence.y, 0.0f,
+                   far.z, near.z, near_confidence.z, 0.0f, far.w, near.w, near_confidence.w, 0.0f);
+}
+
+// Stores the first `count` of eight.
 static inline void store_states(__global half* states, int index, int count, float8 far_depth, float8 near_depth,
                                 float8 near_confidence) {
   const float8 far = sqrt(sqrt(far_depth)), near = sqrt(sqrt(near_depth));
-  const float16 left = (float16)(far.s0, near.s0, near_confidence.s0, 0.0f, far.s1, near.s1, near_confidence.s1, 0.0f,
-                                 far.s2, near.s2, near_confidence.s2, 0.0f, far.s3, near.s3, near_confidence.s3, 0.0f);
-  const float16 right = (float16)(far.s4, near.s4, near_confidence.s4, 0.0f, far.s5, near.s5, near_confidence.s5, 0.0f,
-                                  far.s6, near.s6, near_confidence.s6, 0.0f, far.s7, near.s7, near_confidence.s7, 0.0f);
+  const float16 left = four_states(far.lo, near.lo, near_confidence.lo);
+  const float16 right = four_states(far.hi, near.hi, near_confidence.hi);
   if (count >= 8) {
     store_half_texels4(states, index, left);
     store_half_texels4(states, index + 4, right);
@@ -58,20 +79,178 @@ static inline void store_states(__global half* states, int index, int count, flo
   for (int i = 0; i < count; ++i) vstore_half4_rte(state[i], index + i, states);
 }
 
+// Returns the tile of texel (x, y).
 static inline int layer_tile_at(const PastLayers* past, int x, int y) {
   const int tile_x = clamp(x / kTemporalTile, 0, past->tiles_x - 1);
   const int tile_y = clamp(y / kTemporalTile, 0, past->tiles_y - 1);
   return tile_y * past->tiles_x + tile_x;
 }
 
-// Of texel (x, y). Where nothing was stored, it shows what the sample nearest to its picture does.
-static inline LayerState state_at(const PastLayers* past, DEPTH_TEXELS depth, TexelLayout layout, int x, int y) {
+static inline float2 phase_of(const PastLayers* past, int tile, LayerKind kind) {
+  if (kind == kNearLayer) return (float2)(past->layer_tiles[tile].phase_x, past->layer_tiles[tile].phase_y);
+  return (float2)(past->tiles[tile].phase_x, past->tiles[tile].phase_y);
+}
+
+// Returns the state of texel (x, y). Where none is stored, the texel has one layer, of the depth of the sample nearest
+// to its picture.
+static inline LayerState state_at(const PastLayers* past, DEPTH_TEXELS depth, int x, int y) {
   const int tile = layer_tile_at(past, x, y);
   if (past->layer_tiles[tile].is_layered) return load_state(past->states, y * past->far.width + x);
-  const float2 phase = (float2)(past->tiles[tile].phase_x, past->tiles[tile].phase_y);
-  const float2 place = (float2)((float)x + 0.5f, (float)y + 0.5f) + phase;
-  const float2 at = floor((place - past->start) / past->spacing + 0.5f);
-  const int column = clamp((int)at.x, 0, past->width - 1), row = clamp((int)at.y, 0, past->height - 1);
-  const LayerState state = {load_depth(depth, layout, column, row), 0.0f, 0.0f};
+  const HistorySamples samples = past->samples;
+  const float2 start = (float2)(samples.start_x, samples.start_y);
+  const float2 spacing = (float2)(samples.spacing_x, samples.spacing_y);
+  const float2 place = (float2)((float)x + 0.5f, (float)y + 0.5f) + phase_of(past, tile, kFarLayer);
+  const float2 at = floor((place - start) / spacing + 0.5f);
+  const int column = clamp((int)at.x, 0, samples.width - 1), row = clamp((int)at.y, 0, samples.height - 1);
+  const LayerState state = {load_depth(depth, samples.depth, column, row), 0.0f, 0.0f};
   return state;
+}
+
+// ---- Rows of four texels.
+
+// Some rows of four texels from (x, y) on.
+typedef struct TexelWindow {
+  int x, y;
+  bool is_inside;   // all of them are
+  bool has_states;  // all of them have been stored
+} TexelWindow;
+
+static inline TexelWindow window_at(const PastLayers* past, int x, int y, int rows) {
+  TexelWindow window = {x, y, false, false};
+  window.is_inside = x >= 0 && y >= 0 && x + 4 <= past->far.width && y + rows <= past->far.height;
+  if (!window.is_inside) return window;
+  const int left = x / kTemporalTile, right = (x + 3) / kTemporalTile;
+  __global const LayerTile* upper = past->layer_tiles + y / kTemporalTile * past->tiles_x;
+  __global const LayerTile* lower = past->layer_tiles + (y + rows - 1) / kTemporalTile * past->tiles_x;
+  window.has_states =
+      (upper[left].is_layered & upper[right].is_layered & lower[left].is_layered & lower[right].is_layered) != 0;
+  return window;
+}
+
+// Loads four texels of a row of the window, counted from 0.
+static inline float16 load_row(HistoryLayer layer, TexelWindow window, int row) {
+  return window.is_inside ? load_history4(layer, (window.y + row) * layer.width + window.x)
+                          : load_clamped4(layer, window.x, window.y + row);
+}
+
+// Loads their alphas; 1 without ALPHA.
+static inline float4 load_alpha_row(AlphaPlane plane, TexelWindow window, int row) {
+#if ALPHA
+  return load_alpha_clamped4(plane, window.x, window.y + row);
+#else
+  return (float4)(1.0f);
+#endif
+}
+
+// The states of four texels.
+typedef struct FourStates {
+  float4 far_depth, near_depth, near_confidence;
+} FourStates;
+
+static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth, TexelWindow window, int row) {
+  FourStates states;
+  const int x = window.x;
+  const int y = window.is_inside ? window.y + row : clamp(window.y + row, 0, past->far.height - 1);
+  if (window.has_states) {
+    const float16 stored = load_half_texels4(past->states, y * past->far.width + x);
+    const float4 far = stored.s048c * stored.s048c, near = stored.s159d * stored.s159d;
+    states.far_depth = far * far;
+    states.near_depth = near * near;
+    states.near_confidence = stored.s26ae;
+    return states;
+  }
+  LayerState state[4];
+  for (int i = 0; i < 4; ++i) state[i] = state_at(past, depth, clamp(x + i, 0, past->far.width - 1), y);
+  states.far_depth = (float4)(state[0].far_depth, state[1].far_depth, state[2].far_depth, state[3].far_depth);
+  states.near_depth = (float4)(state[0].near_depth, state[1].near_depth, state[2].near_depth, state[3].near_depth);
+  states.near_confidence = (float4)(state[0].near_confidence, state[1].near_confidence, state[2].near_confidence,
+                                    state[3].near_confidence);
+  return states;
+}
+
+static inline int16 to_four_masks(int4 lanes) {
+  return (int16)((int4)(lanes.x), (int4)(lanes.y), (int4)(lanes.z), (int4)(lanes.w));
+}
+
+// Loads four texels of the near layer's picture: premultiplied colours and coverages. A texel of one layer covers
+// wholly if it lies before `between`, else not at all.
+static inline float16 load_near_row(const PastLayers* past, DEPTH_TEXELS depth, float between, TexelWindow window,
+                                    int row) {
+  const float16 far = load_row(past->far, window, row);
+  const int4 two = as_int4(far.s37bf) < 0;
+  float16 near = (float16)(0.0f);
+  if (!all(two)) {
+    const FourStates states = load_states(past, depth, window, row);
+    const float16 covering = select(far, (float16)(1.0f), LAST_CHANNELS);
+    near = select(near, covering, to_four_masks(states.far_depth > between));
+  }
+  if (any(two)) near = select(near, load_row(past->near, window, row), to_four_masks(two));
+  return near;
+}
+
+// ---- Rows of eight or twelve.
+
+// Where they lie.
+typedef struct RowWindows {
+  TexelWindow first, second, third;
+  bool has_third;  // there are twelve texels
+} RowWindows;
+
+static inline RowWindows windows_from(const PastLayers* past, int x, int y, int rows, bool has_third) {
+  RowWindows windows = {window_at(past, x, y, rows), window_at(past, x + 4, y, rows), {0, 0, false, false}, has_third};
+  if (has_third) windows.third = window_at(past, x + 8, y, rows);
+  return windows;
+}
+
+// Texels by channel. The last lanes are not used: four, or eight where there is no third window.
+typedef struct LayerChannels {
+  float16 red, green, blue, last;
+} LayerChannels;
+
+typedef struct LayerRow {
+  LayerChannels far;   // or the only one; confidence as stored
+  LayerChannels near;  // coverage; 0 where none of the texels has two layers
+  float16 alpha;       // the far layer's; 1 without ALPHA
+  float16 far_depth, near_depth, near_confidence;
+} LayerRow;
+
+static inline float16 join(float4 first, float4 second, float4 third) {
+  return (float16)(first, second, third, third);
+}
+
+static inline LayerChannels load_channels(HistoryLayer layer, const RowWindows* windows, int row) {
+  const float16 first = load_row(layer, windows->first, row), second = load_row(layer, windows->second, row);
+  const float16 third = windows->has_third ? load_row(layer, windows->third, row) : second;
+  const LayerChannels channels = {
+      join(first.s048c, second.s048c, third.s048c), join(first.s159d, second.s159d, third.s159d),
+      join(first.s26ae, second.s26ae, third.s26ae), join(first.s37bf, second.s37bf, third.s37bf)};
+  return channels;
+}
+
+static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, const RowWindows* windows, int row) {
+  const float16 none = (float16)(0.0f);
+  LayerRow loaded = {load_channels(past->far, windows, row), {none, none, none, none}, none, none, none, none};
+  const int16 two = as_int16(loaded.far.last) >> 31;
+  if (any_lane(two.lo | two.hi)) loaded.near = load_channels(past->near, windows, row);
+  const FourStates first = load_states(past, depth, windows->first, row);
+  const FourStates second = load_states(past, depth, windows->second, row);
+  FourStates third = second;
+  float4 alpha = (float4)(1.0f);
+  if (windows->has_third) {
+    third = load_states(past, depth, windows->third, row);
+    alpha = load_alpha_row(past->alpha, windows->third, row);
+  }
+  loaded.far_depth = join(first.far_depth, second.far_depth, third.far_depth);
+  loaded.near_depth = join(first.near_depth, second.near_depth, third.near_depth);
+  loaded.near_confidence = join(first.near_confidence, second.near_confidence, third.near_confidence);
+  loaded.alpha = join(load_alpha_row(past->alpha, windows->first, row),
+                      load_alpha_row(past->alpha, windows->second, row), alpha);
+  return loaded;
+}
+
+// Returns those eight of a row's texels that eight pixels see in the same column of their neighbourhoods, 0 to 3.
+static inline float8 in_column(float16 row, int column) {
+  if (column == 0) return row.s01234567;
+  if (column == 1) return row.s12345678;
+  return column == 2 ? row.s23456789 : row.s3456789a;
 }

@@ -11,7 +11,7 @@ namespace quincunx {
 // The motion blur looks at the output in tiles, and measures streaks in fixed point.
 enum {
   kTileSide = 32,        // output pixels
-  kStreakUnits = 64,     // of an output pixel
+  kStreakUnits = 64,     // in an output pixel
   kLongestStreak = 8 * kTileSide * kStreakUnits,  // on either axis; longer ones are cut
 };
 

@@ -1,15 +1,30 @@
 // SPDX-License-Identifier: MIT
-// Motion edges: where the velocities of neighbouring samples differ, by how many output pixels a frame. History between
-// the texels on both sides of one mixes two surfaces.
+// Motion edges, and the options of the kernels that follow surfaces.
+//
+//   MOTION    1 (default): they read what reproject wrote | 0: nothing moves
+//   REACTIVE  0 (default) | 1: they read reactive values themselves
 #pragma once
 
-// Thresholds in output pixels a frame, both ranges found by search on the development scenes. Below the first
-// difference an edge has no effect; the effect rises smoothly and is whole from the second on.
-#define EDGE_REJECTS_FROM 0.15f  // history is brought into the range of this frame's samples
-#define EDGE_REJECTS_ALL 0.6f
-#define EDGE_COSTS_FROM 0.1f     // history loses confidence
-#define EDGE_COSTS_ALL 1.0f
+#include "temporal/constants.h"
 
+#ifndef MOTION
+#define MOTION 1
+#endif
+#ifndef REACTIVE
+#define REACTIVE 0
+#endif
+#if MOTION < 0 || MOTION > 1
+#error "MOTION must be 0 or 1"
+#endif
+#if REACTIVE < 0 || REACTIVE > 1
+#error "REACTIVE must be 0 or 1"
+#endif
+
+// A motion edge lies where the velocities of neighbouring samples differ, by so many output pixels a frame. History
+// between the texels on both sides of one mixes two surfaces. Up to the first of two limits in temporal/constants.h it
+// has no effect, from the second on all of it.
+
+// Returns 0 up to `low`, 1 from `high` on, and a smooth rise between.
 static inline float8 smooth_step(float8 x, float low, float high) {
   const float8 t = clamp((x - low) * (1.0f / (high - low)), 0.0f, 1.0f);
   return t * t * (3.0f - 2.0f * t);
@@ -17,5 +32,5 @@ static inline float8 smooth_step(float8 x, float low, float high) {
 
 // How far a motion edge has history rejected, 0 to 1.
 static inline float8 edge_rejection(float8 motion_edge) {
-  return smooth_step(motion_edge, EDGE_REJECTS_FROM, EDGE_REJECTS_ALL);
+  return smooth_step(motion_edge, REJECTED_EDGE_MIN, REJECTED_EDGE_MAX);
 }

@@ -3,9 +3,9 @@
 // pixels, so that every device finds the same samples.
 #pragma once
 
+#include "bits.h"
 #include "motion/blur_params.h"
-#include "sanitise.h"
-#include "texel_blocks.h"
+#include "texels/surfaces.h"
 
 // Two streaks, x and y in turn for each of four texels, from velocities in the units of their target. NaN and Inf are
 //                         0.

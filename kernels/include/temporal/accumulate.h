@@ -2,23 +2,17 @@
 // Adding this frame's samples to history: the nearest one to each of eight pixels of a row.
 #pragma once
 
+#include "bits.h"
+#include "temporal/constants.h"
 #include "temporal/frame_samples.h"
 #include "temporal/limit_confidence.h"
-#include "temporal/startling.h"
-
-// In output pixels, found by search on the development scenes.
-#define REACH 1.05f        // where a sample's weight becomes 0
-#define LEAST_REACH 0.85f  // the same in still tiles once history is known well. +1.2 dB on still pictures
-#define NARROWING 0.1f     // from one to the other, for each unit of confidence
-
-#define LEAST_WEIGHT 1e-30f  // of all samples: keeps 0 / 0 from becoming NaN
 
 static inline float8 reach_of(TileReprojection tile, float8 confidence) {
-  const float8 narrowed = max(REACH - NARROWING * confidence, LEAST_REACH);
-  return stands_still(tile) ? narrowed : (float8)(REACH);
+  const float8 narrowed = max(SAMPLE_REACH_MAX - REACH_NARROWING * confidence, SAMPLE_REACH_MIN);
+  return stands_still(tile) ? narrowed : (float8)(SAMPLE_REACH_MAX);
 }
 
-// (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.
+// Returns (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.
 static inline float8 distance_weights(const TemporalParams* params, const NearestSamples* nearest, float8 reach) {
   const float8 away_x = nearest->from_x * params->spacing_x;
   const float away_y = nearest->from_y * params->spacing_y;
@@ -26,14 +20,14 @@ static inline float8 distance_weights(const TemporalParams* params, const Neares
   return near * near;
 }
 
-// False: none is brighter than 2 or invalid, and their luma weights are all 1.
+// Returns false only if none is brighter than 2 or invalid, so that their luma weights are all 1.
 static inline bool may_be_bright(EightTexels samples) {
   const int16 bits = as_int16(samples.left) | as_int16(samples.right);
   const int8 half_bits = bits.lo | bits.hi;
   return any_at_least_two(half_bits.lo | half_bits.hi);
 }
 
-// The luma weight of a sample. An invalid one has none and becomes black.
+// Returns the luma weight of a sample. An invalid one has none and becomes black.
 static inline float luma_weight_or_none(float4* sample) {
   if (is_valid(*sample)) return luma_weight(*sample);
   *sample = (float4)(0.0f);
@@ -57,7 +51,7 @@ static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count
   return met;
 }
 
-// Whether they are startling, of pixels whose history is known.
+// Returns which samples are outliers, of those of pixels whose history is known.
 static inline int8 are_held_back(EightTexels history, float8 confidence, EightTexels samples) {
   float4 known[8], sample[8];
   int held[8];
@@ -66,28 +60,39 @@ static inline int8 are_held_back(EightTexels history, float8 confidence, EightTe
   vstore16(samples.left, 0, (float*)sample);
   vstore16(samples.right, 1, (float*)sample);
   for (int i = 0; i < 8; ++i)
-    held[i] = is_valid(sample[i]) && is_startling(sample[i], startling_range(known[i])) ? -1 : 0;
-  return vload8(0, held) & (confidence >= LEAST_CONFIDENCE);
+    held[i] = is_valid(sample[i]) && is_outlier(sample[i], outlier_range(known[i])) ? -1 : 0;
+  return vload8(0, held) & (confidence >= CONFIDENCE_MIN);
 }
 
-// m + (s - m) part, and in w their confidence.
+// Returns m + (s - m) part, and in w their confidence.
 static inline float16 add_samples(float16 m, float16 s, float4 part, float4 confidence) {
   const float16 sum = m + (s - m) * to_four_texels(part);
   return select(sum, to_four_texels(confidence), LAST_CHANNELS);
 }
 
-// How far each sample moves its pixel's history: weight / (confidence + weight), less by the inertia of what was
-// reseeded.
+// Returns how far each sample moves its pixel's history: weight / (confidence + weight), less by the inertia of
+// reseeded ones.
 static inline float8 sample_parts(float8 known, float8 inertia, float8 weight) {
-  return weight / max(known + weight + inertia, LEAST_WEIGHT);
+  return weight / max(known + weight + inertia, WEIGHT_SUM_MIN);
 }
 
-// The updated history.
+// Returns the updated history.
 static inline EightTexels accumulate(EightTexels history, float8 known, float8 inertia, EightTexels samples,
                                      float8 weight) {
   const float8 part = sample_parts(known, inertia, weight);
-  const float8 confidence = min(known + weight, MOST_CONFIDENCE);
+  const float8 confidence = min(known + weight, CONFIDENCE_MAX);
   const EightTexels sum = {add_samples(history.left, samples.left, part.lo, confidence.lo),
                            add_samples(history.right, samples.right, part.hi, confidence.hi)};
   return sum;
+}
+
+// Returns the alphas of eight samples.
+static inline float8 alphas(EightTexels samples) {
+  return (float8)(samples.left.s37bf, samples.right.s37bf);
+}
+
+// Returns the updated alpha.
+static inline float8 accumulate_alpha(float8 history, float8 known, float8 inertia, EightTexels samples,
+                                      float8 weight) {
+  return history + (alphas(samples) - history) * sample_parts(known, inertia, weight);
 }

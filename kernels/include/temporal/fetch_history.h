@@ -1,44 +1,34 @@
 // SPDX-License-Identifier: MIT
-// Fetching history: what a layer of the previous frame holds of eight output pixels of a row, in one tile.
+// Fetching history: a layer of the previous frame, and its alpha, at eight output pixels of a row, in one tile.
 #pragma once
 
-#include "sanitise.h"
+#include "arithmetic.h"
+#include "bits.h"
+#include "temporal/constants.h"
+#include "temporal/frame_samples.h"
 #include "temporal/history_sampling.h"
-#include "temporal/reprojection.h"
 #include "temporal/six_taps.h"
+#include "temporal/tile_path.h"
 
-// Confidence, the sum of the weights of all samples in a texel, each 1 at most.
-#define MOST_CONFIDENCE 32.0f      // about 140 frames at scale .5
-#define HISTORY_SHARPNESS -1.0f    // the cubic's a; +.04 dB over -.75 (docs/temporal.md)
-#define SAME_PHASE 0.02f           // output pixels: texels whose phases differ by more are not copied side by side;
-                                   // found by search on the development scenes
-#define FARTHEST_SOURCE 65536.0f   // output pixels: keeps places within what an int can hold
 enum { kResampledAhead = 3 * kTemporalTile };  // texels to prefetch: three blocks further along the row
 
-// What is fetched.
+// History at eight pixels.
 typedef struct FetchedHistory {
   EightTexels texels;
-  float8 confidence;              // within [0, MOST_CONFIDENCE]; 0 from beyond the previous picture's edges
+  float8 confidence;              // within [0, CONFIDENCE_MAX]; 0 from beyond the previous picture's edges
   float8 fraction_x, fraction_y;  // where between texels it was read; 0 where it was copied
 } FetchedHistory;
 
-// The phase of the previous texels around texel (x, y), clamped to the edge.
-static inline float2 phase_at(__global const TileReprojection* tiles, const TemporalParams* params, int x, int y) {
-  const int tile_x = clamp(x, 0, params->output_width - 1) / kTemporalTile;
-  const int tile_y = clamp(y, 0, params->output_height - 1) / kTemporalTile;
-  __global const TileReprojection* tile = tiles + tile_y * params->tiles_x + tile_x;
-  return (float2)(tile->phase_x, tile->phase_y);
-}
-
-// The same around eight texels.
+// The phases of the previous texels around eight texels, clamped to the edge.
 typedef struct SourcePhases {
   float8 x, y;
 } SourcePhases;
 
 static inline SourcePhases phases_at(__global const TileReprojection* tiles, const TemporalParams* params, int8 x,
                                      int8 y) {
-  const uint8 tile_x = as_uint8(clamp(x, 0, params->output_width - 1)) / (uint)kTemporalTile;
-  const uint8 tile_y = as_uint8(clamp(y, 0, params->output_height - 1)) / (uint)kTemporalTile;
+  const int8 last_x = (int8)(params->output_width - 1), last_y = (int8)(params->output_height - 1);
+  const uint8 tile_x = as_uint8(clamp(x, (int8)(0), last_x)) / (uint)kTemporalTile;
+  const uint8 tile_y = as_uint8(clamp(y, (int8)(0), last_y)) / (uint)kTemporalTile;
   const int8 at = as_int8(tile_y) * params->tiles_x + as_int8(tile_x);
   if (!any_lane(at ^ at.s0)) {  // most often it is one tile
     const SourcePhases one = {(float8)(tiles[at.s0].phase_x), (float8)(tiles[at.s0].phase_y)};
@@ -52,21 +42,7 @@ static inline SourcePhases phases_at(__global const TileReprojection* tiles, con
   return phases;
 }
 
-// Whether the tile's pixels from (x, y) on are copied: it is rigid, and the eight texels that it takes are all inside
-// and have the phase that it takes them for.
-static inline bool is_copied(__global const TileReprojection* previous, const TemporalParams* params,
-                             TileReprojection tile, int x, int y) {
-  const int from_x = x - tile.step_x, from_y = y - tile.step_y;
-  const bool inside = from_x >= 0 && from_y >= 0 && from_x + kTemporalTile <= params->output_width &&
-                      from_y < params->output_height;
-  if (!tile.is_rigid || !inside) return false;
-  const float2 wanted = (float2)(tile.source_phase_x, tile.source_phase_y);
-  const float2 left = fabs(phase_at(previous, params, from_x, from_y) - wanted);
-  const float2 right = fabs(phase_at(previous, params, from_x + kTemporalTile - 1, from_y) - wanted);
-  return max(max(left.x, left.y), max(right.x, right.y)) <= SAME_PHASE;
-}
-
-// Where the pictures of eight pixels were in the previous history: on each axis the first of the four texels around
+// The places of the pictures of eight pixels in the previous history: on each axis the first of the four texels around
 // each place, and the fraction of the way between the middle two.
 typedef struct SourcePlaces {
   Positions x, y;
@@ -75,8 +51,8 @@ typedef struct SourcePlaces {
 static inline SourcePlaces source_places(__global const TileReprojection* previous, const TemporalParams* params,
                                          TileReprojection tile, const EightReprojections* motion, int x, int y) {
   const int8 columns = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
-  float8 at_x = clamp(motion->x, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_x;
-  float8 at_y = clamp(motion->y, -FARTHEST_SOURCE, FARTHEST_SOURCE) + tile.phase_y;
+  float8 at_x = clamp(motion->x, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_x;
+  float8 at_y = clamp(motion->y, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_y;
   // Less the phase of the texels there.
   const int8 i = columns + convert_int8(at_x + 0.5f), j = y + convert_int8(at_y + 0.5f);
   const SourcePhases phase = phases_at(previous, params, i, j);
@@ -90,22 +66,23 @@ static inline SourcePlaces source_places(__global const TileReprojection* previo
   return places;
 }
 
-// Whether the 4x4 texels from (x, y) on lie inside, for all eight pixels.
+// Returns whether the 4x4 texels from (x, y) on lie inside, for all eight pixels.
 static inline bool lie_inside(int8 x, int8 y, int width, int height) {
   return !any_lane((x | y | (width - 4 - x) | (height - 4 - y)) >> 31);
 }
 
-// On one axis, whether pictures were beyond the edges.
+// Returns whether pictures were beyond the edges of one axis.
 static inline int8 lie_outside(Positions from, int size) {
   const float8 at = convert_float8(from.texel + 1) + from.fraction;
   return (at < -0.5f) | (at > (float)size - 0.5f);
 }
 
 static inline float8 held_confidence(EightTexels texels) {
-  return clamp(confidences(texels), 0.0f, MOST_CONFIDENCE);
+  return clamp(confidences(texels), 0.0f, CONFIDENCE_MAX);
 }
 
-// A layer at eight places with weights x and y, held in the range of the middle four texels. `inside`: all texels are.
+// Returns a layer at eight places with weights x and y, held in the range of the middle four texels. `inside`: all
+// texels are.
 static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
   const int8 column = from.x.texel, row = from.y.texel;
   const EightWeights wx = weights_by_place(x), wy = weights_by_place(y);
@@ -120,7 +97,7 @@ static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, b
 }
 
 #if TAPS == 36
-// A layer at eight places between 6x6 texels.
+// Returns a layer at eight places between 6x6 texels.
 static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
   const int8 column = from.x.texel - 1, row = from.y.texel - 1;
   const bool inside = lie_inside(column, row, layer.width - 2, layer.height - 2);
@@ -136,7 +113,7 @@ static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from)
                       sample_six(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
 }
 #else
-// A layer at eight places between 4x4 texels.
+// Returns a layer at eight places between 4x4 texels.
 static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
   const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
   return sample_places(layer, from, inside, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
@@ -144,7 +121,7 @@ static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from)
 }
 #endif
 
-// History at eight places, between texels.
+// Returns history at eight places, between texels.
 static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces from) {
   const bool inside = lie_inside(from.x.texel, from.y.texel, layer.width, layer.height);
   will_read_rows(layer, from.x.texel.s0 + kResampledAhead, from.y.texel.s0);
@@ -156,17 +133,51 @@ static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces f
   return fetched;
 }
 
-// The eight texels from (x, y) on as they are.
+// Returns the eight texels from (x, y) on as they are.
 static inline FetchedHistory copy_history(HistoryLayer layer, int x, int y) {
   const EightTexels texels = load_history8(layer, y * layer.width + x);
   const FetchedHistory fetched = {texels, held_confidence(texels), (float8)(0.0f), (float8)(0.0f)};
   return fetched;
 }
 
-// What a layer holds of the tile's pixels from (x, y) on.
+// Returns a layer at the tile's pixels from (x, y) on.
 static inline FetchedHistory fetch_history(HistoryLayer layer, __global const TileReprojection* previous,
-                                           const TemporalParams* params, TileReprojection tile, bool copied,
+                                           const TemporalParams* params, TileReprojection tile, TilePath path,
                                            const EightReprojections* motion, int x, int y) {
-  if (copied) return copy_history(layer, x - tile.step_x, y - tile.step_y);
+  if (path != kResampled) return copy_history(layer, x - tile.step_x, y - tile.step_y);
   return resample_history(layer, source_places(previous, params, tile, motion, x, y));
+}
+
+// ---- Alpha.
+
+// Returns alpha as resample_history() returns colour.
+#if TAPS == 36
+static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
+  const int8 i = from.x.texel - 1, j = from.y.texel - 1;
+  const SixByPlace wx = six_by_place(six_weights(from.x.fraction));
+  const SixByPlace wy = six_by_place(six_weights(from.y.fraction));
+  return (float8)(
+      sample_alpha_six(plane, i.s0, j.s0, wx.p0, wy.p0), sample_alpha_six(plane, i.s1, j.s1, wx.p1, wy.p1),
+      sample_alpha_six(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha_six(plane, i.s3, j.s3, wx.p3, wy.p3),
+      sample_alpha_six(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha_six(plane, i.s5, j.s5, wx.p5, wy.p5),
+      sample_alpha_six(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha_six(plane, i.s7, j.s7, wx.p7, wy.p7));
+}
+#else
+static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
+  const int8 i = from.x.texel, j = from.y.texel;
+  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
+  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
+  return (float8)(sample_alpha(plane, i.s0, j.s0, wx.p0, wy.p0), sample_alpha(plane, i.s1, j.s1, wx.p1, wy.p1),
+                  sample_alpha(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha(plane, i.s3, j.s3, wx.p3, wy.p3),
+                  sample_alpha(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha(plane, i.s5, j.s5, wx.p5, wy.p5),
+                  sample_alpha(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha(plane, i.s7, j.s7, wx.p7, wy.p7));
+}
+#endif
+
+// Returns alpha as fetch_history() returns colour.
+static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
+                                 const TemporalParams* params, TileReprojection tile, TilePath path,
+                                 const EightReprojections* motion, int x, int y) {
+  if (path != kResampled) return load_alpha8(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
+  return resample_alpha(plane, source_places(previous, params, tile, motion, x, y));
 }

@@ -3,17 +3,20 @@
 // a half can be, are invalid and take no part.
 #pragma once
 
+#include "arithmetic.h"
+#include "temporal/constants.h"
 #include "temporal/history.h"
+#include "temporal/temporal_params.h"
 #include "texel.h"
 
-#define INVALID_BITS 0x477fe000  // of 65504, the largest half: what a half target holds of anything brighter
+#define INVALID_BITS 0x477fe000  // bits of 65504, the largest half: what a half target holds of anything brighter
 
 static inline bool is_valid(float4 sample) {
   const long2 hits = as_long2((as_int4(sample) & 0x7fffffff) >= INVALID_BITS);
   return (hits.x | hits.y) == 0;
 }
 
-// To each channel of four samples whether that sample is.
+// Returns in each channel of four samples whether that sample is valid.
 static inline int16 are_valid(float16 samples) {
   const int16 magnitude = as_int16(samples) & 0x7fffffff;
   const int16 pairs = max(magnitude, magnitude.s1032547698badcfe);
@@ -24,12 +27,12 @@ static inline float largest_colour(float4 colour) {
   return max(max(colour.x, colour.y), max(colour.z, 0.0f));
 }
 
-// Clamped to the viewport's edge.
+// Returns sample (x, y), clamped to the viewport's edge.
 static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
   return load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
 }
 
-// The samples of a row nearest to eight pixels.
+// Loads the samples of a row nearest to eight pixels.
 static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, int8 x, int y) {
 #if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
   __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
@@ -44,8 +47,98 @@ static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout,
 #endif
 }
 
-// The luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright sample does
-// not outshine the others. (Worth .65 dB over the laboratory's sequences, 3.6 on sparkles: docs/temporal.md.)
+// Returns the luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright
+// sample does not outshine the others. (Worth .65 dB over the laboratory's sequences, 3.6 on sparkles:
+// docs/lab/temporal.md.)
 static inline float luma_weight(float4 sample) {
   return 1.0f / max(1.0f, 0.5f * largest_colour(sample));
+}
+
+// ---- Outliers are samples so much brighter than history, or so negative, that they may be faults of the renderer.
+// Several side by side are held back for a frame: a fault of one frame then never reaches history, and what stays, or
+// comes back soon, is late by one frame.
+
+// Limits beyond which a sample is an outlier.
+typedef struct OutlierRange {
+  float most, least;
+} OutlierRange;
+
+static inline float largest_magnitude(float4 colour) {
+  return max(max(fabs(colour.x), fabs(colour.y)), fabs(colour.z));
+}
+
+static inline OutlierRange outlier_range(float4 history) {
+  const float light = largest_magnitude(history);
+  const OutlierRange range = {OUTLIER_RATIO_MIN * (light + OUTLIER_FLOOR), -(light + NEGATIVE_OUTLIER_FLOOR)};
+  return range;
+}
+
+// Returns whether a valid sample is one.
+static inline bool is_outlier(float4 sample, OutlierRange range) {
+  return max(max(sample.x, sample.y), sample.z) > range.most || min(min(sample.x, sample.y), sample.z) < range.least;
+}
+
+// ---- The sample of this frame nearest to each of eight output pixels of a row, in one tile.
+
+// Nearest samples. A pixel's picture lies at its centre + the tile's phase. All eight share their row, as y's lanes do.
+typedef struct NearestSamples {
+  int8 x;        // columns of the viewport
+  int y;         // row
+  // From the sample to the pixel's picture, in samples; beyond the outermost samples more than half of one.
+  float8 from_x;
+  float from_y;
+  Positions between_x, between_y;  // the same place, clamped to the viewport: between which samples it lies
+} NearestSamples;
+
+// Returns the place of output row y, without a phase.
+static inline Positions row_position(const TemporalParams* params, __global const int* positions, int y) {
+  const int texel = positions[2 * params->columns + y];
+  const float fraction = as_float(positions[2 * params->columns + params->output_height + y]);
+  const Positions row = {(int8)(texel), (float8)(fraction)};
+  return row;
+}
+
+// Moves, on a checkerboard, from a sample that is not shaded to the next one of its row that is, on the pixel's own
+// side where there is one.
+static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams* params) {
+  const int last = params->frame0.width - 1;
+  const int8 is_shaded = ((nearest->x + nearest->y) & 1) == params->parity;
+  int8 step = select((int8)(-1), (int8)(1), nearest->from_x > 0.0f);
+  step = select(step, (int8)(1), nearest->x == 0);
+  step = select(step, (int8)(-1), nearest->x == last);
+  step = select(step, (int8)(0), is_shaded | (int8)(last == 0 ? -1 : 0));
+  nearest->x += step;
+  nearest->from_x -= convert_float8(step);
+}
+
+// Finds the nearest samples of the pixels from column x on, in a row that is not known yet.
+static inline NearestSamples find_nearest_columns(const TemporalParams* params, __global const int* positions, int x,
+                                                  TileReprojection tile) {
+  Positions place = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
+  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
+    place = shifted_positions(place, (float8)(tile.phase_x / params->spacing_x));
+  NearestSamples nearest;
+  nearest.between_x = held_positions(place, params->frame0.width - 1);
+  nearest.x = nearest_samples(nearest.between_x);
+  nearest.from_x = place.fraction + convert_float8(place.texel - nearest.x);
+  return nearest;
+}
+
+// Returns them in a row.
+static inline NearestSamples in_row(const TemporalParams* params, NearestSamples nearest, Positions row,
+                                    TileReprojection tile) {
+  Positions place = row;
+  if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
+    place = shifted_positions(row, (float8)(tile.phase_y / params->spacing_y));
+  nearest.between_y = held_positions(place, params->frame0.height - 1);
+  nearest.y = nearest_samples(nearest.between_y).s0;
+  nearest.from_y = place.fraction.s0 + (float)(place.texel.s0 - nearest.y);
+  if (params->parity >= 0) move_to_shaded(&nearest, params);
+  return nearest;
+}
+
+// Finds the nearest samples of the pixels from column x on, in a row.
+static inline NearestSamples find_nearest_samples(const TemporalParams* params, __global const int* positions, int x,
+                                                  Positions row, TileReprojection tile) {
+  return in_row(params, find_nearest_columns(params, positions, x, tile), row, tile);
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A layer of the temporal upscaler's history, and how its texels are loaded and stored. This is the only place that
-// knows how a layer lies in memory: a tight buffer of the output extent, row by row, in each texel red, green and blue
-// and, in place of alpha, their confidence, the sum of the weights of the samples in it.
+// A layer of the temporal upscaler's history and its alpha, and how both are loaded and stored. This is the only place
+// that knows how a layer lies in memory: a tight buffer of the output extent, row by row, in each texel red, green and
+// blue and, in place of alpha, their confidence, the sum of the weights of the samples in it.
 //
 // Option: HISTORY_FORMAT  FLOAT (default) | HALF
 #pragma once
 
+#include "bits.h"
 #include "texel.h"
 
 #ifndef HISTORY_FORMAT
@@ -111,7 +112,7 @@ static inline float8 confidences(EightTexels texels) {
 // Finite values. Halves are rounded to the nearest, not dithered: the samples differ by more than their steps.
 static inline void store_history(STORED_HISTORY texels, int index, float4 value) {
 #if HISTORY_FORMAT == HALF
-  vstore_half4_rte(clamp(value, -65504.0f, 65504.0f), index, texels);
+  vstore_half4_rte(clamp(value, -FINITE_HALF_MAX, FINITE_HALF_MAX), index, texels);
 #else
   vstore4(value, index, texels);
 #endif
@@ -120,7 +121,7 @@ static inline void store_history(STORED_HISTORY texels, int index, float4 value)
 // The same to the texels index to index + 3.
 static inline void store_history4(STORED_HISTORY texels, int index, float16 value) {
 #if HISTORY_FORMAT == HALF
-  store_half_texels4(texels, index, clamp(value, -65504.0f, 65504.0f));
+  store_half_texels4(texels, index, clamp(value, -FINITE_HALF_MAX, FINITE_HALF_MAX));
 #else
   vstore16(value, 0, texels + 4 * index);
 #endif
@@ -137,4 +138,51 @@ static inline void store_history8(STORED_HISTORY texels, int index, int count, E
   vstore16(row.left, 0, (float*)texel);
   vstore16(row.right, 1, (float*)texel);
   for (int i = 0; i < count; ++i) store_history(texels, index + i, texel[i]);
+}
+
+// Alpha of a layer, to read: a plane of its own, one value for each texel, in the layer's format and order. It is read
+// at the same places and with the same weights as colour.
+typedef struct AlphaPlane {
+  HISTORY_TEXELS texels;
+  int width, height;  // the output extent
+} AlphaPlane;
+
+static inline float load_alpha(AlphaPlane plane, int index) {
+#if HISTORY_FORMAT == HALF
+  return vload_half(index, plane.texels);
+#else
+  return plane.texels[index];
+#endif
+}
+
+// The values index to index + 7.
+static inline float8 load_alpha8(AlphaPlane plane, int index) {
+#if HISTORY_FORMAT == HALF
+  // Through private memory: vload_half8 would want 16-byte alignment.
+  const ushort8 bits = vload8(0, (__global const ushort*)plane.texels + index);
+  return vload_half8(0, (__private const half*)&bits);
+#else
+  return vload8(0, plane.texels + index);
+#endif
+}
+
+// The first `count` of eight.
+static inline void store_alpha8(STORED_HISTORY texels, int index, int count, float8 alpha) {
+  float value[8];
+  vstore8(clamp(alpha, -FINITE_HALF_MAX, FINITE_HALF_MAX), 0, value);
+  for (int i = 0; i < min(count, 8); ++i) {
+#if HISTORY_FORMAT == HALF
+    vstore_half_rte(value[i], index + i, texels);
+#else
+    texels[index + i] = value[i];
+#endif
+  }
+}
+
+// The four values from (x, y) on, clamped to the edge.
+static inline float4 load_alpha_clamped4(AlphaPlane plane, int x, int y) {
+  const int row = clamp(y, 0, plane.height - 1) * plane.width;
+  const int last = plane.width - 1;
+  return (float4)(load_alpha(plane, row + clamp(x, 0, last)), load_alpha(plane, row + clamp(x + 1, 0, last)),
+                  load_alpha(plane, row + clamp(x + 2, 0, last)), load_alpha(plane, row + clamp(x + 3, 0, last)));
 }

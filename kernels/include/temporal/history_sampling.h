@@ -5,7 +5,7 @@
 //               elsewhere
 #pragma once
 
-#include "multiply_add.h"
+#include "arithmetic.h"
 #include "temporal/history.h"
 
 #ifndef TAPS
@@ -20,7 +20,7 @@ typedef struct Neighbourhood {
   float16 row0, row1, row2, row3;
 } Neighbourhood;
 
-// The texels from (x, y) on, all inside.
+// Loads the texels from (x, y) on, all inside.
 static inline Neighbourhood load_neighbourhood(HistoryLayer layer, int x, int y) {
   const int width = layer.width;
   const int index = y * width + x;
@@ -29,7 +29,7 @@ static inline Neighbourhood load_neighbourhood(HistoryLayer layer, int x, int y)
   return around;
 }
 
-// Four rows from (x, y) on, which may be anywhere.
+// Prefetches four rows from (x, y) on, which may be anywhere.
 static inline void will_read_rows(HistoryLayer layer, int x, int y) {
   for (int row = 0; row < 4; ++row)
     will_read_history(layer, (y + row) * layer.width + x);
@@ -42,14 +42,14 @@ static inline float16 load_clamped4(HistoryLayer layer, int x, int y) {
                    load_history(layer, row + clamp(x + 2, 0, last)), load_history(layer, row + clamp(x + 3, 0, last)));
 }
 
-// The same anywhere, clamped to the edge.
+// Loads them from anywhere, clamped to the edge.
 static inline Neighbourhood load_neighbourhood_clamped(HistoryLayer layer, int x, int y) {
   const Neighbourhood around = {load_clamped4(layer, x, y), load_clamped4(layer, x, y + 1),
                                 load_clamped4(layer, x, y + 2), load_clamped4(layer, x, y + 3)};
   return around;
 }
 
-// Of eight places on one axis the weights of the four texels around each; where TAPS is 4 the outer two are 0.
+// The weights of the four texels around each of eight places on one axis; where TAPS is 4 the outer two are 0.
 typedef struct Cubic {
   float8 w0, w1, w2, w3;
 } Cubic;
@@ -59,7 +59,7 @@ static inline Cubic tent_weights(float8 f) {
   return tent;
 }
 
-// Keys, "Cubic Convolution Interpolation for Digital Image Processing", 1981, with his `a`.
+// Returns Keys' weights, "Cubic Convolution Interpolation for Digital Image Processing", 1981, with his `a`.
 static inline Cubic cubic_weights(float8 f, float a) {
 #if TAPS == 4
   return tent_weights(f);
@@ -94,13 +94,13 @@ static inline float4 blend_columns(float16 row, float4 w) {
   return pair.lo + pair.hi;
 }
 
-// Between two rows of two texels.
+// Blends two rows of two texels.
 static inline float4 blend_pairs(float8 upper, float8 lower, float4 x, float4 y) {
   const float8 rows = MULTIPLY_ADD(upper, (float8)(y.y), lower * y.z);
   return MULTIPLY_ADD(rows.lo, (float4)(x.y), rows.hi * x.z);
 }
 
-// The cubic, held in the range of the middle four.
+// Returns the cubic, held in the range of the middle four.
 static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4 y) {
   const float16 outer = MULTIPLY_ADD(around.row0, (float16)(y.x), around.row3 * y.w);
   const float16 rows = MULTIPLY_ADD(around.row1, (float16)(y.y), MULTIPLY_ADD(around.row2, (float16)(y.z), outer));
@@ -109,8 +109,8 @@ static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4
   return min(max(blend_columns(rows, x), min(least.s4567, least.s89ab)), max(most.s4567, most.s89ab));
 }
 
-// History at a place with weights x and y among the 4x4 texels from (x0, y0) on; `inside`: they are all there, else
-// they are clamped to the edge.
+// Returns history at a place with weights x and y among the 4x4 texels from (x0, y0) on; `inside`: they are all there,
+// else they are clamped to the edge.
 static inline float4 sample_history(HistoryLayer layer, int x0, int y0, bool inside, float4 x, float4 y) {
 #if TAPS == 4
   const int index = (y0 + 1) * layer.width + x0 + 1;
@@ -159,8 +159,8 @@ static inline float16 blend_outer(float16 row0, float16 row1, float16 row2, floa
   return MULTIPLY_ADD(row1, (float16)(y.y), MULTIPLY_ADD(row2, (float16)(y.z), outer));
 }
 
-// The cubic at eight places of a row that lie alike among their texels, held in the range of the middle four of each.
-// Of four rows of texels, which begin at the first of those around the first place.
+// Returns the cubic at eight places of a row that lie alike among their texels, held in the range of the middle four of
+// each. Four rows of texels begin at the first of those around the first place.
 static inline EightTexels blend_rows(TwelveTexels row0, TwelveTexels row1, TwelveTexels row2, TwelveTexels row3,
                                      float4 x, float4 y) {
   const TwelveTexels rows = {blend_outer(row0.first, row1.first, row2.first, row3.first, y),
@@ -180,3 +180,17 @@ static inline EightTexels blend_rows(TwelveTexels row0, TwelveTexels row1, Twelv
   return held;
 }
 #endif
+
+// Returns alpha as sample_history() returns colour.
+static inline float sample_alpha(AlphaPlane plane, int x0, int y0, float4 x, float4 y) {
+  const float4 row1 = load_alpha_clamped4(plane, x0, y0 + 1), row2 = load_alpha_clamped4(plane, x0, y0 + 2);
+#if TAPS == 4
+  return dot(MULTIPLY_ADD(row1, (float4)(y.y), row2 * y.z), x);
+#else
+  const float4 row0 = load_alpha_clamped4(plane, x0, y0), row3 = load_alpha_clamped4(plane, x0, y0 + 3);
+  const float4 outer = MULTIPLY_ADD(row0, (float4)(y.x), row3 * y.w);
+  const float4 rows = MULTIPLY_ADD(row1, (float4)(y.y), MULTIPLY_ADD(row2, (float4)(y.z), outer));
+  const float2 least = min(row1.yz, row2.yz), most = max(row1.yz, row2.yz);
+  return min(max(dot(rows, x), min(least.x, least.y)), max(most.x, most.y));
+#endif
+}

@@ -2,23 +2,19 @@
 // Rectification: history that is rejected is brought into the range of this frame's samples around the pixel, in tone
 // space, c / (1 + max c), where differences are as the eye has them rather than as light. After Karis, "High-Quality
 // Temporal Supersampling", 2014, but only where something speaks against history: applied everywhere, as is usual, it
-// costs .5 dB, on still pictures 6 (docs/temporal.md).
+// costs .5 dB, on still pictures 6 (docs/lab/temporal.md).
 #pragma once
 
+#include "temporal/constants.h"
 #include "temporal/frame_samples.h"
 
-#define DARKEST_REST 0x1p-16f  // of 1 - max tone: where rounding would make the way back infinite
-// Found by search on the development scenes.
-#define BOX_SIZE 0.75f    // standard deviations on each side of the mean
-#define BOX_MARGIN 0.02f  // tone: a distance from the box that takes all confidence where the samples are all alike
-
-// To each channel of four texels the largest of that texel's channels, or of what the last of them holds.
+// Returns in each channel of four texels the largest of that texel's channels, its last one included.
 static inline float16 largest_channels(float16 texels) {
   const float16 pairs = max(texels, texels.s1032547698badcfe);
   return max(pairs, pairs.s23016745ab89efcd);
 }
 
-// To each channel of four texels the sum of that texel's channels.
+// Returns in each channel of four texels the sum of that texel's channels.
 static inline float16 channel_sums(float16 texels) {
   const float16 pairs = texels + texels.s1032547698badcfe;
   return pairs + pairs.s23016745ab89efcd;
@@ -34,7 +30,7 @@ static inline float16 to_tone(float16 colours) {
 }
 
 static inline float16 from_tone(float16 tone) {
-  return tone / max(1.0f - largest_channels(without_alpha(tone)), DARKEST_REST);
+  return tone / max(1.0f - largest_channels(without_alpha(tone)), TONE_REST_MIN);
 }
 
 // Sums over the valid ones of a cross of samples around four pixels, in tone space.
@@ -46,7 +42,7 @@ static inline CrossSums add_to_cross(CrossSums cross, float16 samples) {
   const int16 valid = are_valid(samples);
   const float16 tone = to_tone(samples), none = (float16)(0.0f);
   cross.first = select(cross.first, tone, valid & (cross.count == none));
-  const float16 difference = select(none, tone - cross.first, valid);  // of these squares no digits are lost
+  const float16 difference = select(none, tone - cross.first, valid);  // small, so that its square loses no digits
   cross.sum += difference;
   cross.squares += difference * difference;
   cross.count += select(none, (float16)(1.0f), valid);
@@ -77,7 +73,7 @@ static inline ToneBoxes boxes_of(CrossSums cross) {
   return boxes;
 }
 
-// Of the samples nearest to eight pixels and the four beside each.
+// The ranges of the samples nearest to eight pixels and the four beside each.
 typedef struct EightBoxes {
   ToneBoxes left, right;
 } EightBoxes;
@@ -115,4 +111,39 @@ static inline Rectified rectify4(float16 history, float4 rejection, const ToneBo
   const Rectified rectified = {select(history, from_tone(tone + step * share), moved & (distance > 0.0f)),
                                select((float16)(1.0f), part, moved).s048c};
   return rectified;
+}
+
+// Moves alpha by `rejection` of the way into the range of the valid ones of sample (x, y) and its four neighbours.
+static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y, float alpha,
+                                  float rejection) {
+  float first = 0.0f, sum = 0.0f, squares = 0.0f, count = 0.0f;
+  for (int i = 0; i < 5; ++i) {
+    const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
+    const float4 sample = sample_at(texels, frame, x + column, y + row);
+    if (!is_valid(sample)) continue;
+    if (count == 0.0f) first = sample.w;
+    const float difference = sample.w - first;
+    sum += difference;
+    squares += difference * difference;
+    count += 1.0f;
+  }
+  if (count == 0.0f) return alpha;
+  const float mean = sum / count;
+  const float deviation = BOX_SIZE * sqrt(max(squares / count - mean * mean, 0.0f));
+  const float middle = first + mean;
+  return alpha + (clamp(alpha, middle - deviation, middle + deviation) - alpha) * rejection;
+}
+
+// Rectifies the alphas of eight pixels.
+static inline float8 rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y, float8 alphas,
+                                    float8 rejection) {
+  float alpha[8], share[8];
+  int column[8];
+  vstore8(alphas, 0, alpha);
+  vstore8(rejection, 0, share);
+  vstore8(x, 0, column);
+  for (int i = 0; i < 8; ++i) {
+    if (share[i] > 0.0f) alpha[i] = rectify_alpha(texels, frame, column[i], y, alpha[i], share[i]);
+  }
+  return vload8(0, alpha);
 }

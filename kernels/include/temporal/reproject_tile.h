@@ -3,21 +3,51 @@
 #pragma once
 
 #include "motion/motion_edge.h"
-#include "motion/motion_options.h"
+#include "temporal/constants.h"
 #include "temporal/temporal_params.h"
 #include "texel.h"
 
-// Found by search on the development scenes; output pixels.
-#define RIGID_RANGE 0.05f   // by how much the motion of a rigid tile's samples may differ on an axis
-#define STILL_MOTION 1e-4f  // what velocity's rounding leaves of none
-
 enum { kReprojectionAhead = 8 };  // samples to prefetch
 
-// The tile that holds output position (x, y), clamped to the edge.
+// Returns the tile that holds output position (x, y), clamped to the edge.
 static inline int tile_at(const TemporalTileParams* params, float x, float y) {
   const int tile_x = clamp((int)x / kTemporalTile, 0, params->tiles_x - 1);
   const int tile_y = clamp((int)y / kTemporalTile, 0, params->tiles_y - 1);
   return tile_y * params->tiles_x + tile_x;
+}
+
+// Where the middle of a tile was that moves by `motion`, as a tile of the previous frame.
+static inline int source_tile(const TemporalTileParams* params, float2 corner, float2 motion) {
+  const float2 source = corner + 0.5f * (float)kTemporalTile + motion;
+  return tile_at(params, source.x, source.y);
+}
+
+// A motion of which velocity's rounding is all is none.
+static inline float2 without_rounding(float2 motion) {
+  return select(motion, (float2)(0.0f), fabs(motion) < (float2)(STILL_MOTION_MAX));
+}
+
+// How texels follow their motion: by a step of whole texels, and by a phase that takes up the rest.
+typedef struct PhaseStep {
+  float2 step, phase;
+} PhaseStep;
+
+// Follows `motion` from texels of the phase `source`.
+static inline PhaseStep carry_phase(float2 source, float2 motion) {
+  const float2 place = source - motion;
+  const float2 step = floor(place + 0.5f);
+  const PhaseStep carried = {step, place - step};
+  return carried;
+}
+
+static inline void take_phase(TileReprojection* tile, float2 source, float2 motion) {
+  const PhaseStep carried = carry_phase(source, motion);
+  tile->source_phase_x = source.x;
+  tile->source_phase_y = source.y;
+  tile->phase_x = carried.phase.x;
+  tile->phase_y = carried.phase.y;
+  tile->step_x = (int)carried.step.x;
+  tile->step_y = (int)carried.step.y;
 }
 
 // The samples from `first` to `last`, each a column and a row.
@@ -25,7 +55,7 @@ typedef struct SampleRange {
   int2 first, last;
 } SampleRange;
 
-// Those whose centres lie in a tile; at least one.
+// Returns the samples whose centres lie in a tile; at least one.
 static inline SampleRange samples_in_tile(const TemporalTileParams* params, float2 corner) {
   const int2 limit = (int2)(params->frame.width - 1, params->frame.height - 1);
   const float2 spacing = (float2)(params->spacing_x, params->spacing_y);
@@ -37,7 +67,7 @@ static inline SampleRange samples_in_tile(const TemporalTileParams* params, floa
 }
 
 #if MOTION
-// The same and the next samples around them.
+// Returns them and the next samples around them.
 static inline SampleRange widened(const TemporalTileParams* params, SampleRange range) {
   const int2 limit = (int2)(params->frame.width - 1, params->frame.height - 1);
   const SampleRange around = {max(range.first - 1, (int2)(0)), min(range.last + 1, limit)};
@@ -76,33 +106,24 @@ static inline ReprojectionRange range_of(__global const float* reprojection, Tex
   return range;
 }
 
-// How a tile takes history over whose samples, and the next ones around it, have these reprojections.
+// Returns how a tile takes history over whose samples, and the next ones around it, have these reprojections.
 static inline TileReprojection reproject_tile(const TemporalTileParams* params, ReprojectionRange found,
                                               __global const TileReprojection* previous, float2 corner) {
   TileReprojection tile = {.is_rigid = 0};
   const float edge = max(found.most.w, -found.least.w);
-  tile.has_motion_edge = edge > EDGE_REJECTS_FROM ? 1 : 0;
+  tile.has_motion_edge = edge > REJECTED_EDGE_MIN ? 1 : 0;
   const float2 least = found.least.xy, most = found.most.xy;
   const float2 scale = (float2)(params->motion_x, params->motion_y);
   const float2 range = (most - least) * scale;
   const bool known = found.unknown.z == 0 && found.least.z >= 0.0f;
-  if (!known || !(range.x <= RIGID_RANGE && range.y <= RIGID_RANGE)) return tile;
+  if (!known || !(range.x <= RIGID_MOTION_RANGE_MAX && range.y <= RIGID_MOTION_RANGE_MAX)) return tile;
 
-  const float2 mean = 0.5f * (most + least) * scale;
-  const float2 motion = select(mean, (float2)(0.0f), fabs(mean) < (float2)(STILL_MOTION));
-  const float2 source = corner + 0.5f * (float)kTemporalTile + motion;
-  // What comes in from beyond the edges takes the outermost tile's phase, so that a long pan stays of one piece.
-  const int from = tile_at(params, source.x, source.y);
-  tile.source_phase_x = previous[from].phase_x;
-  tile.source_phase_y = previous[from].phase_y;
-  const float2 place = (float2)(tile.source_phase_x, tile.source_phase_y) - motion;
-  const float2 step = floor(place + 0.5f);
-  tile.phase_x = place.x - step.x;
-  tile.phase_y = place.y - step.y;
-  tile.step_x = (int)step.x;
-  tile.step_y = (int)step.y;
+  const float2 motion = without_rounding(0.5f * (most + least) * scale);
+  // A tile that comes in from beyond the edges takes the outermost tile's phase: a long pan stays of one piece.
+  const int from = source_tile(params, corner, motion);
+  take_phase(&tile, (float2)(previous[from].phase_x, previous[from].phase_y), motion);
   tile.is_rigid = 1;
-  tile.is_copyable = found.least.z == 1.0f && edge <= EDGE_COSTS_FROM ? 1 : 0;
+  tile.is_trusted = found.least.z == 1.0f && edge <= COSTLY_EDGE_MIN ? 1 : 0;
   return tile;
 }
 #endif

@@ -2,8 +2,8 @@
 // The reprojection of eight output pixels of a row: that of the sample nearest to each.
 #pragma once
 
-#include "motion/motion_options.h"
-#include "temporal/nearest_samples.h"
+#include "motion/motion_edge.h"
+#include "temporal/frame_samples.h"
 #include "texel.h"
 
 // As Reprojection, but in output pixels; trust is never NaN, and a motion edge of either frame is positive.
@@ -11,7 +11,7 @@ typedef struct EightReprojections {
   float8 x, y, trust, motion_edge;
 } EightReprojections;
 
-// Of pixels that stand still.
+// Returns the reprojection of pixels that stand still.
 static inline EightReprojections no_motion(void) {
   const EightReprojections none = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f), (float8)(0.0f)};
   return none;
@@ -43,7 +43,7 @@ static inline int previous_row(const TemporalParams* params, int y) {
   return min((int)(((float)y + 0.5f) * ratio), params->frame1.height - 1);
 }
 
-// What the reactive values of both frames leave of trust.
+// Returns the trust that the reactive values of both frames leave.
 static inline float8 trust_of_reactive(const TemporalParams* params, REACTIVE_TEXELS reactive0,
                                        REACTIVE_TEXELS reactive1, const NearestSamples* nearest) {
   const TexelLayout now = params->frame0.reactive, before = params->frame1.reactive;
@@ -66,11 +66,10 @@ static inline bool none_is_reactive(REACTIVE_TEXELS texels, TexelLayout layout, 
 }
 #endif
 
-// Whether history may be taken as it is, without a look at the pixels' reprojection: their texels are `copied`, and all
-// their samples trust them.
-static inline bool is_taken_whole(const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                                  const NearestSamples* nearest, TileReprojection tile, bool copied) {
-  if (!copied || !tile.is_copyable) return false;
+// Whether all samples of a row of the tile are trusted, so that the pixels' reprojection need not be looked at.
+static inline bool are_trusted(const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
+                               const NearestSamples* nearest, TileReprojection tile) {
+  if (!tile.is_trusted) return false;
 #if REACTIVE && !MOTION
   return none_is_reactive(reactive0, params->frame0.reactive, params->frame0.width, nearest->x, nearest->y) &&
          none_is_reactive(reactive1, params->frame1.reactive, params->frame1.width,

@@ -3,17 +3,15 @@
 // surface. Samples of another one would stay behind as a ghost when it has moved on.
 #pragma once
 
-#include "motion/motion_options.h"
-#include "temporal/bell.h"
+#include "arithmetic.h"
+#include "bits.h"
+#include "motion/motion_edge.h"
 #include "temporal/accumulate.h"
+#include "temporal/constants.h"
+#include "temporal/fetch_history.h"
 #include "temporal/frame_samples.h"
-#include "temporal/nearest_samples.h"
-
-#define SEED_FALLOFF 2.5f    // 1 / (2 sigma^2), sigma .45 samples, as in the laboratory of docs/temporal.md
-#define SAME_MOTION 0.15f    // output pixels a frame: surfaces whose motion differs by more are not the same. Ghosts
-                             // fell from .17 to .06 at most, for -.01 dB (docs/temporal.md)
-#define FARTHEST_SEED 16     // samples: a larger hole without any valid sample is black
-#define LEAST_SIMILARITY 0x1p-10f  // not 0: the only valid sample counts whatever it shows
+#include "temporal/limit_confidence.h"
+#include "temporal/rectify.h"
 
 // Where the samples' motion is read, and its scale to output pixels.
 typedef struct SampleMotion {
@@ -37,21 +35,21 @@ static inline float16 motions_of(const SampleMotion* motion, int8 x, int y) {
 static inline float8 similarity(const SampleMotion* motion, float16 own, float16 other) {
 #if MOTION
   const float16 apart = other - own;
-  const float8 x = apart.even * motion->scale_x * (1.0f / SAME_MOTION);
-  const float8 y = apart.odd * motion->scale_y * (1.0f / SAME_MOTION);
-  return max(1.0f - x * x - y * y, LEAST_SIMILARITY);
+  const float8 x = apart.even * motion->scale_x * (1.0f / SAME_SURFACE_MOTION_MAX);
+  const float8 y = apart.odd * motion->scale_y * (1.0f / SAME_SURFACE_MOTION_MAX);
+  return max(1.0f - x * x - y * y, SIMILARITY_MIN);
 #else
   return (float8)(1.0f);
 #endif
 }
 
-// What stands in for a seed where none of the 3x3 samples is valid: the mean of the valid ones in eight directions, 2,
-// 4, 8 and 16 samples away, weighted by 1 / distance. Not what stands in for infinity: where history is resampled it
-// would stay for several frames in the pixels around.
+// Returns a substitute for a seed where none of the 3x3 samples is valid: the mean of the valid ones in eight
+// directions, 2, 4, 8 and 16 samples away, weighted by 1 / distance. The substitute for infinity would not do: where
+// history is resampled it would stay for several frames in the pixels around.
 static inline float4 seed_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, int x, int y) {
   float4 sum = (float4)(0.0f);
   float weights = 0.0f;
-  for (int distance = 2; distance <= FARTHEST_SEED; distance *= 2) {
+  for (int distance = 2; distance <= SEED_DISTANCE_MAX; distance *= 2) {
     for (int i = 0; i < 9; ++i) {
       const int column = x + (i % 3 - 1) * distance, row = y + (i / 3 - 1) * distance;
       const float4 sample = sample_at(texels, frame, column, row);
@@ -118,4 +116,51 @@ static inline EightSeeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame
   const EightSeeds seeds = {
       all_lanes(known) ? mean : seeds_from_afar(texels, frame, mean, known, nearest->x, nearest->y), known};
   return seeds;
+}
+
+// ---- Rectification and reseeding of eight output pixels of a row.
+
+static inline bool needs_correction(const Evidence* evidence) {
+  return any_lane((evidence->rejection > 0.0f) | (evidence->confidence < CONFIDENCE_MIN));
+}
+
+// Brings history into the range of the samples around it by its rejection, where it has any.
+static inline void rectify_history(COLOUR_TEXELS colour, const SourceFrame* frame, const NearestSamples* nearest,
+                                   EightTexels* history, float8* alpha, Evidence* evidence) {
+  const EightBoxes boxes = boxes_around(colour, frame, nearest->x, nearest->y);
+  const Rectified left = rectify4(history->left, evidence->rejection.lo, &boxes.left);
+  const Rectified right = rectify4(history->right, evidence->rejection.hi, &boxes.right);
+  history->left = left.history;
+  history->right = right.history;
+  evidence->confidence *= (float8)(left.part, right.part);
+#if ALPHA
+  *alpha = rectify_alphas(colour, frame, nearest->x, nearest->y, *alpha, evidence->rejection);
+#endif
+}
+
+// Reseeds the history of `lanes`. Returns its inertia.
+static inline float8 reseed_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                    const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
+                                    float8* confidence) {
+  const EightSeeds seeds = seeds_of(colour, frame, motion, nearest);
+  const float8 none = (float8)(0.0f);
+  const float8 share = select(none, 1.0f - *confidence / CONFIDENCE_MIN, lanes);
+  history->left += (seeds.mean.left - history->left) * to_four_texels(share.lo);
+  history->right += (seeds.mean.right - history->right) * to_four_texels(share.hi);
+#if ALPHA
+  *alpha += (confidences(seeds.mean) - *alpha) * share;
+#endif
+  *confidence = select(*confidence, select(none, (float8)(CONFIDENCE_MIN), seeds.known), lanes);
+  return SEED_INERTIA * share;
+}
+
+// Rectifies history where it is rejected, and reseeds that of `lanes` where its confidence is less than the least; with
+// ALPHA its alpha, too. Returns its inertia: how much it resists this frame's sample, as a weight.
+static inline float8 correct_history(COLOUR_TEXELS colour, const SourceFrame* frame, const SampleMotion* motion,
+                                     const NearestSamples* nearest, int8 lanes, EightTexels* history, float8* alpha,
+                                     Evidence* evidence) {
+  if (any_lane(evidence->rejection > 0.0f)) rectify_history(colour, frame, nearest, history, alpha, evidence);
+  const int8 unknown = lanes & (evidence->confidence < CONFIDENCE_MIN);
+  if (!any_lane(unknown)) return (float8)(0.0f);
+  return reseed_history(colour, frame, motion, nearest, unknown, history, alpha, &evidence->confidence);
 }

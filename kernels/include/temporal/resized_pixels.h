@@ -2,18 +2,18 @@
 // Where eight pixels of a row of an output lie among the texels of a history of another size.
 #pragma once
 
-#include "positions.h"
+#include "arithmetic.h"
 #include "temporal/fetch_history.h"
-#include "temporal/resize_params.h"
+#include "temporal/temporal_params.h"
 
 typedef struct ResizedPixels {
-  Positions column, row;  // of the pixels' centres, anywhere; all eight share their row
+  Positions column, row;  // places of the pixels' centres, anywhere; all eight share their row
   int8 x;                 // the texel nearest to each
   int y;
-  float8 phase_x, phase_y;  // of the layer's texels there, history's pixels
+  float8 phase_x, phase_y;  // phases of the layer's texels there, history's pixels
 } ResizedPixels;
 
-// Of output row y.
+// Returns the position of output row y among history's texels, the same in all lanes.
 static inline Positions row_among_texels(const ResizeParams* params, __global const int* positions, int y) {
   const int texel = positions[2 * params->columns + y];
   const float fraction = as_float(positions[2 * params->columns + params->height + y]);

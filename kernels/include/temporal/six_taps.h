@@ -3,14 +3,12 @@
 // each side. It keeps more of what is resampled in each frame than the cubic of 4x4 texels does.
 #pragma once
 
-#include "temporal/history_alpha.h"
+#include "arithmetic.h"
+#include "temporal/constants.h"
+#include "temporal/history_sampling.h"
 
-// slope at texel 0 = NEAR (t[1] - t[-1]) - FAR (t[2] - t[-2]). 2/3 and 1/12 would be exact for polynomials of degree
-// four (Keys 1981), .83 and .21 those of Lanczos' window of six; these were found by search (docs/temporal.md).
-#define NEAR_SLOPE 0.9f
-#define FAR_SLOPE 0.25f
-
-// Of eight places on one axis, `fraction` of the way from the third texel to the fourth.
+// The weights of eight places on one axis, `fraction` of the way from the third texel to the fourth. The slope at
+// texel 0 is LONG_CUBIC_NEAR_SLOPE (t[1] - t[-1]) - LONG_CUBIC_FAR_SLOPE (t[2] - t[-2]).
 typedef struct SixWeights {
   float8 w0, w1, w2, w3, w4, w5;
 } SixWeights;
@@ -20,12 +18,12 @@ static inline SixWeights six_weights(float8 f) {
   const float8 before = f * rest * rest, after = -f * f * rest;  // what the slopes at the two texels count
   const float8 next = f * f * (3.0f - 2.0f * f);
   SixWeights w;
-  w.w0 = FAR_SLOPE * before;
-  w.w1 = FAR_SLOPE * after - NEAR_SLOPE * before;
-  w.w2 = 1.0f - next - NEAR_SLOPE * after;
-  w.w3 = next + NEAR_SLOPE * before;
-  w.w4 = NEAR_SLOPE * after - FAR_SLOPE * before;
-  w.w5 = -FAR_SLOPE * after;
+  w.w0 = LONG_CUBIC_FAR_SLOPE * before;
+  w.w1 = LONG_CUBIC_FAR_SLOPE * after - LONG_CUBIC_NEAR_SLOPE * before;
+  w.w2 = 1.0f - next - LONG_CUBIC_NEAR_SLOPE * after;
+  w.w3 = next + LONG_CUBIC_NEAR_SLOPE * before;
+  w.w4 = LONG_CUBIC_NEAR_SLOPE * after - LONG_CUBIC_FAR_SLOPE * before;
+  w.w5 = -LONG_CUBIC_FAR_SLOPE * after;
   return w;
 }
 
@@ -46,13 +44,13 @@ static inline SixByPlace six_by_place(SixWeights w) {
   return weights;
 }
 
-// Of a row.
+// Six texels of a row.
 typedef struct SixTexels {
   float16 first;  // four
   float8 last;    // two
 } SixTexels;
 
-// Those from (x, y) on; `inside`: they are there, else they are clamped to the edge.
+// Loads those from (x, y) on; `inside`: they are there, else they are clamped to the edge.
 static inline SixTexels load_six(HistoryLayer layer, int x, int y, bool inside) {
   if (inside) {
     const int index = y * layer.width + x;
@@ -79,7 +77,7 @@ static inline SixTexels most_of_six(SixTexels a, SixTexels b) {
   return most;
 }
 
-// History among the 6x6 texels from (x, y) on, held in the range of the middle 4x4.
+// Returns history among the 6x6 texels from (x, y) on, held in the range of the middle 4x4.
 static inline float4 sample_six(HistoryLayer layer, int x, int y, bool inside, float8 wx, float8 wy) {
   const SixTexels row0 = load_six(layer, x, y, inside), row1 = load_six(layer, x, y + 1, inside);
   const SixTexels row2 = load_six(layer, x, y + 2, inside), row3 = load_six(layer, x, y + 3, inside);
@@ -100,7 +98,7 @@ static inline float4 sample_six(HistoryLayer layer, int x, int y, bool inside, f
   return min(max(blended, low), high);
 }
 
-// The same of alpha, clamped to the edge.
+// Returns alpha in the same way, clamped to the edge.
 static inline float sample_alpha_six(AlphaPlane plane, int x, int y, float8 wx, float8 wy) {
   float weight[8], sum = 0.0f, low = INFINITY, high = -INFINITY;
   vstore8(wy, 0, weight);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parameters of the temporal upscaler's kernels.
+// Parameters of the temporal upscaler's kernels, which host and kernels share, as in params.h.
 #pragma once
 
 #include "params.h"
@@ -31,16 +31,16 @@ typedef struct TemporalParams {
   SourceFrame frame0;  // this frame
   SourceFrame frame1;  // the previous one: only the viewport and reactive
   TexelLayout reprojection;
-  TexelLayout output;          // of a debug view
+  TexelLayout output;          // layout of a debug view
   int columns;                 // in the position table, as in ReprojectedParams
   int counter;                 // index into non_finite
   int columns_per_item;        // pixels that a work-item makes: a multiple of kTemporalTile
-  int rows_per_item;           // of resolve_temporal: 1 or kTemporalTile
+  int rows_per_item;           // in resolve_temporal: 1 or kTemporalTile
   float motion_x, motion_y;    // from Reprojection's pixels of the previous viewport to output pixels
   float spacing_x, spacing_y;  // output pixels between neighbouring samples
   int tiles_x;
   int tiles_y;
-  int parity;  // of a checkerboard: sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
+  int parity;  // on a checkerboard sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
 } TemporalParams;
 QUINCUNX_CHECK_SIZE(TemporalParams, 8 + 2 * 32 + 16 + 12 + 16 + 16);
 
@@ -50,10 +50,34 @@ typedef struct TemporalDisplayParams {
   TexelLayout output;
   int tiles_x;
   int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
-  int rows_per_item;     // of temporal_display: 1 or kTemporalTile
+  int rows_per_item;     // in temporal_display: 1 or kTemporalTile
   int first;             // 1: no frame came before
 } TemporalDisplayParams;
 QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 8 + 16);
+
+// Parameters of the kernels that resize what is kept where the output has another size than in the previous frame.
+typedef struct ResizeParams {
+  int width, height;                    // size of the output
+  int previous_width, previous_height;  // size of the history
+  int tiles_x, tiles_y;
+  int previous_tiles_x, previous_tiles_y;
+  int columns;             // in the position table, as in TemporalParams
+  int columns_per_item;    // pixels that a work-item makes: a multiple of kTemporalTile
+  float ratio_x, ratio_y;  // texels of the history in each pixel
+  int places_x, places_y;  // number of places in each pixel at which history is read, evenly spread over it
+  float share, most;       // part of a texel's confidence that is left, and the most
+} ResizeParams;
+QUINCUNX_CHECK_SIZE(ResizeParams, 64);
+
+enum { kRefineBlock = 8 };  // pixels on each side of the square that a work-item makes at a time
+
+typedef struct RefineParams {
+  int width;  // extent of the picture
+  int height;
+  TexelLayout source;
+  TexelLayout output;
+} RefineParams;
+QUINCUNX_CHECK_SIZE(RefineParams, 8 + 2 * 8);
 
 #ifdef __cplusplus
 }  // namespace quincunx

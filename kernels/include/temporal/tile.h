@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the temporal upscaler keeps of each tile of kTemporalTile^2 output pixels, one struct for each owner and
+// State of the temporal upscaler for each tile of kTemporalTile^2 output pixels, one struct for each owner and
 // lifetime:
 //
 //   struct             written by      read by                                                    lives for
@@ -11,8 +11,8 @@
 //   TileLight          temporal_light  resolve_temporal in the same frame, temporal_light in the  two frames
 //                                      next
 //
-// Each is an array of the output's tiles, row by row; of TotalLight there is one. What lives for two frames has a
-// buffer for each, and the previous frame's is all zero where there is no history.
+// Each is an array of the output's tiles, row by row; of TotalLight there is one. A struct that lives for two frames
+// has a buffer for each, and the previous frame's is all zero where there is no history.
 #pragma once
 
 #include "params.h"
@@ -24,7 +24,7 @@ namespace quincunx {
 enum { kTemporalTile = 8 };  // output pixels: as many as resolve_temporal and temporal_display make at once
 
 // Where a tile's history comes from. In a *rigid* tile everything moves alike. Its texels are copied from the previous
-// history by a whole number of texels and never resampled, so that nothing blurs. What is left of the motion is carried
+// history by a whole number of texels and never resampled, so that nothing blurs. The rest of the motion is carried
 // along as the tile's *phase*: its texels hold the picture at their centres + phase.
 typedef struct TileReprojection {
   float phase_x, phase_y;                // output pixels, within [-.5, .5]; 0 if the tile is not rigid
@@ -32,8 +32,8 @@ typedef struct TileReprojection {
   int step_x, step_y;                    // texel (x, y) of a rigid tile takes (x - step_x, y - step_y)
   int is_rigid;                          // 0 or 1
   // 0 or 1: rigid, all of its samples are trusted, and there is no motion edge that costs confidence. resolve_temporal
-  // may copy such a tile without a look at its samples' reprojection.
-  int is_copyable;
+  // copies such a tile without a look at its samples' reprojection (temporal/tile_path.h).
+  int is_trusted;
   int has_motion_edge;  // 0 or 1: somewhere in it there is a motion edge, or was one in the previous frame
 } TileReprojection;
 QUINCUNX_CHECK_SIZE(TileReprojection, 36);
@@ -43,35 +43,35 @@ static inline bool stands_still(TileReprojection tile) {
   return tile.is_rigid && tile.phase_x == 0.0f && tile.phase_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
 }
 
-// What a tile's samples say of the history at their places. Sums over its judged samples; s and h are the lumas of
-// sample and history, n that of the mean of the four neighbours, and each difference is divided by 1 and both lumas:
+// Evidence of a tile's samples about the history at their places. Sums over its judged samples; s and h are the lumas
+// of sample and history, n that of the mean of the four neighbours, and each difference is divided by 1 and both lumas:
 // brightness as the eye has it, not light.
 typedef struct TileEvidence {
   float brightening;      // s - h
   float light;            // h
   float history_error;    // |s - h|: history's error as a forecast of the sample
   float neighbour_error;  // |s - n|: the neighbours' error as a forecast of it
-  float count;            // of the judged samples
+  float count;            // number of judged samples
   float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
-  float startling;        // how many of them, with two of their neighbours, are startling (temporal/startling.h)
+  float outliers;        // how many of them, with two of their neighbours, are outliers
 } TileEvidence;
 QUINCUNX_CHECK_SIZE(TileEvidence, 28);
 
 // Whether the light of a tile has changed, and what is to be done about its history.
 typedef struct TileLight {
   float gain;         // the relighting gain: history's light times this is this frame's; 1 where light has not changed
-  float rejection;    // of history, in [0, 1]: how far it is brought into the range of this frame's samples
+  float rejection;    // how far history is brought into the range of this frame's samples, in [0, 1]
   float cut;          // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
   float new_cut;      // by how much it is that more than of late
-  float persistence;  // of a change of light over frames, in [-1, 1]: positive where it brightens
+  float persistence;  // how far a change of light persists over frames, in [-1, 1]: positive where it brightens
   float flicker;      // how far the mean brightening alternates from frame to frame, averaged over frames: aliasing
   float mean_brightening;  // TileEvidence's brightening / count, for the next frame
-  // What rejection by error and by change would be by this frame alone, from 0 up and not clamped, for the next frame
+  // Rejection by error and by change as this frame alone would have it, from 0 up and not clamped, for the next frame
   // to confirm. That by change has the sign of the change: positive where the tile brightens.
   float suspected_error, suspected_change;
-  float unrest;    // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
-  float startled;  // 1 in a frame with startling samples in it or beside it; it fades over frames
-  // 0 or 1: startling samples are held back, because no frame of late had any: they may be faults of one frame.
+  float confirmation;    // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
+  float recent_outliers;  // 1 in a frame with outliers in it or beside it; it fades over frames
+  // 0 or 1: outliers are held back, because no frame of late had any: they may be faults of one frame.
   int holds_back;
 } TileLight;
 QUINCUNX_CHECK_SIZE(TileLight, 48);
@@ -80,7 +80,7 @@ QUINCUNX_CHECK_SIZE(TileLight, 48);
 // many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
 typedef struct TotalLight {
   int brightening;  // sum over tiles of their signed means
-  int change;       // of the magnitudes of those means
+  int change;       // sum of the magnitudes of those means
   int light;
   int history_error, neighbour_error;
   int changed;  // how many tiles have a history_error of more than 3 % of their light

@@ -86,7 +86,7 @@
 #define WILL_WRITE(address) ((void)(address))
 #endif
 
-// Of texel (0, y).
+// Returns the index of texel (0, y).
 static inline int row_index(TexelLayout layout, int y) {
   return layout.offset + y * layout.pitch;
 }

@@ -5,13 +5,12 @@
 #include <spdlog/spdlog.h>
 
 #include "bench/front/front_points.h"
-#include "bench/front/front_scenes.h"
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_run.h"
-#include "programs/front_methods.h"
 #include "quincunx/device.h"
 #include "quincunx/front_file.h"
+#include "session/calibration.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
 
@@ -61,7 +60,10 @@ void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options) 
   };
   unless_given("--output", options.output, Extent{480, 270});
   unless_given("--scales", options.scales, std::vector<double>{0.35, 0.5, 0.71, 1});
-  unless_given("--methods", options.methods, scenes::front_methods());
+  std::vector<std::string> methods;
+  for (const MethodVariant& variant : scenes::front_variants())
+    methods.push_back(name_of(variant));
+  unless_given("--methods", options.methods, methods);
   unless_given("--frames", options.frames, 2);
   unless_given("--rounds", options.rounds, 3);
   unless_given("--truth", options.truth, 6);

@@ -24,7 +24,7 @@ struct FrontOptions {
 // --front. After --scenes, --out and --compare, which it excludes.
 void add_front_options(tools::CommandLine& app, FrontOptions& options);
 
-// What --front measures where no option says otherwise: the methods that are on a front, and scales.
+// Sets the defaults of --front where no option says otherwise: the methods that are on a front, scales and conditions.
 void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options);
 
 // Measures two views of each scene of class_scenes(): --start with --seed, and a later moment with another seed. Takes

@@ -7,11 +7,32 @@
 #include <cmath>
 #include <tuple>
 
-#include "bench/front/front_scenes.h"
 #include "bench/speed_error/bench_statistics.h"
 
 namespace quincunx::bench {
 namespace {
+
+using Names = std::string_view[];
+
+constexpr Names kStill = {"still"};
+constexpr Names kPan = {"pan"};
+constexpr Names kObjects = {"occluders", "wheel"};
+constexpr Names kThin = {"wires", "spokes", "twigs"};
+constexpr Names kLight = {"shadows", "sparkles"};
+constexpr Names kZoom = {"zoom"};
+
+constexpr Names kHeldStill = {"chart"};
+constexpr Names kHeldPan = {"backdrop", "cut"};
+constexpr Names kHeldObjects = {"courtyard", "cutout"};
+constexpr Names kHeldThin = {"cables", "fence", "crossings"};
+constexpr Names kHeldLight = {"particles"};
+constexpr Names kHeldZoom = {"flight"};
+
+constexpr ClassScenes kClasses[] = {
+    {SceneClass::kStill, kStill, kHeldStill},       {SceneClass::kPan, kPan, kHeldPan},
+    {SceneClass::kObjects, kObjects, kHeldObjects}, {SceneClass::kThin, kThin, kHeldThin},
+    {SceneClass::kLight, kLight, kHeldLight},       {SceneClass::kZoom, kZoom, kHeldZoom},
+};
 
 struct PointSamples {
   Samples flip, psnr, ms;
@@ -46,12 +67,16 @@ std::string cell(const FrontPoint& point, const std::vector<FrontPoint>& front) 
 
 }  // namespace
 
+std::span<const ClassScenes> class_scenes() {
+  return kClasses;
+}
+
 Result<std::vector<FrontPoint>> front_points(std::span<const BenchResult> results) {
   std::vector<FrontPoint> points;
   for (const ClassScenes& members : class_scenes()) {
     for (const Row& row : results.front().rows) {
       if (row.scene != members.measured.front()) continue;
-      const auto method = front_method(row.method);
+      const auto method = parse_variant(row.method);
       if (!method.ok()) return method.status();
       const PointSamples samples = samples_of(results, members.measured, row);
       points.push_back({.scene_class = members.scene_class,

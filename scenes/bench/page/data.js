@@ -18,7 +18,8 @@ const plusMinus = (spread) => {
 const measureNamed = (name) => page.measures.find((measure) => measure.name === name);
 const isDecibels = (name) => name.startsWith("psnr");
 const ofWholePicture = (name) => name === "psnr" || name === "psnr_linear";
-// Of a row's quality; null only where there is none, an infinite ratio of the whole picture is Infinity.
+// Returns one figure of a row's quality; null only where there is none. An infinite ratio of the whole picture is
+// Infinity.
 function errorOf(row, name) {
   const value = row.quality[name];
   return value === null && ofWholePicture(name) ? Infinity : value;

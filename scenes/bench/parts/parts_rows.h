@@ -2,10 +2,12 @@
 // One row of quincunx-bench --parts: frames of one scale of the picture and of its parts.
 #pragma once
 
-#include "bench/parts/parts_result.h"
+#include <string>
+
+#include "bench/parts/parts_command.h"
 #include "bench/speed_error/bench_plan.h"
-#include "bench/speed_error/truth_store.h"
-#include "programs/frame_source.h"
+#include "bench/speed_error/bench_quality.h"
+#include "frames/frame_source.h"
 #include "quincunx/status.h"
 
 namespace quincunx::bench {
@@ -19,7 +21,7 @@ struct PartScene {
 struct PartCase {
   std::string part;
   std::string label;
-  double scale = 1;  // of the picture
+  double scale = 1;  // scale of the picture
   scenes::PartsSettings parts;
 };
 

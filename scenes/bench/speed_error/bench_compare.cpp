@@ -14,13 +14,13 @@
 namespace quincunx::bench {
 namespace {
 
-// Of costs, as natural logarithms of quotients. What a reader would care about, and how many standard
-// deviations must lie beyond it: with some hundred rows, three would give false alarms.
+// Costs are compared as natural logarithms of quotients: the least change that a reader would care about, and how many
+// standard deviations must lie beyond it (with some hundred rows, three would give false alarms).
 constexpr double kCostMatters = 0.03;
 constexpr double kDeviations = 4;
 constexpr double kDeviationsOfInterval = 1.96;  // half a 95 % interval
 constexpr double kNormalMad = 1.4826;           // standard deviation / median absolute deviation
-constexpr std::size_t kFewestRows = 3;          // of a method, for a mean with a spread of its own
+constexpr std::size_t kFewestRows = 3;          // rows of a method, for a mean with a spread of its own
 
 // A change of an error counts from this much, absolute plus part of the old value.
 struct Threshold {
@@ -137,7 +137,7 @@ class Comparer {
     Spread before;
     Spread after;
     double growth;     // logarithm of after / before
-    double deviation;  // of that, by the intervals of both
+    double deviation;  // standard deviation of the growth, by the intervals of both
   };
 
   CostChange cost_change(const Row& old, const Row& row) const {

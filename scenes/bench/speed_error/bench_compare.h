@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What got better or worse between two results, beyond noise. Pure.
+// A comparison of two results: changes for better or worse beyond noise. Pure.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ struct Change {
 struct Comparison {
   std::vector<Change> changes;       // better and worse, the worse first
   int same = 0;                      // figures within noise
-  double cost_deviation = 0;         // of a row's cost between the two runs, as part of it
+  double cost_deviation = 0;         // standard deviation of a row's cost between the two runs, as part of it
   std::vector<std::string> missing;  // "scene, scale, method" that only the old result has
   std::vector<std::string> added;    // that only the new one has
   std::vector<std::string> notes;    // what could not be compared, and why

@@ -9,7 +9,7 @@
 
 namespace quincunx::bench {
 
-// What a reader should take home: a heading of a few words with a figure, and one sentence.
+// A result for the reader to take home: a heading of a few words with a figure, and one sentence.
 struct Finding {
   std::string figure;   // "0.041"
   std::string heading;  // "least error at scale 0.71"
@@ -25,11 +25,11 @@ struct MethodMean {
   double scale = 1;
   std::string method;
   double flip = 0;
-  double psnr = 0;            // of the mean squared error
+  double psnr = 0;            // dB, from the mean squared error
   RegionFigures region_psnr;  // the same, over the scenes that have the region
   double ms = 0;
   double cost = 0;        // copies, by the clock that holds
-  bool on_front = false;  // of FLIP over cost
+  bool on_front = false;  // on the front of FLIP over cost
 };
 std::vector<MethodMean> method_means(const BenchResult& result);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a benchmark ran on.
+// The machine that a benchmark ran on.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 #include "bench/speed_error/bench_result.h"
-#include "programs/frame_source.h"
+#include "frames/frame_source.h"
 
 namespace quincunx::bench {
 

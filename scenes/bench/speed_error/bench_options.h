@@ -12,7 +12,7 @@
 #include "bench/resize/resize_command.h"
 #include "bench/traces/trace_command.h"
 #include "bench/tune/tune_command.h"
-#include "programs/picture_options.h"
+#include "frames/picture_options.h"
 #include "quincunx/extent.h"
 
 namespace quincunx::bench {

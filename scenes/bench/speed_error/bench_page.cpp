@@ -1,16 +1,49 @@
 // SPDX-License-Identifier: MIT
 #include "bench/speed_error/bench_page.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "bench/page/bench_files.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
-#include "tools/page/base64.h"
+#include "tools/image/flip.h"
+#include "tools/image/image_io.h"
 #include "tools/page/page_template.h"
 
 namespace quincunx::bench {
 namespace {
+
+// Bytes that a page's gallery may take, and bytes a pixel of a picture and its error map, as found in practice.
+constexpr double kGalleryBytes = 4e6;
+constexpr double kBytesPerPixel = 1.6;
+constexpr Extent kLargestCrop{320, 180};
+constexpr Extent kSmallestCrop{64, 36};
+
+std::vector<std::uint8_t> to_bytes(std::span<const float> values) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(values.size());
+  for (const float value : values)
+    bytes.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255)));
+  return bytes;
+}
+
+// sums[y * (width + 1) + x]: all that lies above and to the left of pixel (x, y).
+std::vector<double> summed(const std::vector<double>& values, Extent extent) {
+  const std::size_t stride = static_cast<std::size_t>(extent.width) + 1;
+  std::vector<double> sums(stride * (static_cast<std::size_t>(extent.height) + 1), 0);
+  for (std::size_t y = 0; y + 1 < sums.size() / stride; ++y) {
+    double row = 0;
+    for (std::size_t x = 0; x + 1 < stride; ++x) {
+      row += values[y * (stride - 1) + x];
+      sums[(y + 1) * stride + x + 1] = sums[y * stride + x + 1] + row;
+    }
+  }
+  return sums;
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -49,7 +82,218 @@ Json page_json(const BenchResult& result, const Gallery& gallery) {
           {"result", Json::parse(to_json(result))},   {"gallery", gallery_json(gallery)}};
 }
 
+constexpr double kWidth = 760, kHeight = 420;
+constexpr double kLeft = 62, kRight = 740, kTop = 44, kBottom = 366;
+constexpr double kCharacter = 7.2;  // width of a label's letter
+constexpr double kLine = 16;
+
+struct Box {
+  double left, right, top, bottom;
+  bool meets(const Box& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+  }
+};
+
+struct Axis {
+  double low, high, from, to;
+  double operator()(double value) const { return from + (value - low) / (high - low) * (to - from); }
+};
+
+// An axis of costs, which lie between one copy and some tens: equal quotients are equally far apart.
+struct CostAxis {
+  Axis logarithm;
+  double operator()(double cost) const { return logarithm(std::log(cost)); }
+};
+
+// Some room around the values, at the end more, for labels.
+Axis axis_of(const std::vector<double>& values, double from, double to, double room_at_end) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const double span = std::max(*high - *low, 0.1 * *high + 1e-6);
+  return {std::max(0.0, *low - 0.12 * span), *high + room_at_end * span, from, to};
+}
+
+CostAxis cost_axis_of(const std::vector<double>& costs, double from, double to) {
+  const auto [low, high] = std::minmax_element(costs.begin(), costs.end());
+  constexpr double kRoomBefore = 1.15;
+  constexpr double kRoomAfter = 2.2;  // for labels
+  return {{std::log(*low / kRoomBefore), std::log(*high * kRoomAfter), from, to}};
+}
+
+// 1, 2 or 5 times a power of ten, as far as the axis goes.
+std::vector<double> cost_ticks(const CostAxis& axis) {
+  std::vector<double> ticks;
+  for (double power = 0.01; power < 1e6; power *= 10) {
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const double tick = std::log(step * power);
+      if (tick >= axis.logarithm.low && tick <= axis.logarithm.high) ticks.push_back(step * power);
+    }
+  }
+  return ticks;
+}
+
+// The step of 1, 2 or 5 that gives about six ticks.
+double tick_step(const Axis& axis) {
+  const double raw = (axis.high - axis.low) / 6;
+  const double power = std::pow(10, std::floor(std::log10(raw)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= raw) return step * power;
+  }
+  return 10 * power;
+}
+
+std::string text(double x, double y, const char* kind, const std::string& words) {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, kind, words);
+}
+
+std::string grid(const CostAxis& x, const Axis& y) {
+  std::string svg;
+  const double step_y = tick_step(y);
+  for (const double tick : cost_ticks(x)) {
+    svg += fmt::format("<path class=\"grid\" d=\"M{:.1f},{}V{}\"/>\n", x(tick), kTop, kBottom);
+    svg += text(x(tick), kBottom + 18, "class=\"quiet\" text-anchor=\"middle\"", fmt::format("{:.3g}", tick));
+  }
+  for (double tick = std::ceil(y.low / step_y) * step_y; tick <= y.high; tick += step_y) {
+    svg += fmt::format("<path class=\"grid\" d=\"M{},{:.1f}H{}\"/>\n", kLeft, y(tick), kRight);
+    svg += text(kLeft - 8, y(tick) + 4, "class=\"quiet\" text-anchor=\"end\"", fmt::format("{:.3g}", tick));
+  }
+  return svg;
+}
+
+// Steps along the methods that nothing beats, cheapest first.
+std::string front(std::vector<MethodMean> means, const CostAxis& x, const Axis& y) {
+  std::erase_if(means, [](const MethodMean& mean) { return !mean.on_front; });
+  std::sort(means.begin(), means.end(),
+            [](const MethodMean& a, const MethodMean& b) { return a.cost < b.cost; });
+  std::string path = fmt::format("M{:.1f},{}", x(means.front().cost), kTop);
+  for (const MethodMean& mean : means)
+    path += fmt::format("H{:.1f}V{:.1f}", x(mean.cost), y(mean.flip));
+  return fmt::format("<path class=\"front\" d=\"{}H{}\"/>\n", path, kRight);
+}
+
+std::string points(const std::vector<MethodMean>& means, const CostAxis& x, const Axis& y) {
+  std::string svg;
+  std::vector<Box> taken;
+  for (const MethodMean& mean : means)
+    taken.push_back({x(mean.cost) - 7, x(mean.cost) + 7, y(mean.flip) - 7, y(mean.flip) + 7});
+  for (const MethodMean& mean : means) {
+    const double px = x(mean.cost), py = y(mean.flip);
+    const double width = kCharacter * static_cast<double>(mean.method.size());
+    Box label{};
+    // The nearest line beside the point that is free.
+    for (const double line : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
+      label = {px + 11, px + 11 + width, py + kLine * line - 7, py + kLine * line + 7};
+      if (std::none_of(taken.begin(), taken.end(), [&](const Box& box) { return box.meets(label); })) break;
+    }
+    taken.push_back(label);
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5.5\" class=\"{}\"/>\n", px, py,
+                       mean.on_front ? "best" : "point");
+    svg += text(label.left, label.bottom - 2, mean.on_front ? "font-weight=\"600\"" : "", mean.method);
+  }
+  return svg;
+}
+
+constexpr const char* kStyle = R"(<style>
+text { font: 13px "DejaVu Sans", sans-serif; fill: #1c2330; paint-order: stroke; stroke: #fff; stroke-width: 3px; }
+.quiet { fill: #586174; font-size: 12px; }
+.title { font-size: 15px; font-weight: 600; }
+.grid { stroke: #d3d7de; fill: none; }
+.front { stroke: #0b5fa5; stroke-width: 1.5; fill: none; opacity: .7; }
+.best { fill: #0072b2; }
+.point { fill: #8a93a5; }
+</style>
+)";
+
 }  // namespace
+
+Extent crop_for(Extent output, std::size_t pictures, double bytes) {
+  const double area = bytes / (kBytesPerPixel * static_cast<double>(std::max<std::size_t>(pictures, 1)));
+  const double width = std::sqrt(area * kLargestCrop.width / kLargestCrop.height);
+  const double height = width * kLargestCrop.height / kLargestCrop.width;
+  const auto fit = [](double side, int low, int high, int there) {
+    return std::min(std::clamp(static_cast<int>(side), low, high), there);
+  };
+  return {fit(width, kSmallestCrop.width, kLargestCrop.width, output.width),
+          fit(height, kSmallestCrop.height, kLargestCrop.height, output.height)};
+}
+
+GalleryMaker::GalleryMaker(const BenchPlan& plan) : output_(plan.conditions.output) {
+  gallery_.frame = plan.conditions.frames - 1;
+  gallery_.names = {"truth"};
+  for (const BenchMethod& method : plan.methods)
+    gallery_.names.push_back(method.name);
+  gallery_.crop =
+      crop_for(output_, gallery_.names.size() * plan.scenes.size() * plan.scales.size(), kGalleryBytes);
+}
+
+void GalleryMaker::begin_scene(const std::string& name, const tools::MeasuredPicture& truth) {
+  truth_ = &truth;
+  shots_.clear();
+  gallery_.scenes.push_back({.name = name, .sheets = {}});
+}
+
+void GalleryMaker::add(double scale, const tools::MeasuredPicture& picture) {
+  if (shots_.empty() || shots_.back().scale != scale) {
+    const std::vector<std::uint8_t> none(truth_->luma().size(), 0);
+    shots_.push_back({scale, {{to_bytes(truth_->tone_mapped()), none}}});
+  }
+  const std::vector<float> map = tools::flip_map(output_, picture.tone_mapped(), truth_->tone_mapped());
+  shots_.back().shots.push_back({to_bytes(picture.tone_mapped()), to_bytes(map)});
+}
+
+Status GalleryMaker::end_scene() {
+  GalleryScene& scene = gallery_.scenes.back();
+  choose_crop(scene);
+  for (const Shots& shots : shots_) {
+    auto pictures = sheet(scene, shots, false);
+    if (!pictures.ok()) return pictures.status();
+    auto errors = sheet(scene, shots, true);
+    if (!errors.ok()) return errors.status();
+    scene.sheets.push_back({shots.scale, std::move(pictures).value(), std::move(errors).value()});
+  }
+  shots_.clear();
+  return {};
+}
+
+void GalleryMaker::choose_crop(GalleryScene& scene) const {
+  std::vector<double> error(static_cast<std::size_t>(output_.area()), 0);
+  for (const Shots& shots : shots_) {
+    for (const Shot& shot : shots.shots) {
+      for (std::size_t i = 0; i < error.size(); ++i)
+        error[i] += shot.error[i];
+    }
+  }
+  const std::vector<double> sums = summed(error, output_);
+  const int stride = output_.width + 1;
+  const auto sum = [&](int x, int y) { return sums[static_cast<std::size_t>(y) * stride + x]; };
+  double most = -1;
+  for (int y = 0; y + gallery_.crop.height <= output_.height; ++y) {
+    for (int x = 0; x + gallery_.crop.width <= output_.width; ++x) {
+      const int right = x + gallery_.crop.width;
+      const int below = y + gallery_.crop.height;
+      const double inside = sum(right, below) - sum(x, below) - sum(right, y) + sum(x, y);
+      if (inside <= most) continue;
+      most = inside;
+      scene.x = x;
+      scene.y = y;
+    }
+  }
+}
+
+Result<std::vector<std::uint8_t>> GalleryMaker::sheet(const GalleryScene& scene, const Shots& shots,
+                                                      bool errors) const {
+  const int channels = errors ? 1 : 3;
+  std::vector<std::uint8_t> texels;
+  for (int y = scene.y; y < scene.y + gallery_.crop.height; ++y) {
+    for (const Shot& shot : shots.shots) {
+      const std::vector<std::uint8_t>& source = errors ? shot.error : shot.rgb;
+      const auto first =
+          source.begin() + (static_cast<std::ptrdiff_t>(y) * output_.width + scene.x) * channels;
+      texels.insert(texels.end(), first, first + static_cast<std::ptrdiff_t>(gallery_.crop.width) * channels);
+    }
+  }
+  const Extent extent{gallery_.crop.width, gallery_.crop.height * static_cast<int>(shots.shots.size())};
+  return tools::encode_png(extent, channels, texels);
+}
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
   return tools::page_from_template(
@@ -59,6 +303,34 @@ std::string page_of(const BenchResult& result, const Gallery& gallery) {
        .scripts = {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js", "tables.js",
                    "viewer.js", "gallery.js", "page.js"}},
       page_json(result, gallery));
+}
+
+std::string plot_of(const BenchResult& result) {
+  if (result.rows.empty()) return {};
+  const double scale = headline_scale(result);
+  std::vector<MethodMean> means = method_means(result);
+  std::erase_if(means, [scale](const MethodMean& mean) { return mean.scale != scale; });
+  std::vector<double> costs, errors;
+  for (const MethodMean& mean : means) {
+    costs.push_back(mean.cost);
+    errors.push_back(mean.flip);
+  }
+  const CostAxis x = cost_axis_of(costs, kLeft, kRight);
+  const Axis y = axis_of(errors, kBottom, kTop, 0.12);
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
+      "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
+      kWidth, kHeight);
+  svg += kStyle + grid(x, y) + front(means, x, y) + points(means, x, y);
+  svg += text(
+      16, 24, "class=\"title\"",
+      fmt::format("Error over cost at scale {}, {}x{}, mean of {} scenes", scale,
+                  result.conditions.output.width, result.conditions.output.height, result.scenes.size()));
+  svg += text(kRight, 24, "class=\"quiet\" text-anchor=\"end\"", "FLIP against truth: down is better");
+  svg += text(kRight, kHeight - 12, "class=\"quiet\" text-anchor=\"end\"",
+              fmt::format("cost in copies of the picture, by {}, logarithmic: left is better",
+                          cost_clock(result.machine)));
+  return svg + "</svg>\n";
 }
 
 }  // namespace quincunx::bench

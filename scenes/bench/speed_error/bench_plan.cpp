@@ -8,24 +8,37 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "catalog/scene_catalog.h"
-#include "tools/program/method_names.h"
 
 namespace quincunx::bench {
+
+std::vector<BenchMethod> all_methods() {
+  const MethodVariant usual = variant_of(ResolveSettings{});
+  std::vector<BenchMethod> methods;
+  for (const VariantInfo& info : all_variants()) {
+    BenchMethod method{.name = info.name, .summary = info.summary, .resolve = {}};
+    apply(info.variant, method.resolve);
+    method.jitter = scenes::jitter_for(info.variant.method);
+    method.detail = scenes::texture_detail_for(info.variant.method, method.jitter);
+    method.accumulates = info.variant.method == Method::kTemporal;
+    method.is_default = info.variant == usual;
+    methods.push_back(std::move(method));
+  }
+  return methods;
+}
+
 namespace {
 
 constexpr double kSmallestScale = 0.02;
 constexpr double kLargestScale = 2;
 constexpr int kSmallestSide = 16;  // the worst window has 16 x 16 pixels
 
-// "temporal:balanced" for "temporal".
+// "temporal:balanced" for "temporal"; the name itself where there is no such method.
 std::string longest_name(const std::string& name) {
-  const auto choice = tools::method_choices().find(name);
-  if (choice == tools::method_choices().end()) return name;
-  ResolveSettings settings;
-  tools::choose(settings, choice->second);
-  return tools::method_name(settings);
+  const auto variant = parse_variant(name);
+  return variant.ok() ? name_of(variant.value()) : name;
 }
 
 constexpr std::string_view kEncoded = "@rgba8";

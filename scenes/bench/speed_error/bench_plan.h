@@ -7,8 +7,8 @@
 
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_result.h"
-#include "programs/focus_feed.h"
-#include "programs/frame_sequence.h"
+#include "frames/focus_path.h"
+#include "frames/frame_sequence.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "scene.h"
@@ -19,7 +19,7 @@ struct BenchMethod {
   std::string name;  // as --method of quincunx-render takes it
   std::string summary;
   ResolveSettings resolve;
-  scenes::Jitter jitter = scenes::Jitter::kNone;  // of the frames that it gets
+  scenes::Jitter jitter = scenes::Jitter::kNone;  // jitter of the frames that it gets
   scenes::TextureDetail detail = {};
   bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
   bool focuses = false;      // its frames have the focus of the conditions

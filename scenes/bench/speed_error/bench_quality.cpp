@@ -1,8 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "bench/speed_error/bench_quality.h"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <xxhash.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+
+#include "bench/speed_error/bench_plan.h"
+#include "frames/target_file.h"
+#include "quincunx/cache_folder.h"
+#include "render/embedded_shaders.h"
+#include "render/truth.h"
+#include "tools/image/image_io.h"
 
 namespace quincunx::bench {
 namespace {
@@ -19,6 +31,87 @@ double pixel_error(const tools::MeasuredPicture& picture, const tools::MeasuredP
     sum += difference * difference;
   }
   return sum / 3;
+}
+
+namespace fs = std::filesystem;
+
+struct Moment {
+  scenes::Renderer& renderer;
+  const std::string& scene;
+  const std::string& gl_version;
+  const Conditions& conditions;
+  double seconds;
+};
+
+Result<std::string> key_of(const Moment& moment) {
+  const Conditions& conditions = moment.conditions;
+  const auto sample =
+      scenes::render_truth(moment.renderer, {.output = conditions.output, .samples = 1}, moment.seconds);
+  if (!sample.ok()) return sample.status();
+  std::string text =
+      fmt::format("{} {} {} {} {}x{} {}\n", QUINCUNX_VERSION, moment.scene, conditions.seed, moment.seconds,
+                  conditions.output.width, conditions.output.height, conditions.truth_samples);
+  text += moment.gl_version;
+  for (const EmbeddedFile& file : scenes::embedded_shader_files())
+    text += file.text;
+  text.append(reinterpret_cast<const char*>(sample->data()), sample->size() * sizeof(float));
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+// RGBA of a kept truth; nothing where there is none of this size.
+std::optional<std::vector<float>> kept(const fs::path& path, Extent extent) {
+  std::error_code error;
+  if (!fs::exists(path, error)) return std::nullopt;
+  auto image = tools::read_image(path.string());
+  if (!image.ok() || image->extent != extent || image->channels.size() != 4) return std::nullopt;
+  return std::move(image->pixels);
+}
+
+// As it comes back from the file, so that the first run and the next measure alike.
+Result<std::vector<float>> truth_of(const Moment& moment) {
+  const Extent output = moment.conditions.output;
+  const auto draw = [&] {
+    return scenes::render_truth(
+        moment.renderer, {.output = output, .samples = moment.conditions.truth_samples}, moment.seconds);
+  };
+  const auto folder = cache_folder();
+  if (!folder) return draw();
+  auto key = key_of(moment);
+  if (!key.ok()) return key.status();
+  const fs::path path = *folder / "truth" / (key.value() + ".exr");
+  if (auto pixels = kept(path, output)) return std::move(*pixels);
+  auto drawn = draw();
+  if (!drawn.ok()) return drawn;
+  if (Status status = scenes::write_rgba(path.string(), output, drawn.value()); !status.ok()) {
+    spdlog::warn("truth is not kept: {}", status.message());
+    return drawn;
+  }
+  if (auto pixels = kept(path, output)) return std::move(*pixels);
+  return drawn;
+}
+
+double mean_change(const tools::MeasuredPicture& picture, const tools::MeasuredPicture& previous) {
+  double sum = 0;
+  for (std::size_t i = 0; i < picture.luma().size(); ++i)
+    sum += std::abs(double{picture.luma()[i]} - double{previous.luma()[i]});
+  return sum / static_cast<double>(picture.luma().size());
+}
+
+// How much of all measured pixels each mask covers.
+void add_parts(SceneTruth& truth) {
+  double pixels = 0;
+  double disoccluded = 0;
+  std::array<double, kRegions> regions{};
+  for (const FrameMasks& masks : truth.masks) {
+    pixels += static_cast<double>(masks.regions.size());
+    disoccluded += static_cast<double>(std::count(masks.disoccluded.begin(), masks.disoccluded.end(), 1));
+    for (const Region region : masks.regions)
+      regions[static_cast<std::size_t>(region)] += 1;
+  }
+  truth.disoccluded_part = disoccluded / pixels;
+  for (std::size_t i = 0; i < kRegions; ++i)
+    truth.region_part[i] = regions[i] / pixels;
 }
 
 }  // namespace
@@ -79,6 +172,26 @@ Quality QualityTally::quality() const {
   quality.psnr_outside = outside_.psnr();
   quality.non_finite = non_finite_;
   return quality;
+}
+
+Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
+                              const std::string& gl_version, const Conditions& conditions) {
+  SceneTruth truth;
+  double change = 0;
+  for (int frame = 0; frame < conditions.frames; ++frame) {
+    const double seconds = seconds_of(conditions, conditions.warm_up + frame);
+    auto rgba = truth_of({renderer, scene.name, gl_version, conditions, seconds});
+    if (!rgba.ok()) return rgba.status();
+    truth.pictures.push_back(tools::measured(conditions.output, std::move(rgba).value(), scene.exposure));
+    if (frame > 0) change += mean_change(truth.pictures.back(), *(truth.pictures.end() - 2));
+    spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
+  }
+  if (conditions.frames > 1) truth.flicker = change / (conditions.frames - 1);
+  auto masks = masks_of_frames(renderer, scene, conditions);
+  if (!masks.ok()) return masks.status();
+  truth.masks = std::move(masks).value();
+  add_parts(truth);
+  return truth;
 }
 
 }  // namespace quincunx::bench

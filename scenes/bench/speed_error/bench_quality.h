@@ -5,9 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "bench/speed_error/bench_result.h"
 #include "bench/speed_error/regions.h"
+#include "render/renderer.h"
 #include "tools/image/image_metrics.h"
 
 namespace quincunx::bench {
@@ -25,7 +28,7 @@ class QualityTally {
   const tools::MeasuredPicture& latest() const { return *latest_; }
 
  private:
-  // Of some pixels of all frames.
+  // The error over some pixels of all frames.
   struct PartError {
     double squares = 0;
     std::int64_t count = 0;
@@ -36,7 +39,7 @@ class QualityTally {
   };
 
   int frames_ = 0;
-  Quality worst_;  // of its fields only those of the worst window
+  Quality worst_;  // only the fields of the worst window count
   double error_ = 0, error_linear_ = 0, ssim_ = 0, flip_ = 0, p99_ = 0, relative_ = 0, flicker_ = 0;
   PartError disoccluded_;
   PartError focus_, outside_;
@@ -44,5 +47,22 @@ class QualityTally {
   std::int64_t non_finite_ = 0;
   std::optional<tools::MeasuredPicture> latest_;
 };
+
+// SceneTruth: what the measured frames of a scene truly look like, and what their pixels show.
+
+// One truth for all scales and methods: made once, before anything is timed.
+struct SceneTruth {
+  std::vector<tools::MeasuredPicture> pictures;  // one for each measured frame, exposed
+  std::vector<FrameMasks> masks;                 // one for each measured frame
+  std::optional<double> flicker;                 // mean change of luma from frame to frame
+  double disoccluded_part = 0;                   // share of all pixels
+  RegionFigures region_part;                     // shares of all pixels
+};
+
+// Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
+// cache_folder.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
+// shaders, and the same moment drawn with one sample a pixel, which tells when a scene has changed.
+Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
+                              const std::string& gl_version, const Conditions& conditions);
 
 }  // namespace quincunx::bench

@@ -14,7 +14,8 @@
 
 namespace quincunx::bench {
 
-// Of the JSON. Format 1 had no tables, and `uncovered` for `disoccluded`; it is still read. A reader refuses others.
+// The version of the JSON. Format 1 had no tables, and `uncovered` for `disoccluded`; it is still read. A reader
+// refuses others.
 inline constexpr int kResultFormat = 2;
 
 // Repeated measurements of one quantity. `low` to `high` holds the true median with 95 % confidence as far as
@@ -28,7 +29,8 @@ struct Spread {
   friend bool operator==(const Spread&, const Spread&) = default;
 };
 
-// What a pixel shows, where methods fail apart; each pixel is in one, the first that holds. docs/bench.md defines each.
+// The kinds of content on which methods fail differently. Each pixel is in the first one that holds. docs/bench.md
+// defines each.
 enum class Region : std::uint8_t {
   kThin,         // something thinner than four pixels
   kBehindThin,   // what is within four pixels of something thin that stands before it
@@ -39,7 +41,7 @@ enum class Region : std::uint8_t {
 inline constexpr std::size_t kRegions = 5;
 inline constexpr double kHighestRegionPsnr = 100;  // dB: stands for no error at all
 
-// Of each region; nothing where it has no pixel, and in results of before there were regions.
+// A figure for each region; absent where it has no pixel, and in results from before there were regions.
 using RegionFigures = std::array<std::optional<double>, kRegions>;
 
 // Errors against supersampled truth over the measured frames. Colours are exposed as the scene asks; "tone
@@ -59,17 +61,17 @@ struct Quality {
   std::optional<double> ghosting;      // RMS error of what was disoccluded; absent where nothing was
   RegionFigures region_psnr;           // dB, as psnr
   std::optional<double> psnr_focus;    // dB, of the pixels in focus; absent where there is none
-  std::optional<double> psnr_outside;  // of all others
+  std::optional<double> psnr_outside;  // dB, over all other pixels
   std::int64_t non_finite = 0;         // pixels, all frames
 
   friend bool operator==(const Quality&, const Quality&) = default;
 };
 
-// What the resolve passes of one frame cost, the present pass not among them.
+// The cost of the resolve passes of one frame, without the present pass.
 struct Speed {
   Spread ms;                        // OpenCL events
   std::optional<double> least_ms;   // the least of the rounds' medians; absent in older results
-  Spread processor_ms;              // of this process, all threads
+  Spread processor_ms;              // processor time of this process, all threads
   Spread ratio;                     // ms / that of the float4 copy, by round; p95 is that of rounds
   Spread processor_ratio;           // processor_ms / that of the copy
   std::uint64_t bytes = 0;          // read and written in a frame, each texel once
@@ -127,7 +129,7 @@ struct SceneRow {
   std::string reason;
   std::optional<double> truth_flicker;  // mean change of the truth's own luma from frame to frame
   double disoccluded = 0;               // part of the pixels that was disoccluded in the last two frames
-  RegionFigures region_part;            // of the pixels
+  RegionFigures region_part;            // shares of the pixels
 
   friend bool operator==(const SceneRow&, const SceneRow&) = default;
 };
@@ -154,7 +156,7 @@ struct Machine {
   std::string gl_renderer;
   std::string gl_version;
   std::string interop;
-  double load_before = 0;  // of the last minute
+  double load_before = 0;  // mean load over the last minute
   double load_after = 0;
 
   friend bool operator==(const Machine&, const Machine&) = default;
@@ -194,11 +196,11 @@ struct BenchResult {
 };
 
 // Both hold the same, numbers to 6 significant digits: for programs that read it, nested objects; and to be kept, a
-// line for each row of each list (see bench_tables.h).
+// line for each row of each list.
 std::string to_json(const BenchResult& result);
 std::string to_tables(const BenchResult& result);
 
-// Of either. Errors: kInvalidArgument, naming `path`, for what is no result of this program.
+// Read either form. Errors: kInvalidArgument, naming `path`, for anything but a result of this program.
 Result<BenchResult> from_json(const std::string& text, const std::string& path);
 Result<BenchResult> read_result(const std::string& path);  // errors also: kIoFailure
 

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "bench/harness/event_times.h"
+#include "bench/harness/clocks.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_statistics.h"
 #include "bench/speed_error/case_run.h"
 #include "tools/program/clock.h"
-#include "tools/program/date.h"
 #include "tools/program/jitter.h"
+#include "tools/program/program.h"
 #include "tools/program/progress.h"
 
 namespace quincunx::bench {

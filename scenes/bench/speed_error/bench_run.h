@@ -2,7 +2,7 @@
 // run_bench: measures everything that a plan asks for.
 #pragma once
 
-#include "bench/speed_error/bench_gallery.h"
+#include "bench/speed_error/bench_page.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_result.h"
 

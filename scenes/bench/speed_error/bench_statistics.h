@@ -29,7 +29,7 @@ Spread spread_of(const Rounds& rounds);
 // The least of the medians of rounds: that which other programs disturbed least. At least one sample.
 double least_median_of(const Rounds& rounds);
 
-// Of the quotients of the rounds' medians. Both have the same number of rounds, none empty.
+// Returns the spread of the quotients of the rounds' medians. Both have the same number of rounds, none empty.
 Spread ratio_of(const Rounds& rounds, const Rounds& unit);
 
 // The medians of repetitions differ by about this part of themselves: half the interval.

@@ -156,7 +156,7 @@ Status CaseRun::run_quality() {
     if (Status status = time_copy(false); !status.ok()) return status;
     release(frame);
   }
-  // Whatever the work on errors has driven out of the caches.
+  // Refills the caches, which the work on errors may have emptied.
   return time_frames(plan_.conditions.warm_up, false);
 }
 

@@ -12,7 +12,6 @@
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_quality.h"
 #include "bench/speed_error/contender.h"
-#include "bench/speed_error/truth_store.h"
 
 namespace quincunx::bench {
 
@@ -39,7 +38,7 @@ class CaseRun {
 
  private:
   struct Feed {
-    int first_frame;  // of its methods
+    int first_frame;  // first frame that its methods draw
     FrameFeed frames;
   };
   struct Entry {
@@ -49,7 +48,7 @@ class CaseRun {
     QualityTally tally = {};
   };
   enum Step : std::size_t { kDraw, kInterop, kResolve, kWhole, kSteps };
-  // Of whole frames with the frame method.
+  // The times of whole frames with the frame method.
   struct FrameRounds {
     Rounds ms[kSteps], processor_ms[kSteps];
     std::uint64_t interop_bytes = 0;
@@ -77,7 +76,7 @@ class CaseRun {
   Image resolved_;
   std::optional<CopyKernel> copy_;  // there once opened
   std::vector<Feed> feeds_;
-  std::vector<FrameInputs> inputs_;              // of each feed, this frame
+  std::vector<FrameInputs> inputs_;              // this frame's, one for each feed
   std::vector<std::unique_ptr<Entry>> entries_;  // in the order of the plan's methods
   std::unique_ptr<Contender> presenter_;         // the frame method with its present pass
   std::size_t presenter_feed_ = 0;

@@ -12,7 +12,6 @@
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_page.h"
-#include "bench/speed_error/bench_plot.h"
 #include "bench/speed_error/bench_run.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/program.h"
@@ -89,8 +88,8 @@ int replay_traces(const BenchOptions& options) {
   return tools::kDone;
 }
 
-// Of a run that makes tables instead of the whole comparison: `measure` gives what text_of(), json_of() and csv_of()
-// take; `name`: of the files in --out.
+// Makes tables instead of the whole comparison: `measure` returns what text_of(), json_of() and csv_of() take; `name`
+// is that of the files in --out.
 template <typename Measure>
 int tabulate(const BenchOptions& options, const std::string& name, const Measure& measure) {
   const auto result = measure(options);

@@ -3,13 +3,49 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
 
 #include "bench/speed_error/bench_plan.h"
-#include "programs/focus_path.h"
+#include "frames/focus_path.h"
+#include "quincunx_gl/target_readback.h"
 
 namespace quincunx::bench {
 namespace {
+
+// Returns the velocity of pixel i at infinity, which only the camera's turning moves.
+Vec2 background_velocity(const CameraMotion& camera, Extent extent, std::size_t i) {
+  const auto width = static_cast<std::size_t>(extent.width);
+  const glm::vec2 uv((static_cast<float>(i % width) + 0.5f) / static_cast<float>(extent.width),
+                     (static_cast<float>(i / width) + 0.5f) / static_cast<float>(extent.height));
+  const glm::vec4 now(2 * uv.x - 1, 1 - 2 * uv.y, 0, 1);
+  const glm::vec4 before = glm::make_mat4(camera.clip_to_previous_clip.data()) * now;
+  constexpr float kSmallestW = 1e-4f;  // behind the previous camera
+  const glm::vec2 way = glm::vec2(now) - glm::vec2(before) / std::max(before.w, kSmallestW);
+  return {0.5f * way.x, -0.5f * way.y};
+}
+
+struct Place {
+  double x = 0;  // pixels; the centre of pixel (0, 0) is 0
+  double y = 0;
+};
+
+// Where pixel i of this frame was in the frame before.
+Place previous_place(const Geometry& now, std::size_t i) {
+  const auto width = static_cast<std::size_t>(now.extent.width);
+  return {static_cast<double>(i % width) - double{now.velocity[i].x} * now.extent.width,
+          static_cast<double>(i / width) - double{now.velocity[i].y} * now.extent.height};
+}
+
+// Index of the pixel at or up and left of a place; -1 where it and its neighbours right and below are not all
+// in the picture.
+std::int64_t corner_of(Place place, Extent extent) {
+  const double x = std::floor(place.x);
+  const double y = std::floor(place.y);
+  const bool inside = x >= 0 && y >= 0 && x < extent.width - 1 && y < extent.height - 1;
+  return inside ? static_cast<std::int64_t>(y) * extent.width + static_cast<std::int64_t>(x) : -1;
+}
 
 constexpr int kThinBlock = 4;         // pixels: two samples each way at half scale
 constexpr int kBehindReach = 4;       // pixels
@@ -30,8 +66,8 @@ float greatest(float a, float b) {
   return std::max(a, b);
 }
 
-// Of each pixel the best value in the square window from `back` pixels before it to `ahead` after it, each way, as far
-// as the picture goes.
+// Returns for each pixel the best value in the square window from `back` pixels before it to `ahead` after it, each
+// way, as far as the picture goes.
 template <typename Best>
 Values best_in(Extent extent, const Values& values, Window window, const Best& best) {
   const auto pass = [&](const Values& from, std::ptrdiff_t step, const auto& place, int length) {
@@ -49,7 +85,8 @@ Values best_in(Extent extent, const Values& values, Window window, const Best& b
       rows, extent.width, [&](int i) { return i / extent.width; }, extent.height);
 }
 
-// Of each pixel how near its surface may be to fill a block: the best of all blocks that hold it, the worst of each.
+// Returns for each pixel the greatest nearness at which a surface can fill a block: the best of all blocks that hold
+// the pixel, the worst within each.
 Values opened(Extent extent, std::span<const float> nearest) {
   constexpr int kMargin = kThinBlock - 1;
   const Extent padded{extent.width + 2 * kMargin, extent.height + 2 * kMargin};
@@ -77,7 +114,7 @@ std::vector<std::uint8_t> above_zero(const Values& values) {
   return mask;
 }
 
-// Of the measured frames; nothing where the conditions have none.
+// Returns the path of the focus over the measured frames; nothing where the conditions have none.
 Result<std::optional<scenes::FocusPath>> focus_of(const scenes::Scene& scene, const Conditions& conditions) {
   std::optional<scenes::FocusPath> none;
   if (!conditions.focus) return none;
@@ -102,6 +139,72 @@ std::vector<std::uint8_t> focus_mask(const scenes::FocusPath& focus, Extent outp
 }
 
 }  // namespace
+
+bool is_nearer(float depth, float other) {
+  return depth > std::max(other * kNearer, kHorizon);
+}
+
+Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets& targets, double seconds,
+                             double previous_seconds) {
+  scenes::FrameView view;
+  view.render = targets.extent();
+  view.seconds = seconds;
+  view.previous_seconds = previous_seconds;
+  if (Status status = renderer.draw(targets, view); !status.ok()) return status;
+  gl::TargetPixels pixels = gl::read_targets(targets, view.render);
+  const CameraMotion camera = renderer.camera_motion(view);
+  Geometry geometry{.extent = view.render, .depth = std::move(pixels.depth), .velocity = {}};
+  geometry.velocity.reserve(geometry.depth.size());
+  for (std::size_t i = 0; i < geometry.depth.size(); ++i) {
+    if (geometry.depth[i] > 0) {
+      geometry.velocity.push_back(
+          {glm::unpackHalf1x16(pixels.velocity[2 * i]), glm::unpackHalf1x16(pixels.velocity[2 * i + 1])});
+    } else {
+      geometry.velocity.push_back(background_velocity(camera, view.render, i));
+    }
+  }
+  return geometry;
+}
+
+Result<std::vector<float>> nearest_depth_at(scenes::Renderer& renderer, const gl::RenderTargets& targets,
+                                            double seconds) {
+  constexpr float kStep = 1.0f / 3;
+  std::vector<float> nearest(static_cast<std::size_t>(targets.extent().area()), 0);
+  for (int sample = 0; sample < 9; ++sample) {
+    scenes::FrameView view;
+    view.render = targets.extent();
+    view.jitter = {kStep * static_cast<float>(sample % 3 - 1), kStep * static_cast<float>(sample / 3 - 1)};
+    view.seconds = view.previous_seconds = seconds;
+    if (Status status = renderer.draw(targets, view); !status.ok()) return status;
+    const gl::TargetPixels pixels = gl::read_targets(targets, view.render);
+    for (std::size_t i = 0; i < nearest.size(); ++i)
+      nearest[i] = std::max(nearest[i], pixels.depth[i]);
+  }
+  return nearest;
+}
+
+std::vector<std::uint8_t> disoccluded_since(const Geometry& now, const Geometry& before) {
+  std::vector<std::uint8_t> mask(now.depth.size(), 0);
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    const std::int64_t corner = corner_of(previous_place(now, i), before.extent);
+    if (corner < 0) continue;
+    const float* upper = before.depth.data() + corner;
+    const float* lower = upper + before.extent.width;
+    const float farthest = std::min(std::min(upper[0], upper[1]), std::min(lower[0], lower[1]));
+    mask[i] = is_nearer(farthest, now.depth[i]) ? 1 : 0;
+  }
+  return mask;
+}
+
+std::vector<std::uint8_t> disoccluded_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
+                                                 const std::vector<std::uint8_t>& older) {
+  for (std::size_t i = 0; i < newer.size(); ++i) {
+    const Place place = previous_place(now, i);
+    const std::int64_t nearest = corner_of({std::round(place.x), std::round(place.y)}, now.extent);
+    if (nearest >= 0) newer[i] |= older[static_cast<std::size_t>(nearest)];
+  }
+  return newer;
+}
 
 std::vector<std::uint8_t> thin_pixels(Extent extent, std::span<const float> nearest) {
   const Values blocks = opened(extent, nearest);

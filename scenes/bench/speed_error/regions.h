@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Regions: the parts of a picture where methods fail apart, told by the scene's true depth and motion.
+// Regions: parts of the picture that errors are counted in, from depth and motion of the frames at output size.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,49 @@
 #include <vector>
 
 #include "bench/speed_error/bench_result.h"
-#include "bench/speed_error/disocclusion.h"
+#include "quincunx/extent.h"
+#include "quincunx_gl/render_targets.h"
+#include "render/renderer.h"
 
 namespace quincunx::bench {
 
-// What the pixels of one frame show, output extent.
+// At the centre of each pixel. Depth is reversed and infinite: 1 near, 0 far; velocity is uv, this position - previous
+// position. The background, at depth 0, has the velocity that the camera gives it, whatever the scene says of it.
+struct Geometry {
+  Extent extent;
+  std::vector<float> depth;
+  std::vector<Vec2> velocity;
+};
+
+// A surface is nearer than another where its depth exceeds the other's this many times. A twentieth: more than a
+// surface at walking pace comes nearer in a frame, less than an object stands before its background.
+inline constexpr float kNearer = 1.05f;
+inline constexpr float kHorizon = 1e-6f;  // depth above this is a surface
+
+// Whether `depth` is of a surface that stands before `other`.
+bool is_nearer(float depth, float other);
+
+// `targets` have the extent wanted, and velocity.
+Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets& targets, double seconds,
+                             double previous_seconds);
+
+// Returns for each pixel the depth of the nearest of 3 x 3 samples, so that nothing thinner than a pixel is missed.
+Result<std::vector<float>> nearest_depth_at(scenes::Renderer& renderer, const gl::RenderTargets& targets,
+                                            double seconds);
+
+// Disoccluded pixels show what was hidden a moment ago, where a method that trusts the past shows ghosts.
+
+// 1 for each pixel of `now` whose place in `before` lies on screen and is hidden there: all four pixels
+// around it are nearer. 0 where it comes from outside the picture.
+std::vector<std::uint8_t> disoccluded_since(const Geometry& now, const Geometry& before);
+
+// `newer`, and what comes from where `older`, the mask of the frame before, is 1.
+std::vector<std::uint8_t> disoccluded_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
+                                                 const std::vector<std::uint8_t>& older);
+
+// Regions: the parts of a picture where methods fail apart, told by the scene's true depth and motion.
+
+// Classes of the pixels of one frame, output extent.
 struct FrameMasks {
   std::vector<std::uint8_t> disoccluded;  // 1 where a pixel was hidden within the last two frames
   std::vector<Region> regions;
@@ -34,7 +72,7 @@ std::vector<std::uint8_t> edges_of_motion(const Geometry& geometry);
 std::vector<Region> regions_of(const Geometry& geometry, std::span<const float> nearest,
                                std::span<const std::uint8_t> disoccluded);
 
-// Of each measured frame. A cut disoccludes nothing, and nothing moves in it: all is new.
+// Returns the masks of each measured frame. A cut disoccludes nothing, and nothing moves in it: all is new.
 Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, const scenes::Scene& scene,
                                                 const Conditions& conditions);
 

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "bench/traces/load_trace.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
+#include <sstream>
+#include <vector>
 
 #include "random.h"
 
@@ -13,7 +18,7 @@ namespace {
 
 using scenes::Random;
 
-constexpr double kQuietNoise = 0.005;  // of a timer on an idle machine
+constexpr double kQuietNoise = 0.005;  // relative noise of a timer on an idle machine
 
 double normal(Random& random) {  // Box and Muller, 1958
   const double radius = std::sqrt(-2 * std::log(1 - static_cast<double>(random.unit())));
@@ -84,6 +89,41 @@ class Bursts {
   int left_ = 60;
   bool heavy_ = false;
 };
+
+std::vector<std::string> cells(std::string line) {
+  if (!line.empty() && line.back() == '\r') line.pop_back();
+  std::vector<std::string> list;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');)
+    list.push_back(cell);
+  return list;
+}
+
+// Columns by name; -1 where there is none.
+struct Columns {
+  int gpu_ms = -1;
+  int area_fraction = -1;
+  int cpu_ms = -1;
+
+  explicit Columns(const std::vector<std::string>& header) {
+    const auto find = [&header](const char* name) {
+      const auto at = std::find(header.begin(), header.end(), name);
+      return at == header.end() ? -1 : static_cast<int>(at - header.begin());
+    };
+    gpu_ms = find("gpu_ms");
+    area_fraction = find("area_fraction");
+    cpu_ms = find("cpu_ms");
+  }
+};
+
+// A positive finite number, or nothing (0).
+double positive(const std::vector<std::string>& row, int column) {
+  if (column < 0 || column >= static_cast<int>(row.size())) return 0;
+  const std::string& text = row[static_cast<std::size_t>(column)];
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return end == text.c_str() + text.size() && std::isfinite(value) && value > 0 ? value : 0;
+}
 
 }  // namespace
 
@@ -202,6 +242,39 @@ std::vector<LoadTrace> held_out_traces(std::uint64_t seed) {
 
 std::vector<LoadTrace> traces_of(Split split, std::uint64_t seed) {
   return split == Split::kDevelopment ? development_traces(seed) : held_out_traces(seed);
+}
+
+Result<LoadTrace> recorded_trace(const std::string& name, const std::string& csv,
+                                 const Recording& recording) {
+  if (!(recording.target_ms > 0) || !(recording.fixed_part >= 0 && recording.fixed_part <= 0.9)) {
+    return Status::invalid(
+        fmt::format("target_ms is {} and fixed_part {}; the first must be above 0, the second in [0, 0.9]",
+                    recording.target_ms, recording.fixed_part));
+  }
+  std::stringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const Columns columns(cells(line));
+  if (columns.gpu_ms < 0 || columns.area_fraction < 0) {
+    return Status::invalid(name + ": line 1 must name the columns gpu_ms and area_fraction");
+  }
+  LoadTrace trace{.name = name, .frames = {}};
+  for (int number = 2; std::getline(lines, line); ++number) {
+    if (line.empty()) continue;
+    const std::vector<std::string> row = cells(line);
+    const double gpu = positive(row, columns.gpu_ms) / recording.target_ms;
+    const double area = positive(row, columns.area_fraction);
+    if (gpu <= 0 || area <= 0) {
+      return Status::invalid(
+          fmt::format("{}: line {} needs a positive gpu_ms and area_fraction", name, number));
+    }
+    const double level = gpu / (recording.fixed_part + (1 - recording.fixed_part) * area);
+    trace.frames.push_back({.fixed = level * recording.fixed_part,
+                            .scaling = level * (1 - recording.fixed_part),
+                            .cpu = positive(row, columns.cpu_ms) / recording.target_ms});
+  }
+  if (trace.frames.empty()) return Status::invalid(name + ": no frames after the header");
+  return trace;
 }
 
 }  // namespace quincunx::traces

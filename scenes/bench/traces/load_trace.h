@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/status.h"
+
 namespace quincunx::traces {
 
 struct FrameLoad {
@@ -22,7 +24,7 @@ struct FrameLoad {
   double gpu(double area_fraction) const;  // in targets
 };
 
-// What a trace counts for.
+// The use of a trace in the totals.
 enum class TraceKind {
   kFeasible,    // a resolution on the ladder fits every frame but single spikes: part of the totals
   kInfeasible,  // for a while nothing fits: dropped frames cannot be avoided
@@ -48,5 +50,16 @@ constexpr int kFrames = 1800;
 std::vector<LoadTrace> development_traces(std::uint64_t seed);
 std::vector<LoadTrace> held_out_traces(std::uint64_t seed);
 std::vector<LoadTrace> traces_of(Split split, std::uint64_t seed);
+
+// How a load that a real program recorded becomes a trace.
+struct Recording {
+  double target_ms = 1000.0 / 60;  // what the recorded times are divided by
+  double fixed_part = 0.25;  // share of the cost at the output resolution that does not scale, in [0, 0.9]
+};
+
+// CSV text: a header line that names at least `gpu_ms` and `area_fraction`, in any order and among others,
+// then a line for each frame; `cpu_ms` is read where it is there. No quotes. Errors: kInvalidArgument naming
+// the line.
+Result<LoadTrace> recorded_trace(const std::string& name, const std::string& csv, const Recording& recording);
 
 }  // namespace quincunx::traces

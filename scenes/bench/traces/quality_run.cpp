@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "bench/traces/quality_run.h"
 
+#include <fmt/format.h>
+
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -40,13 +43,13 @@ std::vector<Contender> contenders(const QualityRunSettings& settings, const Reso
                     auto controller = checked(make_quality_controller({.pacing = pacing_of(settings)}));
                     return replay_quality(stage, *controller);
                   }});
-  for (const FrontMethod& method : ErrorFront::built_in().methods()) {
+  for (const MethodVariant& method : ErrorFront::built_in().methods()) {
     list.push_back({"predictive, " + name_of(method), [&settings, method](const QualityStage& stage) {
                       auto controller = checked(make_predictive_controller(pacing_of(settings)));
                       return replay_fixed(stage, controller->ladder(), controller.get(), method);
                     }});
   }
-  for (const FrontMethod& method : ErrorFront::built_in().methods()) {
+  for (const MethodVariant& method : ErrorFront::built_in().methods()) {
     list.push_back({"scale 1, " + name_of(method), [&ladder, method](const QualityStage& stage) {
                       return replay_fixed(stage, ladder, nullptr, method);
                     }});
@@ -54,14 +57,14 @@ std::vector<Contender> contenders(const QualityRunSettings& settings, const Reso
   return list;
 }
 
-// What one seed runs on.
+// The input of a run with one seed.
 struct Stage {
   std::uint64_t seed = 1;
   std::vector<ContentTrace> traces;
   ErrorFront machine;
 };
 
-// Of a held-out split the machine is another one, too.
+// Makes a stage for each seed. A held-out split has another machine, too.
 std::vector<Stage> stages_for(const QualityRunSettings& settings, const ResolutionLadder& ladder, Split split,
                               const ScriptedMachine& machine, double budget) {
   constexpr std::uint64_t kHeldOutMachine = 1000;
@@ -132,6 +135,62 @@ QualityRun run_quality(const QualityRunSettings& settings) {
     }
   }
   return run;
+}
+
+std::string text_of(const QualityRun& run) {
+  std::string text;
+  const QualityResult* before = nullptr;
+  for (const QualityResult& result : run.results) {
+    if (before == nullptr || before->traces != result.traces || before->machine != result.machine ||
+        before->budget != result.budget) {
+      text += fmt::format("\n{} traces, {} machine, {:g} of the time\n", result.traces, result.machine,
+                          result.budget);
+      text += fmt::format("{:<36}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "controller", "FLIP", "/oracle", "dropped",
+                          "changes/s", "pixels");
+    }
+    text += fmt::format("{:<36}{:>9.4f}{:>9.3f}{:>9.1f}{:>11.2f}{:>9.3f}\n", result.controller, result.error,
+                        result.over_oracle, result.dropped, result.changes_per_second, result.area);
+    before = &result;
+  }
+  return text + fmt::format(
+                    "\nFLIP: expected, mean of all refreshes, dropped frames included; the traces' mean over "
+                    "that of "
+                    "the oracle.\ndropped: of {} frames, mean of {} seeds.  changes/s: of the method.\n",
+                    run.results.front().frames, run.settings.seeds.size());
+}
+
+std::string json_of(const QualityRun& run) {
+  nlohmann::ordered_json root = {{"seeds", run.settings.seeds},
+                                 {"refresh_hz", run.settings.display.refresh_hz},
+                                 {"buffers", run.settings.display.buffers},
+                                 {"timer_latency_frames", run.settings.display.timer_latency},
+                                 {"times_passes", run.settings.times_passes},
+                                 {"results", nlohmann::ordered_json::array()}};
+  for (const QualityResult& result : run.results) {
+    root["results"].push_back({{"traces", result.traces},
+                               {"machine", result.machine},
+                               {"budget", result.budget},
+                               {"controller", result.controller},
+                               {"frames", result.frames},
+                               {"dropped", result.dropped},
+                               {"flip", result.error},
+                               {"flip_over_oracle", result.over_oracle},
+                               {"changes_per_second", result.changes_per_second},
+                               {"pixels", result.area},
+                               {"flips", result.errors}});
+  }
+  return root.dump(1) + "\n";
+}
+
+std::string csv_of(const QualityRun& run) {
+  std::string text =
+      "traces,machine,budget,controller,frames,dropped,flip,flip_over_oracle,changes_per_second,pixels\n";
+  for (const QualityResult& result : run.results) {
+    text += fmt::format("{},{},{:g},\"{}\",{},{:g},{:g},{:g},{:g},{:g}\n", result.traces, result.machine,
+                        result.budget, result.controller, result.frames, result.dropped, result.error,
+                        result.over_oracle, result.changes_per_second, result.area);
+  }
+  return text;
 }
 
 }  // namespace quincunx::traces

@@ -25,13 +25,13 @@ struct QualityResult {
   std::string traces = {};   // "development", "held-out"
   std::string machine = {};  // "strong"
   double budget = 1;
-  int frames = 0;  // of one seed
+  int frames = 0;  // for one seed
   double dropped = 0;
   double error = 0;        // mean expected FLIP of a refresh
   double over_oracle = 0;  // mean of the traces' error over the oracle's
   double changes_per_second = 0;
   double area = 0;
-  std::vector<double> errors = {};  // of each trace, in their order
+  std::vector<double> errors = {};  // one for each trace, in their order
 };
 
 struct QualityRun {
@@ -39,7 +39,7 @@ struct QualityRun {
   std::vector<QualityResult> results;
 };
 
-// Of each split, machine and budget: the oracle first, then quality with a front that was measured there and with the
+// Runs each split, machine and budget: the oracle first, then quality with a front that was measured there and with the
 // one that is built in, predictive with each method, scale 1 with each method.
 QualityRun run_quality(const QualityRunSettings& settings);
 

@@ -38,7 +38,7 @@ struct ReplayedFrame {
 std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display,
                                   ResolutionController& controller);
 
-// What sizes the frames of a replay, and what they cost besides their load.
+// The program of a replay: it sizes the frames and adds its own cost to their load.
 class ReplayedProgram {
  public:
   virtual ~ReplayedProgram() = default;

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "bench/traces/load_trace.h"
 #include "bench/traces/quality_run.h"
-#include "bench/traces/recorded_trace.h"
 #include "bench/traces/trace_run.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {
 class CommandLine;
-}
+}  // namespace quincunx::tools
 
 namespace quincunx::traces {
 
@@ -42,5 +42,9 @@ Result<QualityRun> run_quality(const TraceOptions& options);
 
 // traces.json, traces.csv and traces.html in `folder`. Errors: kIoFailure.
 Status write_files(const TraceRun& run, const std::string& folder, const std::string& command);
+
+// Returns a run as one HTML page: tables that sort, and load, resolution and dropped frames over time. `command`: as
+// typed. The curves are those of the first display and seed, replayed for the page. Pure.
+std::string page_of(const TraceRun& run, const std::string& command);
 
 }  // namespace quincunx::traces

@@ -15,7 +15,7 @@ namespace quincunx::traces {
 // A controller by name, made new for each replay.
 struct ControllerKind {
   std::string name;
-  bool ours = false;  // of this library, rather than a stand-in for somebody else's
+  bool ours = false;  // this library's, rather than a stand-in for somebody else's
   std::function<std::unique_ptr<ResolutionController>(const LadderSettings&, const Display&)> make;
 };
 std::vector<ControllerKind> controller_kinds();
@@ -36,7 +36,7 @@ struct TraceSettings {
 // Sums over the feasible traces of a list; means over the seeds.
 struct TraceTotals {
   int frames = 0;      // that counted, of one seed
-  double dropped = 0;  // of one seed
+  double dropped = 0;  // frames of one seed
   double pixels = 0;   // mean of the traces' shares of the oracle's
   double changes_per_second = 0;
   double oscillation = 0;

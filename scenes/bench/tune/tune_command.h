@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/tune/tune_result.h"
+#include "bench/tune/tune_choice.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// TuneStand: the frames of one case of --tune, and the images that they are resolved into.
+// TuneStand: the frames of one case of --tune and the images that they are resolved into; the cases, and how they are
+// timed.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "bench/harness/copy_kernel.h"
-#include "bench/speed_error/frame_feed.h"
+#include "bench/speed_error/contender.h"
 #include "bench/tune/tune_choice.h"
-#include "programs/frame_source.h"
+#include "frames/frame_source.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx::bench {
@@ -23,7 +26,7 @@ struct TuneEffort {
   static constexpr int kWarmUp = 3;  // frames that do not count
 
   Extent output;
-  int frames = 8;  // of each way to resolve
+  int frames = 8;  // for each way to resolve
   double fps = 60;
 };
 
@@ -55,5 +58,29 @@ class TuneStand {
   Image resolved_, blurred_, presented_;
   Image other_;  // that is faded from
 };
+
+// Methods and options that together run every pass but those that seldom run (clear_region, resize_*).
+std::vector<TuneCase> tune_cases();
+
+// Those of these names, or all where there are none. Errors: kInvalidArgument for another name.
+Result<std::vector<TuneCase>> tune_cases(const std::vector<std::string>& names);
+
+// All profiles were used in each round, one after the other, each time another one first, after the copy.
+struct CaseTimes {
+  Samples copy_ms;
+  ShapeTimes shapes;
+};
+
+// By the clock that the device's passes have. One thread, that of the GL context. Errors: those of the frames, and of
+// the first profile; another profile that the device refuses has no times.
+Result<CaseTimes> time_case(const scenes::FrameSource& stage, const TuneCase& what, const TuneEffort& effort,
+                            std::span<const DeviceProfile> profiles);
+
+// Measures what it costs that a frame's inputs are images, not buffers, and that history is kept in floats, not in
+// halves: of those cases that are a method and nothing else, with the profile. One thread, that of the GL context.
+// Errors: those of the frames and the device.
+Result<std::vector<TunedStorage>> time_storages(const scenes::FrameSource& stage,
+                                                const std::vector<TuneCase>& cases, const TuneEffort& effort,
+                                                const DeviceProfile& profile);
 
 }  // namespace quincunx::bench

@@ -3,7 +3,7 @@
 layout(binding = 0) uniform sampler2D depth;     // reversed
 layout(location = 0) uniform ivec2 frame_extent;  // viewports
 layout(location = 1) uniform ivec2 extent;
-layout(location = 2) uniform int parity;  // of (x + y) % 2 of the samples that are shaded; -1: all of them
+layout(location = 2) uniform int parity;  // (x + y) % 2 of the samples that are shaded; -1: all of them
 
 void main() {
   ivec2 texel = ivec2(gl_FragCoord.xy);

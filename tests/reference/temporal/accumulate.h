@@ -7,23 +7,23 @@
 #include "frame_samples.h"
 #include "limit_confidence.h"
 #include "reseed.h"
-#include "startling.h"
 
 namespace quincunx::reference {
 
 // Output pixels from which on a sample has no weight, and the same in still tiles as W grows: 1.2 dB on still
 // pictures.
-constexpr double kReach = 1.05;
-constexpr double kLeastReach = .85;
-constexpr double kNarrowing = .1;       // for each unit of confidence
-constexpr double kLeastWeight = 1e-30;  // against a division by 0
+constexpr double kSampleReachMax = 1.05;
+constexpr double kSampleReachMin = .85;
+constexpr double kReachNarrowing = .1;   // for each unit of confidence
+constexpr double kWeightSumMin = 1e-30;  // against a division by 0
 
 template <typename Real>
 Real reach_of(bool is_still, const Real& confidence) {
-  return is_still ? max(kReach - kNarrowing * confidence, kLeastReach) : Real(kReach);
+  return is_still ? max(kSampleReachMax - kReachNarrowing * confidence, kSampleReachMin)
+                  : Real(kSampleReachMax);
 }
 
-// Of a sample `dx` and `dy` output pixels away.
+// Returns the weight of a sample `dx` and `dy` output pixels away.
 template <typename Real>
 Real sample_weight(const PixelOf<Real>& sample, const Real& dx, const Real& dy, const Real& reach) {
   const Real near = max(1 - (dx * dx + dy * dy) / (reach * reach), 0);
@@ -33,19 +33,19 @@ Real sample_weight(const PixelOf<Real>& sample, const Real& dx, const Real& dy, 
 // Whether a tile holds a sample back from history that is known.
 template <typename Real>
 bool holds_back(const TileLight& tile, const Known<Real>& known, const Pixel& sample) {
-  return tile.holds_back && is_valid(sample) && known.confidence >= kReseedBelow &&
-         is_startling(sample, known.colour);
+  return tile.holds_back && is_valid(sample) && known.confidence >= kConfidenceMin &&
+         is_outlier(sample, known.colour);
 }
 
 template <typename Real>
 HistoryTexel<Real> accumulate(const Known<Real>& known, const PixelOf<Real>& sample, const Real& weight) {
   HistoryTexel<Real> updated = {known.colour, known.alpha};
   const Real total = known.confidence + weight;
-  const Real share = weight / max(total + known.inertia, kLeastWeight);
+  const Real share = weight / max(total + known.inertia, kWeightSumMin);
   for (std::size_t c = 0; c < 3 && is_valid(sample); ++c)
     updated.texel[c] += (sample[c] - updated.texel[c]) * share;
   if (is_valid(sample)) updated.alpha += (sample[3] - updated.alpha) * share;
-  updated.texel[3] = min(total, kMostConfidence);
+  updated.texel[3] = min(total, kConfidenceMax);
   return updated;
 }
 

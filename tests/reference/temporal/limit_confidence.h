@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What is known of an output pixel: its history, and how far that is to be believed.
+// History of an output pixel: how far it is to be believed, and in which light it is taken.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "../history_sampling.h"
 #include "../motion_edge.h"
@@ -12,21 +13,21 @@
 namespace quincunx::reference {
 
 // Confidence, in weights of samples: what is ever kept (about 140 frames at scale .5), and once resampled.
-constexpr double kMostConfidence = 32;
-constexpr double kMostResampled = 8;
-// Of confidence, for each resampling midway between texels; .2 instead of .3 is worth .05 dB.
+constexpr double kConfidenceMax = 32;
+constexpr double kResampledConfidenceMax = 8;
+// Cost in confidence for each resampling midway between texels; .2 instead of .3 is worth .05 dB.
 constexpr double kResamplingCost = .2;
 // Part of the way between texels, from which on history counts as resampled.
-constexpr double kResampledFrom = .01;
+constexpr double kResampledMin = .01;
 // Output pixels of a motion edge that begin to cost confidence, and that cost most; 4 instead of 2 as the cost
 // leaves fewer ghosts: pixels above 2/255 on a texture fall from .052 to .033 %.
-constexpr double kMotionEdgeCostsFrom = .1;
-constexpr double kMotionEdgeCostsMost = 1;
-constexpr double kMotionEdgeCost = 4;
+constexpr double kCostlyEdgeMin = .1;
+constexpr double kCostlyEdgeMax = 1;
+constexpr double kEdgeCost = 4;
 
 // ---- Trust in history, by what reproject found.
 
-// Of a sample without velocity or depth there is none.
+// Returns a sample's trust; there is none without velocity or depth.
 inline double known_trust(const Reprojection& sample) {
   return std::isnan(sample.trust) ? 0 : std::max(sample.trust, 0.0);
 }
@@ -56,27 +57,67 @@ Real trust_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
 
 template <typename Real>
 struct Known {
-  PixelOf<Real> colour;  // of history; the fourth channel is not used
+  PixelOf<Real> colour;  // colour of history; the fourth channel is not used
   Real alpha;
   Real confidence;
   Real rejection;    // in [0, 1]
-  Real inertia = 0;  // of a seed, against this frame's sample
+  Real inertia = 0;  // inertia of a seed, against this frame's sample
 };
 
-// What a trust in [0, 1] leaves: 32 of a whole one, 1 of a half, 0 of none.
+// Returns the most confidence that a trust in [0, 1] leaves: 32 for a whole one, 1 for a half, 0 for none.
 template <typename Real>
 Real most_confidence(const Real& trust) {
-  return trust / (1 + 1 / kMostConfidence - trust);
+  return trust / (1 + 1 / kConfidenceMax - trust);
 }
 
 template <typename Real>
 Real limit_confidence(const FetchedHistory<Real>& history, const Real& trust, double motion_edge) {
-  Real w = clamp(history.known.texel[3], 0, kMostConfidence);
+  Real w = clamp(history.known.texel[3], 0, kConfidenceMax);
   w = w / (1 + kResamplingCost * history.between * w);
-  if (history.between > kResampledFrom) w = min(w, kMostResampled);
+  if (history.between > kResampledMin) w = min(w, kResampledConfidenceMax);
   w = min(w, most_confidence(trust));
-  const Real edge = smooth_step(Real(motion_edge), kMotionEdgeCostsFrom, kMotionEdgeCostsMost);
-  return w / (1 + kMotionEdgeCost * edge * w);
+  const Real edge = smooth_step(Real(motion_edge), kCostlyEdgeMin, kCostlyEdgeMax);
+  return w / (1 + kEdgeCost * edge * w);
+}
+
+// ---- Relighting and rejection, by the tiles around.
+
+// Interpolates, on a row linear between the means of two tiles at their common edge, over rows between the tiles'
+// middles.
+template <typename Real>
+Real between_tiles(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y,
+                   double TileLight::*what) {
+  const auto edge = [&](int column, int row) {
+    const auto tile = [&](int i) {
+      return Real(tiles[index_of(in.tiles_x(), std::clamp(i, 0, in.tiles_x() - 1), row)].light.*what);
+    };
+    return .5 * (tile(column - 1) + tile(column));
+  };
+  const int middle = y - kTile / 2;
+  const int above = std::max(middle, 0) / kTile;
+  const int below = std::min(above + 1, in.tiles_y() - 1);
+  const double down = middle < 0 ? 0 : (middle % kTile + .5) / kTile;
+  const double along = (x % kTile + .5) / kTile;
+  const auto at_edge = [&](int column) {
+    const Real upper = edge(column, above);
+    return upper + (edge(column, below) - upper) * down;
+  };
+  const Real left = at_edge(x / kTile);
+  return left + (at_edge(x / kTile + 1) - left) * along;
+}
+
+template <typename Real>
+void relight(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, PixelOf<Real>& colour) {
+  const auto gain = between_tiles<Real>(in, tiles, x, y, &TileLight::gain);
+  for (Real& value : colour)
+    value *= gain;
+}
+
+template <typename Real>
+void reject(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, Known<Real>& known) {
+  const auto rejection = between_tiles<Real>(in, tiles, x, y, &TileLight::rejection);
+  known.rejection = max(known.rejection, rejection);
+  known.confidence = min(known.confidence, most_confidence(1 - rejection));
 }
 
 }  // namespace quincunx::reference

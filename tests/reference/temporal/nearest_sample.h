@@ -39,8 +39,8 @@ struct Neighbourhood {
   Nearest<Real> x, y;
 };
 
-// Of pixel (x, y), whose picture lies at its centre + phase. On a checkerboard a sample that is not shaded gives way to
-// the next one of its row, on the side of the picture where there is one there.
+// Returns the samples nearest to pixel (x, y), whose picture lies at its centre + phase. On a checkerboard a sample
+// that is not shaded gives way to the next one of its row, on the side of the picture where there is one there.
 template <typename Real>
 Neighbourhood<Real> nearest_samples(const TemporalInputs& in, int x, int y,
                                     const std::array<double, 2>& phase) {

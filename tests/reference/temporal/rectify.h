@@ -13,7 +13,7 @@ namespace quincunx::reference {
 constexpr double kBoxSize = .75;
 // Tone-mapped colour: added to the box's size where a distance is compared with it.
 constexpr double kBoxMargin = .02;
-constexpr double kLeastRest = 0x1p-16;  // of 1 - tone, against a division by 0 on the way back
+constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
 
 // Differences as the eye has them, rather than as light.
 template <typename Real>
@@ -24,11 +24,11 @@ PixelOf<Real> to_tone(const PixelOf<Real>& colour) {
 
 template <typename Real>
 PixelOf<Real> from_tone(const PixelOf<Real>& tone) {
-  const Real rest = max(1 - brightest(tone), kLeastRest);
+  const Real rest = max(1 - brightest(tone), kToneRestMin);
   return {tone[0] / rest, tone[1] / rest, tone[2] / rest, 0};
 }
 
-// What the samples around a pixel allow, in tone space.
+// The range that the samples around a pixel allow, in tone space.
 template <typename Real>
 struct Box {
   PixelOf<Real> mean = {};
@@ -36,7 +36,7 @@ struct Box {
   bool is_known = false;         // there is a valid sample
 };
 
-// Of the sample (x, y) and its four neighbours.
+// Returns the box of the sample (x, y) and its four neighbours.
 template <typename Real>
 Box<Real> box_around(const Frame& frame, int x, int y) {
   const int cross[][2] = {{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}};

@@ -11,14 +11,14 @@
 namespace quincunx::reference {
 
 // Confidence below which history is reseeded, and which the seed of a single frame has.
-constexpr double kReseedBelow = .15;
-// Of a whole seed against its first sample, in weights of samples: worth .01 dB, .05 to .1 in first frames.
+constexpr double kConfidenceMin = .15;
+// Inertia of a whole seed against its first sample, in weights of samples: worth .01 dB, .05 to .1 in first frames.
 constexpr double kSeedInertia = .85;
 // 1 / (2 sigma^2) of the seed's Gaussian, sigma = .45 samples.
 constexpr double kSeedFalloff = 2.5;
 // Output pixels a frame by which the motion of one surface's samples differs: ghosts .17 -> .06 at most.
-constexpr double kSameMotion = .15;
-constexpr double kLeastSimilarity = 0x1p-10;  // so that a seed exists where all samples differ
+constexpr double kSameSurfaceMotionMax = .15;
+constexpr double kSimilarityMin = 0x1p-10;  // so that a seed exists where all samples differ
 
 // In (0, 1]: how far another sample may show the surface of `own`, by its motion. Those of another surface
 // would stay as a ghost when it has moved on.
@@ -28,9 +28,9 @@ Real similarity(const TemporalInputs& in, int own_x, int own_y, int x, int y) {
   const Reprojection& own = in.reprojection_at(own_x, own_y);
   const Reprojection& other =
       in.reprojection_at(std::clamp(x, 0, in.frame.width - 1), std::clamp(y, 0, in.frame.height - 1));
-  const Real dx = (Real(other.x) - own.x) * in.reprojection_scale(0) / kSameMotion;
-  const Real dy = (Real(other.y) - own.y) * in.reprojection_scale(1) / kSameMotion;
-  return max(1 - dx * dx - dy * dy, kLeastSimilarity);
+  const Real dx = (Real(other.x) - own.x) * in.reprojection_scale(0) / kSameSurfaceMotionMax;
+  const Real dy = (Real(other.y) - own.y) * in.reprojection_scale(1) / kSameSurfaceMotionMax;
+  return max(1 - dx * dx - dy * dy, kSimilarityMin);
 }
 
 template <typename Real>
@@ -96,16 +96,16 @@ Seed<Real> seed_at(const TemporalInputs& in, const Neighbourhood<Real>& near) {
 // The less is known, the more of the seed.
 template <typename Real>
 void reseed(const TemporalInputs& in, const Neighbourhood<Real>& near, Known<Real>& known) {
-  if (!seamless(known.confidence < kReseedBelow)) return;
+  if (!seamless(known.confidence < kConfidenceMin)) return;
   const Seed<Real> seed = seed_at(in, near);
-  const Real share = max(1 - known.confidence / kReseedBelow, 0);
+  const Real share = max(1 - known.confidence / kConfidenceMin, 0);
   for (std::size_t c = 0; c < 3; ++c)
     known.colour[c] += (seed.colour[c] - known.colour[c]) * share;
   known.alpha += (seed.colour[3] - known.alpha) * share;
   known.inertia = kSeedInertia * share;
   if (seed.is_known)
-    known.confidence = max(known.confidence, kReseedBelow);
-  else if (known.confidence < kReseedBelow)
+    known.confidence = max(known.confidence, kConfidenceMin);
+  else if (known.confidence < kConfidenceMin)
     known.confidence = 0;
 }
 

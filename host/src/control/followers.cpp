@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// DetailFollower and OutputFollower: detail and the output's resolution follow the controller's choice.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "quincunx/detail_follower.h"
+#include "quincunx/output_follower.h"
+
+namespace quincunx {
+
+Result<DetailFollower> DetailFollower::create(const DetailSettings& settings) {
+  if (settings.levels < 2 || settings.levels > 64) {
+    return Status::invalid(fmt::format("levels is {}; it must lie in [2, 64]", settings.levels));
+  }
+  if (!(settings.full_area > 0 && settings.full_area <= 4)) {
+    return Status::invalid(fmt::format("full_area is {}; it must lie in (0, 4]", settings.full_area));
+  }
+  if (!(settings.least_area > 0 && settings.least_area < settings.full_area)) {
+    return Status::invalid(fmt::format("least_area is {}; it must lie in (0, {}), below full_area",
+                                       settings.least_area, settings.full_area));
+  }
+  if (!(settings.hysteresis >= 0 && settings.hysteresis <= 1)) {
+    return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1]", settings.hysteresis));
+  }
+  if (settings.rest_frames < 0) {
+    return Status::invalid(fmt::format("rest_frames is {}; it must be at least 0", settings.rest_frames));
+  }
+  return DetailFollower(settings);
+}
+
+int DetailFollower::observe(double area_fraction) {
+  if (!(area_fraction > 0) || !std::isfinite(area_fraction)) return level_;
+  if (since_ < settings_.rest_frames) {
+    ++since_;
+    return level_;
+  }
+  // In levels: level k is meant for [k - 1/2, k + 1/2].
+  const double wanted = (settings_.levels - 1) * (settings_.full_area - area_fraction) /
+                        (settings_.full_area - settings_.least_area);
+  const double margin = 0.5 + settings_.hysteresis;
+  int next = level_;
+  if (wanted > level_ + margin) ++next;
+  if (wanted < level_ - margin) --next;
+  next = std::clamp(next, 0, settings_.levels - 1);
+  if (next != level_) since_ = 0;
+  level_ = next;
+  return level_;
+}
+
+Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double most_filled) {
+  if (render.width < 1 || render.height < 1) {
+    return Status::invalid(
+        fmt::format("render is {}x{}; both sides must be at least 1", render.width, render.height));
+  }
+  if (!(most_filled > 0 && most_filled <= 1)) {
+    return Status::invalid(fmt::format("most_filled is {}; it must lie in (0, 1]", most_filled));
+  }
+  const double needed = outputs.area_fraction(render) / most_filled;
+  const int below = outputs.highest_within(needed);
+  return outputs[std::min(outputs.top(),
+                          outputs.area_fraction(below) < needed * (1 - 1e-12) ? below + 1 : below)];
+}
+
+namespace {
+
+// So many pixels that the longer way, of the width or the height, has that many steps; even, as those of viewports.
+int step_of(const OutputSettings& settings) {
+  const double longest = std::max(settings.display.width, settings.display.height) * (1 - settings.min_scale);
+  return std::max(2, static_cast<int>(longest / settings.steps / 2 + 0.5) * 2);
+}
+
+Status check(const OutputSettings& settings) {
+  if (!(settings.min_scale > 0 && settings.min_scale <= 1))
+    return Status::invalid(fmt::format("min_scale is {}; it must lie in (0, 1]", settings.min_scale));
+  if (settings.steps < 1)
+    return Status::invalid(fmt::format("steps is {}; it must be at least 1", settings.steps));
+  if (!(settings.most_filled > 0 && settings.most_filled <= 1))
+    return Status::invalid(fmt::format("most_filled is {}; it must lie in (0, 1]", settings.most_filled));
+  if (!(settings.hysteresis >= 0 && settings.hysteresis < 1))
+    return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1)", settings.hysteresis));
+  if (settings.rest_frames < 0)
+    return Status::invalid(fmt::format("rest_frames is {}; it must be at least 0", settings.rest_frames));
+  return {};
+}
+
+}  // namespace
+
+OutputFollower::OutputFollower(const OutputSettings& settings, ResolutionLadder outputs)
+    : settings_(settings),
+      outputs_(std::move(outputs)),
+      output_(outputs_[outputs_.top()]),
+      since_(settings.rest_frames) {}
+
+Result<OutputFollower> OutputFollower::create(const OutputSettings& settings) {
+  if (Status status = check(settings); !status.ok()) return status;
+  auto outputs = ResolutionLadder::create({.output = settings.display,
+                                           .min_scale = settings.min_scale,
+                                           .order = AxisOrder::kBoth,
+                                           .step = step_of(settings),
+                                           .floor = {1, 1}});
+  if (!outputs.ok()) return outputs.status();
+  return OutputFollower(settings, std::move(outputs).value());
+}
+
+Extent OutputFollower::observe(Extent render) {
+  const Result<Extent> wanted = dual_output(outputs_, render, settings_.most_filled);
+  if (!wanted.ok()) return output_;
+  const bool is_outgrown = render.area() > output_.area();
+  if (since_ < settings_.rest_frames && !is_outgrown) {
+    ++since_;
+    return output_;
+  }
+  // An output falls to what a larger viewport would want.
+  const Extent lower =
+      dual_output(outputs_, render, settings_.most_filled * (1 - settings_.hysteresis)).value();
+  Extent next = output_;
+  if (wanted->area() > output_.area()) next = wanted.value();
+  if (lower.area() < output_.area()) next = lower;
+  if (next != output_) since_ = 0;
+  output_ = next;
+  return output_;
+}
+
+}  // namespace quincunx

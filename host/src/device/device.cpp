@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: MIT
+#include "quincunx/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <optional>
+
+#include "device/device_impl.h"
+#include "device/device_profile_file.h"
+#include "device/timer_validation.h"
+
+namespace quincunx {
+namespace {
+
+DeviceKind kind_of(cl_device_type type) {
+  if (type & CL_DEVICE_TYPE_GPU) return DeviceKind::kGpu;
+  if (type & CL_DEVICE_TYPE_CPU) return DeviceKind::kCpu;
+  if (type & CL_DEVICE_TYPE_ACCELERATOR) return DeviceKind::kAccelerator;
+  return DeviceKind::kOther;
+}
+
+// Vendors pad names with blanks and, in some drivers, a final zero.
+std::string trimmed(std::string text) {
+  while (!text.empty() && (text.back() == '\0' || std::isspace(static_cast<unsigned char>(text.back())))) {
+    text.pop_back();
+  }
+  const auto first = std::find_if(text.begin(), text.end(), [](unsigned char c) { return !std::isspace(c); });
+  return {first, text.end()};
+}
+
+bool has_extension(const cl::Device& device, const std::string& extension) {
+  const std::string all = fmt::format(" {} ", device.getInfo<CL_DEVICE_EXTENSIONS>());
+  return all.find(fmt::format(" {} ", extension)) != std::string::npos;
+}
+
+int image_pitch_texels(const cl::Device& device) {
+  cl_uint texels = 0;
+  const bool known = has_extension(device, "cl_khr_image2d_from_buffer") &&
+                     clGetDeviceInfo(device(), CL_DEVICE_IMAGE_PITCH_ALIGNMENT_KHR, sizeof(texels), &texels,
+                                     nullptr) == CL_SUCCESS;
+  return known ? static_cast<int>(texels) : 0;
+}
+
+// PoCL keeps a kernel for each size of group that it ran with. Asked for a program's binary it compiles each
+// kernel once more, for any size (docs/pipeline.md).
+bool keeps_programs(const DeviceInfo& info) {
+  return info.platform == "Portable Computing Language";
+}
+
+DeviceInfo info_of(const cl::Device& device) {
+  DeviceInfo info;
+  info.kind = kind_of(device.getInfo<CL_DEVICE_TYPE>());
+  info.platform = trimmed(cl::Platform(device.getInfo<CL_DEVICE_PLATFORM>()).getInfo<CL_PLATFORM_NAME>());
+  info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+  info.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
+  info.driver = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+  info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+  info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  info.global_memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.images = device.getInfo<CL_DEVICE_IMAGE_SUPPORT>() != 0;
+  info.host_unified_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() != 0;
+  info.image_pitch_texels = info.images ? image_pitch_texels(device) : 0;
+  info.gl_sharing = has_extension(device, "cl_khr_gl_sharing");
+  return info;
+}
+
+bool lists_format(const cl::Context& context, const cl::ImageFormat& wanted) {
+  std::vector<cl::ImageFormat> formats;
+  context.getSupportedImageFormats(CL_MEM_READ_WRITE, CL_MEM_OBJECT_IMAGE2D, &formats);
+  return std::any_of(formats.begin(), formats.end(), [&](const cl::ImageFormat& format) {
+    return format.image_channel_order == wanted.image_channel_order &&
+           format.image_channel_data_type == wanted.image_channel_data_type;
+  });
+}
+
+// All that follows from the device, the context and the queue.
+void learn(Device::Impl& impl) {
+  impl.info.two_channel_images =
+      impl.info.images && lists_format(impl.context, cl::ImageFormat(CL_RG, CL_HALF_FLOAT));
+  impl.keeps_programs = keeps_programs(impl.info);
+  impl.timer = validated_timer(impl);
+  impl.profile = find_profile(impl);
+}
+
+std::vector<cl::Device> all_devices() {
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return {};  // the loader reports "no platform" as an error
+  }
+  std::vector<cl::Device> devices;
+  for (const cl::Platform& platform : platforms) {
+    std::vector<cl::Device> found;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+    } catch (const cl::Error&) {
+      continue;  // a platform without devices
+    }
+    devices.insert(devices.end(), found.begin(), found.end());
+  }
+  std::stable_partition(devices.begin(), devices.end(), [](const cl::Device& device) {
+    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
+  });
+  return devices;
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool matches(const std::string& selector, const DeviceInfo& info) {
+  if (selector.empty()) return true;
+  const std::string wanted = lower(selector);
+  if (wanted == "cpu") return info.kind == DeviceKind::kCpu;
+  if (wanted == "gpu") return info.kind == DeviceKind::kGpu;
+  int index = 0;
+  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
+  if (parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size()) return index == info.index;
+  return lower(info.platform + " " + info.name).find(wanted) != std::string::npos;
+}
+
+Status no_match(const std::string& selector, const std::vector<DeviceInfo>& infos) {
+  if (infos.empty()) {
+    return Status::unsupported(
+        "no OpenCL device found; install a driver, for example the Debian package pocl-opencl-icd for the "
+        "CPU");
+  }
+  std::string known;
+  for (const DeviceInfo& info : infos) {
+    known += fmt::format("{}{} '{}'", known.empty() ? "" : ", ", info.index, info.name);
+  }
+  return Status::invalid(fmt::format("no OpenCL device matches '{}'; there are: {}", selector, known));
+}
+
+cl::ImageFormat channel_format(PixelFormat format, bool two_channel_images) {
+  const cl_channel_order two = two_channel_images ? CL_RG : CL_RGBA;
+  switch (format) {
+    case PixelFormat::kR8:
+      return {CL_R, CL_UNORM_INT8};
+    case PixelFormat::kR32F:
+      return {CL_R, CL_FLOAT};
+    case PixelFormat::kRG16F:
+      return {two, CL_HALF_FLOAT};
+    case PixelFormat::kRG32F:
+      return {two, CL_FLOAT};
+    case PixelFormat::kRGBA8:
+      return {CL_RGBA, CL_UNORM_INT8};
+    case PixelFormat::kRGBA16F:
+      return {CL_RGBA, CL_HALF_FLOAT};
+    case PixelFormat::kRGBA32F:
+      return {CL_RGBA, CL_FLOAT};
+    case PixelFormat::kNone:
+      break;
+  }
+  return {};
+}
+
+Status check_copy(const ImageView& image, Extent extent) {
+  if (!image) return Status::invalid("the image is empty; it needs an allocation");
+  if (extent.width < 1 || extent.height < 1 || extent.width > image.extent.width ||
+      extent.height > image.extent.height) {
+    return Status::invalid(fmt::format("extent is {}x{}; it must lie within 1x1 and the image's {}x{}",
+                                       extent.width, extent.height, image.extent.width, image.extent.height));
+  }
+  return {};
+}
+
+// Bytes of a texel as the device holds it: an RG image may be a four-channel one.
+std::size_t device_texel_bytes(const ImageView& image) {
+  if (image.storage == Storage::kBuffer) return bytes_per_pixel(image.format);
+  std::size_t bytes = 0;
+  if (clGetImageInfo(image.memory, CL_IMAGE_ELEMENT_SIZE, sizeof(bytes), &bytes, nullptr) != CL_SUCCESS)
+    return 0;
+  return bytes;
+}
+
+enum class Direction { kUpload, kDownload };
+
+void copy_rows(const cl::CommandQueue& queue, Direction direction, const ImageView& image, std::size_t first,
+               std::size_t rows, int width, void* texels, std::size_t row_bytes) {
+  const auto columns = static_cast<std::size_t>(width);
+  if (image.storage == Storage::kImage) {
+    const auto memory = borrow<cl::Image2D>(image.memory);
+    const std::array<cl::size_type, 3> origin = {0, first, 0};
+    const std::array<cl::size_type, 3> region = {columns, rows, 1};
+    if (direction == Direction::kUpload) {
+      queue.enqueueWriteImage(memory, CL_TRUE, origin, region, row_bytes, 0, texels);
+    } else {
+      queue.enqueueReadImage(memory, CL_TRUE, origin, region, row_bytes, 0, texels);
+    }
+    return;
+  }
+  const auto memory = borrow<cl::Buffer>(image.memory);
+  const std::size_t pitch = image.row_pitch();
+  const std::array<cl::size_type, 3> zero = {0, 0, 0};
+  const std::array<cl::size_type, 3> origin = {image.offset % pitch, image.offset / pitch + first, 0};
+  const std::array<cl::size_type, 3> region = {columns * bytes_per_pixel(image.format), rows, 1};
+  if (direction == Direction::kUpload) {
+    queue.enqueueWriteBufferRect(memory, CL_TRUE, origin, zero, region, pitch, 0, row_bytes, 0, texels);
+  } else {
+    queue.enqueueReadBufferRect(memory, CL_TRUE, origin, zero, region, pitch, 0, row_bytes, 0, texels);
+  }
+}
+
+// Rusticl of Mesa 25.0 takes the rows of a copy for tight where there are as many of them as a row has bytes, or texels
+// of an image (docs/testing.md). Two copies of fewer rows each are right everywhere.
+void copy_blocking(const cl::CommandQueue& queue, Direction direction, const ImageView& image, Extent extent,
+                   void* texels, std::size_t row_bytes) {
+  const auto rows = static_cast<std::size_t>(extent.height);
+  const std::size_t unit = image.storage == Storage::kImage ? device_texel_bytes(image) : 1;
+  const std::size_t last = rows > 1 && rows * unit == row_bytes ? 1 : 0;
+  copy_rows(queue, direction, image, 0, rows - last, extent.width, texels, row_bytes);
+  if (last == 0) return;
+  copy_rows(queue, direction, image, rows - 1, 1, extent.width,
+            static_cast<std::byte*>(texels) + (rows - 1) * row_bytes, row_bytes);
+}
+
+// Copies rows of texels of different size: host texels and the wider ones of an image that stands in for RG.
+void repack(const std::byte* from, std::size_t from_row, std::size_t from_texel, std::byte* to,
+            std::size_t to_row, std::size_t to_texel, Extent extent) {
+  const std::size_t common = std::min(from_texel, to_texel);
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = 0; x < extent.width; ++x) {
+      std::copy_n(from + y * from_row + x * from_texel, common, to + y * to_row + x * to_texel);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> Device::list() {
+  std::vector<DeviceInfo> infos;
+  for (const cl::Device& device : all_devices()) {
+    infos.push_back(info_of(device));
+    infos.back().index = static_cast<int>(infos.size()) - 1;
+  }
+  return infos;
+}
+
+Result<Device> Device::open(const std::string& selector, const cl_context_properties* properties) {
+  const std::vector<cl::Device> devices = all_devices();
+  std::vector<DeviceInfo> infos;
+  std::optional<std::size_t> chosen;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    infos.push_back(info_of(devices[i]));
+    infos.back().index = static_cast<int>(i);
+    if (!chosen && matches(selector, infos.back())) chosen = i;
+  }
+  if (!chosen) return no_match(selector, infos);
+
+  try {
+    auto impl = std::make_shared<Impl>();
+    impl->info = infos[*chosen];
+    impl->device = devices[*chosen];
+    std::vector<cl_context_properties> all = {
+        CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(
+                                 cl::Platform(devices[*chosen].getInfo<CL_DEVICE_PLATFORM>())())};
+    for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
+      all.insert(all.end(), {p[0], p[1]});
+    }
+    all.push_back(0);
+    impl->context = cl::Context(impl->device, all.data());
+    impl->queue = cl::CommandQueue(impl->context, impl->device, CL_QUEUE_PROFILING_ENABLE);
+    learn(*impl);
+    return Device(std::move(impl));
+  } catch (const cl::Error& error) {
+    return describe(error, "Device::open", infos[*chosen].name);
+  }
+}
+
+Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_command_queue queue) {
+  if (context == nullptr || device == nullptr || queue == nullptr) {
+    return Status::invalid("Device::borrow needs a context, a device and a queue; at least one is null");
+  }
+  try {
+    auto impl = std::make_shared<Impl>();
+    impl->device = quincunx::borrow<cl::Device>(device);
+    impl->context = quincunx::borrow<cl::Context>(context);
+    impl->queue = quincunx::borrow<cl::CommandQueue>(queue);
+    if (impl->queue.getInfo<CL_QUEUE_PROPERTIES>() & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) {
+      return Status::invalid("the queue given to Device::borrow is out-of-order; it must be in-order");
+    }
+    impl->info = info_of(impl->device);
+    learn(*impl);
+    return Device(std::move(impl));
+  } catch (const cl::Error& error) {
+    return describe(error, "Device::borrow", "a borrowed device");
+  }
+}
+
+Device Device::with_profile(const DeviceProfile& profile) const {
+  auto impl = std::make_shared<Impl>(*impl_);
+  impl->profile = profile;
+  return Device(std::move(impl));
+}
+
+const DeviceInfo& Device::info() const {
+  return impl_->info;
+}
+const DeviceProfile& Device::profile() const {
+  return impl_->profile;
+}
+cl_context Device::context() const {
+  return impl_->context();
+}
+cl_device_id Device::id() const {
+  return impl_->device();
+}
+cl_command_queue Device::queue() const {
+  return impl_->queue();
+}
+
+Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storage, std::size_t pitch) const {
+  const std::size_t texel = bytes_per_pixel(format);
+  if (extent.width < 1 || extent.height < 1 || texel == 0) {
+    return Status::invalid(fmt::format("cannot allocate {}x{} texels of format {}; all must be set",
+                                       extent.width, extent.height, name_of(format)));
+  }
+  ImageView view = {.storage = storage, .format = format, .extent = extent};
+  try {
+    if (storage == Storage::kImage) {
+      if (pitch != 0) return Status::invalid("pitch is set for image storage; only buffers have one");
+      const cl::ImageFormat channels = channel_format(format, impl_->info.two_channel_images);
+      if (!impl_->info.images || !lists_format(impl_->context, channels)) {
+        return Status::unsupported(
+            fmt::format("'{}' has no {} images; use buffer storage", impl_->info.name, name_of(format)));
+      }
+      cl::Image2D image(impl_->context, CL_MEM_READ_WRITE, channels, extent.width, extent.height);
+      view.memory = image();
+      return Image::borrow(view);
+    }
+    view.pitch = pitch != 0 ? pitch : extent.width * texel;
+    if (view.pitch < extent.width * texel || view.pitch % texel != 0) {
+      return Status::invalid(
+          fmt::format("pitch is {} bytes; for {} texels of {} it must be a multiple of {} and at "
+                      "least {}",
+                      view.pitch, extent.width, name_of(format), texel, extent.width * texel));
+    }
+    cl::Buffer buffer(impl_->context, CL_MEM_READ_WRITE, view.pitch * extent.height);
+    view.memory = buffer();
+    return Image::borrow(view);
+  } catch (const cl::Error& error) {
+    return describe(error, fmt::format("{}x{} {}", extent.width, extent.height, name_of(format)),
+                    impl_->info.name);
+  }
+}
+
+Status Device::upload(const ImageView& image, Extent extent, const void* texels,
+                      std::size_t row_bytes) const {
+  if (Status status = check_copy(image, extent); !status.ok()) return status;
+  const std::size_t texel = bytes_per_pixel(image.format);
+  const std::size_t wide = device_texel_bytes(image);
+  const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
+  try {
+    if (wide == texel) {
+      copy_blocking(impl_->queue, Direction::kUpload, image, extent, const_cast<void*>(texels), host_row);
+    } else {
+      std::vector<std::byte> staged(static_cast<std::size_t>(extent.area()) * wide);
+      repack(static_cast<const std::byte*>(texels), host_row, texel, staged.data(), extent.width * wide, wide,
+             extent);
+      copy_blocking(impl_->queue, Direction::kUpload, image, extent, staged.data(), extent.width * wide);
+    }
+    return {};
+  } catch (const cl::Error& error) {
+    return describe(error, "upload", impl_->info.name);
+  }
+}
+
+Status Device::download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes) const {
+  if (Status status = check_copy(image, extent); !status.ok()) return status;
+  const std::size_t texel = bytes_per_pixel(image.format);
+  const std::size_t wide = device_texel_bytes(image);
+  const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
+  try {
+    if (wide == texel) {
+      copy_blocking(impl_->queue, Direction::kDownload, image, extent, texels, host_row);
+    } else {
+      std::vector<std::byte> staged(static_cast<std::size_t>(extent.area()) * wide);
+      copy_blocking(impl_->queue, Direction::kDownload, image, extent, staged.data(), extent.width * wide);
+      repack(staged.data(), extent.width * wide, wide, static_cast<std::byte*>(texels), host_row, texel,
+             extent);
+    }
+    return {};
+  } catch (const cl::Error& error) {
+    return describe(error, "download", impl_->info.name);
+  }
+}
+
+Status Device::finish() const {
+  try {
+    // rusticl 22.3 waits only for what was not flushed yet.
+    impl_->queue.enqueueMarkerWithWaitList();
+    impl_->queue.finish();
+    return {};
+  } catch (const cl::Error& error) {
+    return describe(error, "finish", impl_->info.name);
+  }
+}
+
+}  // namespace quincunx

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// The one place that configures CLHPP, and the edge where its exceptions become Status.
+#pragma once
+
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+#include <list>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "quincunx/status.h"
+
+namespace quincunx {
+
+// CLHPP's constructors and `=` from a raw handle take ownership silently; these two say which is meant.
+template <typename Wrapper>
+Wrapper adopt(typename Wrapper::cl_type handle) {
+  return Wrapper(handle, false);
+}
+template <typename Wrapper>
+Wrapper borrow(typename Wrapper::cl_type handle) {
+  return Wrapper(handle, true);
+}
+
+const char* error_name(cl_int code);  // "CL_OUT_OF_RESOURCES"
+
+// "clEnqueueNDRangeKernel(resolve_quincunx) on 'pthread-...' failed: CL_OUT_OF_RESOURCES (-5)"
+Status describe(const cl::Error& error, const std::string& subject, const std::string& device_name);
+
+// Keeps memory that a device may still read or write, because it does not even answer whether it is done: whole and
+// where it is, until the process ends. Thread-safe.
+template <typename Owner>
+void never_free(Owner owner) {
+  static std::mutex mutex;
+  static auto* const kept = new std::list<Owner>;  // never destroyed: the device may outlive static objects
+  const std::lock_guard lock(mutex);
+  kept->push_back(std::move(owner));
+}
+
+}  // namespace quincunx

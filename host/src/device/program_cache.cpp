@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "device/program_cache.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "embedded_kernels.h"
+
+namespace quincunx {
+
+// No -cl-finite-math-only: the kernels meet NaN and Inf on purpose, and as they are written it gains nothing.
+const char* const kCommonBuildOptions = "-cl-std=CL1.2";
+
+namespace fs = std::filesystem;
+
+std::optional<fs::path> cache_folder() {
+  if (const char* own = std::getenv("QUINCUNX_CACHE_DIR")) {
+    return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
+  }
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != '\0') {
+    return fs::path(xdg) / "quincunx";
+  }
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+    return fs::path(home) / ".cache" / "quincunx";
+  }
+  return std::nullopt;
+}
+
+std::string cache_key(const Device::Impl& device, const std::string& source, const std::string& options) {
+  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", options, device.info.platform,
+                                       device.info.name, device.info.version, device.info.driver, source);
+  const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+}
+
+// An entry is the XXH3 of its bytes (16 hex digits) followed by the bytes, so that a torn or damaged file
+// is noticed before the driver sees it.
+std::optional<std::vector<unsigned char>> read_cache_entry(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return std::nullopt;
+  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  constexpr std::size_t kDigits = 16;
+  if (bytes.size() <= kDigits) return std::nullopt;
+  const std::string stated(bytes.begin(), bytes.begin() + kDigits);
+  bytes.erase(bytes.begin(), bytes.begin() + kDigits);
+  if (stated != fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()))) return std::nullopt;
+  return bytes;
+}
+
+bool write_whole_file(const fs::path& path, std::string_view bytes) {
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  // Several processes may write the same file at once: each writes its own, the last rename wins.
+  const fs::path temporary = path.string() + fmt::format(".{}", getpid());
+  {
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!file.flush()) {
+      file.close();
+      fs::remove(temporary, error);
+      return false;
+    }
+  }
+  fs::rename(temporary, path, error);
+  if (!error) return true;
+  fs::remove(temporary, error);
+  return false;
+}
+
+void write_cache_entry(const fs::path& path, const std::vector<unsigned char>& bytes) {
+  std::string entry = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
+  entry.append(bytes.begin(), bytes.end());
+  if (!write_whole_file(path, entry)) spdlog::debug("cache: cannot write {}", path.string());
+}
+
+namespace {
+
+std::atomic<int> g_compiled = 0;
+std::atomic<int> g_loaded = 0;
+
+std::string_view embedded(std::string_view name) {
+  for (const EmbeddedFile& file : embedded_kernel_files()) {
+    if (file.name == name) return file.text;
+  }
+  throw std::out_of_range(fmt::format("no embedded kernel file '{}'", name));
+}
+
+// The embedded file of a kernel, in whatever folder it lies.
+std::string_view path_of(const std::string& kernel) {
+  const std::string name = kernel + ".cl", in_folder = "/" + name;
+  for (const EmbeddedFile& file : embedded_kernel_files()) {
+    if (file.name == name || file.name.ends_with(in_folder)) return file.name;
+  }
+  throw std::out_of_range(fmt::format("no embedded kernel '{}'", kernel));
+}
+
+// Device compilers have no search path to our headers, so includes are expanded here.
+void expand(std::string_view name, std::set<std::string>& seen, std::string& out) {
+  if (!seen.insert(std::string(name)).second) return;
+  std::istringstream lines{std::string(embedded(name))};
+  int number = 1;
+  out += fmt::format("#line 1 \"{}\"\n", name);
+  for (std::string line; std::getline(lines, line); ++number) {
+    constexpr std::string_view kInclude = "#include \"";
+    if (line.starts_with(kInclude)) {
+      expand(line.substr(kInclude.size(), line.rfind('"') - kInclude.size()), seen, out);
+      out += fmt::format("#line {} \"{}\"\n", number + 1, name);
+    } else if (line != "#pragma once") {
+      out += line + '\n';
+    }
+  }
+}
+
+std::optional<cl::Kernel> load(const Device::Impl& device, const fs::path& path, const std::string& name,
+                               const std::string& options) {
+  std::optional<std::vector<unsigned char>> binary = read_cache_entry(path);
+  if (!binary) return std::nullopt;
+  try {
+    cl::Program program(device.context, {device.device}, cl::Program::Binaries{std::move(*binary)});
+    program.build(device.device, options.c_str());
+    return cl::Kernel(program, name.c_str());
+  } catch (const cl::Error& error) {
+    spdlog::debug("program cache: {} rejected ({}); rebuilding", path.string(), error_name(error.err()));
+    return std::nullopt;
+  }
+}
+
+cl::Program compile(const Device::Impl& device, const std::string& name, const std::string& source,
+                    const std::string& options) {
+  cl::Program program(device.context, source);
+  const cl_device_id id = device.device();
+  // Not by CLHPP, which asks for the log after any failure: where that fails too, it is all that one is told.
+  const cl_int code = clBuildProgram(program(), 1, &id, options.c_str(), nullptr, nullptr);
+  if (code == CL_SUCCESS) return program;
+  if (code != CL_BUILD_PROGRAM_FAILURE) throw cl::Error(code, "clBuildProgram");
+  throw BuildError(name, options, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device));
+}
+
+}  // namespace
+
+BuildError::BuildError(const std::string& kernel, const std::string& options, const std::string& log)
+    : std::runtime_error(
+          fmt::format("kernel {} does not compile with options '{}':\n{}", kernel, options, log)) {}
+
+std::string kernel_source(const std::string& name) {
+  std::string source;
+  std::set<std::string> seen;
+  expand(path_of(name), seen, source);
+  return source;
+}
+
+cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options) {
+  const std::string source = kernel_source(name);
+  const std::string all_options = fmt::format("{} {}", kCommonBuildOptions, options);
+  const std::optional<fs::path> folder = device.keeps_programs ? std::nullopt : cache_folder();
+  const fs::path path =
+      folder ? *folder / fmt::format("{}-{}.bin", name, cache_key(device, source, all_options)) : fs::path();
+  if (folder) {
+    if (std::optional<cl::Kernel> kernel = load(device, path, name, all_options)) {
+      ++g_loaded;
+      return *kernel;
+    }
+  }
+  const cl::Program program = compile(device, name, source, all_options);
+  ++g_compiled;
+  if (folder) {
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    if (!binaries.empty() && !binaries.front().empty()) write_cache_entry(path, binaries.front());
+  }
+  return cl::Kernel(program, name.c_str());
+}
+
+CacheCounts cache_counts() {
+  return {g_compiled, g_loaded};
+}
+
+}  // namespace quincunx

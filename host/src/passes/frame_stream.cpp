@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "passes/frame_stream.h"
+
+#include <fmt/format.h>
+
+namespace quincunx {
+
+FrameStream::FrameStream(const Device& device, const ResolvePlan& plan)
+    : plan_(plan), chain_(device, PlanFacts(plan.needs, plan.settings)) {}
+
+// Looks at one of the images that change with every frame and are read again.
+Status FrameStream::check_history(const FrameInputs& inputs) const {
+  if (!has_history(inputs) || !plan_.keeps_previous_frame()) return {};
+  const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
+    return chain_.has(previous_of(resource)) && now.memory == before.memory && now.offset == before.offset;
+  };
+  const char* shared = nullptr;
+  if (is_shared(Resource::kColour, inputs.colour, previous_.colour)) {
+    shared = name_of(Resource::kColour);
+  } else if (plan_.accumulates() && is_shared(Resource::kDepth, inputs.depth, previous_.depth)) {
+    shared = name_of(Resource::kDepth);
+  }
+  if (shared == nullptr) return {};
+  return Status::invalid(
+      fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
+                  "consecutive frames different memory, or set reset",
+                  shared));
+}
+
+Status FocusStream::check_history(const FocusInputs& focus) const {
+  const Status status = frames_.check_history(focus.frame);
+  return status.ok() ? status : Status::invalid("of focus.frame: " + std::string(status.message()));
+}
+
+void FocusStream::run(const FocusInputs& focus, Counter counter, FrameReport& report, cl::Event* events) {
+  const FrameOutputs outputs = outputs_for(plan(), picture_.view(), {});
+  chain().run(frames_.frame(focus.frame, outputs, counter), outputs, report, events);
+  for (int i = 0; i < report.pass_count; ++i)
+    report.passes[static_cast<std::size_t>(i)].in_focus = true;
+  report.focused = true;
+  frames_.keep(focus.frame);
+}
+
+void FocusStream::lay_over(PassFrame& frame, const FocusInputs& focus) const {
+  frame.focus = &focus;
+  frame[Resource::kFocus] = picture_.view();
+  frame[Resource::kFocusMask] = focus.mask;
+}
+
+}  // namespace quincunx

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+#include "passes/pass.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "device/program_cache.h"
+
+namespace quincunx {
+namespace {
+
+int round_up(int value, int step) {
+  return (value + step - 1) / step * step;
+}
+
+}  // namespace
+
+Pass::Pass(const PassSetup& setup, const PassSpec& spec)
+    : facts_(setup.facts),
+      spec_(spec),
+      kernel_(build_kernel(setup.device, spec.kernel, spec.options)),
+      shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
+                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))) {}
+
+bool Pass::takes_part(const PassFrame& frame) const {
+  const auto serves = [&] {
+    const bool dense = is_dense(frame.current.render, frame.output);
+    switch (spec_.frames) {
+      case Frames::kAll:
+        return true;
+      case Frames::kWithHistory:
+        return frame.has_history;
+      case Frames::kWithoutHistory:
+        return !frame.has_history;
+      case Frames::kSparse:
+        return !dense;
+      case Frames::kDense:
+        return dense;
+      case Frames::kWithFocus:
+        return frame.focus != nullptr;
+      case Frames::kFading:
+        return static_cast<bool>(frame.current.fading_from);
+      case Frames::kResized:
+        return !dense && frame.resizes_history();
+      case Frames::kScaledOutput:
+        return frame.scales_output;
+      case Frames::kOnRequest:
+        return false;
+    }
+    return false;
+  };
+  if (spec_.viewports == Viewports::kAll) return serves();
+  return widens(frame.current.render, frame.output) == (spec_.viewports == Viewports::kWider) && serves();
+}
+
+bool Pass::uses(Resource resource) const {
+  return std::any_of(spec_.uses.begin(), spec_.uses.end(),
+                     [resource](const Use& use) { return use.resource == resource; });
+}
+
+TexelLayout Pass::layout_if_used(const PassFrame& frame, Resource resource) const {
+  return uses(resource) ? layout_of(frame[resource]) : TexelLayout{};
+}
+
+void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
+  kernel.setArg(index, sizeof(memory), &memory);
+}
+
+void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event, int rows) {
+  const int group_x = shape.group_width;
+  const int group_y = std::max(shape.group_height / rows, 1);
+  const int items_x = (extent.width + columns - 1) / columns;
+  const int items_y = (extent.height + rows - 1) / rows;
+  queue.enqueueNDRangeKernel(
+      kernel, cl::NullRange,
+      cl::NDRange(static_cast<std::size_t>(round_up(items_x, group_x)),
+                  static_cast<std::size_t>(round_up(items_y, group_y))),
+      cl::NDRange(static_cast<std::size_t>(group_x), static_cast<std::size_t>(group_y)), nullptr, event);
+}
+
+TexelLayout layout_of(const ImageView& view) {
+  const std::size_t texel = bytes_per_pixel(view.format);
+  if (view.storage == Storage::kImage || texel == 0) return {0, 0};
+  return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
+}
+
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent) {
+  const Vec2 to_uv = frame.velocity_scale != Vec2{} ? frame.velocity_scale : Vec2{1, 1};
+  return {static_cast<double>(to_uv.x) * extent.width, static_cast<double>(to_uv.y) * extent.height};
+}
+
+Ratio ratio_of(Extent to, Extent from) {
+  return {static_cast<float>(static_cast<double>(to.width) / from.width),
+          static_cast<float>(static_cast<double>(to.height) / from.height)};
+}
+
+WorkShape with_smaller_group(WorkShape shape, std::size_t most) {
+  while (static_cast<std::size_t>(shape.group_width) * static_cast<std::size_t>(shape.group_height) > most) {
+    int& longer = shape.group_width > shape.group_height ? shape.group_width : shape.group_height;
+    if (longer == 1) break;
+    longer /= 2;
+  }
+  return shape;
+}
+
+int columns_per_item(const WorkShape& shape, int width, int block) {
+  const int pixels = shape.pixels_per_item;
+  return round_up(pixels == 0 ? width : std::min(pixels, width), block);
+}
+
+const char* precision_of(PixelFormat format) {
+  return format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F ? "HALF" : "FLOAT";
+}
+
+std::size_t alpha_bytes(const ResolveSettings& settings) {
+  return bytes_per_pixel(settings.temporal.history) / 4;
+}
+
+const char* storage_option(Storage storage) {
+  return storage == Storage::kImage ? "IMAGE" : "BUFFER";
+}
+
+std::string colour_options(const ResolveSettings& settings) {
+  const bool encoded = settings.colour == PixelFormat::kRGBA8;
+  if (settings.storage == Storage::kImage)
+    return encoded ? "-D SOURCE_STORAGE=IMAGE -D SOURCE_FORMAT=SRGB8" : "-D SOURCE_STORAGE=IMAGE";
+  return fmt::format("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={}",
+                     encoded ? "SRGB8" : precision_of(settings.colour));
+}
+
+std::string scale_options(const ResolveSettings& settings) {
+  return fmt::format("{} -D OUTPUT_FORMAT={}", colour_options(settings), precision_of(settings.resolved));
+}
+
+std::string velocity_options(const ResolveSettings& settings) {
+  if (settings.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
+  return fmt::format("-D SOURCE_STORAGE=BUFFER -D VELOCITY_FORMAT={}", precision_of(settings.velocity));
+}
+
+}  // namespace quincunx

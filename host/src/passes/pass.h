@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// Pass: one kernel variant of a plan, compiled for a device. Passes share layouts, launch sizes, kernel arguments and
+// options; tables are in tables.h, and parameters that several kernels have in frame_params.h.
+//
+// A pass compiles at construction and allocates nothing afterwards. Construction may throw cl::Error and
+// BuildError, enqueue() cl::Error. Not thread-safe.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "device/device_impl.h"
+#include "params.h"
+#include "passes/tables.h"
+#include "plan/pass_spec.h"
+#include "quincunx/focus.h"
+#include "quincunx/frame.h"
+#include "quincunx/image.h"
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+
+// Where a pass adds the number of its output pixels that met NaN or Inf: uint `index` of the buffer `memory`.
+struct Counter {
+  cl_mem memory = nullptr;
+  int index = 0;
+};
+
+struct PassSetup {
+  const Device::Impl& device;
+  const PlanFacts& facts;  // outlives the pass
+  PassTables& tables;
+};
+
+// One frame as its passes see it.
+struct PassFrame {
+  const cl::CommandQueue& queue;
+  PassTables& tables;
+  FrameInputs current =
+      {};  // `views` may hold another velocity: the one that the service makes from the camera
+  FrameInputs previous = {};  // the current one where there is no history
+  bool has_history = false;
+  const FocusInputs* focus = nullptr;  // null: the frame has none
+  Extent focus_extent = {};            // the plan's
+  Extent output = {};                  // this frame's
+  Extent previous_output = {};         // the history's
+  Extent display = {};                 // size of the picture that is shown: the largest output
+  bool scales_output = false;          // the picture is scaled to the display by a pass of its own
+  Counter counter = {};
+  std::array<ImageView, kResourceCount> views = {};  // views of the resources that the plan has
+
+  ImageView& operator[](Resource resource) { return views[index_of(resource)]; }
+  const ImageView& operator[](Resource resource) const { return views[index_of(resource)]; }
+  FrameExtents extents() const {
+    return {current.render,  previous.render, output,      current.particle_render,
+            previous_output, display,         focus_extent};
+  }
+  // History has another size than the picture that it becomes.
+  bool resizes_history() const { return has_history && previous_output != output; }
+  // The tables of this frame's viewport, and of the previous one's.
+  TableKey key() const { return {output, current.render, current.jitter}; }
+  TableKey previous_key() const { return {output, previous.render, previous.jitter}; }
+};
+
+// CLHPP takes no raw handle as an argument.
+void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory);
+
+// Enqueues enough work-items of `columns` x `rows` pixels for the extent, in groups of one fixed size: a device
+// compiles a kernel anew for each size. Groups hold fewer items where these have more rows.
+void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const cl::Kernel& kernel,
+                  Extent extent, int columns, cl::Event* event, int rows = 1);
+
+// Returns the shape with its group halved, the longer side first, until it has at most `most` work-items. Pure.
+WorkShape with_smaller_group(WorkShape shape, std::size_t most);
+
+class Pass {
+ public:
+  Pass(const PassSetup& setup, const PassSpec& spec);
+  virtual ~Pass() = default;
+  Pass(const Pass&) = delete;
+  Pass& operator=(const Pass&) = delete;
+
+  const PassSpec& spec() const { return spec_; }
+
+  // Whether the pass takes part in this frame.
+  bool takes_part(const PassFrame& frame) const;
+
+  // Enqueues the kernel; `event`, if not null, is its event. The resources of spec().uses are bound in the frame.
+  virtual void enqueue(const PassFrame& frame, cl::Event* event) = 0;
+
+ protected:
+  const WorkShape& shape() const { return shape_; }
+  const PlanFacts& facts() const { return facts_; }
+  const ResolveSettings& settings() const { return facts_.settings; }
+  // Returns `other`'s view where the variant does not read `resource`: it may be any memory.
+  bool uses(Resource resource) const;
+  const ImageView& view_or(const PassFrame& frame, Resource resource, Resource other) const {
+    return frame[uses(resource) ? resource : other];
+  }
+  TexelLayout layout_if_used(const PassFrame& frame, Resource resource) const;
+  Resource picture() const { return picture_of(facts_); }
+
+  // As enqueue_rows().
+  void launch(const PassFrame& frame, Extent extent, int columns, cl::Event* event, int rows = 1) {
+    enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event, rows);
+  }
+
+  // Sets the kernel's arguments in order: structs by value, buffers, the memory of images and counters.
+  template <typename... Arguments>
+  void bind(const Arguments&... arguments) {
+    cl_uint index = 0;
+    (set(index++, arguments), ...);
+  }
+
+ private:
+  template <typename Argument>
+  void set(cl_uint index, const Argument& argument) {
+    if constexpr (std::is_same_v<Argument, ImageView> || std::is_same_v<Argument, Counter>) {
+      set_memory(kernel_, index, argument.memory);
+    } else {
+      kernel_.setArg(index, argument);
+    }
+  }
+
+  const PlanFacts& facts_;
+  PassSpec spec_;
+  cl::Kernel kernel_;
+  WorkShape shape_;
+};
+
+// A pass's `make`.
+template <typename Made>
+std::unique_ptr<Pass> make_pass(const PassSetup& setup, const PassSpec& spec) {
+  return std::make_unique<Made>(setup, spec);
+}
+
+// Returns it in texels; zeros for an image.
+TexelLayout layout_of(const ImageView& view);
+
+// From a frame's velocity, in its own units, to pixels of an extent.
+struct VelocityScale {
+  double x;
+  double y;
+};
+VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent);
+
+// From one extent to another on each axis, rounded once.
+struct Ratio {
+  float x, y;
+};
+Ratio ratio_of(Extent to, Extent from);
+
+// Returns the pixels of a row that one work-item makes: a multiple of `block`.
+int columns_per_item(const WorkShape& shape, int width, int block = kBlock);
+
+// The -D options that several kernels share. An image carries its format with it, so the options name it for
+// buffers only.
+const char* precision_of(PixelFormat format);          // "HALF" or "FLOAT"
+const char* storage_option(Storage storage);           // "IMAGE" or "BUFFER"
+std::size_t alpha_bytes(const ResolveSettings&);       // bytes of a value of the history's alpha
+std::string colour_options(const ResolveSettings&);    // SOURCE_STORAGE, SOURCE_FORMAT
+std::string scale_options(const ResolveSettings&);     // the same and OUTPUT_FORMAT
+std::string velocity_options(const ResolveSettings&);  // SOURCE_STORAGE, VELOCITY_FORMAT
+
+}  // namespace quincunx

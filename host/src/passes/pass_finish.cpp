@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// The passes that are made of the finished picture: sharpen, lay_focus, cross_fade, present.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "passes/pass.h"
+#include "picture_params.h"
+#include "plan/pass_spec.h"
+
+namespace quincunx {
+
+// sharpen: the resolved picture made crisper.
+
+namespace {
+
+class SharpenPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const SharpenParams params{.width = frame.output.width,
+                               .height = frame.output.height,
+                               .source = layout_of(frame[Resource::kUnsharpened]),
+                               .output = layout_of(frame[Resource::kResolved]),
+                               .columns_per_item = columns_per_item(shape(), frame.output.width),
+                               .sharpness = settings().sharpness};
+    bind(params, frame[Resource::kUnsharpened], frame[Resource::kResolved]);
+    launch(frame, frame.output, params.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_sharpen(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!facts.sharpens()) {
+    list.left_out.push_back(
+        {"sharpen", settings.sharpness > 0 ? "the view is no picture" : "sharpness is 0"});
+    return;
+  }
+  list.passes.push_back(
+      {.kernel = "sharpen",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
+       .reason = "sharpness is wanted: contrast between neighbours, within their range",
+       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.resolved},
+                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved}},
+       .make = make_pass<SharpenPass>});
+}
+
+// lay_focus: the focus's picture over the picture, within its rectangles.
+
+namespace {
+
+static_assert(kMostFocusRectangles == FocusInputs::kMostRectangles);
+
+// Beyond any picture, so that no distance to such an edge is the least.
+constexpr float kFarAway = 1 << 20;
+constexpr int kFeathersInSide = 4;
+
+// In pixels of the region. A side that is the picture's own has no neighbour that a seam could show against.
+FocusRectangle rectangle_in(const FocusInputs& focus, const Rectangle& where, Extent output) {
+  const auto from = [](int edge, int origin, bool open, float away) {
+    return open ? away : static_cast<float>(edge - origin);
+  };
+  const int right = where.x + where.width;
+  const int bottom = where.y + where.height;
+  const float feather = focus.feather > 0 ? focus.feather : FocusInputs::kDefaultFeather;
+  const float longest = static_cast<float>(std::min(where.width, where.height)) / kFeathersInSide;
+  return {.left = from(where.x, focus.x, where.x == 0, -kFarAway),
+          .top = from(where.y, focus.y, where.y == 0, -kFarAway),
+          .right = from(right, focus.x, right == output.width, kFarAway),
+          .bottom = from(bottom, focus.y, bottom == output.height, kFarAway),
+          .rate = 1 / std::min(feather, longest)};
+}
+
+// Returns the rectangle that holds both.
+Rectangle around(const Rectangle& a, const Rectangle& b) {
+  const int left = std::min(a.x, b.x);
+  const int top = std::min(a.y, b.y);
+  return {left, top, std::max(a.x + a.width, b.x + b.width) - left,
+          std::max(a.y + a.height, b.y + b.height) - top};
+}
+
+// The focus to be laid over: its rectangles, and the part of the picture that holds them.
+struct Laid {
+  Rectangle part;
+  int count = 0;
+  std::array<FocusRectangle, kMostFocusRectangles> rectangles = {};
+};
+
+Laid laid_by(const FocusInputs& focus, Extent region, Extent output) {
+  const Rectangle whole = {focus.x, focus.y, region.width, region.height};
+  const std::span<const Rectangle> given = focus.rectangle_count > 0
+                                               ? std::span<const Rectangle>(focus.rectangles)
+                                                     .first(static_cast<std::size_t>(focus.rectangle_count))
+                                               : std::span<const Rectangle>(&whole, 1);
+  Laid laid{.part = given.front()};
+  for (const Rectangle& where : given) {
+    laid.rectangles[static_cast<std::size_t>(laid.count++)] = rectangle_in(focus, where, output);
+    laid.part = around(laid.part, where);
+  }
+  return laid;
+}
+
+class LayFocusPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const FocusInputs& focus = *frame.focus;
+    const ImageView& picture = frame[shown_of(facts())];
+    const Laid laid = laid_by(focus, frame.focus_extent, frame.display);
+    TexelLayout output = layout_of(picture);
+    output.offset += focus.y * output.pitch + focus.x;
+    FocusParams params{.left = laid.part.x - focus.x,
+                       .top = laid.part.y - focus.y,
+                       .width = laid.part.width,
+                       .height = laid.part.height,
+                       .focus = layout_of(frame[Resource::kFocus]),
+                       .mask = layout_if_used(frame, Resource::kFocusMask),
+                       .output = output,
+                       .columns_per_item = columns_per_item(shape(), laid.part.width),
+                       .rectangle_count = laid.count,
+                       .rectangles = {}};
+    std::copy(laid.rectangles.begin(), laid.rectangles.end(), params.rectangles);
+    bind(params, frame[Resource::kFocus], view_or(frame, Resource::kFocusMask, Resource::kFocus), picture);
+    launch(frame, {params.width, params.height}, params.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_lay_focus(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!facts.has_focus()) {
+    list.left_out.push_back(
+        {"lay_focus", settings.focus.extent != Extent{} ? "the view is no picture" : "no part is in focus"});
+    return;
+  }
+  PassSpec spec{.kernel = "lay_focus",
+                .options = fmt::format("-D MASK={0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}",
+                                       settings.focus.mask ? 1 : 0, precision_of(settings.resolved)),
+                .reason = "a part is in focus: its own picture is laid over",
+                .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.resolved},
+                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.resolved}},
+                .make = make_pass<LayFocusPass>,
+                .frames = Frames::kWithFocus};
+  if (settings.focus.mask)
+    spec.uses.push_back({Resource::kFocusMask, Access::kRead, Area::kFocus, PixelFormat::kR8});
+  list.passes.push_back(std::move(spec));
+}
+
+// cross_fade: the picture mixed with that of another service, while one method gives way to another.
+
+namespace {
+
+class CrossFadePass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const ImageView& picture = frame[shown_of(facts())];
+    const ImageView& other = frame[Resource::kFadingFrom];
+    const CrossFadeParams params{.width = frame.display.width,
+                                 .height = frame.display.height,
+                                 .other = layout_of(other),
+                                 .output = layout_of(picture),
+                                 .columns_per_item = columns_per_item(shape(), frame.display.width, 1),
+                                 .weight = frame.current.fade_weight};
+    bind(params, other, picture);
+    launch(frame, frame.display, params.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_cross_fade(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!settings.fades) return;
+  list.passes.push_back(
+      {.kernel = "cross_fade",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
+       .reason = "a change of method is faded: the picture of the other one is mixed in",
+       .uses = {{Resource::kFadingFrom, Access::kRead, Area::kDisplay, settings.resolved},
+                {shown_of(facts), Access::kUpdate, Area::kDisplay, settings.resolved}},
+       .make = make_pass<CrossFadePass>,
+       .frames = Frames::kFading});
+}
+
+// present: the picture as 8-bit sRGB: exposed, tone mapped, dithered.
+
+namespace {
+
+class PresentPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const ImageView& source = frame[shown_of(facts())];
+    const ImageView& presented = frame[Resource::kPresented];
+    const float exposure = facts().is_display_referred() ? 1 : frame.current.exposure;
+    const PresentParams params{
+        .width = frame.display.width,
+        .height = frame.display.height,
+        .source = layout_of(source),
+        .output = layout_of(presented),
+        .counter = frame.counter.index,
+        .columns_per_item = columns_per_item(shape(), frame.display.width, kPresentBlock),
+        .exposure = exposure == 0 ? 1 : exposure};
+    bind(params, source, presented, frame.counter);
+    launch(frame, frame.display, params.columns_per_item, event);
+  }
+};
+
+const char* curve(ToneMap tone_map) {
+  switch (tone_map) {
+    case ToneMap::kClamp:
+      return "TONE_CLAMP";
+    case ToneMap::kReinhard:
+      return "TONE_REINHARD";
+    case ToneMap::kAces:
+      return "TONE_ACES";
+  }
+  return "TONE_CLAMP";
+}
+
+}  // namespace
+
+void plan_present(const PlanFacts& facts, PassList& list) {
+  const ResolveSettings& settings = facts.settings;
+  if (!settings.present) {
+    list.left_out.push_back({"present", "no 8-bit picture is wanted"});
+    return;
+  }
+  const bool tone_maps = !facts.is_display_referred();
+  if (!tone_maps)
+    list.left_out.push_back({"exposure and tone map", "RGBA8 colour has both when it is drawn"});
+  list.passes.push_back(
+      {.kernel = "present",
+       .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
+                              curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
+                              precision_of(settings.resolved), storage_option(facts.presented_storage())),
+       .reason = "an 8-bit sRGB picture is wanted",
+       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.resolved},
+                {Resource::kPresented, Access::kWrite, Area::kDisplay, PixelFormat::kRGBA8}},
+       .make = make_pass<PresentPass>});
+}
+
+}  // namespace quincunx

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+// The passes of kernels/temporal: temporal_tiles, temporal_light, resolve_temporal, temporal_display, temporal_refine.
+#include <fmt/format.h>
+
+#include "layers/layer.h"
+#include "passes/frame_params.h"
+#include "passes/pass.h"
+#include "plan/pass_spec.h"
+#include "temporal/temporal_params.h"
+
+namespace quincunx {
+
+// temporal_tiles: which tiles move as a whole, and what their samples say of the history.
+
+namespace {
+
+// Returns n, where one of every n samples judges history. On a checkerboard only every second one is shaded.
+int judged_apart(const PlanFacts& facts) {
+  switch (facts.settings.temporal.preset) {
+    case TemporalPreset::kFast:
+      return 4;
+    case TemporalPreset::kBalanced:
+      break;
+    case TemporalPreset::kQuality:
+      if (!facts.fills()) return 1;
+      break;
+  }
+  return 2;
+}
+
+class TemporalTilesPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const FrameInputs& current = frame.current;
+    const Extent output = frame.output;
+    const Extent render = current.render;
+    const Extent tiles = extent_of(Area::kTiles, frame.extents());
+    const Ratio spacing = ratio_of(output, render);
+    const Ratio motion = ratio_of(output, frame.previous.render);
+    const TemporalTileParams params{
+        .frame = {render.width, render.height, layout_of(frame[Resource::kColour]), {}, {}},
+        .output_width = output.width,
+        .output_height = output.height,
+        .tiles_x = tiles.width,
+        .tiles_y = tiles.height,
+        .reprojection = layout_if_used(frame, Resource::kReprojection),
+        .spacing_x = spacing.x,
+        .spacing_y = spacing.y,
+        .start_x = (.5f + current.jitter.x) * spacing.x,
+        .start_y = (.5f + current.jitter.y) * spacing.y,
+        .motion_x = motion.x,
+        .motion_y = motion.y,
+        .judged_apart = judged_apart(facts()),
+        .parity = shaded_parity(facts(), current)};
+    bind(params, frame[Resource::kColour],
+         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
+         frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],
+         view_or(frame, Resource::kDepth, Resource::kColour), layout_if_used(frame, Resource::kDepth),
+         view_or(frame, Resource::kSplits, Resource::kTileReprojection),
+         view_or(frame, Resource::kSplitMarks, Resource::kTileReprojection),
+         view_or(frame, Resource::kPreviousLayerTiles, Resource::kTileReprojection),
+         view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
+         frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
+    launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  const ResolveSettings& settings = facts.settings;
+  PassSpec spec{
+      .kernel = "temporal_tiles",
+      .options = fmt::format("-D MOTION={} -D LAYERS={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
+                             facts.has_layers() ? 1 : 0, colour_options(settings),
+                             precision_of(settings.temporal.history)),
+      .reason = "the method: which tiles move as a whole",
+      .uses =
+          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileReprojection, Access::kWrite, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileEvidence, Access::kWrite, Area::kTiles, {}, sizeof(TileEvidence)},
+           {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
+      .make = make_pass<TemporalTilesPass>,
+      .frames = Frames::kSparse};
+  if (facts.reprojects())
+    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  if (facts.has_layers()) {
+    spec.uses.insert(spec.uses.end(),
+                     {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                      {Resource::kSplits, Access::kRead, Area::kViewport, {}, sizeof(LayerSplit)},
+                      {Resource::kSplitMarks, Access::kRead, Area::kTiles, {}, sizeof(int)},
+                      {Resource::kPreviousLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
+                      {Resource::kLayerTiles, Access::kWrite, Area::kTiles, {}, sizeof(LayerTile)}});
+  }
+  list.passes.push_back(std::move(spec));
+}
+
+// temporal_light: where the light has changed, and where the picture has.
+
+namespace {
+
+class TemporalLightPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent tiles = extent_of(Area::kTiles, frame.extents());
+    bind(tiles.width, tiles.height, frame[Resource::kTileReprojection], frame[Resource::kTileEvidence],
+         frame[Resource::kTotalLight], frame[Resource::kPreviousTileLight], frame[Resource::kTileLight]);
+    launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_light(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  list.passes.push_back(
+      {.kernel = "temporal_light",
+       .options = "",
+       .reason = "the method: where the light has changed",
+       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+                {Resource::kTileEvidence, Access::kRead, Area::kTiles, {}, sizeof(TileEvidence)},
+                {Resource::kTotalLight, Access::kRead, Area::kWhole, {}, sizeof(TotalLight)},
+                {Resource::kPreviousTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
+                {Resource::kTileLight, Access::kWrite, Area::kTiles, {}, sizeof(TileLight)}},
+       .make = make_pass<TemporalLightPass>,
+       .frames = Frames::kSparse});
+}
+
+// resolve_temporal: this frame added to the history.
+
+namespace {
+
+const char* view_option(TemporalView view) {
+  switch (view) {
+    case TemporalView::kPicture:
+    case TemporalView::kLayers:
+    case TemporalView::kCoverage:
+    case TemporalView::kNear:
+    case TemporalView::kFar:
+      return "PICTURE";
+    case TemporalView::kConfidence:
+      return "CONFIDENCE";
+    case TemporalView::kRejection:
+      return "REJECTION";
+    case TemporalView::kPhase:
+      return "PHASE";
+  }
+  return "PICTURE";
+}
+
+class ResolveTemporalPass : public Pass {
+ public:
+  ResolveTemporalPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) {
+    setup.tables.positions();
+  }
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    // A debug view is written here, the picture by temporal_display.
+    const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
+    TemporalParams params = temporal_params(frame, shape(), facts());
+    params.frame0.reactive = layout_if_used(frame, Resource::kReactive);
+    params.frame1.reactive = layout_if_used(frame, Resource::kPreviousReactive);
+    params.output = layout_of(frame[shown]);
+    bind(params, frame.tables.positions().get(frame.queue, frame.key()), frame[Resource::kColour],
+         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
+         view_or(frame, Resource::kReactive, Resource::kColour),
+         view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
+         view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
+         frame[Resource::kPreviousTileReprojection], frame[Resource::kTileReprojection],
+         frame[Resource::kTileLight], view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
+         frame[Resource::kHistory], view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown],
+         frame.counter);
+    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
+  }
+};
+
+// Where nothing moves hardly anything is resampled.
+int taps_of(const PlanFacts& facts) {
+  if (!facts.reprojects()) return 16;
+  switch (facts.settings.temporal.preset) {
+    case TemporalPreset::kFast:
+      return 4;
+    case TemporalPreset::kBalanced:
+      break;
+    case TemporalPreset::kQuality:
+      return 36;
+  }
+  return 16;
+}
+
+std::string options_of(const PlanFacts& facts, bool reactive) {
+  const ResolveSettings& settings = facts.settings;
+  std::string format;
+  if (!facts.displays_history())
+    format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
+  return fmt::format(
+      "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
+      "-D HISTORY_FORMAT={}{}",
+      facts.accumulates_alpha() ? 1 : 0, facts.reprojects() ? 1 : 0, reactive ? 1 : 0, taps_of(facts),
+      facts.has_layers() ? 1 : 0, view_option(settings.temporal.view), colour_options(settings),
+      precision_of(settings.temporal.history), format);
+}
+
+}  // namespace
+
+void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
+  if (!facts.accumulates()) return;
+  const ResolveSettings& settings = facts.settings;
+  // Where samples are reprojected, that already holds what reactive values take.
+  const bool reactive = !facts.reprojects() && facts.reads_reactive();
+  PassSpec spec{
+      .kernel = "resolve_temporal",
+      .options = options_of(facts, reactive),
+      .reason = "the method: this frame added to the history",
+      .uses =
+          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
+           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+           {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
+           {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
+      .make = make_pass<ResolveTemporalPass>,
+      .frames = Frames::kSparse};
+  if (facts.reprojects())
+    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
+  if (facts.has_layers())
+    spec.uses.push_back({Resource::kLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)});
+  if (facts.accumulates_alpha()) {
+    const std::size_t bytes = alpha_bytes(settings);
+    spec.uses.push_back({Resource::kPreviousHistoryAlpha, Access::kRead, Area::kOutput, {}, bytes});
+    spec.uses.push_back({Resource::kHistoryAlpha, Access::kWrite, Area::kOutput, {}, bytes});
+  }
+  if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
+  if (!facts.displays_history())
+    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved});
+  list.passes.push_back(std::move(spec));
+}
+
+// temporal_display: the history's picture, smoothed where little is known.
+
+namespace {
+
+class TemporalDisplayPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Resource shown = shown_history_of(facts());
+    const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
+    bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
+         view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown]);
+    launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_display(const PlanFacts& facts, PassList& list) {
+  if (!facts.displays_history()) return;
+  const ResolveSettings& settings = facts.settings;
+  const bool alpha = facts.accumulates_alpha();
+  PassSpec spec{
+      .kernel = "temporal_display",
+      .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
+                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0, precision_of(settings.resolved),
+                             precision_of(settings.temporal.history)),
+      .reason = "the method: the history's picture",
+      .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
+               {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+      .make = make_pass<TemporalDisplayPass>,
+      .frames = Frames::kSparse};
+  if (alpha)
+    spec.uses.push_back({Resource::kHistoryAlpha, Access::kRead, Area::kOutput, {}, alpha_bytes(settings)});
+  list.passes.push_back(std::move(spec));
+}
+
+// temporal_refine: the history's picture sharpened, and smoothed along its edges.
+
+namespace {
+
+constexpr int divided_up(int value) {
+  return (value + kRefineBlock - 1) / kRefineBlock;
+}
+
+class TemporalRefinePass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const RefineParams params{.width = frame.output.width,
+                              .height = frame.output.height,
+                              .source = layout_of(frame[Resource::kUnrefined]),
+                              .output = layout_of(frame[picture()])};
+    bind(params, frame[Resource::kUnrefined], frame[Resource::kHistory], frame[picture()]);
+    const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
+    launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
+  }
+};
+
+}  // namespace
+
+void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
+  if (!facts.refines()) return;
+  const ResolveSettings& settings = facts.settings;
+  list.passes.push_back(
+      {.kernel = "temporal_refine",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
+                              precision_of(settings.resolved), precision_of(settings.temporal.history)),
+       .reason = "the preset: sharpened, and smoothed along edges where little is known",
+       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.resolved},
+                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+       .make = make_pass<TemporalRefinePass>,
+       .frames = Frames::kSparse});
+}
+
+}  // namespace quincunx

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: MIT
+// The passes that complete velocity: velocity_from_depth, undilate_velocity, far_surroundings, far_fit, far_match,
+// far_velocity.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "motion/velocity_params.h"
+#include "passes/frame_params.h"
+#include "passes/pass.h"
+#include "plan/pass_spec.h"
+
+namespace quincunx {
+
+// velocity_from_depth: the velocity target of a frame in which only the camera moves.
+
+namespace {
+
+class VelocityFromDepthPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.current.render;
+    const ImageView& depth = frame[Resource::kDepth];
+    const ImageView& velocity = frame[Resource::kVelocity];
+    const VelocityParams params{.width = render.width,
+                                .height = render.height,
+                                .depth = layout_of(depth),
+                                .velocity = layout_of(velocity),
+                                .columns_per_item = columns_per_item(shape(), render.width),
+                                .camera = camera_params(frame.current)};
+    bind(params, depth, velocity);
+    launch(frame, render, params.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_velocity_from_depth(const PlanFacts& facts, PassList& list) {
+  if (facts.velocity != VelocitySource::kCamera || !facts.reads_velocity()) return;
+  list.passes.push_back(
+      {.kernel = "velocity_from_depth",
+       .options = velocity_options(facts.settings),
+       .reason = "nothing but the camera moves",
+       .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                {Resource::kVelocity, Access::kWrite, Area::kViewport, facts.settings.velocity}},
+       .make = make_pass<VelocityFromDepthPass>});
+}
+
+// undilate_velocity: each sample's own velocity, where the renderer has spread that of the nearest.
+
+namespace {
+
+class UndilateVelocityPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.current.render;
+    const Resource own = drawn_velocity_of(facts());
+    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const bool has_camera =
+        frame.current.camera.clip_to_previous_clip != CameraMotion{}.clip_to_previous_clip;
+    const UndilateParams params{.frame = {.width = render.width,
+                                          .height = render.height,
+                                          .depth = layout_of(frame[Resource::kDepth]),
+                                          .velocity = layout_of(frame[own]),
+                                          .columns_per_item = columns_per_item(shape(), render.width),
+                                          .camera = camera_params(frame.current)},
+                                .dilated = layout_of(frame[Resource::kDilatedVelocity]),
+                                .to_drawn_x = inverse_scale(to_uv.x),
+                                .to_drawn_y = inverse_scale(to_uv.y),
+                                .has_camera = has_camera ? 1 : 0};
+    bind(params, frame[Resource::kDepth], frame[Resource::kDilatedVelocity], frame[own]);
+    launch(frame, render, params.frame.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_undilate_velocity(const PlanFacts& facts, PassList& list) {
+  if (facts.settings.drawn_velocity == DrawnVelocity::kOwn) return;
+  if (!facts.undilates_velocity()) {
+    list.left_out.push_back({"undilate_velocity", facts.reads_velocity()
+                                                      ? "velocity comes from depth and the camera everywhere"
+                                                      : "no pass reads velocity"});
+    return;
+  }
+  const PixelFormat velocity = facts.settings.velocity;
+  list.passes.push_back({.kernel = "undilate_velocity",
+                         .options = velocity_options(facts.settings),
+                         .reason = "each sample gets its own velocity back from the nearest's of 3x3",
+                         .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                                  {Resource::kDilatedVelocity, Access::kRead, Area::kViewport, velocity},
+                                  {drawn_velocity_of(facts), Access::kWrite, Area::kViewport, velocity}},
+                         .make = make_pass<UndilateVelocityPass>});
+}
+
+// far_surroundings, far_fit, far_match: how the camera moves what is infinitely far away, from what all else does.
+
+namespace {
+
+class FarSurroundingsPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.current.render;
+    const Extent cells = extent_of(Area::kFarCells, frame.extents());
+    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
+    const FarSumsParams params{.width = render.width,
+                               .height = render.height,
+                               .cells_x = cells.width,
+                               .cells_y = cells.height,
+                               .depth = layout_of(frame[Resource::kDepth]),
+                               .drawn = layout_of(frame[Resource::kDrawnVelocity]),
+                               .places = far_places(frame.current, frame.output),
+                               .from_drawn_x = static_cast<float>(to_uv.x * aspect),
+                               .from_drawn_y = static_cast<float>(to_uv.y),
+                               .pixels = static_cast<float>(frame.output.height)};
+    bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity],
+         frame[Resource::kPreviousFarMotion], frame[Resource::kFarSums]);
+    launch(frame, cells, 1, event);
+  }
+};
+
+class FarFitPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const auto cells = static_cast<cl_int>(extent_of(Area::kFarCells, frame.extents()).area());
+    bind(cells, frame[Resource::kFarSums], frame[Resource::kPreviousFarMotion], frame[Resource::kFarMatch],
+         frame[Resource::kFarMotion]);
+    launch(frame, {1, 1}, 1, event);
+  }
+};
+
+class FarMatchPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const FrameInputs& current = frame.current;
+    const FrameInputs& previous = frame.previous;
+    const Extent cells = extent_of(Area::kFarCells, frame.extents());
+    const auto step = [](int to, int from) { return static_cast<double>(to) / from; };
+    const double step_x = step(previous.render.width, current.render.width);
+    const double step_y = step(previous.render.height, current.render.height);
+    const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
+    // So that the sum over all cells fits into an int.
+    constexpr double kMost = 1 << 30, kSamples = kFarCell * kFarCell / 4.;
+    const FarMatchParams params{
+        .width = current.render.width,
+        .height = current.render.height,
+        .previous_width = previous.render.width,
+        .previous_height = previous.render.height,
+        .cells_x = cells.width,
+        .cells_y = cells.height,
+        .depth0 = layout_of(frame[Resource::kDepth]),
+        .depth1 = layout_of(frame[Resource::kPreviousDepth]),
+        .drawn = layout_of(frame[Resource::kDrawnVelocity]),
+        .colour0 = layout_of(frame[Resource::kColour]),
+        .colour1 = layout_of(frame[Resource::kPreviousColour]),
+        .places = far_places(current, frame.output),
+        .step_x = static_cast<float>(step_x),
+        .step_y = static_cast<float>(step_y),
+        .start_x = static_cast<float>((.5 + current.jitter.x) * step_x - .5 - previous.jitter.x),
+        .start_y = static_cast<float>((.5 + current.jitter.y) * step_y - .5 - previous.jitter.y),
+        .to_previous_x = static_cast<float>(previous.render.width / aspect),
+        .to_previous_y = static_cast<float>(previous.render.height),
+        .units = static_cast<float>(std::min(1024., kMost / (kSamples * static_cast<double>(cells.area()))))};
+    bind(params, frame[Resource::kDepth], frame[Resource::kPreviousDepth], frame[Resource::kDrawnVelocity],
+         frame[Resource::kColour], frame[Resource::kPreviousColour], frame[Resource::kFarMotion],
+         frame[Resource::kFarMatch]);
+    launch(frame, cells, 1, event);
+  }
+};
+
+}  // namespace
+
+void plan_far_motion(const PlanFacts& facts, PassList& list) {
+  if (!facts.fits_far()) return;
+  const ResolveSettings& settings = facts.settings;
+  const Use depth = {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F};
+  const Use drawn = {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, settings.velocity};
+  list.passes.push_back(
+      {.kernel = "far_surroundings",
+       .options = velocity_options(settings),
+       .reason = "how the camera moves, by what is drawn with motion",
+       .uses = {depth,
+                drawn,
+                {Resource::kPreviousFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
+                {Resource::kFarSums, Access::kWrite, Area::kFarCells, {}, sizeof(FarSums)}},
+       .make = make_pass<FarSurroundingsPass>});
+  // far_match, which comes after it, has not yet begun this frame's sums: these are the previous one's.
+  list.passes.push_back(
+      {.kernel = "far_fit",
+       .options = "",
+       .reason = "how the camera moves: the fit",
+       .uses = {{Resource::kFarSums, Access::kRead, Area::kFarCells, {}, sizeof(FarSums)},
+                {Resource::kPreviousFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
+                {Resource::kFarMatch, Access::kRead, Area::kWhole, {}, sizeof(FarMatch)},
+                {Resource::kFarMotion, Access::kWrite, Area::kWhole, {}, sizeof(FarModel)}},
+       .make = make_pass<FarFitPass>});
+  PassSpec match{.kernel = "far_match",
+                 .options = colour_options(settings),
+                 .reason = "whether that explains the colour of what is infinitely far away",
+                 .uses = {drawn,
+                          {Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
+                          {Resource::kFarMatch, Access::kAccumulate, Area::kWhole, {}, sizeof(FarMatch)}},
+                 .make = make_pass<FarMatchPass>};
+  if (settings.storage == Storage::kBuffer)
+    match.options += std::string(" -D VELOCITY_FORMAT=") + precision_of(settings.velocity);
+  read_both_frames(match.uses, Resource::kDepth, PixelFormat::kR32F);
+  read_both_frames(match.uses, Resource::kColour, settings.colour);
+  list.passes.push_back(std::move(match));
+}
+
+// far_velocity: the drawn velocity, completed where the sky has none.
+
+namespace {
+
+class FarVelocityPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.current.render;
+    const bool fitted = facts().fits_far();
+    const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
+    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const FarVelocityParams params{.frame = {.width = render.width,
+                                             .height = render.height,
+                                             .depth = layout_of(frame[Resource::kDepth]),
+                                             .velocity = layout_of(frame[Resource::kVelocity]),
+                                             .columns_per_item = columns_per_item(shape(), render.width),
+                                             .camera = camera_params(frame.current)},
+                                   .drawn = layout_of(frame[Resource::kDrawnVelocity]),
+                                   .places = far_places(frame.current, frame.output),
+                                   .to_drawn_x = inverse_scale(fitted ? to_uv.x * aspect : to_uv.x),
+                                   .to_drawn_y = inverse_scale(to_uv.y)};
+    // With the camera's own motion there is no other: their memory is null, which OpenCL allows for a buffer.
+    bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity], frame[Resource::kFarMotion],
+         frame[Resource::kFarMatch], frame[Resource::kVelocity]);
+    launch(frame, render, params.frame.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_far_velocity(const PlanFacts& facts, PassList& list) {
+  if (facts.settings.far == FarMotion::kAsDrawn) return;
+  if (!facts.moves_far()) {
+    const char* reason =
+        !facts.reads_velocity()                     ? "no pass reads velocity"
+        : !facts.needs.camera_motion                ? "the camera stands still, and so does what is far away"
+        : facts.velocity == VelocitySource::kTarget ? "the method uses one frame only: there is no evidence"
+                                                    : "velocity comes from depth and the camera everywhere";
+    list.left_out.push_back({"far_velocity", reason});
+    return;
+  }
+  const PixelFormat velocity = facts.settings.velocity;
+  PassSpec spec{.kernel = "far_velocity",
+                .options = fmt::format("-D FAR={} {}", facts.fits_far() ? "EVIDENCE" : "CAMERA",
+                                       velocity_options(facts.settings)),
+                .reason = "what is infinitely far away moves with the camera",
+                .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
+                         {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, velocity},
+                         {Resource::kVelocity, Access::kWrite, Area::kViewport, velocity}},
+                .make = make_pass<FarVelocityPass>};
+  if (facts.fits_far()) {
+    spec.uses.push_back({Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)});
+    spec.uses.push_back({Resource::kFarMatch, Access::kRead, Area::kWhole, {}, sizeof(FarMatch)});
+  }
+  list.passes.push_back(std::move(spec));
+}
+
+}  // namespace quincunx

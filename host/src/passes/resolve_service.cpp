@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "device/opencl.h"
+#include "device/program_cache.h"
+#include "motion/blur_params.h"
+#include "passes/frame_ring.h"
+#include "passes/frame_stream.h"
+#include "passes/pass_clear_region.h"
+#include "plan/validate.h"
+#include "quincunx/resolve_service.h"
+
+namespace quincunx {
+namespace {
+
+// A plan is data that anyone may edit; the service runs what plan_for() makes and nothing else.
+Status check_unedited(const ResolvePlan& plan) {
+  const Result<ResolvePlan> made = plan_for(plan.needs, plan.settings);
+  if (!made.ok()) return made.status();
+  const ResolvePlan& own = made.value();
+  if (plan == own) return {};
+  const char* edited = plan.passes != own.passes             ? "passes"
+                       : plan.buffers != own.buffers         ? "buffers"
+                       : plan.left_out != own.left_out       ? "left_out"
+                       : plan.velocity != own.velocity       ? "velocity"
+                       : plan.reads_depth != own.reads_depth ? "reads_depth"
+                                                             : "reads_reactive";
+  return Status::invalid(fmt::format(
+      "the plan's {} is not what plan_for() makes of its needs and settings; change those and plan again",
+      edited));
+}
+
+}  // namespace
+
+struct ResolveService::Impl {
+  Impl(const Device& on, const ResolvePlan& to_do)
+      : device(on),
+        picture(on, to_do),
+        counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
+        ring(pass_timer(on) == PassTimer::kEvents) {
+    if (const auto of_focus = to_do.focus_plan()) focus.emplace(on, *of_focus);
+  }
+
+  void warm_up();
+  Status check(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs) const;
+  void enqueue(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
+               FrameRing::Slot& slot);
+  void forget();
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs);
+  ClearRegionPass* clear_pass(const ImageView& image) const;
+
+  Device device;
+  FrameStream picture;
+  std::optional<FocusStream> focus;  // where the plan has one
+  cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
+  FrameRing ring;
+};
+
+void ResolveService::Impl::warm_up() {
+  picture.chain().warm_up();
+  if (focus) focus->chain().warm_up();
+  // The commands around the kernels have a first time too.
+  const cl::CommandQueue& queue = device.impl()->queue;
+  const cl_uint zero = 0;
+  cl_uint back = 1;
+  queue.enqueueFillBuffer(counter, zero, 0, sizeof(zero));
+  queue.enqueueReadBuffer(counter, CL_TRUE, 0, sizeof(back), &back);  // waits: `back` must outlive it
+}
+
+Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* given,
+                                   const FrameOutputs& outputs) const {
+  if (Status status = validate(picture.plan(), inputs, outputs); !status.ok()) return status;
+  if (Status status = picture.check_history(inputs); !status.ok()) return status;
+  if (given == nullptr) return {};
+  const Status status = validate_focus(picture.plan(), focus ? &focus->plan() : nullptr, *given);
+  return status.ok() ? focus->check_history(*given) : status;
+}
+
+void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* given,
+                                   const FrameOutputs& outputs, FrameRing::Slot& slot) {
+  const cl::CommandQueue& queue = device.impl()->queue;
+  const cl_uint zero = 0;
+  const Counter counted = {counter(), ring.index_of(slot)};
+  const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
+  queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
+  PassFrame frame = picture.frame(inputs, outputs, counted);
+  if (given != nullptr) {
+    focus->run(*given, counted, slot.report, slot.passes.data());
+    focus->lay_over(frame, *given);
+  } else if (focus) {
+    focus->forget();
+  }
+  picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.pass_count);
+  // Where nothing moves there are no sums, and nothing is what there is to tell.
+  slot.measures_content = picture.plan().settings.measures_content;
+  if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
+    queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.content),
+                            &slot.content);
+  }
+  queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
+                          &slot.done);
+  queue.flush();
+}
+
+void ResolveService::Impl::forget() {
+  picture.forget();
+  if (focus) focus->forget();
+}
+
+FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const FocusInputs* given,
+                                           const FrameOutputs& outputs) {
+  FrameReport refused;
+  refused.frame_index = inputs.frame_index;
+  refused.render = inputs.render;
+  refused.status = check(inputs, given, outputs);
+  if (!refused.ok()) return refused;
+  try {
+    FrameRing::Slot& slot = ring.begin();
+    slot.report.frame_index = inputs.frame_index;
+    slot.report.render = inputs.render;
+    const Extent output = picture.chain().output_of(inputs);
+    slot.report.output = output;
+    slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
+                         static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
+    slot.report.used_previous =
+        picture.has_history(inputs) && picture.plan().reads_history(inputs.render, output);
+    enqueue(inputs, given, outputs, slot);
+    ring.commit();
+    picture.keep(inputs);
+    return slot.report;
+  } catch (const cl::Error& error) {
+    forget();  // part of the frame may be queued; what it left behind is not to be trusted as history
+    refused.status = describe(error, "dispatch", device.info().name);
+    return refused;
+  }
+}
+
+ClearRegionPass* ResolveService::Impl::clear_pass(const ImageView& image) const {
+  for (const auto& pass : picture.chain().passes()) {
+    auto* clear = dynamic_cast<ClearRegionPass*>(pass.get());
+    if (clear != nullptr && clear->serves(image)) return clear;
+  }
+  return nullptr;
+}
+
+ResolveService::ResolveService(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+ResolveService::ResolveService(ResolveService&&) noexcept = default;
+ResolveService& ResolveService::operator=(ResolveService&&) noexcept = default;
+
+ResolveService::~ResolveService() {
+  if (!impl_) return;
+  // The device may still write the counters of the ring.
+  const Status status = finish();
+  if (status.ok()) return;
+  spdlog::warn("closing the resolve service: {}", status.message());
+  never_free(std::move(impl_));
+}
+
+Result<ResolveService> ResolveService::create(const Device& device, const ResolvePlan& plan) {
+  if (plan.settings.storage == Storage::kImage && !device.info().images) {
+    return Status::unsupported(
+        fmt::format("'{}' has no images; plan with buffer storage", device.info().name));
+  }
+  if (Status status = check_unedited(plan); !status.ok()) return status;
+  try {
+    auto impl = std::make_unique<Impl>(device, plan);
+    impl->warm_up();
+    return ResolveService(std::move(impl));
+  } catch (const cl::Error& error) {
+    return describe(error, "creating the resolve service", device.info().name);
+  } catch (const BuildError& error) {
+    return Status::device(fmt::format("on '{}' {}", device.info().name, error.what()));
+  } catch (const AllocationError& error) {
+    return error.status();
+  }
+}
+
+FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs) {
+  return impl_->dispatch(inputs, nullptr, outputs);
+}
+
+FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FocusInputs& focus,
+                                     const FrameOutputs& outputs) {
+  FocusInputs given = focus;
+  given.frame.reset |= inputs.reset;
+  return impl_->dispatch(inputs, &given, outputs);
+}
+
+std::optional<FrameReport> ResolveService::next_completed() {
+  return impl_->ring.next_completed();
+}
+
+void ResolveService::allow_timing_waits(bool allow) {
+  const bool wait = allow && pass_timer(impl_->device) == PassTimer::kHostClock;
+  impl_->picture.chain().wait_for_each_pass(wait);
+  if (impl_->focus) impl_->focus->chain().wait_for_each_pass(wait);
+}
+
+Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {
+  if (!image) return Status::invalid("the image to clear is empty; it needs an allocation");
+  if (image.storage != plan().settings.storage) {
+    return Status::invalid("the image to clear has another storage than the plan; they must agree");
+  }
+  if (render.width < 1 || render.height < 1 || render.width > image.extent.width ||
+      render.height > image.extent.height) {
+    return Status::invalid(
+        fmt::format("the rectangle to clear is {}x{}; it must lie within 1x1 and the image's {}x{}",
+                    render.width, render.height, image.extent.width, image.extent.height));
+  }
+  ClearRegionPass* pass = impl_->clear_pass(image);
+  if (pass == nullptr) {
+    return Status::invalid(
+        fmt::format("a clear of {} is not in the plan; set settings.clear for a scene without a "
+                    "covering background",
+                    name_of(image.format)));
+  }
+  try {
+    const PassFrame frame = impl_->picture.chain().frame({}, nullptr, {}, {});
+    pass->clear(frame, image, render, value, nullptr);
+    frame.queue.flush();
+    return {};
+  } catch (const cl::Error& error) {
+    return describe(error, pass->spec().kernel, impl_->device.info().name);
+  }
+}
+
+Status ResolveService::finish() {
+  return impl_->device.finish();
+}
+
+Result<TileKinds> ResolveService::tile_kinds() const {
+  const ImageView tiles = impl_->picture.chain().newest(Resource::kTileBlurs);
+  if (!tiles)
+    return Status::invalid("the plan has no motion blur and so no tiles; set settings.blur.shutter");
+  try {
+    const Extent extent = extent_of(Area::kBlurTiles, {{}, {}, impl_->picture.last_output()});
+    std::vector<TileBlur> blurs(static_cast<std::size_t>(extent.area()));
+    impl_->device.impl()->queue.enqueueReadBuffer(borrow<cl::Buffer>(tiles.memory), CL_TRUE, 0,
+                                                  blurs.size() * sizeof(TileBlur), blurs.data());
+    TileKinds found{extent, std::vector<std::uint8_t>(blurs.size())};
+    std::transform(blurs.begin(), blurs.end(), found.kinds.begin(),
+                   [](const TileBlur& blur) { return static_cast<std::uint8_t>(blur.kind); });
+    return found;
+  } catch (const cl::Error& error) {
+    return describe(error, "reading the tiles of the motion blur", impl_->device.info().name);
+  }
+}
+
+Result<ImageView> ResolveService::history() const {
+  if (!plan().accumulates())
+    return Status::invalid("the plan accumulates no history; choose the method temporal");
+  if (!impl_->picture.leaves_history()) return ImageView();
+  ImageView history = impl_->picture.chain().newest(Resource::kHistory);
+  history.extent = impl_->picture.last_output();
+  history.pitch = 0;
+  return history;
+}
+
+const ResolvePlan& ResolveService::plan() const {
+  return impl_->picture.plan();
+}
+
+}  // namespace quincunx

@@ -1,0 +1,380 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <iterator>
+
+#include "plan/pass_spec.h"
+#include "quincunx/frame.h"
+#include "quincunx/resolve_plan.h"
+
+namespace quincunx {
+namespace {
+
+constexpr int kLargestSide = 32768;
+
+bool usable(Extent extent) {
+  return extent.width >= 1 && extent.height >= 1 && extent.width <= kLargestSide &&
+         extent.height <= kLargestSide;
+}
+
+// Collects complaints so that one message names every bad field.
+class Complaints {
+ public:
+  void add(std::string text) { text_ += (text_.empty() ? "" : "; ") + std::move(text); }
+  Status status() const { return text_.empty() ? Status() : Status::invalid(text_); }
+
+ private:
+  std::string text_;
+};
+
+void check_extent(Complaints& complaints, const char* field, Extent extent) {
+  if (usable(extent)) return;
+  complaints.add(fmt::format("settings.{} is {}x{}; both sides must lie in [1, {}]", field, extent.width,
+                             extent.height, kLargestSide));
+}
+
+void check_least_output(Complaints& complaints, const ResolveSettings& settings) {
+  const Extent least = settings.least_output;
+  const Extent most = settings.output;
+  if (least == Extent{} || !usable(most)) return;
+  if (least.width >= 1 && least.height >= 1 && least.width <= most.width && least.height <= most.height)
+    return;
+  complaints.add(fmt::format("settings.least_output is {}x{}; it must lie within 1x1 and the output's {}x{}",
+                             least.width, least.height, most.width, most.height));
+}
+
+void check_format(Complaints& complaints, const char* field, PixelFormat format, PixelFormat half,
+                  PixelFormat full) {
+  if (format == half || format == full) return;
+  complaints.add(fmt::format("settings.{} is {}; it must be {} or {}", field, name_of(format), name_of(half),
+                             name_of(full)));
+}
+
+void check_focus(Complaints& complaints, const ResolveSettings& settings) {
+  const FocusSettings& focus = settings.focus;
+  if (focus.extent == Extent{}) return;
+  if (focus.extent.width < 1 || focus.extent.height < 1 || focus.extent.width > settings.output.width ||
+      focus.extent.height > settings.output.height) {
+    complaints.add(
+        fmt::format("settings.focus.extent is {}x{}; it must lie within 1x1 and the output's {}x{}, or be "
+                    "0x0 for no focus",
+                    focus.extent.width, focus.extent.height, settings.output.width, settings.output.height));
+  }
+  if (focus.target != Extent{}) check_extent(complaints, "focus.target", focus.target);
+}
+
+Status check(const ResolveSettings& settings) {
+  Complaints complaints;
+  check_extent(complaints, "output", settings.output);
+  check_extent(complaints, "target", settings.target);
+  check_least_output(complaints, settings);
+  if (settings.colour != PixelFormat::kRGBA8 && settings.colour != PixelFormat::kRGBA16F &&
+      settings.colour != PixelFormat::kRGBA32F) {
+    complaints.add(
+        fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
+  }
+  if (settings.particle_target != Extent()) {
+    const Extent particles = settings.particle_target;
+    if (particles.width < 1 || particles.height < 1 || particles.width > settings.target.width ||
+        particles.height > settings.target.height) {
+      complaints.add(fmt::format(
+          "settings.particle_target is {}x{}; it must lie within 1x1 and the target's {}x{}, or be 0x0",
+          particles.width, particles.height, settings.target.width, settings.target.height));
+    }
+    if (settings.colour == PixelFormat::kRGBA8)
+      complaints.add(
+          "settings.colour is RGBA8; with particles of their own it must be RGBA16F or RGBA32F, which are "
+          "linear");
+  }
+  check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
+  check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
+               PixelFormat::kRGBA32F);
+  const auto check_weight = [&](const char* field, float weight) {
+    if (weight >= 0 && std::isfinite(weight)) return;
+    complaints.add(
+        fmt::format("settings.quincunx.{} is {}; it must be finite and at least 0", field, weight));
+  };
+  check_weight("velocity_weight", settings.quincunx.velocity_weight);
+  check_weight("residual_weight", settings.quincunx.residual_weight);
+  if (!(settings.grain >= 0 && settings.grain <= 1)) {
+    complaints.add(fmt::format("settings.grain is {}; it must lie in [0, 1]", settings.grain));
+  }
+  if (!(settings.blur.shutter >= 0 && settings.blur.shutter <= 2)) {
+    complaints.add(fmt::format("settings.blur.shutter is {}; it must lie in [0, 2]", settings.blur.shutter));
+  }
+  if (!(settings.sharpness >= 0 && settings.sharpness <= 1)) {
+    complaints.add(fmt::format("settings.sharpness is {}; it must lie in [0, 1]", settings.sharpness));
+  }
+  check_focus(complaints, settings);
+  const int samples = settings.blur.samples;
+  if (samples < 4 || samples > 64 || !std::has_single_bit(static_cast<unsigned>(samples))) {
+    complaints.add(fmt::format("settings.blur.samples is {}; it must be 4, 8, 16, 32 or 64", samples));
+  }
+  return complaints.status();
+}
+
+Scaling scaling_of(Area area, const PlanFacts& facts) {
+  switch (area) {
+    case Area::kViewport:
+    case Area::kFarCells:
+      return Scaling::kScales;
+    case Area::kParticles:
+      return Scaling::kOwn;
+    case Area::kPreviousViewport:
+    case Area::kPreviousOutput:
+    case Area::kPreviousTiles:
+      return Scaling::kHistory;
+    case Area::kOutput:
+    case Area::kTiles:
+    case Area::kBlurTiles:
+      return facts.is_dual() ? Scaling::kScales : Scaling::kFixed;
+    case Area::kDisplay:
+    case Area::kFocus:
+    case Area::kWhole:
+      break;
+  }
+  return Scaling::kFixed;
+}
+
+PlannedBuffer planned(const ResourceUse& use, const PlanFacts& facts, const FrameExtents& largest) {
+  const Extent extent = extent_of(use.largest.area, largest);
+  return {.name = name_of(use.resource),
+          .extent = extent,
+          .format = use.largest.format,
+          .scaling = scaling_of(use.largest.area, facts),
+          .bytes = static_cast<std::uint64_t>(extent.area()) * use.largest.element_bytes(),
+          .owned = (use.written && use.resource != Resource::kPresented) || use.resource == Resource::kFocus};
+}
+
+}  // namespace
+
+Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings) {
+  if (Status status = check(settings); !status.ok()) return status;
+  const PlanFacts facts(needs, settings);
+  if (facts.views_layers() && !facts.has_layers()) {
+    return Status::invalid(fmt::format(
+        "settings.temporal.view is {}, but there is one layer of history only; two have balanced and "
+        "quality where something moves and nothing is transparent",
+        name_of(settings.temporal.view)));
+  }
+  PassList list = list_passes(facts);
+  if (const auto kept = facts.is_dual() ? unresized(list.passes) : std::nullopt) {
+    return Status::unsupported(
+        fmt::format("{} is read, but no pass resizes it where the output is dynamic", name_of(*kept)));
+  }
+  const FrameExtents largest = largest_extents(settings);
+  ResolvePlan plan;
+  plan.needs = needs;
+  plan.settings = settings;
+  plan.velocity = facts.velocity;
+  for (const PassSpec& spec : list.passes)
+    plan.passes.push_back({spec.kernel, spec.options, spec.reason, bytes_of(spec, largest)});
+  const std::vector<ResourceUse> used = resources_of(list.passes);
+  for (const ResourceUse& use : used)
+    plan.buffers.push_back(planned(use, facts, largest));
+  plan.reads_depth = reads(used, kDepthInput);
+  plan.reads_reactive = reads(used, kReactiveInput);
+  plan.left_out = std::move(list.left_out);
+  return plan;
+}
+
+bool ResolvePlan::accumulates() const {
+  return settings.method == Method::kTemporal;
+}
+
+bool ResolvePlan::keeps_previous_frame() const {
+  return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull;
+}
+
+bool ResolvePlan::is_dual() const {
+  return PlanFacts(needs, settings).is_dual();
+}
+
+bool ResolvePlan::reads_history(Extent render, Extent output) const {
+  if (accumulates()) return !is_dense(render, output == Extent{} ? settings.output : output);
+  return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
+}
+
+bool ResolvePlan::has_focus() const {
+  return PlanFacts(needs, settings).has_focus();
+}
+
+std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
+  if (!has_focus()) return std::nullopt;
+  ResolveSettings region = settings;
+  region.output = settings.focus.extent;
+  region.least_output = {};
+  region.target = settings.focus.target != Extent{} ? settings.focus.target : settings.focus.extent;
+  region.shading = Shading::kFull;
+  region.present = false;
+  region.clear = false;
+  region.particle_target = {};  // those of the region are drawn with the rest of it
+  region.focus = {};
+  region.measures_content = region.fades = false;
+  return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
+}
+
+bool ResolvePlan::undilates_velocity() const {
+  return PlanFacts(needs, settings).undilates_velocity();
+}
+
+bool ResolvePlan::moves_far() const {
+  return PlanFacts(needs, settings).moves_far();
+}
+
+bool ResolvePlan::reads_camera() const {
+  return velocity == VelocitySource::kCamera || (moves_far() && settings.far == FarMotion::kCamera);
+}
+
+Storage ResolvePlan::presented_storage() const {
+  return PlanFacts(needs, settings).presented_storage();
+}
+
+std::uint64_t ResolvePlan::frame_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const PlannedBuffer& buffer : buffers) {
+    if (!buffer.owned && (buffer.scaling == Scaling::kScales || buffer.scaling == Scaling::kOwn))
+      bytes += buffer.bytes;
+  }
+  return bytes;
+}
+
+bool ResolvePlan::blurs() const {
+  return PlanFacts(needs, settings).blurs();
+}
+
+// A plan in words.
+
+namespace {
+
+// Says who makes the picture's light out of the scene's.
+std::string colour_text(const ResolveSettings& settings) {
+  const char* curve = name_of(settings.tone_map);
+  if (settings.colour == PixelFormat::kRGBA8)
+    return fmt::format("RGBA8, sRGB encoded; the renderer exposes and tone maps ({})", curve);
+  if (!settings.present) return fmt::format("{}, linear light", name_of(settings.colour));
+  return fmt::format("{}, linear light; the present pass exposes and tone maps ({})",
+                     name_of(settings.colour), curve);
+}
+
+std::string size_text(std::uint64_t bytes) {
+  return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+std::string targets_text(const ResolvePlan& plan) {
+  const Extent largest = plan.settings.target;
+  if (plan.settings.targets == Targets::kViewport) {
+    return fmt::format("viewport: each frame is the top left part of images of {}x{}; {} a frame",
+                       largest.width, largest.height, size_text(plan.frame_bytes()));
+  }
+  return fmt::format(
+      "placed: images have exactly the viewport's size, made again in unused memory where it changes; up to "
+      "{}x{}, {} a frame",
+      largest.width, largest.height, size_text(plan.frame_bytes()));
+}
+
+std::string output_text(const ResolvePlan& plan) {
+  const Extent least = plan.settings.least_output;
+  const Extent most = plan.settings.output;
+  if (!plan.is_dual()) return fmt::format("always {}x{}", most.width, most.height);
+  const char* history = plan.accumulates() ? "; history is resized where it changes" : "";
+  return fmt::format("dynamic: {}x{} to {}x{}, shown in {}x{}{}", least.width, least.height, most.width,
+                     most.height, most.width, most.height, history);
+}
+
+std::string focus_text(const FocusSettings& focus) {
+  return fmt::format("{}x{} pixels of the picture, drawn again and resolved on their own{}",
+                     focus.extent.width, focus.extent.height, focus.mask ? "; a mask is given" : "");
+}
+
+}  // namespace
+
+const char* name_of(Targets targets) {
+  switch (targets) {
+    case Targets::kViewport:
+      return "viewport";
+    case Targets::kPlaced:
+      return "placed";
+  }
+  return "unknown";
+}
+
+const char* name_of(VelocitySource source) {
+  switch (source) {
+    case VelocitySource::kNone:
+      return "none";
+    case VelocitySource::kTarget:
+      return "target";
+    case VelocitySource::kCamera:
+      return "depth and camera";
+  }
+  return "unknown";
+}
+
+const char* name_of(Scaling scaling) {
+  switch (scaling) {
+    case Scaling::kScales:
+      return "scales";
+    case Scaling::kHistory:
+      return "last frame's";
+    case Scaling::kOwn:
+      return "its own";
+    case Scaling::kFixed:
+      return "fixed";
+  }
+  return "unknown";
+}
+
+std::string ResolvePlan::explain() const {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  const auto yes = [](bool value) { return value ? "yes" : "no"; };
+  fmt::format_to(
+      out, "Scene needs    moving objects {}, camera motion {}, transparents {}, covering background {}\n",
+      yes(needs.moving_objects), yes(needs.camera_motion), yes(needs.transparents), yes(needs.background));
+  std::string form;
+  if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
+  if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
+  fmt::format_to(
+      out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, dither {}\n",
+      name_of(settings.method), form, settings.output.width, settings.output.height, settings.target.width,
+      settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
+      yes(settings.dither));
+  fmt::format_to(out, "Colour         {}\n", colour_text(settings));
+  fmt::format_to(out, "Output         {}\n", output_text(*this));
+  fmt::format_to(out, "Targets        {}\n", targets_text(*this));
+  const std::optional<ResolvePlan> region = focus_plan();
+  if (region) fmt::format_to(out, "Focus          {}\n", focus_text(settings.focus));
+  fmt::format_to(out, "Velocity       {}\n\nPasses, with bytes a frame at the largest viewport\n",
+                 name_of(velocity));
+  for (const PlannedPass& pass : passes) {
+    fmt::format_to(out, "  {:<19} {:>11}  {}\n  {:<19} {:>11}  {}\n", pass.kernel, size_text(pass.bytes),
+                   pass.reason, "", "", pass.options);
+  }
+  text += "\nBuffers\n";
+  for (const PlannedBuffer& buffer : buffers) {
+    fmt::format_to(out, "  {:<40} {:>5}x{:<5} {:<8} {:<12} {:>11}  {}\n", buffer.name, buffer.extent.width,
+                   buffer.extent.height, name_of(buffer.format), name_of(buffer.scaling),
+                   size_text(buffer.bytes), buffer.owned ? "the service's" : "the caller's");
+  }
+  text += "\nLeft out\n";
+  for (const LeftOut& left : left_out)
+    fmt::format_to(out, "  {:<40} {}\n", left.what, left.why);
+  if (region) fmt::format_to(out, "\nThe focus's region\n{}", region->explain());
+  return text;
+}
+
+FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented) {
+  FrameOutputs outputs{.presented = presented};
+  (plan.is_dual() ? outputs.displayed : plan.blurs() ? outputs.blurred : outputs.resolved) = linear;
+  return outputs;
+}
+
+std::string name_of(const PassReport& pass) {
+  return (pass.in_focus ? "focus: " : "") + std::string(pass.kernel);
+}
+
+}  // namespace quincunx

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include "plan/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "plan/resources.h"
+#include "quincunx/resolve_service.h"
+
+namespace quincunx {
+namespace {
+
+constexpr std::size_t kLargestPitch = std::size_t{1} << 30;
+
+const char* name(Storage storage) {
+  return storage == Storage::kImage ? "image" : "buffer";
+}
+
+// Complaints about the fields of a frame, collected so that one message names every bad one.
+class FrameCheck {
+ public:
+  explicit FrameCheck(const ResolvePlan& plan) : plan_(plan) {}
+
+  void input(const char* field, const ImageView& image, PixelFormat format, Extent viewport);
+  void viewport(const char* field, Extent viewport, Extent target);
+  // Checks an image of just this extent.
+  void output(const char* field, const ImageView& image, PixelFormat format, Storage storage, Extent extent,
+              const char* whose);
+  void finite(const char* field, float value, float low, float high);
+
+  void complain(const std::string& text) { complaints_ += (complaints_.empty() ? "" : "; ") + text; }
+  Status status() const { return complaints_.empty() ? Status() : Status::invalid(complaints_); }
+
+ private:
+  void image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage);
+  void layout(const char* field, const ImageView& image);
+
+  const ResolvePlan& plan_;
+  std::string complaints_;
+};
+
+void FrameCheck::input(const char* field, const ImageView& image, PixelFormat format, Extent viewport) {
+  image_in(field, image, format, plan_.settings.storage);
+  if (image && plan_.settings.targets == Targets::kPlaced && image.extent != viewport) {
+    complain(fmt::format("{}.extent is {}x{}; placed targets have exactly the viewport's {}x{}", field,
+                         image.extent.width, image.extent.height, viewport.width, viewport.height));
+  } else if (image && (image.extent.width < viewport.width || image.extent.height < viewport.height)) {
+    complain(fmt::format("{}.extent is {}x{}; it must hold the viewport of {}x{}", field, image.extent.width,
+                         image.extent.height, viewport.width, viewport.height));
+  }
+}
+
+void FrameCheck::viewport(const char* field, Extent viewport, Extent target) {
+  if (viewport.width >= 1 && viewport.height >= 1 && viewport.width <= target.width &&
+      viewport.height <= target.height) {
+    return;
+  }
+  complain(fmt::format("{} is {}x{}; it must lie within 1x1 and the target's {}x{}", field, viewport.width,
+                       viewport.height, target.width, target.height));
+}
+
+void FrameCheck::output(const char* field, const ImageView& image, PixelFormat format, Storage storage,
+                        Extent extent, const char* whose) {
+  image_in(field, image, format, storage);
+  if (image && image.extent != extent) {
+    complain(fmt::format("{}.extent is {}x{}; it must be the {}'s {}x{}", field, image.extent.width,
+                         image.extent.height, whose, extent.width, extent.height));
+  }
+}
+
+void FrameCheck::finite(const char* field, float value, float low, float high) {
+  if (value >= low && value <= high) return;
+  complain(fmt::format("{} is {}; it must lie in [{}, {}]", field, value, low, high));
+}
+
+void FrameCheck::image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage) {
+  if (!image) {
+    complain(fmt::format("{} is missing; the plan needs it as {}", field, name_of(format)));
+    return;
+  }
+  if (image.format != format) {
+    complain(fmt::format("{}.format is {}; the plan has {}", field, name_of(image.format), name_of(format)));
+  }
+  if (image.storage != storage) {
+    complain(fmt::format("{}.storage is {}; the plan has {}", field, name(image.storage), name(storage)));
+  }
+  if (image.storage == Storage::kBuffer) layout(field, image);
+}
+
+void FrameCheck::layout(const char* field, const ImageView& image) {
+  const std::size_t texel = bytes_per_pixel(image.format);
+  const std::size_t row = static_cast<std::size_t>(image.extent.width) * texel;
+  if (texel != 0 && image.pitch != 0 && (image.pitch < row || image.pitch % texel != 0)) {
+    complain(fmt::format("{}.pitch is {}; it must be a multiple of {} and at least {}", field, image.pitch,
+                         texel, row));
+  }
+  if (image.offset % 16 != 0) {
+    complain(fmt::format("{}.offset is {}; it must be a multiple of 16", field, image.offset));
+  }
+  if (image.pitch > kLargestPitch) {
+    complain(fmt::format("{}.pitch is {}; it must be at most {}", field, image.pitch, kLargestPitch));
+  }
+}
+
+void check_camera(FrameCheck& check, const CameraMotion& camera) {
+  for (const float element : camera.clip_to_previous_clip) {
+    if (!std::isfinite(element)) {
+      check.complain("camera.clip_to_previous_clip holds a value that is not finite; all 16 must be numbers");
+      return;
+    }
+  }
+}
+
+constexpr struct {
+  const char* name;
+  ImageView FrameOutputs::*image;
+  const char* absent;  // what a plan lacks that does not have it
+} kOutputs[] = {{"resolved", &FrameOutputs::resolved, ""},
+                {"blurred", &FrameOutputs::blurred, "motion blur; set settings.blur.shutter"},
+                {"displayed", &FrameOutputs::displayed, "dynamic output; set settings.least_output"},
+                {"presented", &FrameOutputs::presented, "present pass; set settings.present"}};
+
+const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
+  const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(),
+                                  [name](const PlannedBuffer& buffer) { return buffer.name == name; });
+  return found != plan.buffers.end() ? &*found : nullptr;
+}
+
+// At least one pixel must be shaded.
+void check_parity(FrameCheck& check, const FrameInputs& inputs) {
+  const bool has_both = inputs.render.width > 1 || inputs.render.height > 1;
+  if (inputs.parity == 0 || (inputs.parity == 1 && has_both)) return;
+  check.complain(fmt::format("parity is {}; it must be {}", inputs.parity,
+                             has_both ? "0 or 1" : "0 where the viewport is a single pixel"));
+}
+
+void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutputs& outputs) {
+  if (!outputs.resolved && !outputs.blurred && !outputs.displayed && !outputs.presented) {
+    check.complain("outputs are all missing; give resolved, blurred, displayed, presented or several");
+  }
+  for (const auto& output : kOutputs) {
+    const ImageView& image = outputs.*output.image;
+    if (!image) continue;
+    const PlannedBuffer* buffer = find(plan, output.name);
+    if (buffer == nullptr) {
+      check.complain(fmt::format("{} is given, but the plan has no {}", output.name, output.absent));
+      continue;
+    }
+    check.output(output.name, image, buffer->format,
+                 buffer->owned ? Storage::kBuffer : plan.presented_storage(), plan.settings.output, "output");
+  }
+  const auto check_apart = [&](const char* name, const ImageView& image, const char* other_name,
+                               const ImageView& other) {
+    if (!image || image.memory != other.memory || image.offset != other.offset) return;
+    check.complain(fmt::format("{0} is the memory of {1}; give it other memory", name, other_name));
+  };
+  check_apart("blurred", outputs.blurred, "resolved", outputs.resolved);
+  check_apart("displayed", outputs.displayed, "resolved", outputs.resolved);
+  check_apart("displayed", outputs.displayed, "blurred", outputs.blurred);
+}
+
+void check_fade(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
+  if (!inputs.fading_from) return;
+  if (!plan.settings.fades) {
+    check.complain("fading_from is given, but the plan has no cross-fade; set settings.fades");
+    return;
+  }
+  check.output("fading_from", inputs.fading_from, plan.settings.resolved, Storage::kBuffer,
+               plan.settings.output, "output");
+  check.finite("fade_weight", inputs.fade_weight, 0, 1);
+}
+
+void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent output) {
+  const Extent most = plan.settings.output;
+  const Extent least = plan.is_dual() ? plan.settings.least_output : most;
+  if (output == Extent{}) return;
+  if (output.width >= least.width && output.height >= least.height && output.width <= most.width &&
+      output.height <= most.height)
+    return;
+  if (plan.is_dual()) {
+    check.complain(fmt::format("output is {}x{}; it must lie within the plan's {}x{} and {}x{}", output.width,
+                               output.height, least.width, least.height, most.width, most.height));
+  } else {
+    check.complain(fmt::format("output is {}x{}; the plan has always {}x{}; set settings.least_output",
+                               output.width, output.height, most.width, most.height));
+  }
+}
+
+void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
+  constexpr float kLargest = 1e6f;
+  check.viewport("render", inputs.render, plan.settings.target);
+  if (plan.settings.particle_target != Extent())
+    check.viewport("particle_render", inputs.particle_render, plan.settings.particle_target);
+  check_output_extent(check, plan, inputs.output);
+  for (const ResourceInfo& info : kResources) {
+    if (info.input == nullptr || is_previous(info.resource)) continue;
+    const PlannedBuffer* buffer = find(plan, info.name);
+    if (buffer == nullptr || buffer->owned) continue;
+    const InputImage& input = *info.input;
+    check.input(input.field, inputs.*input.image, buffer->format, inputs.*input.viewport);
+  }
+  if (plan.velocity == VelocitySource::kTarget) {
+    check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);
+    check.finite("velocity_scale.y", inputs.velocity_scale.y, -kLargest, kLargest);
+  }
+  if (plan.reads_camera() || PlanFacts(plan.needs, plan.settings).reprojects())
+    check_camera(check, inputs.camera);
+  if (plan.settings.shading == Shading::kCheckerboard) check_parity(check, inputs);
+  check.finite("jitter.x", inputs.jitter.x, -1, 1);
+  check.finite("jitter.y", inputs.jitter.y, -1, 1);
+  check.finite("exposure", inputs.exposure, 0, kLargest);
+  check_fade(check, plan, inputs);
+}
+
+bool lies_within(const Rectangle& inner, const Rectangle& outer) {
+  return inner.width >= 1 && inner.height >= 1 && inner.x >= outer.x && inner.y >= outer.y &&
+         inner.width <= outer.width && inner.height <= outer.height &&
+         inner.x - outer.x <= outer.width - inner.width && inner.y - outer.y <= outer.height - inner.height;
+}
+
+void check_rectangles(FrameCheck& check, const FocusInputs& focus, const Rectangle& region) {
+  if (focus.rectangle_count < 0 || focus.rectangle_count > FocusInputs::kMostRectangles) {
+    check.complain(fmt::format("focus.rectangle_count is {}; it must lie in [0, {}]", focus.rectangle_count,
+                               FocusInputs::kMostRectangles));
+    return;
+  }
+  for (int i = 0; i < focus.rectangle_count; ++i) {
+    const Rectangle& where = focus.rectangles[static_cast<std::size_t>(i)];
+    if (lies_within(where, region)) continue;
+    check.complain(fmt::format(
+        "focus.rectangles[{}] is {}x{} at {}, {}; it must lie within the region of {}x{} at {}, {}", i,
+        where.width, where.height, where.x, where.y, region.width, region.height, region.x, region.y));
+  }
+}
+
+void check_place(FrameCheck& check, const ResolvePlan& plan, const FocusInputs& focus) {
+  constexpr float kLongestFeather = 32768;
+  const Extent output = plan.settings.output;
+  const Rectangle region = {focus.x, focus.y, plan.settings.focus.extent.width,
+                            plan.settings.focus.extent.height};
+  if (!lies_within(region, {0, 0, output.width, output.height})) {
+    check.complain(fmt::format("the focus's region of {}x{} at {}, {} leaves the output's {}x{}",
+                               region.width, region.height, region.x, region.y, output.width, output.height));
+  }
+  check_rectangles(check, focus, region);
+  check.finite("focus.feather", focus.feather, 0, kLongestFeather);
+}
+
+}  // namespace
+
+Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus) {
+  if (region == nullptr)
+    return Status::invalid("focus is given, but the plan has none; set settings.focus.extent");
+  FrameCheck check(plan);
+  check_place(check, plan, focus);
+  if (plan.settings.focus.mask)
+    check.output("focus.mask", focus.mask, PixelFormat::kR8, Storage::kBuffer, plan.settings.focus.extent,
+                 "region");
+  FrameCheck frame(*region);
+  check_inputs(frame, *region, focus.frame);
+  if (const Status status = frame.status(); !status.ok())
+    check.complain("of focus.frame: " + std::string(status.message()));
+  return check.status();
+}
+
+Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
+  FrameCheck check(plan);
+  check_inputs(check, plan, inputs);
+  check_outputs(check, plan, outputs);
+  return check.status();
+}
+
+Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FocusInputs& focus,
+                const FrameOutputs& outputs) {
+  if (Status status = validate(plan, inputs, outputs); !status.ok()) return status;
+  const std::optional<ResolvePlan> region = plan.focus_plan();
+  return validate_focus(plan, region ? &*region : nullptr, focus);
+}
+
+}  // namespace quincunx
