@@ -21,7 +21,8 @@
 namespace quincunx {
 
 // No -cl-finite-math-only: the kernels meet NaN and Inf on purpose, and as they are written it gains nothing.
-const char* const kCommonBuildOptions = "-cl-std=CL1.2";
+// No warnings (-w), which a driver may print to the program's stderr; the build has shown them (kernels/cmake).
+const char* const kCommonBuildOptions = "-cl-std=CL1.2 -w";
 
 namespace fs = std::filesystem;
 
