@@ -24,7 +24,6 @@ function(quincunx_install_pc name)
   if(NOT BUILD_SHARED_LIBS)  # what a static library leaves to its user to link
     set(QUINCUNX_PC_REQUIRES " fmt spdlog libxxhash")
     set(QUINCUNX_PC_LIBS " -lstdc++ -lm -pthread")
-    set(QUINCUNX_PC_GL_REQUIRES " egl")
   endif()
   configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${quincunx_pc_dir} COMPONENT dev)
@@ -38,7 +37,7 @@ if(BUILD_SHARED_LIBS)  # which the Python module loads
   install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR} COMPONENT python)
 endif()
 
-# An export set of its own: who does not ask for the bridge needs neither EGL nor epoxy.
+# An export set of its own: who does not ask for the bridge needs no epoxy.
 if(TARGET quincunx_gl)
   quincunx_install_library(quincunx_gl lib_gl quincunx_gl_interopTargets)
   quincunx_install_pc(quincunx-gl)

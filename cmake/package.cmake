@@ -85,7 +85,7 @@ quincunx_package(lib_gl libquincunx-gl1 libs "dynamic resolution rendering with 
   LIBRARY libquincunx_gl DEPENDS "libquincunx1 ${exactly}")
 quincunx_package(dev libquincunx-dev libdevel "dynamic resolution rendering with OpenCL: development files"
   "${about}This package has headers and what CMake and pkg-config need to find them."
-  DEPENDS "${both}, ocl-icd-opencl-dev, libepoxy-dev, libegl-dev")
+  DEPENDS "${both}, ocl-icd-opencl-dev, libepoxy-dev")
 quincunx_package(tools quincunx-tools graphics "dynamic resolution rendering with OpenCL: programs"
   "${about}This package has quincunx-render, which renders scenes, quincunx-resolve, which
 makes full-size frames from EXR sequences, quincunx-dump, which shows the
