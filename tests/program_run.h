@@ -6,8 +6,6 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "tools/temporary_folder.h"
@@ -19,11 +17,6 @@ struct ProgramResult {
   std::string out;
   std::string err;
 };
-
-inline std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 // `program`: that of the room, unless a test says otherwise. `arguments` go through a shell; "{}/" in them is
 // the folder.

@@ -2,7 +2,6 @@
 #include "quincunx_gl/bridge.h"
 
 #include <CL/cl_gl.h>
-#include <epoxy/egl.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "current_context.h"
 #include "gl_sharing.h"
 #include "host_copy.h"
 
@@ -22,10 +22,12 @@ void note(std::string* why, const std::string& name, const std::string& obstacle
 }
 
 // The first of `candidates` that makes a context for the GL context; `why` gathers what kept the others.
-std::optional<Device> open_sharing(const EglContext& context, const std::vector<DeviceInfo>& candidates,
+std::optional<Device> open_sharing(const Context& context, const std::vector<DeviceInfo>& candidates,
                                    std::string* why) {
+  const bool is_egl = context.info().system == WindowSystem::kEgl;
   const std::array<cl_context_properties, 5> properties = {
-      CL_GL_CONTEXT_KHR, reinterpret_cast<cl_context_properties>(context.context()), CL_EGL_DISPLAY_KHR,
+      CL_GL_CONTEXT_KHR, reinterpret_cast<cl_context_properties>(context.context()),
+      is_egl ? CL_EGL_DISPLAY_KHR : CL_GLX_DISPLAY_KHR,
       reinterpret_cast<cl_context_properties>(context.display()), 0};
   for (const DeviceInfo& candidate : candidates) {
     if (!candidate.gl_sharing) {
@@ -49,8 +51,8 @@ void check_extent(const char* field, Extent extent, int limit, std::string* faul
                          field, extent.width, extent.height, limit, limit);
 }
 
-Status check(const EglContext& context, const BridgeSettings& settings) {
-  if (eglGetCurrentContext() != context.context()) {
+Status check(const Context& context, const BridgeSettings& settings) {
+  if (current_context().context != context.context()) {
     return Status::invalid(
         "Bridge::create: the OpenGL context is not current on this thread; call make_current()");
   }
@@ -85,7 +87,7 @@ Result<std::unique_ptr<Bridge>> make_host_copy(const Device& device, const Bridg
 
 }  // namespace
 
-Result<Device> open_device(const EglContext& context, const std::string& selector, Interop interop) {
+Result<Device> open_device(const Context& context, const std::string& selector, Interop interop) {
   if (interop == Interop::kCopy) return Device::open(selector);
 
   std::vector<DeviceInfo> candidates;
@@ -119,7 +121,7 @@ const char* name_of(Interop interop) {
   return "unknown";
 }
 
-Result<std::unique_ptr<Bridge>> Bridge::create(const EglContext& context, const Device& device,
+Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Device& device,
                                                const BridgeSettings& settings) {
   if (Status status = check(context, settings); !status.ok()) return status;
   std::string reason = "copying was asked for";

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "quincunx_gl/capabilities.h"
 
-#include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
 #include <array>
+
+#include "current_context.h"
 
 namespace quincunx::gl {
 namespace {
@@ -50,7 +51,7 @@ Capabilities find_capabilities() {
 }
 
 struct Known {
-  EGLContext context = EGL_NO_CONTEXT;
+  CurrentContext context;
   Capabilities found;
 };
 thread_local Known known;
@@ -62,11 +63,11 @@ const char* name_of(Api api) {
 }
 
 const Capabilities& capabilities() {
-  return known.context == eglGetCurrentContext() ? known.found : renewed_capabilities();
+  return known.context == current_context() ? known.found : renewed_capabilities();
 }
 
 const Capabilities& renewed_capabilities() {
-  known = {eglGetCurrentContext(), find_capabilities()};
+  known = {current_context(), find_capabilities()};
   return known.found;
 }
 

@@ -147,7 +147,7 @@ cl_context_properties context_property(cl_context context, cl_context_properties
 }
 
 // Returns nothing when the device shares with the context, else one clause that says why not.
-std::string find_obstacle(const EglContext& context, const Device& device, const std::vector<Plane>& planes) {
+std::string find_obstacle(const Context& context, const Device& device, const std::vector<Plane>& planes) {
   if (context.info().api != Api::kGl45) return "sharing is made for desktop OpenGL, and this is OpenGL ES";
   const std::string& name = device.info().name;
   if (!device.info().gl_sharing) return fmt::format("'{}' does not offer cl_khr_gl_sharing", name);
@@ -236,7 +236,7 @@ void SharedTextures::wait_for_release() {
   }
 }
 
-Result<std::unique_ptr<Bridge>> GlSharing::create(const EglContext& context, const Device& device,
+Result<std::unique_ptr<Bridge>> GlSharing::create(const Context& context, const Device& device,
                                                   const BridgeSettings& settings) {
   if (std::string obstacle = find_obstacle(context, device, planes_of(settings)); !obstacle.empty()) {
     return Status::unsupported(std::move(obstacle));

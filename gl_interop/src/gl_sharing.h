@@ -57,7 +57,7 @@ class SharedTextures {
 class GlSharing final : public Bridge {
  public:
   // Errors: kUnsupported with the reason when device, context or probe say no; kDeviceFailure.
-  static Result<std::unique_ptr<Bridge>> create(const EglContext& context, const Device& device,
+  static Result<std::unique_ptr<Bridge>> create(const Context& context, const Device& device,
                                                 const BridgeSettings& settings);
   ~GlSharing() override;
 

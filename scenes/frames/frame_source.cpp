@@ -63,7 +63,7 @@ Status FrameSource::open_stage() {
   stage_->scene = std::move(scene).value();
 
   Device::list();  // some drivers want OpenCL enumerated before a GL context exists
-  auto context = gl::EglContext::create(settings_.platform, settings_.api);
+  auto context = gl::Context::create(settings_.platform, settings_.api);
   if (!context.ok()) return context.status();
   stage_->context = std::move(context).value();
   auto device = gl::open_device(*stage_->context, settings_.device, settings_.interop);

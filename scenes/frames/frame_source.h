@@ -18,7 +18,7 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx_gl/bridge.h"
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 #include "quincunx_gl/target_readback.h"
 #include "render/renderer.h"
 #include "scene.h"
@@ -79,7 +79,7 @@ class FrameSource {
 
   const Scene& scene() const { return stage_->scene; }
   const Device& device() const { return *stage_->device; }
-  const gl::EglContext& context() const { return *stage_->context; }
+  const gl::Context& context() const { return *stage_->context; }
   // The factor of linear colour: the option's, else the scene's.
   float exposure() const { return settings_.exposure > 0 ? settings_.exposure : scene().exposure; }
   FrameSequence& sequence() { return *sequence_; }
@@ -121,7 +121,7 @@ class FrameSource {
  private:
   struct Stage {
     Scene scene;
-    std::optional<gl::EglContext> context;
+    std::optional<gl::Context> context;
     std::optional<Device> device;
     std::optional<Renderer> renderer;
   };

@@ -201,7 +201,7 @@ void print_scenes() {
 
 void print_devices(const PictureOptions& options) {
   tools::print_opencl_devices();
-  auto context = gl::EglContext::create(options.platform, options.api);
+  auto context = gl::Context::create(options.platform, options.api);
   if (!context.ok()) {
     fmt::print("OpenGL    {}\n", context.status().message());
     return;

@@ -45,7 +45,7 @@ Status run_truth(const RenderOptions& options) {
   if (!source.ok()) return source.status();
   auto sequence = FrameSequence::create(source->sequence);
   if (!sequence.ok()) return sequence.status();
-  auto context = gl::EglContext::create(options.platform, options.api);
+  auto context = gl::Context::create(options.platform, options.api);
   if (!context.ok()) return context.status();
   auto renderer = Renderer::create(scene.value());
   if (!renderer.ok()) return renderer.status();

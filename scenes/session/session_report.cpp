@@ -67,7 +67,7 @@ tools::RunReport RenderSession::report() const {
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap", overlap_text()},
   };
-  const gl::EglInfo& gl = source_->context().info();
+  const gl::ContextInfo& gl = source_->context().info();
   report.gl = {gl::name_of(gl.platform), gl.vendor, gl.renderer, gl.version};
   const DeviceInfo& cl = source_->device().info();
   report.cl = {cl.platform, cl.name, cl.driver, cl.version, cl.compute_units};

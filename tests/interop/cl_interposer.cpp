@@ -296,7 +296,8 @@ cl_context CL_API_CALL clCreateContext(
   std::vector<cl_context_properties> all;
   for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
     all.insert(all.end(), {p[0], p[1]});
-    if (p[0] != CL_GL_CONTEXT_KHR && p[0] != CL_EGL_DISPLAY_KHR) plain.insert(plain.end(), {p[0], p[1]});
+    const bool of_gl = p[0] == CL_GL_CONTEXT_KHR || p[0] == CL_EGL_DISPLAY_KHR || p[0] == CL_GLX_DISPLAY_KHR;
+    if (!of_gl) plain.insert(plain.end(), {p[0], p[1]});
   }
   const bool with_gl = all.size() != plain.size();
   if (with_gl && state().flaw == PretendSharing::Flaw::kNoContext) {

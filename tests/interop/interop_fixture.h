@@ -124,9 +124,9 @@ class InteropTest : public ::testing::Test {
   virtual Api api() const { return Api::kGl45; }
 
   void SetUp() override {
-    auto context = EglContext::create(Platform::kAuto, api());
+    auto context = Context::create(Platform::kAuto, api());
     ASSERT_TRUE(context.ok()) << context.status().message();
-    context_ = std::make_unique<EglContext>(std::move(context).value());
+    context_ = std::make_unique<Context>(std::move(context).value());
     auto device = open_device(*context_, "", Interop::kCopy);
     ASSERT_TRUE(device.ok()) << device.status().message();
     device_ = std::make_unique<Device>(std::move(device).value());
@@ -150,7 +150,7 @@ class InteropTest : public ::testing::Test {
     ASSERT_TRUE(status.ok()) << status.message();
   }
 
-  std::unique_ptr<EglContext> context_;
+  std::unique_ptr<Context> context_;
   std::unique_ptr<Device> device_;
 };
 

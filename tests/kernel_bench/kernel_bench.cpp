@@ -13,7 +13,7 @@
 #include "kernel_cases.h"
 #include "peers.h"
 #include "quincunx/device.h"
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 #include "stage.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
@@ -160,9 +160,9 @@ int run(const Options& options, const std::string& command) {
   const Result<Device> device = Device::open(options.device);
   if (!device.ok()) return tools::fail(device.status());
   if (Status status = check_event_times(device.value()); !status.ok()) return tools::fail(status);
-  std::optional<gl::EglContext> context;
+  std::optional<gl::Context> context;
   if (options.peers) {
-    Result<gl::EglContext> created = gl::EglContext::create();
+    Result<gl::Context> created = gl::Context::create();
     if (created.ok()) {
       context = std::move(created).value();
     } else {

@@ -9,15 +9,15 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 #include "skip.h"
 
 namespace quincunx::scenes::testing {
 namespace {
 
 // Lives until the program ends: GL objects of static lifetime do not exist in these tests.
-Result<gl::EglContext>& shared_context() {
-  static Result<gl::EglContext> context = gl::EglContext::create();
+Result<gl::Context>& shared_context() {
+  static Result<gl::Context> context = gl::Context::create();
   return context;
 }
 
@@ -50,7 +50,7 @@ void fill_with(const gl::RenderTargets& targets, float value) {
 }
 
 void RenderTest::SetUp() {
-  Result<gl::EglContext>& context = shared_context();
+  Result<gl::Context>& context = shared_context();
   if (!context.ok()) QUINCUNX_SKIP(context.status().message());
   const Status status = context->make_current();
   ASSERT_TRUE(status.ok()) << status.message();

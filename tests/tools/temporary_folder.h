@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: MIT
-// TemporaryFolder: an empty folder of its own for each test, removed afterwards.
+// TemporaryFolder: an empty folder of its own for each test, removed afterwards; and read_file().
 #pragma once
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 namespace quincunx::testing {
+
+inline std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
 
 class TemporaryFolder {
  public:

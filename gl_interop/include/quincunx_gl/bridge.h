@@ -20,7 +20,7 @@
 #include "quincunx/device.h"
 #include "quincunx/export.h"
 #include "quincunx/resolve_plan.h"
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 #include "quincunx_gl/render_targets.h"
 
 namespace quincunx::gl {
@@ -54,12 +54,11 @@ struct SharedFrame {
 
 // Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and there is
 // one, else the one `selector` names (see Device::open).
-QUINCUNX_API Result<Device> open_device(const EglContext& context, const std::string& selector,
-                                        Interop interop);
+QUINCUNX_API Result<Device> open_device(const Context& context, const std::string& selector, Interop interop);
 
 class QUINCUNX_API Bridge {
  public:
-  static Result<std::unique_ptr<Bridge>> create(const EglContext& context, const Device& device,
+  static Result<std::unique_ptr<Bridge>> create(const Context& context, const Device& device,
                                                 const BridgeSettings& settings);
   virtual ~Bridge() = default;
   Bridge(const Bridge&) = delete;

@@ -30,7 +30,7 @@ struct Capabilities {
 // Returns those of the context that is current on this thread; found once for each context.
 QUINCUNX_API const Capabilities& capabilities();
 
-// Finds them anew. EglContext does, whose context may lie where one that is gone has lain.
+// Finds them anew. Context does, whose context may lie where one that is gone has lain.
 QUINCUNX_API const Capabilities& renewed_capabilities();
 
 }  // namespace quincunx::gl

@@ -41,7 +41,7 @@ void describe_machine(const scenes::FrameSource& source, Machine& machine) {
   machine.cl_driver = cl.driver;
   machine.cl_version = cl.version;
   machine.cl_on_processor = cl.kind == DeviceKind::kCpu;
-  const gl::EglInfo& gl = source.context().info();
+  const gl::ContextInfo& gl = source.context().info();
   machine.gl_renderer = gl.renderer;
   machine.gl_version = gl.version;
 }

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 int main() {
-  auto context = quincunx::gl::EglContext::create();
+  auto context = quincunx::gl::Context::create();
   if (!context.ok()) {
     std::fprintf(stderr, "%s\n", context.status().message().c_str());
     return 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// EglContext: an OpenGL 4.5 core or OpenGL ES 3.1 context, either one of its own without a window or that of a
-// window made elsewhere.
+// Context: an OpenGL 4.5 or OpenGL ES 3.1 context, either one of its own without a window (EGL), or the one that is
+// current, for example a window's (EGL or GLX).
 #pragma once
 
 #include <memory>
@@ -19,13 +19,16 @@ enum class Platform {
   kCurrent,  // no new context: the one that is current on this thread, for example a window's
 };
 
+enum class WindowSystem { kEgl, kGlx };  // that a context was made with
+
 QUINCUNX_API const char* name_of(Platform platform);  // "surfaceless"
 
-struct EglInfo {
+struct ContextInfo {
   Platform platform = Platform::kAuto;  // the one in use
-  std::string vendor;                   // GL_VENDOR
-  std::string renderer;                 // GL_RENDERER
-  std::string version;                  // GL_VERSION
+  WindowSystem system = WindowSystem::kEgl;
+  std::string vendor;    // GL_VENDOR
+  std::string renderer;  // GL_RENDERER
+  std::string version;   // GL_VERSION
   Api api = Api::kGl45;
   bool software = false;  // llvmpipe, softpipe, swrast
 };
@@ -33,25 +36,25 @@ struct EglInfo {
 // Owns display connection and context, except for kCurrent: that context stays its maker's, who keeps it
 // alive and current longer than this object. Move-only. The context is current on the thread that made it, and
 // every GL call of this library happens on the thread where it is current. The caller destroys it after all GL
-// objects. Debug output of the driver (errors, not chatter) goes to the log.
-class QUINCUNX_API EglContext {
+// objects. Debug output of the driver (errors, not chatter) of its own context goes to the log.
+class QUINCUNX_API Context {
  public:
   // `api`: for kCurrent that of the context that is current, whatever is given. Errors: kUnsupported with what was
-  // tried and what each said; for kCurrent also where no EGL context is current.
-  static Result<EglContext> create(Platform platform = Platform::kAuto, Api api = Api::kGl45);
+  // tried and what each said; for kCurrent also where no context is current.
+  static Result<Context> create(Platform platform = Platform::kAuto, Api api = Api::kGl45);
 
-  ~EglContext();
-  EglContext(EglContext&&) noexcept;
-  EglContext& operator=(EglContext&&) noexcept;
+  ~Context();
+  Context(Context&&) noexcept;
+  Context& operator=(Context&&) noexcept;
 
-  const EglInfo& info() const;
-  void* display() const;  // EGLDisplay
-  void* context() const;  // EGLContext
+  const ContextInfo& info() const;
+  void* display() const;  // EGLDisplay, or Display* of GLX
+  void* context() const;  // EGLContext, or GLXContext
   Status make_current();
 
  private:
   struct QUINCUNX_HIDDEN Impl;
-  explicit EglContext(std::unique_ptr<Impl> impl);
+  explicit Context(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "current_context.h"
 #include "quincunx_gl/capabilities.h"
 
 namespace quincunx::gl {
@@ -112,18 +113,18 @@ bool is_software(const std::string& renderer) {
 
 }  // namespace
 
-struct EglContext::Impl {
+struct Context::Impl {
   DisplayUse display;
-  EGLContext context = EGL_NO_CONTEXT;
-  bool borrowed = false;  // the context is its maker's
-  EGLDisplay handle = EGL_NO_DISPLAY;
-  EglInfo info;
+  void* context = nullptr;
+  bool borrowed = false;   // the context is its maker's
+  void* handle = nullptr;  // the display
+  ContextInfo info;
 
   Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    if (context == EGL_NO_CONTEXT || borrowed) return;
+    if (context == nullptr || borrowed) return;
     eglBindAPI(traits_of(info.api).api);
     if (eglGetCurrentContext() == context &&
         eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) != EGL_TRUE) {
@@ -137,7 +138,7 @@ struct EglContext::Impl {
   Status make_current() const {
     // Not by eglMakeCurrent: that would take the window's surface away.
     if (borrowed) {
-      if (eglGetCurrentContext() == context) return {};
+      if (current_context().context == context) return {};
       return Status::invalid("the window's OpenGL context is not current on this thread");
     }
     if (eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, context) != EGL_TRUE) {
@@ -157,7 +158,7 @@ struct EglContext::Impl {
   std::string describe_context();
 };
 
-std::string EglContext::Impl::make_context() {
+std::string Context::Impl::make_context() {
   const ApiTraits& api = traits_of(info.api);
   const char* extensions = eglQueryString(display.get(), EGL_EXTENSIONS);
   if (!lists(extensions, "EGL_KHR_surfaceless_context")) return "it lacks EGL_KHR_surfaceless_context";
@@ -184,11 +185,11 @@ std::string EglContext::Impl::make_context() {
   }
   attributes.push_back(EGL_NONE);
   context = eglCreateContext(display.get(), config, EGL_NO_CONTEXT, attributes.data());
-  if (context == EGL_NO_CONTEXT) return egl_error(fmt::format("eglCreateContext for {}", api.name).c_str());
+  if (context == nullptr) return egl_error(fmt::format("eglCreateContext for {}", api.name).c_str());
   return {};
 }
 
-std::string EglContext::Impl::describe_context() {
+std::string Context::Impl::describe_context() {
   if (Status status = make_current(); !status.ok()) return status.message();
   const Capabilities& can = renewed_capabilities();
   info.api = can.api;
@@ -205,6 +206,7 @@ std::string EglContext::Impl::describe_context() {
     return fmt::format("'{}' offers OpenGL ES {}.{} without {}; 3.2 has it", info.renderer, can.version / 10,
                        can.version % 10, can.missing);
   }
+  if (borrowed) return {};
   if (info.api == Api::kGl45 || can.version >= 32 || epoxy_has_gl_extension("GL_KHR_debug")) {
     glEnable(GL_DEBUG_OUTPUT);
     glDebugMessageCallback(log_gl_error, nullptr);
@@ -212,7 +214,7 @@ std::string EglContext::Impl::describe_context() {
   return {};
 }
 
-std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform platform, Api wanted) {
+std::string Context::Impl::open(EGLenum platform_enum, void* native, Platform platform, Api wanted) {
   info.platform = platform;
   info.api = wanted;
   const auto get_display =
@@ -227,12 +229,15 @@ std::string EglContext::Impl::open(EGLenum platform_enum, void* native, Platform
   return describe_context();
 }
 
-std::string EglContext::Impl::borrow_current() {
+std::string Context::Impl::borrow_current() {
+  const CurrentContext current = current_context();
   info.platform = Platform::kCurrent;
-  context = eglGetCurrentContext();
-  handle = eglGetCurrentDisplay();
+  info.system = current.system;
+  context = current.context;
+  handle = current.display;
   borrowed = true;
-  if (context == EGL_NO_CONTEXT) return "no EGL context is current on this thread";
+  if (context == nullptr)
+    return "no EGL or GLX context is current on this thread; make the window's current first";
   return describe_context();
 }
 
@@ -278,13 +283,13 @@ const char* name_of(Platform platform) {
   return "unknown";
 }
 
-Result<EglContext> EglContext::create(Platform platform, Api api) {
+Result<Context> Context::create(Platform platform, Api api) {
   if (platform == Platform::kCurrent) {
     auto impl = std::make_unique<Impl>();
     if (const std::string error = impl->borrow_current(); !error.empty()) {
       return Status::unsupported(fmt::format("the current OpenGL context cannot be used: {}", error));
     }
-    return EglContext(std::move(impl));
+    return Context(std::move(impl));
   }
   std::string tried;
   std::unique_ptr<Impl> software;  // the first software device, kept in case nothing better comes
@@ -299,7 +304,7 @@ Result<EglContext> EglContext::create(Platform platform, Api api) {
       if (!error.empty()) {
         note(&tried, fmt::format("device platform, device {}", i), error);
       } else if (!impl->info.software) {
-        return EglContext(std::move(impl));
+        return Context(std::move(impl));
       } else if (!software) {
         software = std::move(impl);
       }
@@ -311,12 +316,12 @@ Result<EglContext> EglContext::create(Platform platform, Api api) {
     if (lists(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_MESA_platform_surfaceless")) {
       error = impl->open(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, Platform::kSurfaceless, api);
     }
-    if (error.empty()) return EglContext(std::move(impl));
+    if (error.empty()) return Context(std::move(impl));
     note(&tried, "surfaceless platform", error);
   }
   if (software) {
     if (Status status = software->make_current(); !status.ok()) return status;
-    return EglContext(std::move(software));
+    return Context(std::move(software));
   }
   return Status::unsupported(
       fmt::format("no {} context could be made without a window ({}); a GPU driver with EGL or, "
@@ -325,21 +330,21 @@ Result<EglContext> EglContext::create(Platform platform, Api api) {
                   traits_of(api).name, tried));
 }
 
-EglContext::EglContext(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-EglContext::~EglContext() = default;
-EglContext::EglContext(EglContext&&) noexcept = default;
-EglContext& EglContext::operator=(EglContext&&) noexcept = default;
+Context::Context(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Context::~Context() = default;
+Context::Context(Context&&) noexcept = default;
+Context& Context::operator=(Context&&) noexcept = default;
 
-const EglInfo& EglContext::info() const {
+const ContextInfo& Context::info() const {
   return impl_->info;
 }
-void* EglContext::display() const {
+void* Context::display() const {
   return impl_->handle;
 }
-void* EglContext::context() const {
+void* Context::context() const {
   return impl_->context;
 }
-Status EglContext::make_current() {
+Status Context::make_current() {
   return impl_->make_current();
 }
 

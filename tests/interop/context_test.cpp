@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx_gl/egl_context.h"
+#include "quincunx_gl/context.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -12,7 +12,7 @@
 namespace quincunx::gl {
 namespace {
 
-void expect_usable(const EglContext& context) {
+void expect_usable(const Context& context) {
   EXPECT_EQ(eglGetCurrentContext(), context.context());
   GLint major = 0;
   GLint minor = 0;
@@ -32,23 +32,23 @@ void expect_usable(const EglContext& context) {
   EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
 }
 
-TEST(EglContext, SurfacelessPlatform) {
-  auto context = EglContext::create(Platform::kSurfaceless);
+TEST(Context, SurfacelessPlatform) {
+  auto context = Context::create(Platform::kSurfaceless);
   if (!context.ok()) QUINCUNX_SKIP(context.status().message());
   EXPECT_EQ(context->info().platform, Platform::kSurfaceless);
   expect_usable(context.value());
 }
 
-TEST(EglContext, DevicePlatform) {
-  auto context = EglContext::create(Platform::kDevice);
+TEST(Context, DevicePlatform) {
+  auto context = Context::create(Platform::kDevice);
   if (!context.ok()) QUINCUNX_SKIP(context.status().message());
   EXPECT_EQ(context->info().platform, Platform::kDevice);
   expect_usable(context.value());
 }
 
-TEST(EglContext, OpenGlEsOnEveryPlatform) {
+TEST(Context, OpenGlEsOnEveryPlatform) {
   for (const Platform platform : {Platform::kSurfaceless, Platform::kDevice, Platform::kAuto}) {
-    auto context = EglContext::create(platform, Api::kEs3);
+    auto context = Context::create(platform, Api::kEs3);
     if (!context.ok()) QUINCUNX_SKIP(context.status().message());
     EXPECT_EQ(context->info().api, Api::kEs3);
     if (platform != Platform::kAuto) {
@@ -56,15 +56,15 @@ TEST(EglContext, OpenGlEsOnEveryPlatform) {
     }
     expect_usable(context.value());
     // That of a window, which someone else has made.
-    auto borrowed = EglContext::create(Platform::kCurrent);
+    auto borrowed = Context::create(Platform::kCurrent);
     ASSERT_TRUE(borrowed.ok()) << borrowed.status().message();
     EXPECT_EQ(borrowed->info().api, Api::kEs3);
   }
 }
 
-TEST(EglContext, CapabilitiesAreThoseOfTheCurrentContext) {
-  auto desktop = EglContext::create();
-  auto es = EglContext::create(Platform::kAuto, Api::kEs3);
+TEST(Context, CapabilitiesAreThoseOfTheCurrentContext) {
+  auto desktop = Context::create();
+  auto es = Context::create(Platform::kAuto, Api::kEs3);
   ASSERT_TRUE(desktop.ok() && es.ok());
   EXPECT_FALSE(capabilities().reads_depth);
   ASSERT_TRUE(desktop->make_current().ok());
@@ -75,8 +75,8 @@ TEST(EglContext, CapabilitiesAreThoseOfTheCurrentContext) {
   expect_usable(es.value());
 }
 
-TEST(EglContext, AutoTakesADeviceOnlyForAGpu) {
-  auto context = EglContext::create();
+TEST(Context, AutoTakesADeviceOnlyForAGpu) {
+  auto context = Context::create();
   ASSERT_TRUE(context.ok()) << context.status().message();
   expect_usable(context.value());
   if (context->info().software) {
@@ -86,8 +86,8 @@ TEST(EglContext, AutoTakesADeviceOnlyForAGpu) {
   }
 }
 
-TEST(EglContext, LlvmpipeIsKnownAsSoftware) {
-  auto context = EglContext::create();
+TEST(Context, LlvmpipeIsKnownAsSoftware) {
+  auto context = Context::create();
   ASSERT_TRUE(context.ok()) << context.status().message();
   const bool llvmpipe = context->info().renderer.find("llvmpipe") != std::string::npos;
   if (!llvmpipe) QUINCUNX_SKIP("this machine renders with " + context->info().renderer);
@@ -95,11 +95,11 @@ TEST(EglContext, LlvmpipeIsKnownAsSoftware) {
 }
 
 // Both live on one EGL display; the end of the first must not end the second.
-TEST(EglContext, TwoContextsOfOneDisplayLiveApart) {
+TEST(Context, TwoContextsOfOneDisplayLiveApart) {
   auto second = [] {
-    auto first = EglContext::create();
+    auto first = Context::create();
     EXPECT_TRUE(first.ok()) << first.status().message();
-    return EglContext::create();
+    return Context::create();
   }();
   ASSERT_TRUE(second.ok()) << second.status().message();
   expect_usable(second.value());
@@ -111,26 +111,26 @@ TEST(EglContext, TwoContextsOfOneDisplayLiveApart) {
   expect_usable(second.value());
 }
 
-TEST(EglContext, MakeCurrentSwitches) {
-  auto first = EglContext::create();
-  auto second = EglContext::create();
+TEST(Context, MakeCurrentSwitches) {
+  auto first = Context::create();
+  auto second = Context::create();
   ASSERT_TRUE(first.ok() && second.ok());
   expect_usable(second.value());
   ASSERT_TRUE(first->make_current().ok());
   expect_usable(first.value());
 }
 
-TEST(EglContext, MovedContextIsTheSame) {
-  auto created = EglContext::create();
+TEST(Context, MovedContextIsTheSame) {
+  auto created = Context::create();
   ASSERT_TRUE(created.ok()) << created.status().message();
   void* const raw = created->context();
-  EglContext moved = std::move(created).value();
+  Context moved = std::move(created).value();
   EXPECT_EQ(moved.context(), raw);
   expect_usable(moved);
 }
 
-TEST(EglContext, LeavesNothingCurrentBehind) {
-  { auto context = EglContext::create(); }
+TEST(Context, LeavesNothingCurrentBehind) {
+  { auto context = Context::create(); }
   EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
 }
 
