@@ -5,14 +5,18 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "caller_texture.h"
 #include "current_context.h"
 #include "gl_sharing.h"
 #include "host_copy.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
@@ -51,6 +55,24 @@ void check_extent(const char* field, Extent extent, int limit, std::string* faul
                          field, extent.width, extent.height, limit, limit);
 }
 
+void check_format(const char* field, PixelFormat format, std::initializer_list<PixelFormat> allowed,
+                  std::string* faults) {
+  if (std::find(allowed.begin(), allowed.end(), format) != allowed.end()) return;
+  std::string names;
+  for (const PixelFormat* other = allowed.begin(); other != allowed.end(); ++other) {
+    if (other != allowed.begin()) names += other + 1 == allowed.end() ? " or " : ", ";
+    names += name_of(*other);
+  }
+  *faults +=
+      fmt::format("{}{} is {} and must be {}", faults->empty() ? "" : "; ", field, name_of(format), names);
+}
+
+void check_absent(const char* field, bool given, std::string* faults) {
+  if (given)
+    *faults += fmt::format("{}{} is set with imports, and is of the bridge's own targets",
+                           faults->empty() ? "" : "; ", field);
+}
+
 Status check(const Context& context, const BridgeSettings& settings) {
   if (current_context().context != context.context()) {
     return Status::invalid(
@@ -65,10 +87,17 @@ Status check(const Context& context, const BridgeSettings& settings) {
     faults += fmt::format("{}slots is {} and must be {} to {}", faults.empty() ? "" : "; ", settings.slots,
                           kMinSlots, kMaxSlots);
   }
-  if (settings.colour != PixelFormat::kRGBA16F && settings.colour != PixelFormat::kRGBA8) {
-    faults += fmt::format("{}colour is {} and must be RGBA8 or RGBA16F", faults.empty() ? "" : "; ",
-                          name_of(settings.colour));
+  using enum PixelFormat;
+  if (settings.imports) {
+    check_format("colour", settings.colour, {kRGBA8, kRGBA16F, kRGBA32F}, &faults);
+    check_format("velocity_format", settings.velocity_format, {kRG16F, kRG32F}, &faults);
+    check_absent("checkerboard", settings.checkerboard, &faults);
+    check_absent("targets kPlaced", settings.targets == Targets::kPlaced, &faults);
+  } else {
+    check_format("colour", settings.colour, {kRGBA8, kRGBA16F}, &faults);
+    check_format("velocity_format", settings.velocity_format, {kRG16F}, &faults);
   }
+  check_format("picture", settings.picture, {kRGBA8, kRGBA16F, kRGBA32F}, &faults);
   if (!faults.empty()) return Status::invalid("BridgeSettings: " + faults);
   return {};
 }
@@ -121,9 +150,44 @@ const char* name_of(Interop interop) {
   return "unknown";
 }
 
+BridgeSettings bridge_settings(const ResolvePlan& plan) {
+  return {.target = plan.settings.target,
+          .output = plan.settings.output,
+          .depth = plan.reads_depth,
+          .velocity = plan.velocity == VelocitySource::kTarget,
+          .reactive = plan.reads_reactive,
+          .checkerboard = plan.settings.shading == Shading::kCheckerboard,
+          .colour = plan.settings.colour,
+          .velocity_format = plan.settings.velocity,
+          .targets = plan.settings.targets};
+}
+
+Status Bridge::check_owner(const char* call, bool imports) const {
+  if (imports == settings_.imports) return {};
+  const char* const reason =
+      imports ? "has targets of its own; create it with imports to hand over textures of yours"
+              : "was created with imports and has no targets; call import() with yours";
+  return Status::invalid(fmt::format("{}: this bridge {}", call, reason));
+}
+
+Status Bridge::check_present(bool begun, GLuint into) const {
+  if (!begun) {
+    return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
+  }
+  return into == 0 ? Status() : check_picture_texture(into, settings_.picture, settings_.output);
+}
+
+Result<SharedFrame> Bridge::import(const FrameTextures& textures, Extent render) {
+  const int slot = next_slot_;
+  if (Status status = submit(slot, textures, render); !status.ok()) return status;
+  next_slot_ = (slot + 1) % slots();
+  return acquire(slot);
+}
+
 Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Device& device,
                                                const BridgeSettings& settings) {
   if (Status status = check(context, settings); !status.ok()) return status;
+  const TransferScope restore;
   std::string reason = "copying was asked for";
   const bool placed = settings.targets == Targets::kPlaced;
   if (placed && settings.interop == Interop::kGl) {

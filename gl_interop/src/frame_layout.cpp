@@ -62,7 +62,8 @@ cl_image_format cl_format(PixelFormat format) {
 std::vector<Plane> planes_of(const BridgeSettings& settings) {
   std::vector<Plane> planes = {{PlaneKind::kColour, settings.colour, GL_COLOR_ATTACHMENT0}};
   if (settings.depth) planes.push_back({PlaneKind::kDepth, PixelFormat::kR32F, GL_DEPTH_ATTACHMENT});
-  if (settings.velocity) planes.push_back({PlaneKind::kVelocity, PixelFormat::kRG16F, GL_COLOR_ATTACHMENT1});
+  if (settings.velocity)
+    planes.push_back({PlaneKind::kVelocity, settings.velocity_format, GL_COLOR_ATTACHMENT1});
   if (settings.reactive) planes.push_back({PlaneKind::kReactive, PixelFormat::kR8, GL_COLOR_ATTACHMENT2});
   return planes;
 }

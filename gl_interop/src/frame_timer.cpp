@@ -13,22 +13,42 @@
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
-#include "viewport_pass.h"
 
 namespace quincunx::gl {
 namespace {
 
 constexpr double kLeastMs = 1e-6;  // a frame without work may come back as 0, which no controller takes
 
+constexpr const char* kCoveringSource = R"(#version 310 es
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); })";
+
 constexpr const char* kFragmentSource = R"(#version 310 es
 precision highp float;
 layout(location = 0) out vec4 colour;
 void main() { colour = vec4(sin(gl_FragCoord.xy), 0.25, 0.5); })";
 
+// Makes a program whose three vertices, drawn as triangles without any attribute, cover the viewport.
+Program covering_program() {
+  Program program = Program::create();
+  for (const auto& [stage, source] :
+       {std::pair{GL_VERTEX_SHADER, kCoveringSource}, {GL_FRAGMENT_SHADER, kFragmentSource}}) {
+    const GLuint shader = glCreateShader(static_cast<GLenum>(stage));
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    glAttachShader(program.get(), shader);
+    glDeleteShader(shader);
+  }
+  glLinkProgram(program.get());
+  GLint linked = GL_FALSE;
+  glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
+  if (linked == GL_FALSE) throw InteropError("the frame timer's program does not link");
+  return program;
+}
+
 // Blended layers in one target, like a frame: each needs the one below, so that no driver can leave one out.
 class KnownLoad {
  public:
-  KnownLoad() : program_(covering_program(kFragmentSource, "the frame timer's program")) {
+  KnownLoad() : program_(covering_program()) {
     texture_storage(texture_.get(), 1, GL_RGBA16F, {kSide, kSide});
     attach(framebuffer_.get(), GL_COLOR_ATTACHMENT0, texture_.get());
     glGetIntegerv(GL_VIEWPORT, viewport_before_.data());

@@ -9,9 +9,12 @@
 #include <set>
 #include <string>
 
+#include "caller_texture.h"
 #include "fence.h"
 #include "frame_layout.h"
+#include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
@@ -28,7 +31,9 @@ std::vector<std::uint8_t> probe_texels(PixelFormat format, std::uint32_t seed) {
   }
   const bool is_byte = format == PixelFormat::kR8 || format == PixelFormat::kRGBA8;
   // Normal numbers only: 0x3c in the top byte of a half or float, whose sign stays free.
-  const std::size_t channel = format == PixelFormat::kR32F ? 4 : 2;
+  const bool is_float =
+      format == PixelFormat::kR32F || format == PixelFormat::kRG32F || format == PixelFormat::kRGBA32F;
+  const std::size_t channel = is_float ? 4 : 2;
   for (std::size_t top = channel - 1; !is_byte && top < texels.size(); top += channel) {
     texels[top] = static_cast<std::uint8_t>((texels[top] & 0x80u) | 0x3cu);
   }
@@ -62,8 +67,6 @@ void probe(const Device& device, PixelFormat format) {
   std::vector<std::uint8_t> seen(from_gl.size());
   const std::array<std::size_t, 3> origin = {0, 0, 0};
   const std::array<std::size_t, 3> region = {kProbeSide, kProbeSide, 1};
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glTextureSubImage2D(texture.get(), 0, 0, 0, kProbeSide, kProbeSide, names.format, names.type,
                       from_gl.data());
   {
@@ -91,44 +94,36 @@ void probe(const Device& device, PixelFormat format) {
 std::string probe_sharing(const Device& device, PixelFormat format) {
   while (glGetError() != GL_NO_ERROR) {
   }
-  std::string failure;
   try {
     probe(device, format);
   } catch (const std::exception& error) {
-    failure = fmt::format("sharing a {} texture was tried and {}", name_of(format), error.what());
+    return fmt::format("sharing a {} texture was tried and {}", name_of(format), error.what());
   }
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  return failure;
+  return {};
 }
 
-constexpr int kGroupSide = 8;
-
-constexpr const char* kDepthSource = R"(#version 450 core
-layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0) uniform sampler2D depth;
-layout(binding = 0, r32f) writeonly uniform image2D copy;
-layout(location = 0) uniform ivec2 render;
-void main() {
-  ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(texel, render))) return;
-  imageStore(copy, texel, vec4(texelFetch(depth, texel, 0).r));
-}
-)";
-
-Program build_depth_program() {
-  const char* source = kDepthSource;
-  Program program = Program::adopt(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
-  GLint linked = GL_FALSE;
-  if (program) glGetProgramiv(program.get(), GL_LINK_STATUS, &linked);
-  if (linked != GL_TRUE) {
-    std::string log(1024, '\0');
-    GLsizei length = 0;
-    if (program) glGetProgramInfoLog(program.get(), static_cast<GLsizei>(log.size()), &length, log.data());
-    log.resize(static_cast<std::size_t>(length));
-    throw InteropError(fmt::format("the compute shader that copies depth was refused: {}", log));
+// A texture of a caller's, whose filter may ask for levels that it has not: it cannot be copied while it is incomplete.
+class OneLevel {
+ public:
+  explicit OneLevel(GLuint texture) : texture_(texture) {
+    glGetTextureParameteriv(texture_, GL_TEXTURE_MAX_LEVEL, &before_);
+    glTextureParameteri(texture_, GL_TEXTURE_MAX_LEVEL, 0);
   }
-  return program;
+  ~OneLevel() { glTextureParameteri(texture_, GL_TEXTURE_MAX_LEVEL, before_); }
+  OneLevel(const OneLevel&) = delete;
+  OneLevel& operator=(const OneLevel&) = delete;
+
+ private:
+  GLuint texture_;
+  GLint before_ = 0;
+};
+
+// Copies the top left `extent` bit for bit.
+void copy_texels(GLuint from, GLuint to, Extent extent) {
+  const OneLevel complete_from(from);
+  const OneLevel complete_to(to);
+  glCopyImageSubData(from, GL_TEXTURE_2D, 0, 0, 0, 0, to, GL_TEXTURE_2D, 0, 0, 0, 0, extent.width,
+                     extent.height, 1);
 }
 
 // Returns what clCreateContext was told: zero where `name` is not among it.
@@ -147,7 +142,7 @@ cl_context_properties context_property(cl_context context, cl_context_properties
 }
 
 // Returns nothing when the device shares with the context, else one clause that says why not.
-std::string find_obstacle(const Context& context, const Device& device, const std::vector<Plane>& planes) {
+std::string find_obstacle(const Context& context, const Device& device, const BridgeSettings& settings) {
   if (context.info().api != Api::kGl45) return "sharing is made for desktop OpenGL, and this is OpenGL ES";
   const std::string& name = device.info().name;
   if (!device.info().gl_sharing) return fmt::format("'{}' does not offer cl_khr_gl_sharing", name);
@@ -155,8 +150,8 @@ std::string find_obstacle(const Context& context, const Device& device, const st
   if (context_property(device.context(), CL_GL_CONTEXT_KHR) != wanted) {
     return fmt::format("the OpenCL context of '{}' was not made for this OpenGL context", name);
   }
-  std::set<PixelFormat> formats = {PixelFormat::kRGBA8};
-  for (const Plane& plane : planes)
+  std::set<PixelFormat> formats = {settings.picture};
+  for (const Plane& plane : planes_of(settings))
     formats.insert(plane.format);
   for (const PixelFormat format : formats) {
     if (std::string failure = probe_sharing(device, format); !failure.empty()) {
@@ -238,7 +233,7 @@ void SharedTextures::wait_for_release() {
 
 Result<std::unique_ptr<Bridge>> GlSharing::create(const Context& context, const Device& device,
                                                   const BridgeSettings& settings) {
-  if (std::string obstacle = find_obstacle(context, device, planes_of(settings)); !obstacle.empty()) {
+  if (std::string obstacle = find_obstacle(context, device, settings); !obstacle.empty()) {
     return Status::unsupported(std::move(obstacle));
   }
   std::string reason = fmt::format("'{}' shares textures with '{}', as a probe of every format has shown",
@@ -258,18 +253,26 @@ GlSharing::GlSharing(const Device& device, const BridgeSettings& settings, std::
       ring_(settings.slots, settings.target),
       presented_(Texture::create()),
       output_(device),
-      pixels_(static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8)) {
-  if (settings.depth) depth_program_ = build_depth_program();
+      pixels_(static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(settings.picture)) {
+  if (settings.depth) depth_copy_ = DepthCopy::create();
   slots_.reserve(static_cast<std::size_t>(settings.slots));
   for (int i = 0; i < settings.slots; ++i)
     slots_.push_back(make_slot());
 
-  glTextureStorage2D(presented_.get(), 1, GL_RGBA8, settings.output.width, settings.output.height);
-  glTextureParameteri(presented_.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  output_view_ = {.memory = output_.add(presented_.get(), PixelFormat::kRGBA8, CL_MEM_READ_WRITE),
+  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output);
+  texture_parameter(presented_.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST});
+  output_image_ = output_.add(presented_.get(), settings.picture, CL_MEM_READ_WRITE);
+  output_view_ = {.memory = output_image_,
                   .storage = Storage::kImage,
-                  .format = PixelFormat::kRGBA8,
+                  .format = settings.picture,
                   .extent = settings.output};
+  if (settings.picture == PixelFormat::kRGBA8) return;
+  cl_int code = CL_SUCCESS;
+  linear_ =
+      ClMem::adopt(clCreateBuffer(device_.context(), CL_MEM_READ_WRITE, pixels_.size(), nullptr, &code));
+  check_cl(code, "clCreateBuffer for the linear picture");
+  output_view_.memory = linear_.get();
+  output_view_.storage = Storage::kBuffer;
 }
 
 GlSharing::~GlSharing() {
@@ -278,32 +281,29 @@ GlSharing::~GlSharing() {
   glFinish();
 }
 
+// Whether OpenCL is given a copy of the plane, of its own format and the largest viewport's size.
+bool GlSharing::is_copied(const Plane& plane) const {
+  return settings_.imports || plane.kind == PlaneKind::kDepth;
+}
+
 GlSharing::Slot GlSharing::make_slot() {
-  Slot slot = {.targets = RenderTargets(target_needs(settings_)),
-               .depth_copy = {},
-               .colour_codes = {},
-               .shared = SharedTextures(device_),
-               .views = {}};
-  if (settings_.depth) {
-    slot.depth_copy = Texture::create();
-    glTextureStorage2D(slot.depth_copy.get(), 1, GL_R32F, settings_.target.width, settings_.target.height);
-    glTextureParameteri(slot.depth_copy.get(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  }
-  GLuint colour = slot.targets.colour();
-  if (settings_.colour == PixelFormat::kRGBA8) {
-    // OpenCL 1.2 has no name for an encoded texture: it is given the codes. A view needs a name without a texture.
-    GLuint name = 0;
-    glGenTextures(1, &name);
-    slot.colour_codes = Texture::adopt(name);
-    glTextureView(name, GL_TEXTURE_2D, colour, GL_RGBA8, 0, 1, 0, 1);
-    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    colour = name;
-  }
+  Slot slot = {.targets = {}, .own = {}, .shared = SharedTextures(device_), .views = {}};
+  FrameTextures targets;
+  if (!settings_.imports) targets = textures_of(slot.targets.emplace(target_needs(settings_)));
   for (const Plane& plane : planes_) {
-    GLuint texture = colour;
-    if (plane.kind == PlaneKind::kDepth) texture = slot.depth_copy.get();
-    if (plane.kind == PlaneKind::kVelocity) texture = slot.targets.velocity();
-    if (plane.kind == PlaneKind::kReactive) texture = slot.targets.reactive();
+    Texture& own = slot.own.emplace_back();
+    if (is_copied(plane)) {
+      own = Texture::create();
+      texture_storage(own.get(), 1, gl_format(plane.format).internal, settings_.target);
+    } else if (plane.format == PixelFormat::kRGBA8) {
+      // OpenCL 1.2 has no name for an encoded texture: it is given the codes. A view needs a name without a texture.
+      GLuint name = 0;
+      glGenTextures(1, &name);
+      own = Texture::adopt(name);
+      glTextureView(name, GL_TEXTURE_2D, targets.colour, GL_RGBA8, 0, 1, 0, 1);
+    }
+    if (own) texture_parameter(own.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST});
+    const GLuint texture = own ? own.get() : texture_of(targets, plane.kind);
     view_of(slot.views, plane.kind) = {.memory = slot.shared.add(texture, plane.format, CL_MEM_READ_ONLY),
                                        .storage = Storage::kImage,
                                        .format = plane.format,
@@ -315,44 +315,58 @@ GlSharing::Slot GlSharing::make_slot() {
 Bridge::Memory GlSharing::memory() const {
   Memory memory;
   for (const Slot& slot : slots_) {
-    memory.gl_bytes += slot.targets.bytes();
-    if (!slot.depth_copy) continue;
-    memory.gl_bytes +=
-        static_cast<std::uint64_t>(settings_.target.area()) * bytes_per_pixel(PixelFormat::kR32F);
+    if (slot.targets) memory.gl_bytes += slot.targets->bytes();
+    for (const Plane& plane : planes_) {
+      if (!is_copied(plane)) continue;
+      memory.gl_bytes += static_cast<std::uint64_t>(settings_.target.area()) * bytes_per_pixel(plane.format);
+    }
   }
   return memory;
 }
 
 Result<const RenderTargets*> GlSharing::begin_draw(int slot, Extent render) {
+  if (Status status = check_owner("begin_draw", false); !status.ok()) return status;
   if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
+  if (Status status = take_back("begin_draw", slot); !status.ok()) return status;
+  return &*slot_at(slot).targets;
+}
+
+Status GlSharing::take_back(const char* call, int slot) {
   try {
     slot_at(slot).shared.release();  // nothing to do where acquire() of a later slot has done it
     slot_at(slot).shared.wait_for_release();
-    return &slot_at(slot).targets;
+    return {};
   } catch (const std::exception& error) {
-    return Status::device(fmt::format("begin_draw({}) on '{}': {}", slot, device_.info().name, error.what()));
+    return Status::device(fmt::format("{}({}) on '{}': {}", call, slot, device_.info().name, error.what()));
   }
 }
 
-void GlSharing::copy_depth(const Slot& slot, Extent render) const {
-  glUseProgram(depth_program_.get());
-  glUniform2i(0, render.width, render.height);
-  glBindTextureUnit(0, slot.targets.depth());
-  glBindSampler(0, 0);
-  glBindImageTexture(0, slot.depth_copy.get(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  glDispatchCompute(static_cast<GLuint>((render.width + kGroupSide - 1) / kGroupSide),
-                    static_cast<GLuint>((render.height + kGroupSide - 1) / kGroupSide), 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
-  glBindImageTexture(0, 0, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_R32F);
-  glBindTextureUnit(0, 0);
-  glUseProgram(0);
+void GlSharing::copy_planes(const Slot& slot, const FrameTextures& from, Extent render) const {
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    if (!is_copied(planes_[i])) continue;
+    const GLuint texture = texture_of(from, planes_[i].kind);
+    if (planes_[i].kind == PlaneKind::kDepth && has_depth_format(texture)) {
+      depth_copy_.copy(texture, slot.own[i].get(), render);
+    } else {
+      copy_texels(texture, slot.own[i].get(), render);
+    }
+  }
+  glFlush();
 }
 
 Status GlSharing::submit(int slot) {
   if (Status status = ring_.submit(slot); !status.ok()) return status;
-  if (settings_.depth) copy_depth(slot_at(slot), ring_.render(slot));
-  glFlush();
+  copy_planes(slot_at(slot), textures_of(*slot_at(slot).targets), ring_.render(slot));
   return {};
+}
+
+Status GlSharing::submit(int slot, const FrameTextures& textures, Extent render) {
+  if (Status status = check_owner("submit", true); !status.ok()) return status;
+  if (Status status = check_textures(planes_, textures, render); !status.ok()) return status;
+  if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
+  if (Status status = take_back("submit", slot); !status.ok()) return status;
+  copy_planes(slot_at(slot), textures, render);
+  return ring_.submit(slot);
 }
 
 Result<SharedFrame> GlSharing::acquire(int slot) {
@@ -383,14 +397,23 @@ Result<ImageView> GlSharing::begin_present() {
   }
 }
 
-Status GlSharing::present() {
-  if (!presenting_) {
-    return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
-  }
+void GlSharing::copy_linear() const {
+  const std::array<std::size_t, 3> origin = {0, 0, 0};
+  const std::array<std::size_t, 3> region = {static_cast<std::size_t>(settings_.output.width),
+                                             static_cast<std::size_t>(settings_.output.height), 1};
+  check_cl(clEnqueueCopyBufferToImage(device_.queue(), linear_.get(), output_image_, 0, origin.data(),
+                                      region.data(), 0, nullptr, nullptr),
+           "clEnqueueCopyBufferToImage");
+}
+
+Status GlSharing::present(GLuint into) {
+  if (Status status = check_present(presenting_, into); !status.ok()) return status;
   const Stopwatch watch;
   try {
+    if (linear_) copy_linear();
     output_.release();
     output_.wait_for_release();
+    if (into != 0) copy_texels(presented_.get(), into, settings_.output);
   } catch (const std::exception& error) {
     return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
   }
@@ -403,9 +426,9 @@ Status GlSharing::present() {
 
 const std::uint8_t* GlSharing::presented_pixels() {
   if (!pixels_are_current_ && !presenting_) {
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
-    glGetTextureImage(presented_.get(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(pixels_.size()),
+    const TransferScope restore;
+    const GlFormat names = gl_format(settings_.picture);
+    glGetTextureImage(presented_.get(), 0, names.format, names.type, static_cast<GLsizei>(pixels_.size()),
                       pixels_.data());
     pixels_are_current_ = true;
   }

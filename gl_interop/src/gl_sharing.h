@@ -10,10 +10,12 @@
 #include <epoxy/gl.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cl_handle.h"
+#include "depth_copy.h"
 #include "frame_layout.h"
 #include "quincunx/device.h"
 #include "quincunx_gl/bridge.h"
@@ -66,33 +68,38 @@ class GlSharing final : public Bridge {
   Memory memory() const override;
   Result<const RenderTargets*> begin_draw(int slot, Extent render) override;
   Status submit(int slot) override;
+  Status submit(int slot, const FrameTextures& textures, Extent render) override;
   Result<SharedFrame> acquire(int slot) override;
   Result<ImageView> begin_present() override;
-  Status present() override;
+  Status present(GLuint into = 0) override;
   GLuint presented_texture() const override { return presented_.get(); }
   const std::uint8_t* presented_pixels() override;
 
  private:
   struct Slot {
-    RenderTargets targets;
-    Texture depth_copy;    // R32F; none where depth is not handed over
-    Texture colour_codes;  // RGBA8: the codes of encoded colour; none of others
+    std::optional<RenderTargets> targets;  // none with imports
+    std::vector<Texture> own;              // for each plane what OpenCL is given; empty: the target itself
     SharedTextures shared;
     SharedFrame views;
   };
 
   GlSharing(const Device& device, const BridgeSettings& settings, std::string reason);
   Slot& slot_at(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  bool is_copied(const Plane& plane) const;
   Slot make_slot();
-  void copy_depth(const Slot& slot, Extent render) const;
+  Status take_back(const char* call, int slot);
+  void copy_linear() const;
+  void copy_planes(const Slot& slot, const FrameTextures& from, Extent render) const;
 
   Device device_;
   std::vector<Plane> planes_;
   SlotRing ring_;
   std::vector<Slot> slots_;
-  Program depth_program_;
+  DepthCopy depth_copy_;
   Texture presented_;
   SharedTextures output_;
+  cl_mem output_image_ = nullptr;
+  ClMem linear_;  // the linear picture, which the service writes to buffers alone; empty for RGBA8
   ImageView output_view_;
   std::vector<std::uint8_t> pixels_;
   bool pixels_are_current_ = false;

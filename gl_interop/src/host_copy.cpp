@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "caller_texture.h"
 #include "fence.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 
@@ -122,25 +124,27 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
       planes_(planes_of(settings)),
       form_(settings.targets == Targets::kPlaced ? form : PlacedForm{}),
       pool_(target_needs(settings)),
-      targets_(&pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target)),
+      reader_(Framebuffer::create()),
       ring_(settings.slots, settings.target),
-      output_(device, static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8),
+      output_(device, static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(settings.picture),
               transfer),
       presented_(Texture::create()) {
   make_slots(transfer);
 
   output_view_ = {.memory = output_.cl_buffer(),
-                  .format = PixelFormat::kRGBA8,
+                  .format = settings.picture,
                   .extent = settings.output,
-                  .pitch = settings.output.width * bytes_per_pixel(PixelFormat::kRGBA8)};
-  texture_storage(presented_.get(), 1, GL_RGBA8, settings.output);
+                  .pitch = settings.output.width * bytes_per_pixel(settings.picture)};
+  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output);
   if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target);
 
+  if (settings.imports) return;
+  targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target);
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
   while (glGetError() != GL_NO_ERROR) {
   }
   targets_->clear({1, 1});
-  read_back(slots_.front(), {1, 1});
+  read_back(slots_.front(), textures_of(*targets_), {1, 1});
   slots_.front().read_back.wait();
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     throw InteropError(fmt::format(
@@ -152,29 +156,29 @@ HostCopy::~HostCopy() {
   glFinish();  // GL may still be reading back into the buffers that go now
 }
 
-void HostCopy::read_back(Slot& slot, Extent render) {
+void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
+  const TransferScope restore;
   SharedFrame regions = slot.images.regions();
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, targets_->framebuffer());
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, reader_.get());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.gl_buffer());
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
   for (const Plane& plane : planes_) {
     const ImageView& view = view_of(regions, plane.kind);
     const GlFormat names = gl_format(plane.format);
-    const bool is_depth = plane.kind == PlaneKind::kDepth;
+    const GLuint texture = texture_of(from, plane.kind);
+    const bool is_depth = plane.kind == PlaneKind::kDepth && has_depth_format(texture);
     void* const start = slot.pixels.gl_pointer(view.offset);
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
     if (is_depth && !capabilities().reads_depth) {
-      depth_reader_.read(targets_->depth(), render, start);
+      depth_reader_.read(texture, render, start);
       continue;
     }
-    if (!is_depth) glReadBuffer(plane.attachment);
+    const GLenum attachment = is_depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0;
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
     glReadPixels(0, 0, render.width, render.height, is_depth ? GLenum{GL_DEPTH_COMPONENT} : names.format,
                  names.type, start);
+    // Else the texture would outlive its end, and be seen by a framebuffer of another size.
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, attachment, GL_TEXTURE_2D, 0, 0);
   }
-  glPixelStorei(GL_PACK_ROW_LENGTH, 0);
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
   slot.read_back.set();
 }
 
@@ -194,6 +198,7 @@ void HostCopy::resize(Slot& slot, Extent render) {
   if (settings_.targets == Targets::kViewport) return;
   const bool same = targets_->extent() == render && slot.images.extent() == render;
   const Stopwatch watch;
+  const TransferScope restore;
   targets_ = &pool_.at(render);
   slot.images.resize(render);
   if (!same) traffic_.resize_us = 1000 * watch.milliseconds();
@@ -207,22 +212,37 @@ Bridge::Memory HostCopy::memory() const {
 }
 
 Result<const RenderTargets*> HostCopy::begin_draw(int slot, Extent render) {
+  if (Status status = check_owner("begin_draw", false); !status.ok()) return status;
   if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
+  if (Status status = take_back("begin_draw", slot); !status.ok()) return status;
+  return targets_;
+}
+
+Status HostCopy::take_back(const char* call, int slot) {
   try {
     PixelBuffer& pixels = slot_at(slot).pixels;
     if (!pixels.host_owns()) pixels.take_back(PixelBuffer::Access::kOverwrite);
     pixels.wait();
-    resize(slot_at(slot), render);
-    return targets_;
+    resize(slot_at(slot), ring_.render(slot));
+    return {};
   } catch (const std::exception& error) {
-    return Status::device(fmt::format("begin_draw({}) on '{}': {}", slot, device_.info().name, error.what()));
+    return Status::device(fmt::format("{}({}) on '{}': {}", call, slot, device_.info().name, error.what()));
   }
 }
 
 Status HostCopy::submit(int slot) {
   if (Status status = ring_.submit(slot); !status.ok()) return status;
-  read_back(slot_at(slot), ring_.render(slot));
+  read_back(slot_at(slot), textures_of(*targets_), ring_.render(slot));
   return {};
+}
+
+Status HostCopy::submit(int slot, const FrameTextures& textures, Extent render) {
+  if (Status status = check_owner("submit", true); !status.ok()) return status;
+  if (Status status = check_textures(planes_, textures, render); !status.ok()) return status;
+  if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
+  if (Status status = take_back("submit", slot); !status.ok()) return status;
+  read_back(slot_at(slot), textures, render);
+  return ring_.submit(slot);
 }
 
 Result<SharedFrame> HostCopy::acquire(int slot) {
@@ -261,10 +281,8 @@ Result<ImageView> HostCopy::begin_present() {
   }
 }
 
-Status HostCopy::present() {
-  if (!presenting_) {
-    return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
-  }
+Status HostCopy::present(GLuint into) {
+  if (Status status = check_present(presenting_, into); !status.ok()) return status;
   const Stopwatch watch;
   try {
     if (output_.transfer() == Transfer::kZeroCopy) {
@@ -276,15 +294,15 @@ Status HostCopy::present() {
   } catch (const std::exception& error) {
     return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
   }
+  const TransferScope restore;
+  const GlFormat names = gl_format(settings_.picture);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-  texture_write(presented_.get(), 0, settings_.output, GL_RGBA, GL_UNSIGNED_BYTE, output_.gl_pointer(0));
-  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+  texture_write(into != 0 ? into : presented_.get(), 0, settings_.output, names.format, names.type,
+                output_.gl_pointer(0));
   uploaded_.set();
   presenting_ = false;
   traffic_.bytes_out =
-      static_cast<std::uint64_t>(settings_.output.area()) * bytes_per_pixel(PixelFormat::kRGBA8);
+      static_cast<std::uint64_t>(settings_.output.area()) * bytes_per_pixel(settings_.picture);
   traffic_.present_ms = watch.milliseconds();
   return {};
 }

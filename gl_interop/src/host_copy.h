@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
+#include "depth_copy.h"
 #include "fence.h"
 #include "frame_layout.h"
 #include "pixel_buffer.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/render_targets.h"
 #include "slot_ring.h"
-#include "viewport_pass.h"
 
 namespace quincunx::gl {
 
@@ -96,9 +96,10 @@ class HostCopy final : public Bridge {
   Memory memory() const override;
   Result<const RenderTargets*> begin_draw(int slot, Extent render) override;
   Status submit(int slot) override;
+  Status submit(int slot, const FrameTextures& textures, Extent render) override;
   Result<SharedFrame> acquire(int slot) override;
   Result<ImageView> begin_present() override;
-  Status present() override;
+  Status present(GLuint into = 0) override;
   GLuint presented_texture() const override { return presented_.get(); }
   const std::uint8_t* presented_pixels() override { return output_.bytes(); }
 
@@ -111,15 +112,17 @@ class HostCopy final : public Bridge {
 
   Slot& slot_at(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
   void make_slots(Transfer transfer);
+  Status take_back(const char* call, int slot);
   void resize(Slot& slot, Extent render);
-  void read_back(Slot& slot, Extent render);
+  void read_back(Slot& slot, const FrameTextures& from, Extent render);
   void hand_over(Slot& slot, Extent render);
 
   Device device_;
   std::vector<Plane> planes_;
   PlacedForm form_;
   TargetPool pool_;
-  const RenderTargets* targets_;  // that are drawn or were drawn last
+  const RenderTargets* targets_ = nullptr;  // that are drawn or were drawn last; none with imports
+  Framebuffer reader_;                      // through which textures are read
   DepthReader depth_reader_;
   SlotRing ring_;
   std::vector<Slot> slots_;

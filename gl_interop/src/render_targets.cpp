@@ -8,10 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "depth_copy.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/target_readback.h"
-#include "viewport_pass.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
@@ -51,26 +52,6 @@ void write_checkerboard(const Texture& texture, Extent extent) {
   texture_write(texture.get(), 0, extent, GL_DEPTH_STENCIL, GL_FLOAT_32_UNSIGNED_INT_24_8_REV, texels.data());
 }
 
-// Restores the scissor of the caller: clear() is called in the middle of someone's frame.
-class ScissorScope {
- public:
-  ScissorScope() : enabled_(glIsEnabled(GL_SCISSOR_TEST)) { glGetIntegerv(GL_SCISSOR_BOX, box_.data()); }
-  ~ScissorScope() {
-    glScissor(box_[0], box_[1], box_[2], box_[3]);
-    if (enabled_ == GL_TRUE) {
-      glEnable(GL_SCISSOR_TEST);
-    } else {
-      glDisable(GL_SCISSOR_TEST);
-    }
-  }
-  ScissorScope(const ScissorScope&) = delete;
-  ScissorScope& operator=(const ScissorScope&) = delete;
-
- private:
-  GLboolean enabled_;
-  std::array<GLint, 4> box_ = {};
-};
-
 template <typename T>
 std::vector<T> read_plane(const RenderTargets& targets, GLenum attachment, Extent render, GLenum format,
                           GLenum type, int channels) {
@@ -99,7 +80,10 @@ RenderTargets::RenderTargets(const TargetNeeds& needs)
   const bool encoded = colour_format_ == PixelFormat::kRGBA8;
   colour_ = make_texture(encoded ? GL_SRGB8_ALPHA8 : GL_RGBA16F, extent_);
   depth_ = make_texture(has_checkerboard_ ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, extent_);
-  if (has_checkerboard_) write_checkerboard(depth_, extent_);
+  if (has_checkerboard_) {
+    const TransferScope restore;
+    write_checkerboard(depth_, extent_);
+  }
   if (needs.velocity) velocity_ = make_texture(GL_RG16F, extent_);
   if (needs.reactive) reactive_ = make_texture(GL_R8, extent_);
 
@@ -130,24 +114,16 @@ std::uint64_t RenderTargets::bytes() const {
 
 void RenderTargets::clear(Extent render) const {
   constexpr std::array<GLfloat, 4> kZero = {0, 0, 0, 0};
-  const ScissorScope restore;
-  glDepthMask(GL_TRUE);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-
-  glDisable(GL_SCISSOR_TEST);
+  const ClearScope scope;
   gl::clear(framebuffer_.get(), GL_DEPTH, 0, kZero.data());
-
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(0, 0, render.width, render.height);
+  scope.scissor(render.width, render.height);
   gl::clear(framebuffer_.get(), GL_COLOR, 0, kZero.data());
   if (velocity_) gl::clear(framebuffer_.get(), GL_COLOR, 1, kZero.data());
   if (reactive_) gl::clear(framebuffer_.get(), GL_COLOR, 2, kZero.data());
 }
 
 TargetPixels read_targets(const RenderTargets& targets, Extent render) {
-  GLint alignment = 4;
-  glGetIntegerv(GL_PACK_ALIGNMENT, &alignment);
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  const TransferScope restore;
   TargetPixels pixels;
   pixels.render = render;
   if (targets.colour_format() == PixelFormat::kRGBA8) {
@@ -166,7 +142,6 @@ TargetPixels read_targets(const RenderTargets& targets, Extent render) {
     pixels.reactive =
         read_plane<std::uint8_t>(targets, GL_COLOR_ATTACHMENT2, render, GL_RED, GL_UNSIGNED_BYTE, 1);
   }
-  glPixelStorei(GL_PACK_ALIGNMENT, alignment);
   return pixels;
 }
 

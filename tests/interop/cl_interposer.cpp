@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cl_faults.h"
+#include "state_scope.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -79,6 +80,8 @@ struct KnownFormat {
 };
 
 constexpr std::array kKnownFormats = {
+    KnownFormat{GL_RGBA32F, GL_RGBA, GL_FLOAT, 16, {CL_RGBA, CL_FLOAT}},
+    KnownFormat{GL_RG32F, GL_RG, GL_FLOAT, 8, {CL_RG, CL_FLOAT}},
     KnownFormat{GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8, {CL_RGBA, CL_HALF_FLOAT}},
     KnownFormat{GL_RG16F, GL_RG, GL_HALF_FLOAT, 4, {CL_RG, CL_HALF_FLOAT}},
     KnownFormat{GL_R32F, GL_RED, GL_FLOAT, 4, {CL_R, CL_FLOAT}},
@@ -88,6 +91,7 @@ constexpr std::array kKnownFormats = {
 
 // Any format of the right size will do: texels only pass through.
 cl_image_format stand_in_of(std::size_t texel) {
+  if (texel == 16) return {CL_RGBA, CL_UNSIGNED_INT32};
   if (texel == 8) return {CL_RGBA, CL_UNORM_INT16};
   if (texel == 1) return {CL_R, CL_UNORM_INT8};
   return {CL_RGBA, CL_UNORM_INT8};
@@ -166,10 +170,9 @@ cl_int write_image(cl_command_queue queue, cl_mem image, const SharedTexture& sh
 
 cl_int to_opencl(cl_command_queue queue, cl_mem image, const SharedTexture& shared) {
   std::vector<std::uint8_t> texels(bytes_of(shared));
-  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  const TransferScope restore;
   glGetTextureImage(shared.texture, 0, shared.format, shared.type, static_cast<GLsizei>(texels.size()),
                     texels.data());
-  glPixelStorei(GL_PACK_ALIGNMENT, 4);
   if (state().flaw == PretendSharing::Flaw::kWrongBytes) texels.back() ^= 1;
   return write_image(queue, image, shared, texels.data());
 }
@@ -183,10 +186,9 @@ cl_int to_opengl(cl_command_queue queue, cl_mem image, const SharedTexture& shar
       queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels.data(), 0, nullptr, nullptr);
   if (code != CL_SUCCESS) return code;
   if (shared.writable) {
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    const TransferScope restore;
     glTextureSubImage2D(shared.texture, 0, 0, 0, shared.width, shared.height, shared.format, shared.type,
                         texels.data());
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   }
   std::fill(texels.begin(), texels.end(), kJunk);
   return write_image(queue, image, shared, texels.data());

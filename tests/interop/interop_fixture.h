@@ -47,12 +47,16 @@ inline Bytes random_texels(PixelFormat format, Extent extent, std::uint32_t seed
   return bytes;
 }
 
-// The same without NaN and infinity among the halves.
+// The same without NaN and infinity among halves and floats.
 inline Bytes finite_texels(PixelFormat format, Extent extent, std::uint32_t seed) {
   Bytes bytes = random_texels(format, extent, seed);
   const bool halves = format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F;
   for (std::size_t top = 1; halves && top < bytes.size(); top += 2) {
     if ((bytes[top] & 0x7c) == 0x7c) bytes[top] = static_cast<std::uint8_t>(bytes[top] & ~0x40);
+  }
+  const bool floats = format == PixelFormat::kRGBA32F || format == PixelFormat::kRG32F;
+  for (std::size_t top = 3; floats && top < bytes.size(); top += 4) {
+    if ((bytes[top] & 0x7f) == 0x7f) bytes[top] = static_cast<std::uint8_t>(bytes[top] & ~0x40);
   }
   return bytes;
 }

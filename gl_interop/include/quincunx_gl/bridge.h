@@ -10,7 +10,9 @@
 //   begin_draw(s, render), draw, submit(s)
 //   acquire(s), service.dispatch(...)    s is held, and so is the slot before it, until the next dispatch
 //   present(), then presented_pixels() or presented_texture()
-// All calls come from the thread where the GL context is current.
+// Of a renderer with textures of its own (BridgeSettings::imports):
+//   draw, import(textures, render), service.dispatch(...), present(texture)
+// All calls come from the thread where the GL context is current. Each puts back the state of GL that it changes.
 #pragma once
 
 #include <cstdint>
@@ -37,9 +39,25 @@ struct BridgeSettings {
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values
   bool checkerboard = false;         // targets have the stencil of TargetNeeds::checkerboard
-  PixelFormat colour = PixelFormat::kRGBA16F;  // or RGBA8: see RenderTargets
-  int slots = 3;                               // >= 3 where the previous frame is read
-  Targets targets = Targets::kViewport;        // kPlaced: HostCopy only, kGl then fails
+  bool imports = false;              // frames come from textures of the caller's; the bridge makes no targets
+  PixelFormat colour = PixelFormat::kRGBA16F;         // or RGBA8: see RenderTargets; imported also RGBA32F
+  PixelFormat velocity_format = PixelFormat::kRG16F;  // imported also RG32F
+  PixelFormat picture =
+      PixelFormat::kRGBA8;  // RGBA8: the presented picture comes back; RGBA16F, RGBA32F: the linear one
+  int slots = 3;            // >= 3 where the previous frame is read
+  Targets targets = Targets::kViewport;  // kPlaced: HostCopy only, kGl then fails
+};
+
+// Returns settings that hand over what frames of this plan need.
+QUINCUNX_API BridgeSettings bridge_settings(const ResolvePlan& plan);
+
+// Textures of the caller's: GL_TEXTURE_2D, not multisampled, at least as large as the viewport, which is their part
+// from texel (0, 0). Planes that the settings do not ask for are not looked at.
+struct FrameTextures {
+  GLuint colour = 0;    // of the settings' format; for RGBA8 also SRGB8_ALPHA8, whose codes are taken
+  GLuint depth = 0;     // any depth format, or R32F
+  GLuint velocity = 0;  // of the settings' format
+  GLuint reactive = 0;  // R8
 };
 
 // The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed, and with placed
@@ -81,14 +99,24 @@ class QUINCUNX_API Bridge {
   // after this see the frame.
   virtual Result<SharedFrame> acquire(int slot) = 0;
 
-  // RGBA8, output extent: the target of FrameOutputs::presented. The same view until the bridge is destroyed.
+  // Takes a frame from textures of the caller's, in place of begin_draw() and submit(). They are copied in OpenGL's
+  // order: what is drawn into them next does not reach this frame. Errors: kInvalidArgument, which names each texture
+  // that is wrong; the slot then stays as it was.
+  virtual Status submit(int slot, const FrameTextures& textures, Extent render) = 0;
+
+  // The same and acquire(), slot after slot: all that a renderer needs that does not draw ahead.
+  Result<SharedFrame> import(const FrameTextures& textures, Extent render);
+
+  // Output extent, BridgeSettings::picture: the target of FrameOutputs::presented, or of the linear picture. The same
+  // view until the bridge is destroyed.
   virtual Result<ImageView> begin_present() = 0;
 
   // After the dispatch that writes it was enqueued: waits for that work and brings the picture to GL and the
-  // caller.
-  virtual Status present() = 0;
-  virtual GLuint presented_texture() const = 0;        // RGBA8, row 0 on top
-  virtual const std::uint8_t* presented_pixels() = 0;  // RGBA8, tightly packed; valid until begin_present()
+  // caller. `into`: a texture of the caller's that gets it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and
+  // at least its size; 0: presented_texture(). Errors: kInvalidArgument where that texture is wrong.
+  virtual Status present(GLuint into = 0) = 0;
+  virtual GLuint presented_texture() const = 0;        // row 0 on top
+  virtual const std::uint8_t* presented_pixels() = 0;  // tightly packed; valid until begin_present()
 
   // Returns what is allocated now for the frames, without the presented picture.
   struct Memory {
@@ -114,9 +142,16 @@ class QUINCUNX_API Bridge {
   Bridge(const BridgeSettings& settings, std::string reason)
       : settings_(settings), reason_(std::move(reason)) {}
 
+  // Refuse a call that is not for this bridge's kind of targets, or not in its turn.
+  Status check_owner(const char* call, bool imports) const;
+  Status check_present(bool begun, GLuint into) const;
+
   BridgeSettings settings_;
   std::string reason_;
   Traffic traffic_;
+
+ private:
+  int next_slot_ = 0;  // of import()
 };
 
 }  // namespace quincunx::gl

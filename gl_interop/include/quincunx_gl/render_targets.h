@@ -41,7 +41,7 @@ class QUINCUNX_API RenderTargets {
   bool has_checkerboard() const { return has_checkerboard_; }
 
   // Clears the viewport's part of colour, velocity and reactive (scissored, to 0), and depth whole (to 0:
-  // infinity). Leaves the stencil and the scissor as they were and the colour and depth write masks on.
+  // infinity). Leaves the stencil and all state as they were.
   void clear(Extent render) const;
 
  private:
