@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,14 @@ struct TileKinds {
   std::vector<std::uint8_t> kinds;  // row by row
 };
 
+// What a frame's work has to do with that of other queues of the device's context.
+struct FrameSync {
+  std::span<const cl_event> wait_for = {};  // the frame's work begins when all of these are complete
+  // Where not null, gets an event that is complete when the frame's work is, which the caller releases; null where the
+  // frame was refused or failed.
+  cl_event* done = nullptr;
+};
+
 class QUINCUNX_API ResolveService {
  public:
   // Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with the build's options
@@ -54,12 +63,13 @@ class QUINCUNX_API ResolveService {
   // Enqueues the frame's passes on the device's queue and flushes it. A bad frame is refused whole: the
   // report's status says why, nothing is enqueued, and the history is as it was. The report's times are not
   // known yet.
-  FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs);
+  FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs, const FrameSync& sync = {});
 
   // The same with a focus laid over the finished picture (FrameOutputs::blurred where the plan blurs, else resolved)
   // and over what is presented of it. Nothing outside of its rectangles changes by one bit. A frame without a focus
   // ends the focus's history.
-  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs& focus, const FrameOutputs& outputs);
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs& focus, const FrameOutputs& outputs,
+                       const FrameSync& sync = {});
 
   // The oldest finished frame whose report was not yet taken, with its times and counts; nothing when none
   // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.

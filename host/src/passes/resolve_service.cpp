@@ -35,6 +35,34 @@ Status check_unedited(const ResolvePlan& plan) {
       edited));
 }
 
+Status check_events(std::span<const cl_event> events, cl_context context) {
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events[i] == nullptr) return Status::invalid(fmt::format("wait_for[{}] is null; leave it out", i));
+    cl_context its = nullptr;
+    const cl_int code = clGetEventInfo(events[i], CL_EVENT_CONTEXT, sizeof(its), &its, nullptr);
+    if (code != CL_SUCCESS || its != context) {
+      return Status::invalid(fmt::format(
+          "wait_for[{}] is no event of the device's OpenCL context; make it on a queue of Device::context()",
+          i));
+    }
+  }
+  return {};
+}
+
+// Before everything that is enqueued later on the queue, which is in-order.
+void wait_in_queue(const cl::CommandQueue& queue, std::span<const cl_event> events) {
+  if (events.empty()) return;
+  const cl_int code =
+      clEnqueueBarrierWithWaitList(queue(), static_cast<cl_uint>(events.size()), events.data(), nullptr);
+  if (code != CL_SUCCESS) throw cl::Error(code, "clEnqueueBarrierWithWaitList");
+}
+
+// Returns a reference of the caller's.
+cl_event retained(const cl::Event& event) {
+  if (const cl_int code = clRetainEvent(event()); code != CL_SUCCESS) throw cl::Error(code, "clRetainEvent");
+  return event();
+}
+
 }  // namespace
 
 struct ResolveService::Impl {
@@ -51,7 +79,8 @@ struct ResolveService::Impl {
   void enqueue(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
                FrameRing::Slot& slot);
   void forget();
-  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs);
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
+                       const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
 
   Device device;
@@ -113,13 +142,16 @@ void ResolveService::Impl::forget() {
 }
 
 FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const FocusInputs* given,
-                                           const FrameOutputs& outputs) {
+                                           const FrameOutputs& outputs, const FrameSync& sync) {
+  if (sync.done != nullptr) *sync.done = nullptr;
   FrameReport refused;
   refused.frame_index = inputs.frame_index;
   refused.render = inputs.render;
   refused.status = check(inputs, given, outputs);
+  if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
   if (!refused.ok()) return refused;
   try {
+    wait_in_queue(device.impl()->queue, sync.wait_for);
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
     slot.report.render = inputs.render;
@@ -130,6 +162,7 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     slot.report.used_previous =
         picture.has_history(inputs) && picture.plan().reads_history(inputs.render, output);
     enqueue(inputs, given, outputs, slot);
+    if (sync.done != nullptr) *sync.done = retained(slot.done);
     ring.commit();
     picture.keep(inputs);
     return slot.report;
@@ -180,15 +213,16 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
   }
 }
 
-FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs) {
-  return impl_->dispatch(inputs, nullptr, outputs);
+FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FrameOutputs& outputs,
+                                     const FrameSync& sync) {
+  return impl_->dispatch(inputs, nullptr, outputs, sync);
 }
 
 FrameReport ResolveService::dispatch(const FrameInputs& inputs, const FocusInputs& focus,
-                                     const FrameOutputs& outputs) {
+                                     const FrameOutputs& outputs, const FrameSync& sync) {
   FocusInputs given = focus;
   given.frame.reset |= inputs.reset;
-  return impl_->dispatch(inputs, &given, outputs);
+  return impl_->dispatch(inputs, &given, outputs, sync);
 }
 
 std::optional<FrameReport> ResolveService::next_completed() {
