@@ -2,7 +2,8 @@
 // present: exposure, tone map, sRGB encoding to 8 bits.
 //   params      in   extents, layouts, exposure (> 0, multiplies linear colour)
 //   source      in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer
-//   output      out  RGBA8 buffer or image of the output extent: sRGB colour, alpha linear
+//   output      out  RGBA8 buffer or image of the output extent: sRGB colour, alpha linear; the layout of an image
+//                    counts rows, so that they can be turned
 //   non_finite  out  non_finite[params.counter] grows by the pixels that are NaN or infinite; they count as 0, +-65504
 // Options: TONE_MAP        TONE_ACES (default) | TONE_REINHARD | TONE_CLAMP
 //          DITHER          1 (default): colour rounds up or down by a fixed pattern of the position | 0: to nearest
@@ -146,10 +147,11 @@ __attribute__((always_inline)) static inline uint16 encode(float16 a, float16 b,
 static inline void store_four_codes(PRESENTED_TEXELS texels, TexelLayout layout, int x, int y, int end, uint4 codes) {
 #if OUTPUT_STORAGE == IMAGE
   const float16 values = convert_float16(as_uchar16(codes)) * (1.0f / 255.0f);
-  write_imagef(texels, (int2)(x, y), values.s0123);
-  if (x + 1 < end) write_imagef(texels, (int2)(x + 1, y), values.s4567);
-  if (x + 2 < end) write_imagef(texels, (int2)(x + 2, y), values.s89ab);
-  if (x + 3 < end) write_imagef(texels, (int2)(x + 3, y), values.scdef);
+  const int row = row_index(layout, y);
+  write_imagef(texels, (int2)(x, row), values.s0123);
+  if (x + 1 < end) write_imagef(texels, (int2)(x + 1, row), values.s4567);
+  if (x + 2 < end) write_imagef(texels, (int2)(x + 2, row), values.s89ab);
+  if (x + 3 < end) write_imagef(texels, (int2)(x + 3, row), values.scdef);
 #else
   __global uint* pixels = texels + texel_index(layout, x, y);
   if (x + 3 < end) {

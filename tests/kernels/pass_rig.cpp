@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pass_rig.h"
 
+#include "plan/native_frame.h"
+
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -29,6 +31,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .tables = tables,
                   .current = current,
                   .previous = previous,
+                  .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,

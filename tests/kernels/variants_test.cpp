@@ -90,7 +90,7 @@ PlanInputs first_plan(Extent output = {64, 64}) {
 std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   // A field that is added to the settings stops this line from compiling: give it an axis, too.
   [[maybe_unused]] const auto& [f01, f02, f03, f04, f05, f06, f07, f08, f09, f10, f11, f12, f13, f14, f15,
-                                f16, f17, f18, f19, f20, f21, f22, f23, f24, f25, f26, f27] =
+                                f16, f17, f18, f19, f20, f21, f22, f23, f24, f25, f26, f27, f28] =
       ResolveSettings();
 
   std::vector<PlanAxis> axes;
@@ -133,6 +133,10 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   setting(&Settings::colour, {kRGBA16F, kRGBA32F, kRGBA8});
   setting(&Settings::velocity, {kRG16F, kRG32F});
   setting(&Settings::resolved, {kRGBA32F, kRGBA16F});
+  setting(&Settings::conventions,
+          {InputConventions{}, InputConventions{.depth = DepthConvention::kLinear, .velocity_jittered = true},
+           InputConventions{
+               .depth = DepthConvention::kLinear, .velocity_jittered = true, .origin = Origin::kBottom}});
   setting(&Settings::storage, {Storage::kBuffer, Storage::kImage});
   setting(&Settings::targets, {Targets::kViewport, Targets::kPlaced});
   setting(&Settings::shading, {Shading::kFull, Shading::kCheckerboard});

@@ -85,6 +85,8 @@ class Structs(unittest.TestCase):
                              "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],
                              "QUINCUNX_BY_EVIDENCE": quincunx.number_of("far_motion", "evidence"),
                              "QUINCUNX_DILATED_VELOCITY": quincunx.number_of("drawn_velocity", "dilated"),
+                             "QUINCUNX_LINEAR": quincunx.number_of("depth_convention", "linear"),
+                             "QUINCUNX_BOTTOM": quincunx.number_of("origin", "bottom"),
                              "QUINCUNX_QUALITY": quincunx.number_of("temporal_preset", "quality"),
                              "QUINCUNX_ACES": quincunx.number_of("tone_map", "aces")}.items():
             self.assertRegex(text, r"\b%s = %d\b" % (name, number))

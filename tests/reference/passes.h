@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// velocity_from_depth, far_velocity, undilate_velocity, resolve_quincunx, sharpen and present: the specification, in
-// double precision.
+// velocity_from_depth, far_velocity, undilate_velocity, convert_inputs, resolve_quincunx, sharpen and present: the
+// specification, in double precision.
 #pragma once
 
 #include <array>
@@ -33,6 +33,14 @@ std::vector<CompletedVelocity> far_velocity(const Frame& frame);
 // neighbours; in the latter case then two away, and so on to 8, until there is one. Where there is none the camera
 // gives the velocity if it is known, that is, not the identity. Of those as close the first counts, row by row.
 std::vector<CompletedVelocity> undilate_velocity(const Frame& frame);
+
+// convert_inputs: near / distance of a depth that is 1 at the near and 0 at the far plane, or with `forward` the other
+// way round, or of a distance. The far plane may be infinite. Exactly the value at the far plane, and a distance that
+// is infinite, no number or not above 0, give 0; a distance within the near plane gives 1.
+double depth_between_planes(double depth, bool forward, double near_plane, double far_plane);
+double depth_of_distance(double distance, double near_plane);
+// Without `jitter`, by which it has moved a still surface; (0, 0) stays.
+std::array<double, 2> unjittered(const std::array<double, 2>& velocity, const std::array<double, 2>& jitter);
 
 enum class Weight { kMean, kVelocity };
 

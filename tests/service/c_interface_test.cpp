@@ -381,15 +381,22 @@ SceneNeeds other_needs() {
 
 ResolveSettings other_settings() {
   ResolveSettings settings;
-  auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, storage, targets,
-         shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves, drawn_velocity, far,
-         quincunx, temporal, blur, sharpness, focus, measures_content, fades] = settings;
+  auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, conventions,
+         storage, targets, shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves,
+         drawn_velocity, far, quincunx, temporal, blur, sharpness, focus, measures_content, fades] = settings;
   method = Method::kTemporal;
   output = {3, 4};
   target = {5, 6};
   colour = PixelFormat::kRGBA8;
   velocity = PixelFormat::kRG32F;
   resolved = PixelFormat::kRGBA16F;
+  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin] =
+      conventions;
+  depth = DepthConvention::kLinear;
+  clip_space = ClipSpace::kVulkan;
+  velocity_unit = VelocityUnit::kNdc;
+  velocity_backward = velocity_up = velocity_jittered = true;
+  origin = Origin::kBottom;
   storage = Storage::kImage;
   targets = Targets::kPlaced;
   shading = Shading::kCheckerboard;
@@ -472,7 +479,7 @@ TEST(CSettings, AProgramThatIsNewerIsUnderstoodUntilItUsesWhatIsNew) {
   later.later = 1;
   EXPECT_EQ(quincunx_plan_create(&later.settings, &plan), QUINCUNX_INVALID_ARGUMENT);
   EXPECT_EQ(plan, nullptr);
-  EXPECT_NE(std::string(quincunx_last_error()).find("a field beyond the 144 bytes that this library knows"),
+  EXPECT_NE(std::string(quincunx_last_error()).find("a field beyond the 176 bytes that this library knows"),
             std::string::npos)
       << quincunx_last_error();
   later.later = 12345;

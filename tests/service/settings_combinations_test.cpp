@@ -20,6 +20,9 @@
 namespace quincunx {
 namespace {
 
+// What takes a pass wherever it can.
+constexpr InputConventions kGiven = {
+    .depth = DepthConvention::kForward, .velocity_jittered = true, .origin = Origin::kBottom};
 constexpr Extent kOutput{16, 12}, kParticleTarget{8, 6}, kRegion{8, 6};
 
 struct Combination {
@@ -88,6 +91,8 @@ const std::vector<Axis>& axes_of_inputs() {
        setting("blurred", &ResolveSettings::blur, MotionBlurSettings{.shutter = .5f})},
       {setting("uncounted", &ResolveSettings::measures_content, false),
        setting("content", &ResolveSettings::measures_content, true)},
+      {setting("native", &ResolveSettings::conventions, InputConventions{}),
+       setting("given", &ResolveSettings::conventions, kGiven)},
       {setting("fixed", &ResolveSettings::least_output, Extent{}),
        setting("dual", &ResolveSettings::least_output, Extent{8, 6})}};
   return axes;
@@ -323,7 +328,7 @@ TEST(SettingsCombinations, RefuseEachImageThatIsMissingOrTooSmall) {
     const Combination made = combine(axes, row);
     const Result<ResolvePlan> plan = plan_for(made.needs, made.settings);
     ASSERT_TRUE(plan.ok()) << names_of(axes, row) << ": " << plan.status().message();
-    FrameInputs inputs{.render = {13, 8}, .particle_render = {5, 4}};
+    FrameInputs inputs{.render = {13, 8}, .near_plane = .5f, .far_plane = 100, .particle_render = {5, 4}};
     for (const InputCase& input : kInputs) {
       if (input.needed(plan.value()))
         inputs.*input.image = {
@@ -336,7 +341,7 @@ TEST(SettingsCombinations, RefuseEachImageThatIsMissingOrTooSmall) {
     if (HasFatalFailure()) FAIL() << names_of(axes, row);
     ++plans;
   } while (next());
-  EXPECT_EQ(plans, 8640);
+  EXPECT_EQ(plans, 17280);
 }
 
 // Runs frames of a plan over images of its own.
@@ -410,7 +415,11 @@ class Runner {
 
   // With the images that the plan needs, and no others.
   FrameInputs frame_of(const ResolvePlan& plan, Extent render, std::size_t index) {
-    FrameInputs inputs{.render = render, .jitter = {.25f, -.125f}, .frame_index = index};
+    FrameInputs inputs{.render = render,
+                       .jitter = {.25f, -.125f},
+                       .near_plane = .5f,
+                       .far_plane = 100,
+                       .frame_index = index};
     inputs.parity = static_cast<int>(index % 2);
     if (has_particles(plan)) inputs.particle_render = {5, 4};
     inputs.camera.clip_to_previous_clip[8] = .01f;

@@ -158,6 +158,31 @@ TEST_F(Validate, ACameraThatIsNotFiniteIsRefusedWhereItIsRead) {
   EXPECT_NE(check().message().find("camera"), std::string::npos);
 }
 
+TEST_F(Validate, PlanesAreAskedForWhereDepthLiesBetweenThem) {
+  settings_.method = Method::kTemporal;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto message = [&](DepthConvention depth, float near_plane, float far_plane) {
+    settings_.conventions.depth = depth;
+    inputs_.near_plane = near_plane;
+    inputs_.far_plane = far_plane;
+    return check().message();
+  };
+  EXPECT_EQ(message(DepthConvention::kReversedInfinite, nan, -1), "");
+  EXPECT_EQ(message(DepthConvention::kInfinite, nan, -1), "");
+  EXPECT_EQ(message(DepthConvention::kLinear, .1f, -1), "");
+  EXPECT_EQ(message(DepthConvention::kLinear, 0, 0),
+            "near_plane is 0; where depth is linear it must be above 0 and finite");
+  EXPECT_EQ(message(DepthConvention::kForward, nan, 1),
+            "near_plane is nan; where depth is forward it must be above 0 and finite");
+  EXPECT_EQ(message(DepthConvention::kForward, 2, 2),
+            "far_plane is 2; it must be beyond the near plane at 2 and finite");
+  EXPECT_EQ(message(DepthConvention::kReversed, 2, std::numeric_limits<float>::infinity()),
+            "far_plane is inf; it must be beyond the near plane at 2 and finite");
+  EXPECT_EQ(message(DepthConvention::kReversed, 2, 100), "");
+  settings_.method = Method::kBilinear;
+  EXPECT_EQ(message(DepthConvention::kLinear, 0, 0), "") << "nobody reads depth";
+}
+
 TEST_F(Validate, APresentedPictureNeedsAPresentPass) {
   settings_.present = false;
   EXPECT_NE(check().message().find("presented"), std::string::npos);

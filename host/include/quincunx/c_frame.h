@@ -28,23 +28,25 @@ typedef struct quincunx_inputs {
   /* RGBA16F or RGBA32F: linear light, premultiplied. RGBA8: exposed, tone mapped and sRGB encoded. */
   const quincunx_image* colour;
   /* Read only where quincunx_needs says so; else NULL will do. */
-  const quincunx_image* depth;    /* R32F: reversed and infinite, 1 at the near plane and 0 at infinity */
-  const quincunx_image* velocity; /* RG16F or RG32F: this position - previous position, jitter excluded */
+  const quincunx_image* depth;    /* R32F, as settings.depth_convention says */
+  const quincunx_image* velocity; /* RG16F or RG32F, as settings.velocity_* say */
   const quincunx_image* reactive; /* R8: 0 trust history, 255 ignore it */
   int32_t render_width;           /* pixels of the viewport: the top left part of each image */
   int32_t render_height;
   float jitter_x; /* render pixels: the sample lies at the pixel's centre + jitter; in [-1, 1] */
   float jitter_y;
-  float velocity_scale_x; /* makes velocity parts of the viewport, y down; both 0: both 1 */
+  float velocity_scale_x; /* makes velocity what the settings say; both 0: both 1 */
   float velocity_scale_y;
   /* Column-major: this frame's (ndc.x, ndc.y, depth, 1) to the previous frame's clip coordinates, both without jitter;
-   * ndc.y is up. All 0: a camera that stands still. */
+   * all as settings.clip_space says. All 0: a camera that stands still. */
   float clip_to_previous_clip[16];
   float exposure;       /* multiplies linear colour of the presented picture; 0: 1 */
   int32_t reset;        /* not 0: a cut; nothing of the previous frames may be used */
   int32_t parity;       /* of a checkerboard: pixels with (x + y) % 2 == parity are shaded; 0 or 1 */
   int32_t padding;      /* 0 */
   uint64_t frame_index; /* the caller's number, echoed in the report */
+  float near_plane;     /* distances of depth's planes, where settings.depth_convention needs them */
+  float far_plane;
 } quincunx_inputs;
 
 /* At least one, of the output's size; NULL leaves a picture out. Host memory beyond a row's texels stays as it is. */

@@ -33,6 +33,17 @@ enum { QUINCUNX_CLAMP = 0, QUINCUNX_REINHARD = 1, QUINCUNX_ACES = 2 };          
 enum { QUINCUNX_FULL = 0, QUINCUNX_CHECKERBOARD = 1 };                            /* shading */
 enum { QUINCUNX_VIEWPORT = 0, QUINCUNX_PLACED = 1 };                              /* targets */
 enum { QUINCUNX_BUFFER = 0, QUINCUNX_IMAGE2D = 1, QUINCUNX_HOST = 2 };            /* storage; place */
+/* depth_convention */
+enum {
+  QUINCUNX_REVERSED_INFINITE = 0, /* near / distance: 1 at the near plane, 0 at infinity */
+  QUINCUNX_REVERSED = 1,          /* 1 at the near plane, 0 at the far plane */
+  QUINCUNX_INFINITE = 2,          /* 0 at the near plane, 1 at infinity */
+  QUINCUNX_FORWARD = 3,           /* 0 at the near plane, 1 at the far plane */
+  QUINCUNX_LINEAR = 4             /* the distance along the view axis */
+};
+enum { QUINCUNX_DIRECT3D = 0, QUINCUNX_OPENGL = 1, QUINCUNX_VULKAN = 2 }; /* clip_space */
+enum { QUINCUNX_UV = 0, QUINCUNX_PIXELS = 1, QUINCUNX_NDC = 2 };          /* velocity_unit */
+enum { QUINCUNX_TOP = 0, QUINCUNX_BOTTOM = 1 };                           /* origin */
 /* temporal_view: what the picture shows */
 enum {
   QUINCUNX_VIEW_PICTURE = 0,
@@ -92,6 +103,15 @@ typedef struct quincunx_settings {
   float velocity_weight;               /* of QUINCUNX_BY_VELOCITY; default 1 */
   float residual_weight;               /* of QUINCUNX_REPROJECTED; default 0 */
   int32_t drawn_velocity;              /* default QUINCUNX_OWN_VELOCITY */
+  /* Meaning of the inputs, as conventions.h has it. */
+  int32_t depth_convention;    /* default QUINCUNX_REVERSED_INFINITE */
+  int32_t clip_space;          /* of clip_to_previous_clip; default QUINCUNX_DIRECT3D */
+  int32_t velocity_unit;       /* default QUINCUNX_UV */
+  int32_t velocity_backward;   /* previous position - this one; default 0 */
+  int32_t velocity_up;         /* +y up; default 0 */
+  int32_t velocity_jittered;   /* the jitter is in it; default 0 */
+  int32_t origin;              /* first row of all images; default QUINCUNX_TOP */
+  int32_t conventions_padding; /* 0 */
 } quincunx_settings;
 
 /* What follows from a plan for those who bring the images: 0 no, 1 yes. */

@@ -22,7 +22,7 @@ struct ResolvePlan;
 // Where the camera was: for velocity from depth, and to know surfaces again. Column-major: (ndc.x, ndc.y, depth, 1)
 // of this frame, jitter excluded, becomes homogeneous clip coordinates of the previous frame, jitter excluded;
 // ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
-// target holds: reversed, infinite, 1 at the near plane and 0 at infinity.
+// target holds. All as InputConventions::clip_space has it.
 struct CameraMotion {
   std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
@@ -35,8 +35,9 @@ struct FrameInputs {
   // RGBA16F or RGBA32F: linear, premultiplied. RGBA8: exposed, tone mapped and sRGB encoded by the renderer.
   ImageView colour = {};
   // The other images are read only where the plan says so.
-  ImageView depth = {};     // R32F, reversed infinite depth
-  ImageView velocity = {};  // RG16F or RG32F, this position - previous position
+  ImageView depth = {};  // R32F, as InputConventions says: reversed infinite depth
+  ImageView velocity =
+      {};  // RG16F or RG32F, as InputConventions says: this position - previous position, in uv
   ImageView reactive = {};  // R8, 0: trust history, 1: ignore it
   Extent render = {};       // the viewport, within the images' extents (placed: just that); any size from 1x1
   // The picture's size in this frame, from the plan's least_output to its output; {0, 0}: the plan's output. History
@@ -44,7 +45,10 @@ struct FrameInputs {
   Extent output = {};
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
   Vec2 jitter = {};
-  Vec2 velocity_scale = {};  // multiplies velocity to give uv of the viewport, +y down; {0, 0}: {1, 1}
+  Vec2 velocity_scale = {};  // multiplies velocity to give what InputConventions says; {0, 0}: {1, 1}
+  // Distances of depth's planes, where InputConventions::depth needs them: 0 < near_plane < far_plane.
+  float near_plane = 0;
+  float far_plane = 0;
   CameraMotion camera = {};
   // Where ResolveSettings::particle_target says so, particles that were drawn apart, with the frame's camera and
   // jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
@@ -92,7 +96,7 @@ struct PassReport {
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
 struct FrameReport {
-  static constexpr int kMaxPasses = 60;  // the largest plan has 33 for the picture and 21 for its focus
+  static constexpr int kMaxPasses = 72;  // the largest plan has 40 for the picture and 25 for its focus
 
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;

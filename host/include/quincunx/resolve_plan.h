@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/conventions.h"
 #include "quincunx/export.h"
 #include "quincunx/image.h"
 #include "quincunx/method.h"
@@ -90,6 +91,7 @@ struct ResolveSettings {
   PixelFormat colour = PixelFormat::kRGBA16F;    // the input's: RGBA8, RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;    // the input's: RG16F or RG32F
   PixelFormat resolved = PixelFormat::kRGBA32F;  // the resolved picture's: RGBA16F or RGBA32F
+  InputConventions conventions = {};             // what the inputs mean
   Storage storage = Storage::kBuffer;            // the inputs'; see ResolvePlan::presented_storage()
   Targets targets = Targets::kViewport;          // the inputs' and the service's own images'
   Shading shading = Shading::kFull;              // kCheckerboard: the other half is filled first

@@ -83,6 +83,8 @@ void read_numbers(const quincunx_inputs& from, FrameInputs& to) {
   const bool stands_still =
       std::all_of(std::begin(matrix), std::end(matrix), [](float element) { return element == 0; });
   if (!stands_still) std::copy(std::begin(matrix), std::end(matrix), to.camera.clip_to_previous_clip.begin());
+  to.near_plane = from.near_plane;
+  to.far_plane = from.far_plane;
   to.exposure = from.exposure;
   to.reset = from.reset != 0;
   to.parity = from.parity;

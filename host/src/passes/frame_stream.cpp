@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "plan/native_frame.h"
+
 namespace quincunx {
 
 FrameStream::FrameStream(const Device& device, const ResolvePlan& plan)
@@ -25,6 +27,15 @@ Status FrameStream::check_history(const FrameInputs& inputs) const {
       fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
                   "consecutive frames different memory, or set reset",
                   shared));
+}
+
+PassFrame FrameStream::frame(const FrameInputs& inputs, const FrameOutputs& outputs, Counter counter) {
+  const FrameInputs current = native_inputs(plan_.settings, inputs);
+  if (!has_previous_) return chain_.frame(current, nullptr, outputs, counter);
+  const FrameInputs previous = native_inputs(plan_.settings, previous_);
+  PassFrame made = chain_.frame(current, has_history(inputs) ? &previous : nullptr, outputs, counter);
+  made.jitter_motion = jitter_motion(current, previous);
+  return made;
 }
 
 Status FocusStream::check_history(const FocusInputs& focus) const {

@@ -33,10 +33,8 @@ class FrameStream {
   // Checks what validate() cannot see: the previous frame must still be where it was.
   Status check_history(const FrameInputs& inputs) const;
 
-  // As PassChain::frame().
-  PassFrame frame(const FrameInputs& inputs, const FrameOutputs& outputs, Counter counter) {
-    return chain_.frame(inputs, has_history(inputs) ? &previous_ : nullptr, outputs, counter);
-  }
+  // As PassChain::frame(), of inputs in the caller's conventions.
+  PassFrame frame(const FrameInputs& inputs, const FrameOutputs& outputs, Counter counter);
 
   // From now on the frame before is this one, or none.
   void keep(const FrameInputs& inputs) {

@@ -83,7 +83,15 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
 TexelLayout layout_of(const ImageView& view) {
   const std::size_t texel = bytes_per_pixel(view.format);
   if (view.storage == Storage::kImage || texel == 0) return {0, 0};
-  return {static_cast<int>(view.offset / texel), static_cast<int>(view.row_pitch() / texel)};
+  const auto pitch =
+      static_cast<std::ptrdiff_t>(view.row_pitch());  // negative where native_frame.h turns rows
+  return {static_cast<int>(view.offset / texel),
+          static_cast<int>(pitch / static_cast<std::ptrdiff_t>(texel))};
+}
+
+TexelLayout rows_of(const ImageView& view, int height, Origin origin) {
+  if (view.storage != Storage::kImage) return layout_of(view);
+  return origin == Origin::kTop ? TexelLayout{0, 1} : TexelLayout{height - 1, -1};
 }
 
 VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent) {

@@ -35,13 +35,14 @@ struct PassSetup {
   PassTables& tables;
 };
 
-// One frame as its passes see it.
+// One frame as its passes see it, in their conventions.
 struct PassFrame {
   const cl::CommandQueue& queue;
   PassTables& tables;
   FrameInputs current =
       {};  // `views` may hold another velocity: the one that the service makes from the camera
   FrameInputs previous = {};  // the current one where there is no history
+  Vec2 jitter_motion = {};    // jitter_motion() since the last frame, whether or not that counts as history
   bool has_history = false;
   const FocusInputs* focus = nullptr;  // null: the frame has none
   Extent focus_extent = {};            // the plan's
@@ -139,6 +140,10 @@ std::unique_ptr<Pass> make_pass(const PassSetup& setup, const PassSpec& spec) {
 
 // Returns it in texels; zeros for an image.
 TexelLayout layout_of(const ImageView& view);
+
+// Returns the same of a buffer; of an image, where a kernel turns its rows: those of the `height` first ones, counted
+// from where `origin` says.
+TexelLayout rows_of(const ImageView& view, int height, Origin origin);
 
 // From a frame's velocity, in its own units, to pixels of an extent.
 struct VelocityScale {

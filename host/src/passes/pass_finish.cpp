@@ -206,7 +206,7 @@ class PresentPass : public Pass {
         .width = frame.display.width,
         .height = frame.display.height,
         .source = layout_of(source),
-        .output = layout_of(presented),
+        .output = rows_of(presented, frame.display.height, settings().conventions.origin),
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(shape(), frame.display.width, kPresentBlock),
         .exposure = exposure == 0 ? 1 : exposure};

@@ -12,6 +12,7 @@
 #include "passes/frame_ring.h"
 #include "passes/frame_stream.h"
 #include "passes/pass_clear_region.h"
+#include "plan/native_frame.h"
 #include "plan/validate.h"
 #include "quincunx/resolve_service.h"
 
@@ -111,22 +112,26 @@ Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs*
 }
 
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* given,
-                                   const FrameOutputs& outputs, FrameRing::Slot& slot) {
+                                   const FrameOutputs& given_outputs, FrameRing::Slot& slot) {
+  const ResolveSettings& settings = picture.plan().settings;
+  const FrameOutputs outputs = native_outputs(settings, given_outputs, picture.chain().output_of(inputs));
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
   const Counter counted = {counter(), ring.index_of(slot)};
   const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
   queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
   PassFrame frame = picture.frame(inputs, outputs, counted);
+  FocusInputs laid;  // outlives the frame
   if (given != nullptr) {
     focus->run(*given, counted, slot.report, slot.passes.data());
-    focus->lay_over(frame, *given);
+    laid = native_focus(settings, *given);
+    focus->lay_over(frame, laid);
   } else if (focus) {
     focus->forget();
   }
   picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.pass_count);
   // Where nothing moves there are no sums, and nothing is what there is to tell.
-  slot.measures_content = picture.plan().settings.measures_content;
+  slot.measures_content = settings.measures_content;
   if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
     queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.content),
                             &slot.content);

@@ -192,6 +192,7 @@ PassList list_passes(const PlanFacts& facts) {
   PassList planned;
   for (const auto plan : kPlanners)
     plan(facts, planned);
+  plan_convert_inputs(facts, planned);  // of what the others read
   PassList list{std::move(planned.passes), {}};
   note_unused_inputs(facts, resources_of(list.passes), list.left_out);
   for (LeftOut& left : planned.left_out)

@@ -137,6 +137,8 @@ bool reads(const std::vector<ResourceUse>& used, const InputImage& input);
 std::optional<Resource> unresized(const std::vector<PassSpec>& passes);
 
 // The planners, in pass_*.cpp beside the pass itself: each adds its pass where the facts ask for it, else says why not.
+// Goes last, and puts its passes before those that read what it makes.
+void plan_convert_inputs(const PlanFacts& facts, PassList& list);
 void plan_overlay_particles(const PlanFacts& facts, PassList& list);
 void plan_resolve_checkerboard(const PlanFacts& facts, PassList& list);
 void plan_velocity_from_depth(const PlanFacts& facts, PassList& list);

@@ -186,7 +186,8 @@ bool ResolvePlan::accumulates() const {
 }
 
 bool ResolvePlan::keeps_previous_frame() const {
-  return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull;
+  const bool copies = settings.storage == Storage::kImage && settings.conventions.origin == Origin::kBottom;
+  return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull && !copies;
 }
 
 bool ResolvePlan::is_dual() const {
@@ -260,6 +261,14 @@ std::string colour_text(const ResolveSettings& settings) {
                      name_of(settings.colour), curve);
 }
 
+std::string conventions_text(const InputConventions& given) {
+  return fmt::format("depth {}; velocity in {}, {}, +y {}{}; {} row first; clip space of {}",
+                     name_of(given.depth), name_of(given.velocity_unit),
+                     given.velocity_backward ? "previous - this" : "this - previous",
+                     given.velocity_up ? "up" : "down", given.velocity_jittered ? ", jittered" : "",
+                     name_of(given.origin), name_of(given.clip_space));
+}
+
 std::string size_text(std::uint64_t bytes) {
   return fmt::format("{:.2f} MiB", static_cast<double>(bytes) / (1 << 20));
 }
@@ -291,6 +300,56 @@ std::string focus_text(const FocusSettings& focus) {
 }
 
 }  // namespace
+
+const char* name_of(DepthConvention depth) {
+  switch (depth) {
+    case DepthConvention::kReversedInfinite:
+      return "reversed infinite";
+    case DepthConvention::kReversed:
+      return "reversed";
+    case DepthConvention::kInfinite:
+      return "infinite";
+    case DepthConvention::kForward:
+      return "forward";
+    case DepthConvention::kLinear:
+      return "linear";
+  }
+  return "unknown";
+}
+
+const char* name_of(ClipSpace clip_space) {
+  switch (clip_space) {
+    case ClipSpace::kDirect3D:
+      return "Direct3D";
+    case ClipSpace::kOpenGl:
+      return "OpenGL";
+    case ClipSpace::kVulkan:
+      return "Vulkan";
+  }
+  return "unknown";
+}
+
+const char* name_of(VelocityUnit unit) {
+  switch (unit) {
+    case VelocityUnit::kUv:
+      return "uv";
+    case VelocityUnit::kPixels:
+      return "pixels";
+    case VelocityUnit::kNdc:
+      return "ndc";
+  }
+  return "unknown";
+}
+
+const char* name_of(Origin origin) {
+  switch (origin) {
+    case Origin::kTop:
+      return "top";
+    case Origin::kBottom:
+      return "bottom";
+  }
+  return "unknown";
+}
 
 const char* name_of(Targets targets) {
   switch (targets) {
@@ -344,6 +403,8 @@ std::string ResolvePlan::explain() const {
       settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
       yes(settings.dither));
   fmt::format_to(out, "Colour         {}\n", colour_text(settings));
+  if (settings.conventions != InputConventions{})
+    fmt::format_to(out, "Conventions    {}\n", conventions_text(settings.conventions));
   fmt::format_to(out, "Output         {}\n", output_text(*this));
   fmt::format_to(out, "Targets        {}\n", targets_text(*this));
   const std::optional<ResolvePlan> region = focus_plan();

@@ -36,6 +36,14 @@ enum class Resource : std::uint8_t {
   kParticleColour,
   kParticleDepth,
   kParticleReactive,
+  // The caller's images where convert_inputs makes from them what stands for them above.
+  kGivenColour,
+  kGivenVelocity,
+  kGivenDepth,
+  kGivenReactive,
+  kGivenParticleColour,
+  kGivenParticleDepth,
+  kGivenParticleReactive,
   kPreviousColour,
   kPreviousVelocity,
   kPreviousDepth,
@@ -89,19 +97,27 @@ enum class Resource : std::uint8_t {
 struct InputImage {
   const char* field;  // "particle_colour"
   ImageView FrameInputs::*image;
+  Resource given;  // it, where it has to be converted
   Extent FrameInputs::*viewport = &FrameInputs::render;
 };
 
-inline constexpr InputImage kColourInput = {"colour", &FrameInputs::colour};
-inline constexpr InputImage kVelocityInput = {"velocity", &FrameInputs::velocity};
-inline constexpr InputImage kDepthInput = {"depth", &FrameInputs::depth};
-inline constexpr InputImage kReactiveInput = {"reactive", &FrameInputs::reactive};
+inline constexpr InputImage kColourInput = {"colour", &FrameInputs::colour, Resource::kGivenColour};
+inline constexpr InputImage kVelocityInput = {"velocity", &FrameInputs::velocity, Resource::kGivenVelocity};
+inline constexpr InputImage kDepthInput = {"depth", &FrameInputs::depth, Resource::kGivenDepth};
+inline constexpr InputImage kReactiveInput = {"reactive", &FrameInputs::reactive, Resource::kGivenReactive};
 inline constexpr InputImage kParticleColourInput = {"particle_colour", &FrameInputs::particle_colour,
+                                                    Resource::kGivenParticleColour,
                                                     &FrameInputs::particle_render};
 inline constexpr InputImage kParticleDepthInput = {"particle_depth", &FrameInputs::particle_depth,
+                                                   Resource::kGivenParticleDepth,
                                                    &FrameInputs::particle_render};
 inline constexpr InputImage kParticleReactiveInput = {"particle_reactive", &FrameInputs::particle_reactive,
+                                                      Resource::kGivenParticleReactive,
                                                       &FrameInputs::particle_render};
+
+inline constexpr const InputImage* kInputImages[] = {
+    &kColourInput,         &kVelocityInput,      &kDepthInput,           &kReactiveInput,
+    &kParticleColourInput, &kParticleDepthInput, &kParticleReactiveInput};
 
 struct ResourceInfo {
   Resource resource;
@@ -129,6 +145,13 @@ inline constexpr ResourceInfo kResources[] = {
     {Resource::kParticleColour, "particle colour", &kParticleColourInput},
     {Resource::kParticleDepth, "particle depth", &kParticleDepthInput},
     {Resource::kParticleReactive, "particle reactive", &kParticleReactiveInput},
+    {Resource::kGivenColour, "given colour", &kColourInput},
+    {Resource::kGivenVelocity, "given velocity", &kVelocityInput},
+    {Resource::kGivenDepth, "given depth", &kDepthInput},
+    {Resource::kGivenReactive, "given reactive", &kReactiveInput},
+    {Resource::kGivenParticleColour, "given particle colour", &kParticleColourInput},
+    {Resource::kGivenParticleDepth, "given particle depth", &kParticleDepthInput},
+    {Resource::kGivenParticleReactive, "given particle reactive", &kParticleReactiveInput},
     {Resource::kPreviousColour, "colour of the previous frame", &kColourInput},
     {Resource::kPreviousVelocity, "velocity of the previous frame", &kVelocityInput},
     {Resource::kPreviousDepth, "depth of the previous frame", &kDepthInput},

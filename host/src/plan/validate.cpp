@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -191,6 +192,20 @@ void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent outp
   }
 }
 
+void check_planes(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
+  const DepthConvention depth = plan.settings.conventions.depth;
+  if (!needs_near_plane(depth) || (!plan.reads_depth && plan.settings.particle_target == Extent())) return;
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  if (!(inputs.near_plane > 0 && inputs.near_plane <= kLargest)) {
+    check.complain(fmt::format("near_plane is {}; where depth is {} it must be above 0 and finite",
+                               inputs.near_plane, name_of(depth)));
+  } else if (needs_far_plane(depth) &&
+             !(inputs.far_plane > inputs.near_plane && inputs.far_plane <= kLargest)) {
+    check.complain(fmt::format("far_plane is {}; it must be beyond the near plane at {} and finite",
+                               inputs.far_plane, inputs.near_plane));
+  }
+}
+
 void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   constexpr float kLargest = 1e6f;
   check.viewport("render", inputs.render, plan.settings.target);
@@ -210,6 +225,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   }
   if (plan.reads_camera() || PlanFacts(plan.needs, plan.settings).reprojects())
     check_camera(check, inputs.camera);
+  check_planes(check, plan, inputs);
   if (plan.settings.shading == Shading::kCheckerboard) check_parity(check, inputs);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);

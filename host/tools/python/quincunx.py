@@ -16,13 +16,16 @@ from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int
 
 import numpy as np
 
-API_VERSION, MOST_PASSES = 1, 60
+API_VERSION, MOST_PASSES = 1, 72
 HOST = 2  # images lie in host memory
 METHODS = {}  # name: number, as the library has them
 CHOICES = {  # settings that are names here and numbers there
     "two_frame_form": ("mean", "velocity", "reprojected"), "sampling": ("point", "bilinear"),
     "temporal_preset": ("fast", "balanced", "quality"), "far_motion": ("as-drawn", "camera", "evidence"),
-    "drawn_velocity": ("own", "dilated"), "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard")}
+    "drawn_velocity": ("own", "dilated"),
+    "depth_convention": ("reversed-infinite", "reversed", "infinite", "forward", "linear"),
+    "clip_space": ("direct3d", "opengl", "vulkan"), "velocity_unit": ("uv", "pixels", "ndc"), "origin": ("top", "bottom"),
+    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard")}
 # Channels and type of an array's pixels, and the number of their format.
 FORMATS = {(1, "uint8"): 1, (1, "float32"): 2, (2, "float16"): 3, (2, "float32"): 4, (4, "uint8"): 5,
            (4, "float16"): 6, (4, "float32"): 7}
@@ -55,14 +58,16 @@ Settings = sized(
         "target_height colour_format velocity_format resolved_format storage targets shading present clear tone_map "
         "dither clamp_ringing noise_moves far_motion two_frame_form sampling temporal_preset temporal_view "
         "history_format blur_samples", c_int32),
-    ("shutter sharpness grain velocity_weight residual_weight", c_float), ("drawn_velocity", c_int32))
+    ("shutter sharpness grain velocity_weight residual_weight", c_float), (
+        "drawn_velocity depth_convention clip_space velocity_unit velocity_backward velocity_up velocity_jittered origin "
+        "conventions_padding", c_int32))
 Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame blurs "
                         "presented_storage accumulates", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))
 Inputs = sized("Inputs", ("colour depth velocity reactive", POINTER(Image)), ("render_width render_height", c_int32),
                ("jitter_x jitter_y velocity_scale_x velocity_scale_y", c_float),
                ("clip_to_previous_clip", c_float * 16), ("exposure", c_float), ("reset parity padding", c_int32),
-               ("frame_index", c_uint64))
+               ("frame_index", c_uint64), ("near_plane far_plane", c_float))
 Outputs = sized("Outputs", ("resolved presented blurred", POINTER(Image)))
 
 

@@ -25,6 +25,20 @@ typedef struct VelocityParams {
 } VelocityParams;
 QUINCUNX_CHECK_SIZE(VelocityParams, 28 + 80);
 
+typedef struct ConvertParams {
+  int width;  // the viewport, in texels
+  int height;
+  TexelLayout given;  // of an image: its rows
+  TexelLayout made;
+  int columns_per_item;
+  int is_linear;             // depth is a distance; else it lies between planes,
+  int is_reversed;           // 1 at the near one
+  float near_plane;          // of a distance
+  float near_by_far;         // the near plane's distance over the far one's; 0: that is infinite
+  float jitter_x, jitter_y;  // by how much the jitters alone move a still surface, in the units of the velocity
+} ConvertParams;
+QUINCUNX_CHECK_SIZE(ConvertParams, 8 + 16 + 28);
+
 typedef struct UndilateParams {
   VelocityParams frame;
   TexelLayout dilated;

@@ -122,13 +122,13 @@ static inline float8 load_colour_pair(COLOUR_TEXELS texels, COLOUR_ROW row, uint
 #endif
 }
 
-// The colour texels (x, y) and (x + 1, y), which `index` = y * pitch + x of a buffer's first row gives as well; an
-// image has no index.
+// The colour texels (x, y) and (x + 1, y), which `index` = y * pitch + x of a buffer's first row gives as well and may
+// be negative; an image has no index.
 static inline float8 load_colour_pair_at(COLOUR_TEXELS texels, COLOUR_ROW first_row, int index, int x, int y) {
 #if SOURCE_STORAGE == IMAGE
   return load_colour_pair(texels, y, x);
 #else
-  return load_colour_pair(texels, first_row, index);
+  return load_colour_pair(texels, first_row + index, 0);
 #endif
 }
 

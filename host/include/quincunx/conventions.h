@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// InputConventions: what the depth, velocity, rows and camera of an engine's frames mean.
+//
+// Stated once, in ResolveSettings. docs/inputs.md has a table of engines.
+#pragma once
+
+#include <cstdint>
+
+#include "quincunx/export.h"
+
+namespace quincunx {
+
+// Values of FrameInputs::depth and particle_depth. Exactly the value of what is farthest means that nothing is there:
+// infinitely far.
+enum class DepthConvention : std::uint8_t {
+  kReversedInfinite,  // near / distance: 1 at the near plane, 0 at infinity
+  kReversed,          // 1 at the near plane, 0 at the far plane
+  kInfinite,          // 0 at the near plane, 1 at infinity
+  kForward,           // 0 at the near plane, 1 at the far plane
+  kLinear,            // the distance along the view axis; infinity, 0 and less: nothing is there
+};
+
+// Whether a frame needs FrameInputs::near_plane, and far_plane.
+constexpr bool needs_far_plane(DepthConvention depth) {
+  return depth == DepthConvention::kReversed || depth == DepthConvention::kForward;
+}
+constexpr bool needs_near_plane(DepthConvention depth) {
+  return needs_far_plane(depth) || depth == DepthConvention::kLinear;
+}
+
+// Clip space of CameraMotion's matrix.
+enum class ClipSpace : std::uint8_t {
+  kDirect3D,  // +y up, depth as in the image
+  kOpenGl,    // +y up, depth -1 to 1 where the image has 0 to 1
+  kVulkan,    // +y down, depth as in the image
+};
+
+enum class VelocityUnit : std::uint8_t {
+  kUv,      // 1: the viewport
+  kPixels,  // 1: a pixel of the viewport
+  kNdc,     // 2: the viewport
+};
+
+// The row that is first in the memory of images.
+enum class Origin : std::uint8_t { kTop, kBottom };
+
+// The defaults are the library's own, which cost nothing. Other depth than kReversedInfinite, velocity with jitter in
+// it, and image2d_t from the bottom take a pass that writes images of the service's own; the rest takes none.
+struct InputConventions {
+  DepthConvention depth = DepthConvention::kReversedInfinite;
+  ClipSpace clip_space =
+      ClipSpace::kDirect3D;  // with kLinear the matrix's depth is always near_plane / distance
+  VelocityUnit velocity_unit = VelocityUnit::kUv;
+  bool velocity_backward = false;  // previous position - this one
+  bool velocity_up = false;        // +y up
+  // Both positions are those in the jittered pictures. A velocity of exactly (0, 0) is none that was drawn, and stays.
+  bool velocity_jittered = false;
+  // kBottom: all images of a frame, inputs and outputs, begin with the lowest row, from which viewports and the parts
+  // of smaller outputs reach upwards; and what counts rows or pixels counts from there: jitter.y, parity, and a
+  // focus's y and rectangles. The camera's matrix, velocity and Halton's order are as they are.
+  Origin origin = Origin::kTop;
+
+  friend bool operator==(const InputConventions&, const InputConventions&) = default;
+};
+
+QUINCUNX_API const char* name_of(DepthConvention depth);  // "reversed infinite"
+QUINCUNX_API const char* name_of(ClipSpace clip_space);   // "OpenGL"
+QUINCUNX_API const char* name_of(VelocityUnit unit);      // "pixels"
+QUINCUNX_API const char* name_of(Origin origin);          // "bottom"
+
+}  // namespace quincunx
