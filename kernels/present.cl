@@ -2,6 +2,7 @@
 // present: exposure, tone map, sRGB encoding to 8 bits.
 //   params      in   extents, layouts, exposure (> 0, multiplies linear colour)
 //   source      in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer
+//   exposure    in   a float that multiplies params.exposure, as long as it is positive and finite
 //   output      out  RGBA8 buffer or image of the output extent: sRGB colour, alpha linear; the layout of an image
 //                    counts rows, so that they can be turned
 //   non_finite  out  non_finite[params.counter] grows by the pixels that are NaN or infinite; they count as 0, +-65504
@@ -187,13 +188,15 @@ static inline float4 load_careful(RESOLVED_TEXELS source, TexelLayout layout, in
   return sanitise4(colour);
 }
 
-__kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESENTED_TEXELS output,
-                      __global uint* non_finite) {
+__kernel void present(const PresentParams params, RESOLVED_TEXELS source, __global const float* exposure,
+                      PRESENTED_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
   const int first = get_global_id(0) * params.columns_per_item;
   if (first >= params.width || y >= params.height) return;
 
   const int end = min(first + params.columns_per_item, params.width);
+  const float given = *exposure;
+  const float factor = params.exposure * (given > 0.0f && given <= FLT_MAX ? given : 1.0f);
   int16 largest = 0;
   int x = first;
   for (; x + kPresentBlock <= end; x += kPresentBlock) {
@@ -203,7 +206,7 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
     const float16 d = load_resolved4(source, params.source, x + 12, y);
     will_read_resolved16(source, params.source, x + kPrefetchDistance, y);
     largest = max(max(largest, magnitude(a)), max(max(magnitude(b), magnitude(c)), magnitude(d)));
-    store_codes(output, params.output, x, y, encode(a, b, c, d, params.exposure, x, y));
+    store_codes(output, params.output, x, y, encode(a, b, c, d, factor, x, y));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
   if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
@@ -219,7 +222,7 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, PRESEN
     const float4 p3 = load_careful(source, params.source, min(x + 3, last), y, 8, &met);
     met_count += count_bits(met, end - x);
     const float16 colour = (float16)(p0, p1, p2, p3);
-    const uint16 codes = encode(colour, colour, colour, colour, params.exposure, x, y);
+    const uint16 codes = encode(colour, colour, colour, colour, factor, x, y);
     store_four_codes(output, params.output, x, y, end, codes.s0123);
   }
   if (met_count) atomic_add(non_finite + params.counter, met_count);

@@ -312,6 +312,42 @@ TEST(Service, OldReportsAreDroppedNotWaitedFor) {
   EXPECT_EQ(last, 99u);
 }
 
+// On the device, in either storage; one that is no exposure counts as 1.
+TEST(Service, ExposureMayBeAnImage) {
+  constexpr Extent kSize = {40, 3};
+  ServiceRig rig({}, Method::kPoint, kSize, kSize);
+  const HostFrame frame = {.render = kSize, .colour = pattern};
+  const auto shown = [&](float number, const ImageView& image) {
+    FrameInputs inputs = rig.upload(frame);
+    inputs.exposure = number;
+    inputs.exposure_image = image;
+    const FrameReport report = rig.dispatch(inputs);
+    EXPECT_TRUE(report.ok()) << report.status.message();
+    return rig.presented();
+  };
+  const auto plain = shown(0, {});
+  const auto bright = shown(3, {});
+  EXPECT_NE(plain, bright);
+  for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
+    const Image image = rig.device().allocate({1, 1}, PixelFormat::kR32F, storage).value();
+    const auto factor = [&](float value) {
+      EXPECT_TRUE(rig.device().upload(image.view(), {1, 1}, &value).ok());
+      return image.view();
+    };
+    EXPECT_EQ(shown(0, factor(3)), bright);
+    EXPECT_EQ(shown(6, factor(0.5f)), bright);
+    for (const float none : {0.0f, -2.0f, kNan, kInf})
+      EXPECT_EQ(shown(3, factor(none)), bright) << none;
+    EXPECT_EQ(shown(0, {}), plain) << "a frame without the image";
+  }
+  FrameInputs inputs = rig.upload(frame);
+  const Image wrong = rig.device().allocate({2, 1}, PixelFormat::kRG16F).value();
+  inputs.exposure_image = wrong.view();
+  EXPECT_EQ(rig.dispatch(inputs).status.message(),
+            "exposure_image.format is RG16F; the plan has R32F; exposure_image.extent is 2x1; it must be the "
+            "exposure's 1x1");
+}
+
 TEST(Service, ClearFillsTheRectangleOnly) {
   Device device = Device::open().value();
   ResolveSettings settings;

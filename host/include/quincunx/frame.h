@@ -57,6 +57,9 @@ struct FrameInputs {
   ImageView particle_reactive = {};  // R8
   Extent particle_render = {};       // the particles' viewport, as `render`; any size from 1x1
   float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
+  // R32F, 1x1, a buffer or an image: another factor of the exposure, which is made on the device and need never be
+  // read on the host. One that is not positive and finite counts as 1.
+  ImageView exposure_image = {};
   bool reset = false;  // a cut: nothing of the previous frame may be used
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
   int parity = 0;

@@ -196,7 +196,10 @@ namespace {
 
 class PresentPass : public Pass {
  public:
-  using Pass::Pass;
+  PresentPass(const PassSetup& setup, const PassSpec& spec)
+      : Pass(setup, spec),
+        one_(setup.device.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof(float), &factor_one_),
+        given_(setup.device.context, CL_MEM_READ_ONLY, sizeof(float)) {}
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ImageView& source = frame[shown_of(facts())];
@@ -210,9 +213,27 @@ class PresentPass : public Pass {
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(shape(), frame.display.width, kPresentBlock),
         .exposure = exposure == 0 ? 1 : exposure};
-    bind(params, source, presented, frame.counter);
+    bind(params, source, exposure_of(frame), presented, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);
   }
+
+ private:
+  // Copied, so that one kernel serves buffers and images.
+  const cl::Buffer& exposure_of(const PassFrame& frame) const {
+    const ImageView& image = frame.current.exposure_image;
+    if (!image || facts().is_display_referred()) return one_;
+    if (image.storage == Storage::kImage) {
+      frame.queue.enqueueCopyImageToBuffer(borrow<cl::Image2D>(image.memory), given_, {0, 0, 0}, {1, 1, 1},
+                                           0);
+    } else {
+      frame.queue.enqueueCopyBuffer(borrow<cl::Buffer>(image.memory), given_, image.offset, 0, sizeof(float));
+    }
+    return given_;
+  }
+
+  float factor_one_ = 1;
+  cl::Buffer one_;
+  cl::Buffer given_;
 };
 
 const char* curve(ToneMap tone_map) {

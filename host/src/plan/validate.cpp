@@ -230,6 +230,10 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);
+  if (inputs.exposure_image) {
+    check.output("exposure_image", inputs.exposure_image, PixelFormat::kR32F, inputs.exposure_image.storage,
+                 {1, 1}, "exposure");
+  }
   check_fade(check, plan, inputs);
 }
 
