@@ -40,8 +40,6 @@ RULES = {
     "… only where seven of ten samples agree": [
         (LIGHT, "change.is_agreed = sum.brighter * change.direction > RELIGHT_MAJORITY_MIN * sum.count;",
          "change.is_agreed = true;")],
-    "… only above what aliasing gives by chance": [
-        (LIGHT, "fabs(around->sum.brightening) > RELIGHT_NOISE_RATIO_MIN * chance", "chance >= 0.0f")],
     "… only away from motion edges": [
         (LIGHT, "return !around->has_motion_edge && change->is_agreed", "return change->is_agreed")],
     "… only after two frames": [

@@ -78,11 +78,8 @@ static inline LightChange change_of(const EvidenceAround* around) {
 
 // Returns whether light alone explains it in this frame.
 static inline bool is_change_of_light(const LightChange* change, const EvidenceAround* around) {
-  // The brightening that aliasing alone may give.
-  const float chance = around->sum.neighbour_error / sqrt(max(around->sum.count, 1.0f));
   return !around->has_motion_edge && change->is_agreed && change->coherence > RELIGHT_COHERENCE_MIN &&
-         fabs(change->relative) > RELIGHT_CHANGE_MIN &&
-         fabs(around->sum.brightening) > RELIGHT_NOISE_RATIO_MIN * chance;
+         fabs(change->relative) > RELIGHT_CHANGE_MIN;
 }
 
 static inline bool is_relit(const TotalLight* total) {

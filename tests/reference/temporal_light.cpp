@@ -39,7 +39,6 @@ namespace {
 // Relighting. All are parts of the sums above.
 constexpr double kRelightCoherenceMin = .75;
 constexpr double kRelightChangeMin = .05;    // part of L
-constexpr double kRelightNoiseRatioMin = 3;  // times N / sqrt(n), what aliasing alone may give
 constexpr double kRelightMajorityMin = .4;   // share brighter less share darker: seven of ten; +.02 dB
 constexpr double kPersistenceMemory = .6;    // part of persistence that is kept, each frame
 constexpr double kPersistenceMin = .62;      // two coherent frames give .4 + .6 * .4 = .64
@@ -121,12 +120,10 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_re
   const Real relative = sums.brightening / max(sums.light, kLightSumMin);
   const Real coherence = abs(sums.brightening) / max(sums.change, kLightSumMin);
   const Real samples = sums.count;
-  const Real chance = sums.neighbour_error / sqrt(max(samples, 1));
   const int sign = relative > 0 ? 1 : -1;
   const bool agrees = sums.brighter * sign > kRelightMajorityMin * samples;
   const bool is_coherent = !sums.has_motion_edge && agrees && coherence > kRelightCoherenceMin &&
-                           abs(relative) > kRelightChangeMin &&
-                           abs(sums.brightening) > kRelightNoiseRatioMin * chance;
+                           abs(relative) > kRelightChangeMin;
   const Real memory = kPersistenceMemory;
   light.persistence = memory * before.persistence;
   if (is_coherent) light.persistence += (1 - memory) * sign;

@@ -33,7 +33,6 @@
 #define RELIGHT_COHERENCE_MIN 0.75f   // |sum| / sum of magnitudes, of brightenings of 3x3 tiles [S]
 #define RELIGHT_CHANGE_MIN 0.05f      // of the light [S]
 #define RELIGHT_MAJORITY_MIN 0.4f     // (samples for it - against it) / samples: seven of ten; +.02 dB [S]
-#define RELIGHT_NOISE_RATIO_MIN 3.0f  // standard deviations of what aliasing alone gives [S]
 #define PERSISTENCE_MEMORY 0.6f       // a frame [S]
 #define PERSISTENCE_MIN 0.62f         // two frames give .64, one .4 [S]
 #define GAIN_MAX 4.0f                 // factor, either way [S]
