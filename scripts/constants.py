@@ -3,7 +3,7 @@
 
   scripts/constants.py                    25 % less and more of each constant: docs/lab/constants.md
   scripts/constants.py --rules            each rule of RULES switched off alone: a table on standard output
-  scripts/constants.py --only GAIN_MAX,CHANGE_MIN --scenes still,wheel --out /dev/stdout
+  scripts/constants.py --only GAIN_MAX,CHANGE_RANGE --scenes still,wheel --out /dev/stdout
 
 Needs a static build of quincunx-dump and quincunx-resolve (--build) in the Ninja generator. Scenes are drawn once, as
 sequences with truth, and kept in --work. For each row the kernels are copied and edited there, embedded, and linked
@@ -60,9 +60,7 @@ RULES = {
     "… above flicker": [(LIGHT, " + USUAL_FLICKER * flicker + ", " + ")],
     "… above the neighbours' error": [
         (LIGHT, "const float usual = USUAL_NEIGHBOUR_ERROR * neighbour_error + ", "const float usual = ")],
-    "… by a test of signs": [(LIGHT, "if (!is_agreed || fabs(tile->brightening)", "if (fabs(tile->brightening)")],
-    "… by more than 15 % of the light": [
-        (LIGHT, "if (!is_agreed || fabs(tile->brightening) <= CHANGE_MIN * tile->light)", "if (!is_agreed)")],
+    "… by a test of signs": [(LIGHT, "if (!is_agreed) return 0.0f;", "")],
     "still tiles wait for a second frame": [
         (LIGHT, "const bool waits = stands_still(tiles[i]) && around.confirmation < STILL_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],

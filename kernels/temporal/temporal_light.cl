@@ -109,7 +109,7 @@ static inline float suspicion_by_change(const TileEvidence* tile, float mean_bri
   // A test of signs, corrected as for few samples: three must all agree.
   const float majority = fabs(tile->brighter) - 1.0f;
   const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST_MIN * tile->count;
-  if (!is_agreed || fabs(tile->brightening) <= CHANGE_MIN * tile->light) return 0.0f;
+  if (!is_agreed) return 0.0f;
   const float usual = USUAL_NEIGHBOUR_ERROR * neighbour_error + USUAL_FLICKER * flicker + USUAL_CHANGE;
   return max((fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual), 0.0f);
 }

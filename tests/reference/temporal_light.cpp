@@ -38,20 +38,19 @@ namespace {
 
 // Relighting. All are parts of the sums above.
 constexpr double kRelightCoherenceMin = .75;
-constexpr double kRelightChangeMin = .05;    // part of L
-constexpr double kRelightMajorityMin = .4;   // share brighter less share darker: seven of ten; +.02 dB
-constexpr double kPersistenceMemory = .6;    // part of persistence that is kept, each frame
-constexpr double kPersistenceMin = .62;      // two coherent frames give .4 + .6 * .4 = .64
-constexpr double kGainMax = 4;               // and 1 / 4 the least
-constexpr double kLightSumMin = 1e-6;        // against a division by 0
-constexpr double kWholeCoherenceMin = .8;    // coherence of the whole picture
+constexpr double kRelightChangeMin = .05;   // part of L
+constexpr double kRelightMajorityMin = .4;  // share brighter less share darker: seven of ten; +.02 dB
+constexpr double kPersistenceMemory = .6;   // part of persistence that is kept, each frame
+constexpr double kPersistenceMin = .62;     // two coherent frames give .4 + .6 * .4 = .64
+constexpr double kGainMax = 4;              // and 1 / 4 the least
+constexpr double kLightSumMin = 1e-6;       // against a division by 0
+constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 
 // Rejection.
 constexpr double kErrorRatioMin = 1.6;       // times N: history foretells worse than the neighbours do
 constexpr double kErrorFloor = .002;         // for each sample
 constexpr double kErrorCoherenceMax = .5;    // |B| / E below which the error is no change of light
 constexpr double kSignTestMin = 1.1;         // (|b| - 1)^2 / samples: a test of signs
-constexpr double kChangeMin = .15;           // part of the tile's own light
 constexpr double kUsualNeighbourError = .8;  // part of the neighbours' mean error, which is usual
 constexpr double kUsualFlicker = 12;         // times flicker; without flicker -.08 dB
 constexpr double kUsualChange = .01;         // mean change of luma of a sample
@@ -163,7 +162,6 @@ Real suspicion_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf
   if (light.gain != 1) return 0;
   const int majority = std::abs(evidence.brighter) - 1;
   if (majority <= 0 || majority * majority < kSignTestMin * evidence.count) return 0;
-  if (abs(evidence.brightening) <= kChangeMin * evidence.light) return 0;
   const Real neighbours = sums.neighbour_error / std::max(sums.count, 1);
   const Real usual = kUsualNeighbourError * neighbours + kUsualFlicker * light.flicker + kUsualChange;
   return max((abs(light.mean_brightening) - usual) / (kChangeRange * usual), 0);

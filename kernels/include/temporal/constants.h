@@ -54,7 +54,6 @@
 
 // ---- temporal_light: rejection by change.
 #define SIGN_TEST_MIN 1.1f          // squared standard deviations of a fair coin: the samples' majority [S]
-#define CHANGE_MIN 0.15f            // of the tile's light [S]
 #define CHANGE_RANGE 0.5f           // of what is usual: by how much more it rejects wholly [S]
 #define USUAL_NEIGHBOUR_ERROR 0.8f  // of the neighbours' error: that much change is usual [S]
 #define USUAL_FLICKER 12.0f         // of flicker: an aliased tile is more often near its mean than far [S]
