@@ -122,7 +122,9 @@ Bytes crop_of_depth(Extent extent, Extent render, std::uint32_t seed) {
 // stays readable.
 TEST_P(ImportTest, EveryFormatArrivesAndHistoryStays) {
   using enum PixelFormat;
-  for (const auto& [colour, velocity] : {std::pair{kRGBA16F, kRG16F}, {kRGBA32F, kRG32F}, {kRGBA8, kRG16F}}) {
+  for (const auto& formats : {std::pair{kRGBA16F, kRG16F}, {kRGBA32F, kRG32F}, {kRGBA8, kRG16F}}) {
+    const PixelFormat colour = formats.first;
+    const PixelFormat velocity = formats.second;
     BridgeSettings settings = all_planes(kTarget, kOutput, colour);
     settings.velocity_format = velocity;
     const auto bridge = make(settings);
