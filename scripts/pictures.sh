@@ -10,7 +10,7 @@
 #   focus         an object in focus in a frame at scale 0.35
 #   mobile        frames from RGBA16F and from RGBA8 colour, and how they differ
 #   parts         frames whose shadow map or particles have a scale of their own
-#   sky           what --far makes of a sky without motion
+#   sky           what --sky-motion makes of a sky without motion
 #   temporal      what each stage of the temporal upscaler sees, and its two layers
 #   wires         the moving picture of the README
 #
@@ -157,8 +157,8 @@ draw_sky() {
   build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
   dump . "${run[@]}" --frame 24 --stages truth --truth 8 --exposure 1
   for far in drawn camera evidence; do
-    "${resolve[@]}" --out "$work/$far.%04d.png" --method temporal --far "$far"
-    add_tile "--far $far" "$work/$far.0024.png" "$sun" 300
+    "${resolve[@]}" --out "$work/$far.%04d.png" --method temporal --sky-motion "$far"
+    add_tile "--sky-motion $far" "$work/$far.0024.png" "$sun" 300
     convert "$work/$far.0024.png" \( "$truth" -crop 640x360+0+0 +repage \) -compose difference -composite \
       -colorspace gray -level 0,12% "$work/$far.error.png"
   done

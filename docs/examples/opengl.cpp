@@ -155,8 +155,8 @@ int main(int argc, char** argv) {
   const auto device = get(gl::open_device(context, "", gl::Interop::kAuto));
   ResolveSettings settings;
   settings.method = Method::kTemporal;
-  settings.output = kOutput;
-  settings.target = kTarget;
+  settings.output_extent = kOutput;
+  settings.target_extent = kTarget;
   if (fixed && argv[4] == std::string("bilinear")) settings.method = Method::kBilinear;
   const SceneNeeds needs = {.transparents = false};
   gl::BridgeSettings bridging = gl::bridge_settings(get(plan_for(needs, settings)));
@@ -166,7 +166,7 @@ int main(int argc, char** argv) {
   auto service = get(ResolveService::create(device, get(plan_for(needs, settings))));
   const double scale = fixed ? std::atof(argv[3]) : 0.5;  // at least
   const auto controller = get(make_predictive_controller(
-      {.ladder = {.output = kOutput, .min_scale = scale, .max_scale = fixed ? scale : 1}}));
+      {.ladder = {.output_extent = kOutput, .min_scale = scale, .max_scale = fixed ? scale : 1}}));
 
   // The renderer's own: targets of the largest viewport, a texture for the picture, a program.
   const gl::FrameTextures textures = {.colour = make_texture(GL_RGBA16F, kTarget),
@@ -212,7 +212,7 @@ int main(int argc, char** argv) {
     const FrameReport report = service.dispatch({.colour = inputs.colour,
                                                  .depth = inputs.depth,
                                                  .velocity = inputs.velocity,
-                                                 .render = render,
+                                                 .render_extent = render,
                                                  .jitter = jitter},
                                                 {.presented = get(bridge->begin_present())});
     if (!report.ok()) fail(report.status.message());
@@ -220,7 +220,8 @@ int main(int argc, char** argv) {
 
     // import() has waited for OpenGL and present() for OpenCL, so the host's clock has seen all of the frame.
     const double ms = 1000 * (glfwGetTime() - begun);
-    (void)controller->observe({.frame = static_cast<std::uint64_t>(n + 1), .render = render, .gpu_ms = ms});
+    (void)controller->observe(
+        {.frame = static_cast<std::uint64_t>(n + 1), .render_extent = render, .gpu_ms = ms});
     const std::string title = std::to_string(render.width) + " x " + std::to_string(render.height);
     glfwSetWindowTitle(window, title.c_str());
     glBlitNamedFramebuffer(framebuffers[1], 0, 0, 0, kOutput.width, kOutput.height, 0, kOutput.height,

@@ -151,8 +151,8 @@ const char* name_of(Interop interop) {
 }
 
 BridgeSettings bridge_settings(const ResolvePlan& plan) {
-  return {.target = plan.settings.target,
-          .output = plan.settings.output,
+  return {.target = plan.settings.target_extent,
+          .output = plan.settings.output_extent,
           .depth = plan.reads_depth,
           .velocity = plan.velocity == VelocitySource::kTarget,
           .reactive = plan.reads_reactive,

@@ -94,7 +94,9 @@ class FocusRegion {
   static Result<std::optional<FocusRegion>> create(const FocusOptions& options, const Scene& scene,
                                                    const SequenceSettings& picture);
 
-  FocusSettings settings() const { return {.extent = sequence_.output(), .target = sequence_.target()}; }
+  FocusSettings settings() const {
+    return {.extent = sequence_.output(), .target_extent = sequence_.target()};
+  }
 
   void set_pointer(const std::optional<Vec2>& pixel) { pointer_ = pixel; }  // for the next at()
 

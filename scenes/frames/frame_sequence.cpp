@@ -160,13 +160,13 @@ Extent OutputPath::next(Extent render) {
   const auto side = [this](int least, int most) {
     return least + static_cast<int>(random_() % static_cast<std::uint64_t>(most - least + 1));
   };
-  const int width = side(least().width, display_.width);
-  return {width, side(least().height, display_.height)};
+  const int width = side(min_output().width, display_.width);
+  return {width, side(min_output().height, display_.height)};
 }
 
-Extent OutputPath::least() const {
+Extent OutputPath::min_output() const {
   if (fixed_) return *fixed_;
-  return follower_ ? follower_->least() : scaled(display_, kLeastRandomScale);
+  return follower_ ? follower_->min_output() : scaled(display_, kLeastRandomScale);
 }
 
 Result<FrameSequence> FrameSequence::create(const SequenceSettings& settings) {

@@ -55,7 +55,7 @@ class OutputPath {
   // Returns the output of the next frame, which is drawn at `render`.
   Extent next(Extent render);
 
-  Extent least() const;  // the smallest there may be
+  Extent min_output() const;  // the smallest there may be
 
  private:
   OutputPath(Extent display, std::uint64_t seed) : display_(display), random_(seed) {}

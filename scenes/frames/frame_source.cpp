@@ -101,10 +101,10 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   display_ = {.exposure = exposure(), .tone_map = resolves.front().tone_map};
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
-    resolve.output = bridging.output;
-    resolve.least_output = outputs_ ? outputs_->least() : Extent();
-    resolve.target = bridging.target;
-    resolve.particle_target = particle_target();
+    resolve.output_extent = bridging.output;
+    resolve.min_output_extent = outputs_ ? outputs_->min_output() : Extent();
+    resolve.target_extent = bridging.target;
+    resolve.particle_target_extent = particle_target();
     resolve.targets = bridging.targets;
     if (focus_) resolve.focus = focus_->settings();
     const auto plan = plan_for(needs, resolve);
@@ -161,7 +161,7 @@ Status FrameSource::open_focus_feed(const gl::BridgeSettings& bridging,
                                     const std::vector<ResolvePlan>& plans) {
   if (!focus_) return {};
   gl::BridgeSettings own = bridging;
-  own.target = focus_->settings().target;
+  own.target = focus_->settings().target_extent;
   own.output = focus_->settings().extent;
   own.checkerboard = own.depth = own.velocity = own.reactive = false;
   for (const ResolvePlan& plan : plans) {
@@ -279,8 +279,8 @@ Result<FrameInputs> FrameSource::acquire() {
   const DrawnFrame& frame = drawn_.front();
   focus_inputs_.reset();
   FrameInputs inputs;
-  inputs.render = frame.view.render;
-  inputs.output = frame.output;
+  inputs.render_extent = frame.view.render;
+  inputs.output_extent = frame.output;
   inputs.jitter = frame.view.jitter;
   inputs.parity = frame.view.parity.value_or(0);
   inputs.camera = stage_->renderer->camera_motion(frame.view);
@@ -303,7 +303,7 @@ void FrameSource::bind(Feed::Kind kind, const gl::SharedFrame& shared, FrameInpu
     inputs.particle_colour = shared.colour;
     inputs.particle_depth = shared.depth;
     inputs.particle_reactive = shared.reactive;
-    inputs.particle_render = frame.view.particles;
+    inputs.particle_render_extent = frame.view.particles;
     return;
   }
   const bool focused = kind == Feed::Kind::kFocus;
@@ -313,7 +313,7 @@ void FrameSource::bind(Feed::Kind kind, const gl::SharedFrame& shared, FrameInpu
   whole.velocity = shared.velocity;
   whole.reactive = shared.reactive;
   if (!focused) return;
-  whole.render = frame.region->view.render;
+  whole.render_extent = frame.region->view.render;
   whole.jitter = frame.region->view.jitter;
   whole.camera = stage_->renderer->camera_motion(frame.region->view);
   whole.reset = frame.region->reset;

@@ -69,7 +69,7 @@ class FrameSource {
                                                const std::optional<FocusOptions>& focus = {}) const;
 
   // Makes the slots for what the plan of this scene reads, and gives the plan with the storage that they
-  // have. Before the first draw(). `resolve.output`, `least_output`, `target` and `focus` are taken from the sequence.
+  // have. Before the first draw(). Extents and `focus` of `resolve` are taken from the sequence.
   Result<ResolvePlan> connect(const ResolveSettings& resolve, HandOver hand_over = HandOver::kPlanned);
 
   // Does the same for several resolves of the same frames: the slots have what any of their plans reads, and the kind

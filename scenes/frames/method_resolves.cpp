@@ -8,16 +8,7 @@
 #include "frames/picture_options.h"
 
 namespace quincunx::scenes {
-namespace {
-
-void add_passes(FrameReport& report, const FrameReport& other) {
-  const int room = FrameReport::kMaxPasses - report.pass_count;
-  const int count = std::min(other.pass_count, room);
-  std::copy_n(other.passes.begin(), count, report.passes.begin() + report.pass_count);
-  report.pass_count += count;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 ResolveSettings method_settings(const ResolveSettings& settings, const MethodVariant& method) {
   ResolveSettings chosen = settings;
@@ -57,7 +48,7 @@ Result<MethodResolves> MethodResolves::create(FrameSource& source, const Resolve
   Image fading;
   if (services.size() > 1) {
     const ResolveSettings& planned = plans->front().settings;
-    auto image = source.device().allocate(planned.output, planned.resolved);
+    auto image = source.device().allocate(planned.output_extent, planned.linear);
     if (!image.ok()) return image.status();
     fading = std::move(image).value();
   }
@@ -92,8 +83,7 @@ FrameReport MethodResolves::dispatch(const FrameSource& source, const FrameInput
   FrameInputs faded = inputs;
   if (choice && choice->fading_from) {
     frame.fading_from = index_of(*choice->fading_from);
-    const FrameOutputs other = outputs_for(services_[*frame.fading_from].plan(), fading_.view(), {});
-    const FrameReport report = dispatch(source, *frame.fading_from, inputs, other);
+    const FrameReport report = dispatch(source, *frame.fading_from, inputs, {.linear = fading_.view()});
     if (!report.ok()) return report;
     faded.fading_from = fading_.view();
     faded.fade_weight = static_cast<float>(choice->weight);
@@ -112,7 +102,10 @@ std::optional<FrameReport> MethodResolves::next_completed() {
   if (!oldest.report || (oldest.fading_from && !oldest.fading_report)) return std::nullopt;
   FrameReport report = *oldest.report;
   if (report.content) report.content->cut = oldest.cut;
-  if (oldest.fading_report) add_passes(report, *oldest.fading_report);
+  if (oldest.fading_report) {
+    for (const PassReport& pass : oldest.fading_report->passes)
+      report.passes.push_back(pass);
+  }
   running_.erase(running_.begin());  // a few at most, and its memory stays
   return report;
 }

@@ -45,7 +45,7 @@ constexpr double kRounding = 0.5;             // part of a frame: times of frame
 }  // namespace
 
 Result<PartController> PartController::create(Extent whole, int step, double budget_ms) {
-  auto controller = make_predictive_controller({.ladder = {.output = whole,
+  auto controller = make_predictive_controller({.ladder = {.output_extent = whole,
                                                            .min_scale = kLeastPartScale,
                                                            .max_scale = 1,
                                                            .order = AxisOrder::kBoth,
@@ -56,7 +56,7 @@ Result<PartController> PartController::create(Extent whole, int step, double bud
 }
 
 void PartController::learn(std::uint64_t frame, Extent extent, double ms) {
-  static_cast<void>(controller_->observe({.frame = frame, .render = extent, .gpu_ms = ms}));
+  static_cast<void>(controller_->observe({.frame = frame, .render_extent = extent, .gpu_ms = ms}));
 }
 
 std::string explain(const PartsSettings& settings, bool has_particles) {

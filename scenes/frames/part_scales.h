@@ -24,7 +24,7 @@ namespace quincunx::scenes {
 class PartController {
  public:
   // `whole`: the part's largest extent. `step`: by which a side grows or shrinks, texels. Errors: kInvalidArgument for
-  // an empty extent, a step below 1 or a budget outside (0, ResolutionController::kLongestMs].
+  // an empty extent, a step below 1 or a budget outside (0, ResolutionController::kMaxMs].
   static Result<PartController> create(Extent whole, int step, double budget_ms);
 
   Extent next() const { return controller_->next(); }

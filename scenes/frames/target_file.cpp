@@ -156,7 +156,7 @@ Result<PicturePresenter> PicturePresenter::create(const Device& device, Extent e
                                                   bool dither, float exposure) {
   ResolveSettings settings;
   settings.method = Method::kPoint;  // at scale 1 the identity
-  settings.output = settings.target = extent;
+  settings.output_extent = settings.target_extent = extent;
   settings.colour = PixelFormat::kRGBA32F;
   settings.tone_map = tone_map;
   settings.dither = dither;
@@ -177,7 +177,7 @@ Result<std::vector<std::uint8_t>> PicturePresenter::present(const std::vector<fl
   if (Status status = device_.upload(linear_.view(), extent, rgba.data()); !status.ok()) return status;
   FrameInputs inputs;
   inputs.colour = linear_.view();
-  inputs.render = extent;
+  inputs.render_extent = extent;
   inputs.exposure = exposure_;
   const FrameReport report = service_.dispatch(inputs, {.presented = encoded_.view()});
   if (!report.ok()) return report.status;

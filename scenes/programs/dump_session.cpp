@@ -105,21 +105,14 @@ Status DumpSession::open() {
   auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
   service_.emplace(std::move(service).value());
-  const auto make = [&](Image& image) -> Status {
-    auto made = source_->device().allocate(options_.output, plan->settings.resolved);
-    if (made.ok()) image = std::move(made).value();
-    return made.status();
-  };
-  if (Status status = make(resolved_); !status.ok()) return status;
-  if (plan->is_dual()) {
-    if (Status status = make(displayed_); !status.ok()) return status;
-  }
-  return plan->blurs() ? make(blurred_) : Status();
+  auto made = source_->device().allocate(options_.output, plan->settings.linear);
+  if (made.ok()) linear_ = std::move(made).value();
+  return made.status();
 }
 
 std::string DumpSession::why_missing(Stage stage) const {
   const ResolvePlan& plan = service_->plan();
-  if (stage == Stage::kParticles && plan.settings.particle_target == Extent())
+  if (stage == Stage::kParticles && plan.settings.particle_target_extent == Extent())
     return source_->scene().particles ? "they are drawn with everything else; give --particle-scale"
                                       : "the scene has none";
   if (stage == Stage::kHistory && !plan.accumulates() && plan.settings.shading == Shading::kCheckerboard)
@@ -187,8 +180,8 @@ Status DumpSession::resolve_next() {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report = source_->dispatch(
-      *service_, inputs.value(), {resolved_.view(), presented.value(), blurred_.view(), displayed_.view()});
+  const FrameReport report =
+      source_->dispatch(*service_, inputs.value(), {linear_.view(), presented.value()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
 }
@@ -282,17 +275,18 @@ Status DumpSession::collect_targets() {
 
 Status DumpSession::collect_output() {
   const Extent output = options_.output;
-  const auto collect = [this](Stage stage, const Image& image, Extent extent) -> Status {
-    auto rgba = download(image.view(), extent);
+  const auto collect = [this](Stage stage, const ImageView& image, Extent extent) -> Status {
+    auto rgba = download(image ? image : linear_.view(), extent);
     if (rgba.ok()) planes_[stage] = colour_planes(extent, rgba.value(), tools::ChannelType::kFloat);
     return rgba.status();
   };
-  if (Status status = collect(Stage::kResolved, resolved_, current_->output); !status.ok()) return status;
-  if (displayed_) {
-    if (Status status = collect(Stage::kDisplayed, displayed_, output); !status.ok()) return status;
-  }
-  if (blurred_) {
-    if (Status status = collect(Stage::kBlurred, blurred_, current_->output); !status.ok()) return status;
+  const Extent made_in = current_->output;
+  Status status = collect(Stage::kResolved, service_->picture(PictureStage::kResolved), made_in);
+  if (status.ok() && service_->plan().is_dual()) status = collect(Stage::kDisplayed, linear_.view(), output);
+  if (status.ok() && service_->plan().blurs())
+    status = collect(Stage::kBlurred, service_->picture(PictureStage::kBlurred), made_in);
+  if (!status.ok()) return status;
+  if (service_->plan().blurs()) {
     auto tiles = service_->tile_kinds();
     if (!tiles.ok()) return tiles.status();
     planes_[Stage::kTiles] = {tiles->tiles, {"kind"}, {{tiles->kinds.begin(), tiles->kinds.end()}}};
@@ -313,8 +307,9 @@ Status DumpSession::collect_output() {
   if (is_display_referred())
     truth = tools::display_light(truth.value(), options_.resolve.tone_map, exposure_);
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
-  const Stage finished = displayed_ ? Stage::kDisplayed : blurred_ ? Stage::kBlurred : Stage::kResolved;
-  const tools::MeasuredPicture picture(output, interleaved(planes_[finished]));
+  auto finished = download(linear_.view(), output);
+  if (!finished.ok()) return finished.status();
+  const tools::MeasuredPicture picture(output, std::move(finished).value());
   const tools::MeasuredPicture target(output, truth.value());
   planes_[Stage::kError] = {output, {"absolute"}, {error_of(picture, target)}};
   planes_[Stage::kFlip] = {
@@ -334,7 +329,7 @@ Status DumpSession::write_exr_files() {
       {"history.exr", {Stage::kHistory}},     {"target.exr", {Stage::kClear}},
       {"tiles.exr", {Stage::kTiles}},         {"output.exr", {Stage::kResolved, Stage::kBlurred}},
   };
-  if (displayed_) groups.push_back({"displayed.exr", {Stage::kDisplayed}});
+  if (service_->plan().is_dual()) groups.push_back({"displayed.exr", {Stage::kDisplayed}});
   for (const Stage stage : {Stage::kPresented, Stage::kTruth, Stage::kError, Stage::kFlip})
     groups.back().second.push_back(stage);
   for (const auto& [ending, stages] : groups) {

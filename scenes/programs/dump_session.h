@@ -76,9 +76,7 @@ class DumpSession {
   DumpOptions options_;
   std::unique_ptr<FrameSource> source_;
   std::optional<ResolveService> service_;
-  Image resolved_;
-  Image blurred_;    // empty without motion blur
-  Image displayed_;  // empty where the output is not dynamic
+  Image linear_;  // the finished picture
   float exposure_ = 1;
   std::optional<DrawnFrame> current_;    // the last one that was resolved
   std::vector<std::uint8_t> presented_;  // RGBA8

@@ -96,10 +96,10 @@ int explain(const RenderOptions& options) {
   if (!scene.ok()) return tools::fail(scene.status());
   const bool has_particles = static_cast<bool>(scene->particles);
   ResolveSettings settings = options.resolve;
-  settings.output = sequence->output();
-  if (source->sequence.outputs) settings.least_output = source->sequence.outputs->least();
-  settings.target = sequence->target();
-  if (has_particles) settings.particle_target = particle_target(source->parts, settings.target);
+  settings.output_extent = sequence->output();
+  if (source->sequence.outputs) settings.min_output_extent = source->sequence.outputs->min_output();
+  settings.target_extent = sequence->target();
+  if (has_particles) settings.particle_target_extent = particle_target(source->parts, settings.target_extent);
   if (source->focus.target) {
     auto focus = FocusRegion::create(source->focus, scene.value(), source->sequence);
     if (!focus.ok()) return tools::fail(focus.status());

@@ -30,7 +30,7 @@ std::vector<Extent> test_points(const ResolutionLadder& ladder) {
   const double step = (ladder.area_fraction(ladder.top()) - low) / (kRungs - 1);
   std::vector<Extent> points;
   for (int i = 0; i < kRungs; ++i) {
-    const Extent extent = ladder[ladder.highest_within(low + i * step)];
+    const Extent extent = ladder[ladder.max_rung_within(low + i * step)];
     if (points.empty() || points.back() != extent) points.push_back(extent);
   }
   return points;

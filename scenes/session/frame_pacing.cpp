@@ -12,7 +12,7 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kLeastFps = 1000 / ResolutionController::kLongestMs;
+constexpr double kLeastFps = 1000 / ResolutionController::kMaxMs;
 constexpr double kMostHeadroom = 0.5;
 constexpr int kLeastBuffers = 2;
 constexpr int kMostBuffers = 8;
@@ -100,8 +100,8 @@ Result<FramePacing> FramePacing::create(const PacingSettings& settings) {
 }
 
 FramePacing FramePacing::free_running(Extent output) {
-  return FramePacing({.controller = ControllerKind::kFixed, .ladder = {.output = output}, .target_fps = 0}, 0,
-                     {});
+  return FramePacing(
+      {.controller = ControllerKind::kFixed, .ladder = {.output_extent = output}, .target_fps = 0}, 0, {});
 }
 
 Result<FramePacing::Controllers> FramePacing::make_controller(const PacingSettings& settings) {
@@ -124,7 +124,7 @@ FramePacing::FramePacing(const PacingSettings& settings, double refresh_ms, Cont
   run_.controller = name_of(settings.controller);
   run_.target_fps = settings.target_fps;
   run_.buffers = settings.buffers;
-  run_.output = settings.ladder.output;
+  run_.output = settings.ladder.output_extent;
 }
 
 std::optional<Extent> FramePacing::next() const {
@@ -205,11 +205,11 @@ double FramePacing::busy_ms(std::uint64_t frame) const {
 
 void FramePacing::observe(std::uint64_t frame, const FrameCosts& costs) {
   const double gpu_ms = costs.gpu_ms;
-  if (frame >= run_.frames.size() || !(gpu_ms > 0 && gpu_ms <= ResolutionController::kLongestMs)) return;
+  if (frame >= run_.frames.size() || !(gpu_ms > 0 && gpu_ms <= ResolutionController::kMaxMs)) return;
   tools::PacedFrame& paced = run_.frames[frame];
   FrameTiming timing = {.frame = frame,
                         .next_frame = run_.frames.size() + under_way_.size(),
-                        .render = paced.render,
+                        .render_extent = paced.render,
                         .gpu_ms = gpu_ms,
                         .cpu_ms = paced.cpu_ms,
                         .queued = paced.queued,

@@ -182,7 +182,7 @@ class FrontRun {
         const tools::PictureScores scores = tools::measure(picture, truth);
         Measured& measured = held ? cells[frame.method].held : cells[frame.method].moving;
         measured.flip.push_back(scores.flip);
-        measured.psnr.push_back(std::min(scores.psnr_tone_mapped, FrontPoint::kHighestPsnr));
+        measured.psnr.push_back(std::min(scores.psnr_tone_mapped, FrontPoint::kMaxPsnr));
         if (!held && frame.report.content) {
           const SceneMix mix = mix_of(*frame.report.content);
           still_share_ = std::min(mix.share[static_cast<std::size_t>(SceneClass::kStill)], kMostStill);
@@ -234,7 +234,7 @@ class FrontRun {
                                            squared_error(mean_of(cell.held.psnr)), still_share_);
     return {.flip = error_of_moving(mean_of(cell.moving.flip), mean_of(cell.held.flip), still_share_),
             .flip_spread = deviation_of(cell.moving.flip) / (1 - still_share_),
-            .psnr_db = std::min(-10 * std::log10(squared), FrontPoint::kHighestPsnr),
+            .psnr_db = std::min(-10 * std::log10(squared), FrontPoint::kMaxPsnr),
             .psnr_spread = deviation_of(cell.moving.psnr) / (1 - still_share_)};
   }
 
@@ -246,7 +246,7 @@ class FrontRun {
             .date = settings_.date,
             .command = settings_.command,
             .truth = reference_.what,
-            .output = settings_.output};
+            .output_extent = settings_.output};
   }
 
   FrameSource& stage_;
@@ -277,7 +277,7 @@ Status run_feed(const FrameSource& stage, const FrontFeed& feed, std::span<const
   if (!source.ok()) return source.status();
   const auto plans = source.value()->connect_all(resolves);
   if (!plans.ok()) return plans.status();
-  auto resolved = stage.device().allocate(feed.crop.extent, ResolveSettings{}.resolved);
+  auto resolved = stage.device().allocate(feed.crop.extent, ResolveSettings{}.linear);
   if (!resolved.ok()) return resolved.status();
   std::vector<ResolveService> services;
   for (const ResolvePlan& plan : plans.value()) {
@@ -292,7 +292,7 @@ Status run_feed(const FrameSource& stage, const FrontFeed& feed, std::span<const
     const auto inputs = source.value()->acquire();
     if (!inputs.ok()) return inputs.status();
     for (std::size_t i = 0; i < services.size(); ++i) {
-      const FrameReport accepted = services[i].dispatch(inputs.value(), {.resolved = resolved->view()});
+      const FrameReport accepted = services[i].dispatch(inputs.value(), {.linear = resolved->view()});
       if (!accepted.ok()) return accepted.status;
       if (Status status = services[i].finish(); !status.ok()) return status;
       const auto report = services[i].next_completed();
@@ -354,8 +354,8 @@ double error_of_moving(double whole, double held, double still_share) {
 
 std::string text_of_scene(const ErrorFront& front) {
   std::string text = fmt::format("scale:FLIP against {}, ms at {}x{}", front.source().truth,
-                                 front.source().output.width, front.source().output.height);
-  const double megapixels = static_cast<double>(front.source().output.area()) * 1e-6;
+                                 front.source().output_extent.width, front.source().output_extent.height);
+  const double megapixels = static_cast<double>(front.source().output_extent.area()) * 1e-6;
   const FrontPoint* last = nullptr;
   for (const FrontPoint& point : front.points()) {
     if (point.scene_class != SceneClass::kStill && point.scene_class != SceneClass::kPan) continue;

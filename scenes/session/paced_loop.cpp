@@ -25,8 +25,7 @@ double thread_cpu_ms() {
 
 PassTimes pass_times(const FrameReport& report) {
   PassTimes times;
-  for (int i = 0; i < report.pass_count; ++i) {
-    const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
+  for (const PassReport& pass : report.passes) {
     if (pass.ms < 0) return {};
     times.all_ms += pass.ms;
     if (is_of_method(pass.kernel)) times.method_ms += pass.ms;

@@ -233,7 +233,7 @@ Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output) {
     return Status::invalid(
         fmt::format("--min-scale {} is above --max-scale {}", options.min_scale, options.max_scale));
   }
-  return LadderSettings{.output = output,
+  return LadderSettings{.output_extent = output,
                         .min_scale = options.min_scale,
                         .max_scale = options.max_scale,
                         .order = options.order};

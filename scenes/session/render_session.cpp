@@ -190,7 +190,7 @@ Status RenderSession::open_resolves() {
   if (!resolves.ok()) return resolves.status();
   resolves_.emplace(std::move(resolves).value());
   if (!wants_resolved()) return {};
-  auto image = source_->device().allocate(options_.output, plan().settings.resolved);
+  auto image = source_->device().allocate(options_.output, plan().settings.linear);
   if (!image.ok()) return image.status();
   resolved_ = std::move(image).value();
   return {};
@@ -239,7 +239,7 @@ Status RenderSession::dispatch() {
   const std::optional<QualityChoice> choice = choices_.front();
   choices_.pop_front();
   // The files hold the picture as it is before the tone map.
-  const FrameOutputs outputs = outputs_for(plan(), resolved_.view(), presented.value());
+  const FrameOutputs outputs{resolved_.view(), presented.value()};
   const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice);
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bytes_in());

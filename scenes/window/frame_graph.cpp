@@ -162,15 +162,15 @@ void draw_method_legend(const FrameTrace& trace, const std::vector<std::string>&
 void FrameTrace::add(const FrameTimes& times, Extent output, double interval_ms, int dropped,
                      const std::string& method) {
   const FrameReport& report = times.report;
-  TracePoint point = {.area = static_cast<double>(report.render.area()) / static_cast<double>(output.area()),
-                      .draw_ms = times.draw_ms,
-                      .cpu_ms = times.cpu_ms,
-                      .interval_ms = interval_ms,
-                      .dropped = dropped,
-                      .method = method};
+  TracePoint point = {
+      .area = static_cast<double>(report.render_extent.area()) / static_cast<double>(output.area()),
+      .draw_ms = times.draw_ms,
+      .cpu_ms = times.cpu_ms,
+      .interval_ms = interval_ms,
+      .dropped = dropped,
+      .method = method};
   std::vector<PassTime> passes;
-  for (int i = 0; i < report.pass_count; ++i) {
-    const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
+  for (const PassReport& pass : report.passes) {
     const double ms = std::max(pass.ms, 0.0);
     point.opencl_ms += ms;
     const std::string name = name_of(pass);

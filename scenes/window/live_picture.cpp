@@ -212,12 +212,12 @@ Status LivePicture::dispatch(bool reset) {
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
   if (keep_ == Keep::kForFiles && !resolved_) {
-    auto image = source_->device().allocate(output(), plan().settings.resolved);
+    auto image = source_->device().allocate(output(), plan().settings.linear);
     if (!image.ok()) return image.status();
     resolved_ = std::move(image).value();
   }
   const ImageView linear = keep_ == Keep::kForFiles ? resolved_.view() : ImageView();
-  const FrameOutputs outputs = outputs_for(plan(), linear, presented.value());
+  const FrameOutputs outputs{linear, presented.value()};
   if (const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice_);
       !report.ok())
     return report.status;

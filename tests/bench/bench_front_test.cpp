@@ -85,7 +85,7 @@ TEST(FrontPoints, NoErrorAtAllHasTheHighestFigure) {
     row.quality.psnr = std::numeric_limits<double>::infinity();
   const auto points = front_points({&view, 1});
   ASSERT_TRUE(points.ok());
-  EXPECT_EQ(points->front().psnr_db, FrontPoint::kHighestPsnr);
+  EXPECT_EQ(points->front().psnr_db, FrontPoint::kMaxPsnr);
   EXPECT_EQ(points->front().flip_spread, 0);
 }
 
@@ -112,7 +112,7 @@ TEST(FrontPoints, TheTableMarksWhatIsOnTheFront) {
                                          .date = "c",
                                          .command = {},
                                          .truth = {},
-                                         .output = {1000, 500}},
+                                         .output_extent = {1000, 500}},
                                         points.value());
   ASSERT_TRUE(front.ok()) << front.status().message();
   const std::string text = text_of(front.value());

@@ -70,7 +70,7 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   EXPECT_FALSE(sequence_for(dual.value(), 0.5, dual->methods[0]).outputs);
   auto outputs = sequence_for(dual.value(), 0.5, dual->methods[1]).outputs;
   ASSERT_TRUE(outputs);
-  EXPECT_EQ(outputs->least(), outputs->next({64, 64}));
+  EXPECT_EQ(outputs->min_output(), outputs->next({64, 64}));
   const auto focused = plan_from(parsed({"--methods", "dual0.8/focus/temporal", "--focus", "9,9,90,90"}));
   ASSERT_TRUE(focused.ok()) << focused.status().message();
   EXPECT_EQ(focused->methods[0].dual, "0.8");

@@ -97,7 +97,7 @@ class Worked : public ::testing::Test {
   }
   QualityStage stage() const { return {.trace = &trace_, .machine = &ErrorFront::built_in(), .display = {}}; }
   ResolutionLadder ladder_ =
-      ResolutionLadder::create({.output = {64, 64}}).value();  // passes take next to nothing
+      ResolutionLadder::create({.output_extent = {64, 64}}).value();  // passes take next to nothing
   ContentTrace trace_;
   static constexpr MethodVariant kPlain = {.method = Method::kBilinear};
 };

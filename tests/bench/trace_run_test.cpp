@@ -16,7 +16,8 @@ namespace {
 // Two rungs' worth of freedom and none used: draws what it is told to.
 class FixedController final : public ResolutionController {
  public:
-  FixedController() : ResolutionController(ResolutionLadder::create({.output = {100, 100}}).value(), 1) {}
+  FixedController()
+      : ResolutionController(ResolutionLadder::create({.output_extent = {100, 100}}).value(), 1) {}
   const char* name() const override { return "fixed"; }
   std::vector<FrameTiming> seen;
 

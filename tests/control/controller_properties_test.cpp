@@ -13,7 +13,7 @@
 namespace quincunx::testing {
 namespace {
 
-constexpr LadderSettings kLadder = {.output = {1281, 719}, .min_scale = 0.4, .max_scale = 1.5};
+constexpr LadderSettings kLadder = {.output_extent = {1281, 719}, .min_scale = 0.4, .max_scale = 1.5};
 constexpr double kTargetMs = 1000.0 / 60;
 
 class EveryController : public ::testing::TestWithParam<ControllerKind> {
@@ -34,7 +34,7 @@ class Load {
     level_ = std::clamp(level_ * std::exp(0.02 * normal_(random_)), 2.0, 60.0);
     const double spike = frame_ % 37 == 36 ? 2.5 : 1;
     const double area = controller.ladder().area_fraction(controller.next());
-    FrameTiming timing = {.frame = ++frame_, .render = controller.next()};
+    FrameTiming timing = {.frame = ++frame_, .render_extent = controller.next()};
     timing.gpu_ms = level_ * (1.0 / 3 + area * 2 / 3) * spike * std::exp(0.03 * normal_(random_));
     timing.cpu_ms = 5;
     timing.interval_ms = std::ceil(timing.gpu_ms / kTargetMs) * kTargetMs;
@@ -52,7 +52,7 @@ class Load {
 
 TEST_P(EveryController, StaysOnTheLadder) {
   const Controller controller = make();
-  const Extent output = kLadder.output;
+  const Extent output = kLadder.output_extent;
   Load load(1);
   bool moved = false;
   for (int frame = 0; frame < 3000; ++frame) {
@@ -88,7 +88,7 @@ double settled_rung(ResolutionController& controller, double load_ms, double fix
   for (int frame = 1; frame <= 1500; ++frame) {
     const double area = controller.ladder().area_fraction(controller.next());
     const FrameTiming timing = {.frame = static_cast<std::uint64_t>(frame),
-                                .render = controller.next(),
+                                .render_extent = controller.next(),
                                 .gpu_ms = load_ms * (fixed_part + (1 - fixed_part) * area),
                                 .cpu_ms = 4,
                                 .interval_ms = controller.target_ms(),
@@ -160,8 +160,8 @@ TEST_P(EveryController, BadTimingsChangeNothing) {
     for (const double value : {nan, infinity, -1.0}) {
       refused(with([=](FrameTiming& t) { t.blur_px = value; }), "blur_px");
     }
-    refused(with([](FrameTiming& t) { t.render = {0, 100}; }), "render");
-    refused(with([](FrameTiming& t) { t.render = {100, -2}; }), "render");
+    refused(with([](FrameTiming& t) { t.render_extent = {0, 100}; }), "render");
+    refused(with([](FrameTiming& t) { t.render_extent = {100, -2}; }), "render");
     refused(with([](FrameTiming& t) { t.next_frame = t.frame; }), "next_frame");
     refused(with([](FrameTiming& t) { t.queued = -2; }), "queued");
     refused(with([](FrameTiming& t) { t.missed_vsyncs = -1; }), "missed_vsyncs");
@@ -184,18 +184,19 @@ TEST_P(EveryController, BadTargetsChangeNothing) {
   }
   EXPECT_TRUE(controller->set_target_ms(2 * kTargetMs).ok());
   EXPECT_EQ(controller->target_ms(), 2 * kTargetMs);
-  EXPECT_FALSE(GetParam().make({.output = {64, 64}, .min_scale = 0.9, .max_scale = 0.8}, kTargetMs).ok());
+  EXPECT_FALSE(
+      GetParam().make({.output_extent = {64, 64}, .min_scale = 0.9, .max_scale = 0.8}, kTargetMs).ok());
 }
 
 // A lost timing is no error, and neither is an extent that is not on the ladder.
 TEST_P(EveryController, GapsAndForeignExtentsAreAccepted) {
   const Controller controller = make();
-  EXPECT_TRUE(controller->observe({.frame = 0, .render = {1, 1}, .gpu_ms = 1e-6}).ok());
-  EXPECT_TRUE(controller->observe({.frame = 7, .render = {30000, 30000}, .gpu_ms = 60000}).ok());
+  EXPECT_TRUE(controller->observe({.frame = 0, .render_extent = {1, 1}, .gpu_ms = 1e-6}).ok());
+  EXPECT_TRUE(controller->observe({.frame = 7, .render_extent = {30000, 30000}, .gpu_ms = 60000}).ok());
   const std::uint64_t last = std::numeric_limits<std::uint64_t>::max();
-  EXPECT_TRUE(controller->observe({.frame = last, .render = {640, 360}, .gpu_ms = 10}).ok());
+  EXPECT_TRUE(controller->observe({.frame = last, .render_extent = {640, 360}, .gpu_ms = 10}).ok());
   EXPECT_GE(controller->rung(), 0);
-  EXPECT_FALSE(controller->observe({.frame = 0, .render = {640, 360}, .gpu_ms = 10}).ok());
+  EXPECT_FALSE(controller->observe({.frame = 0, .render_extent = {640, 360}, .gpu_ms = 10}).ok());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryController, ::testing::ValuesIn(all_controllers()),

@@ -28,7 +28,7 @@ const FrontSource kSource = {.device = "platform device",
                              .date = "2026-11-22 20:00 UTC",
                              .command = "quincunx-bench --front \"front.json\"",
                              .truth = "64 samples a pixel",
-                             .output = {640, 360}};
+                             .output_extent = {640, 360}};
 
 FrontPoint point(SceneClass scene_class, const MethodVariant& method, double scale, double flip, double ms) {
   return {.scene_class = scene_class,
@@ -276,7 +276,7 @@ class FrontFile : public ::testing::Test {
                                            .date = "now",
                                            .command = {},
                                            .truth = {},
-                                           .output = {640, 360}},
+                                           .output_extent = {640, 360}},
                                           {points.begin(), points.end()});
     ASSERT_TRUE(front.ok()) << front.status().message();
     std::ofstream(*front_path(place)) << front->to_json();

@@ -20,7 +20,7 @@ DetailFollower make(const DetailSettings& settings) {
 }
 
 // Levels 0 to 5 for areas 1 to .5 in steps of .1, left .075 beyond their middle.
-constexpr DetailSettings kSixLevels = {.levels = 6, .full_area = 1, .least_area = 0.5, .rest_frames = 0};
+constexpr DetailSettings kSixLevels = {.levels = 6, .full_area = 1, .min_area = 0.5, .rest_frames = 0};
 
 TEST(DetailFollower, LevelsFollowTheArea) {
   DetailFollower follower = make(kSixLevels);
@@ -79,7 +79,7 @@ TEST(DetailFollower, BadSettingsNameTheField) {
     refused([bad](DetailSettings& s) { s.full_area = bad; }, "full_area");
   }
   for (const double bad : {0.0, -1.0, 0.8, std::nan("")}) {
-    refused([bad](DetailSettings& s) { s.least_area = bad; }, "least_area");
+    refused([bad](DetailSettings& s) { s.min_area = bad; }, "min_area");
   }
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
     refused([bad](DetailSettings& s) { s.hysteresis = bad; }, "hysteresis");
@@ -89,7 +89,8 @@ TEST(DetailFollower, BadSettingsNameTheField) {
 
 TEST(DualOutput, GrowsWhenTheRenderExtentFillsIt) {
   const ResolutionLadder outputs =
-      ResolutionLadder::create({.output = {3840, 2160}, .min_scale = 0.5, .order = AxisOrder::kBoth}).value();
+      ResolutionLadder::create({.output_extent = {3840, 2160}, .min_scale = 0.5, .order = AxisOrder::kBoth})
+          .value();
   EXPECT_EQ(dual_output(outputs, {960, 540}).value(), (Extent{1920, 1080}));
   EXPECT_EQ(dual_output(outputs, {1536, 864}).value(), (Extent{1920, 1080})) << "exactly .8 per axis";
   // 1538 * 864 / .64 = 2076300 pixels: more than 1922 x 1080, and the rung after that is 1922 x 1082.
@@ -102,7 +103,7 @@ TEST(DualOutput, GrowsWhenTheRenderExtentFillsIt) {
 }
 
 TEST(DualOutput, RisesWithTheRenderExtent) {
-  const ResolutionLadder outputs = ResolutionLadder::create({.output = {640, 360}}).value();
+  const ResolutionLadder outputs = ResolutionLadder::create({.output_extent = {640, 360}}).value();
   std::int64_t before = 0;
   for (int rung = 0; rung < outputs.size(); ++rung) {
     const Extent output = dual_output(outputs, outputs[rung]).value();
@@ -129,9 +130,9 @@ TEST(OutputFollower, FollowsTheFirstFrameAtOnce) {
   EXPECT_EQ(full.output(), kDisplay);
   EXPECT_EQ(full.observe(kDisplay), kDisplay);
   OutputFollower half = follower();
-  EXPECT_EQ(half.observe(at(.3)), half.least());
+  EXPECT_EQ(half.observe(at(.3)), half.min_output());
   // Steps of 80 pixels: of the height, four fit into the half.
-  EXPECT_EQ(half.least(), (Extent{640, 400}));
+  EXPECT_EQ(half.min_output(), (Extent{640, 400}));
 }
 
 // For every viewport the output, once at rest, is the smallest step that it fills to .64 at most, or a step above.
@@ -142,7 +143,7 @@ TEST(OutputFollower, AViewportFillsTheOutputNoMoreThanItMay) {
     const Extent output = outputs.observe(render);
     const double filled = static_cast<double>(render.area()) / static_cast<double>(output.area());
     EXPECT_LE(filled, .64 + 1e-9) << scale;
-    if (output != outputs.least()) {
+    if (output != outputs.min_output()) {
       EXPECT_GE(filled, .64 * .8) << scale;
     }
   }
@@ -207,7 +208,7 @@ TEST(OutputFollower, RefusesWhatIsOutOfRange) {
   EXPECT_NE(message({.display = {0, 720}}).find("output"), std::string::npos);
   EXPECT_NE(message({.display = kDisplay, .min_scale = 0}).find("min_scale"), std::string::npos);
   EXPECT_NE(message({.display = kDisplay, .steps = 0}).find("steps"), std::string::npos);
-  EXPECT_NE(message({.display = kDisplay, .most_filled = 1.5}).find("most_filled"), std::string::npos);
+  EXPECT_NE(message({.display = kDisplay, .max_filled = 1.5}).find("max_filled"), std::string::npos);
   EXPECT_NE(message({.display = kDisplay, .hysteresis = 1}).find("hysteresis"), std::string::npos);
   EXPECT_NE(message({.display = kDisplay, .rest_frames = -1}).find("rest_frames"), std::string::npos);
 }

@@ -139,7 +139,7 @@ TEST(PresentationBacklog, MoreBuffersMoreSlack) {
 
 using Controller = std::unique_ptr<ResolutionController>;
 
-constexpr LadderSettings kLadder = {.output = {1920, 1080}};
+constexpr LadderSettings kLadder = {.output_extent = {1920, 1080}};
 constexpr double kTarget = 16;
 
 // Plays frames of a load, a quarter of which is fixed, with the queue always full.
@@ -157,7 +157,7 @@ class Player {
   // Draws the next frame: `level` is its time at the output resolution.
   double draw(double level, FrameTiming known = {}) {
     known.frame = ++frame_;
-    known.render = controller_->next();
+    known.render_extent = controller_->next();
     known.gpu_ms = level * (0.25 + 0.75 * area());
     if (known.queued == FrameTiming::kUnknownQueue) known.queued = queued_;
     EXPECT_TRUE(controller_->observe(known).ok());
@@ -299,7 +299,8 @@ TEST(PredictiveController, CalibrationMakesTheFirstMoveExact) {
     ASSERT_TRUE(table->record(0, area, 10 * (0.6 + 0.4 * area)).ok());
   const auto first_move = [](const PredictiveSettings& settings) {
     const Controller controller = std::move(make_predictive_controller(settings)).value();
-    EXPECT_TRUE(controller->observe({.frame = 1, .render = {1920, 1080}, .gpu_ms = 18, .queued = 2}).ok());
+    EXPECT_TRUE(
+        controller->observe({.frame = 1, .render_extent = {1920, 1080}, .gpu_ms = 18, .queued = 2}).ok());
     return 18 * (0.6 + 0.4 * controller->ladder().area_fraction(controller->next()));
   };
   const PredictiveSettings guessed = {.ladder = kLadder, .target_ms = kTarget};
@@ -322,7 +323,7 @@ TEST(PredictiveController, LateTimersCountFramesUnderWay) {
       EXPECT_TRUE(controller
                       ->observe({.frame = frame,
                                  .next_frame = frame + static_cast<std::uint64_t>(latency),
-                                 .render = controller->next(),
+                                 .render_extent = controller->next(),
                                  .gpu_ms = level * (0.25 + 0.75 * area),
                                  .queued = queued})
                       .ok());
@@ -359,7 +360,7 @@ TEST(PredictiveController, BadSettingsNameTheField) {
   for (const double bad : {0.0, -1.0, nan, 1.0 / 0.0}) {
     refused([bad](PredictiveSettings& s) { s.target_ms = bad; }, "target_ms");
     refused([bad](PredictiveSettings& s) { s.blur_aware.full_px = bad; }, "blur_aware");
-    refused([bad](PredictiveSettings& s) { s.blur_aware.lowest_scale = bad; }, "blur_aware.lowest_scale");
+    refused([bad](PredictiveSettings& s) { s.blur_aware.min_scale = bad; }, "blur_aware.min_scale");
   }
   for (const double bad : {-0.1, 0.95, nan}) {
     refused([bad](PredictiveSettings& s) { s.fixed_part = bad; }, "fixed_part");

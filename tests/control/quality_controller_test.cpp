@@ -146,7 +146,8 @@ constexpr MethodVariant kPlain = {.method = Method::kBilinear};
 constexpr MethodVariant kTwo = {.method = Method::kQuincunx};
 constexpr MethodVariant kDear = {.method = Method::kTemporal};
 constexpr double kTargetMs = 20;
-constexpr LadderSettings kLadder = {.output = {1000, 1000}, .order = AxisOrder::kBoth};  // one megapixel
+constexpr LadderSettings kLadder = {.output_extent = {1000, 1000},
+                                    .order = AxisOrder::kBoth};  // one megapixel
 
 // Milliseconds of a method's passes, of an output of one megapixel.
 double passes_ms(const MethodVariant& method) {
@@ -177,7 +178,7 @@ ErrorFront front(double ms_factor = 1) {
   }
   FrontSource source;
   source.device = "a machine written down";
-  source.output = kLadder.output;
+  source.output_extent = kLadder.output_extent;
   return ErrorFront::create(source, points).value();
 }
 
@@ -205,10 +206,10 @@ class Program {
   void run(int frames, double full_ms, std::optional<ContentStatistics> content, bool timed = true) {
     for (int i = 0; i < frames; ++i) {
       const QualityChoice choice = controller_->choice();
-      const double area = controller_->ladder().area_fraction(choice.render);
+      const double area = controller_->ladder().area_fraction(choice.render_extent);
       const double passes =
           passes_ms(choice.method) + (choice.fading_from ? passes_ms(*choice.fading_from) : 0);
-      QualityFrame frame = {.timing = {.frame = frame_++, .render = choice.render}};
+      QualityFrame frame = {.timing = {.frame = frame_++, .render_extent = choice.render_extent}};
       frame.timing.gpu_ms = full_ms * (0.2 + 0.8 * area) + passes;
       frame.timing.cpu_ms = cpu_ms;
       frame.timing.interval_ms = std::max(kTargetMs, frame.timing.gpu_ms);
@@ -295,7 +296,7 @@ TEST(QualityController, WhereNothingFitsTimeCountsTwice) {
   for (const double full_ms : {52.0, 60.0, 90.0, 300.0}) {
     Program program;
     program.run(200, full_ms, kStill);
-    EXPECT_EQ(program->choice().render, program->ladder()[0]);
+    EXPECT_EQ(program->choice().render_extent, program->ladder()[0]);
     const auto cost = [full_ms](const MethodVariant& method) {
       const double ms = full_ms * 0.4 + passes_ms(method);
       return flip(SceneClass::kStill, method, 0.5) * ms * ms;
@@ -323,9 +324,9 @@ TEST(QualityController, OneMethodIsThePredictiveController) {
     const Extent render = predictive.value()->next();
     const double area = program->ladder().area_fraction(render);
     const double ms = 24 * (0.2 + 0.8 * area);
-    ASSERT_TRUE(predictive.value()->observe({.frame = frame, .render = render, .gpu_ms = ms}).ok());
+    ASSERT_TRUE(predictive.value()->observe({.frame = frame, .render_extent = render, .gpu_ms = ms}).ok());
   }
-  EXPECT_NEAR(program->ladder().area_fraction(program->choice().render),
+  EXPECT_NEAR(program->ladder().area_fraction(program->choice().render_extent),
               program->ladder().area_fraction(predictive.value()->next()), 0.02);
 }
 
@@ -352,13 +353,14 @@ TEST(QualityController, LearnsTheMachineFromWholeFrames) {
 TEST(QualityController, BlurInViewLowersTheResolution) {
   Program program([](auto& s) { s.pacing.blur_aware.enabled = true; });
   program.run(50, 8, kStill);
-  EXPECT_EQ(program->choice().render, kLadder.output);
+  EXPECT_EQ(program->choice().render_extent, kLadder.output_extent);
   for (std::uint64_t frame = 1000; frame < 1100; ++frame) {
     const QualityFrame blurred = {
-        .timing = {.frame = frame, .render = program->choice().render, .gpu_ms = 10, .blur_px = 40}};
+        .timing = {
+            .frame = frame, .render_extent = program->choice().render_extent, .gpu_ms = 10, .blur_px = 40}};
     ASSERT_TRUE(program->observe(blurred).ok());
   }
-  EXPECT_NEAR(program->choice().render.width, 710, 4);
+  EXPECT_NEAR(program->choice().render_extent.width, 710, 4);
 }
 
 TEST(QualityController, TheProcessorHoldsOrIsFollowed) {
@@ -403,14 +405,14 @@ TEST(QualityController, BadFramesChangeNothing) {
     const Status status = program->observe(frame);
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
     EXPECT_EQ(status.message().rfind(field, 0), 0u) << status.message();
-    EXPECT_EQ(program->choice().render, before.render);
+    EXPECT_EQ(program->choice().render_extent, before.render_extent);
     EXPECT_EQ(program->choice().method, before.method);
   };
-  const FrameTiming good = {.render = {800, 800}, .gpu_ms = 10};
+  const FrameTiming good = {.render_extent = {800, 800}, .gpu_ms = 10};
   for (const double bad : {-1.0, 10.0, 11.0, std::nan("")})
     refused({.timing = good, .resolve_ms = bad}, "resolve_ms");
   refused({.timing = good, .content = ContentStatistics{.light = 2}}, "content.light");
-  refused({.timing = {.render = {0, 800}, .gpu_ms = 10}, .content = kLight}, "render");
+  refused({.timing = {.render_extent = {0, 800}, .gpu_ms = 10}, .content = kLight}, "render");
 }
 
 TEST(QualityController, BadSettingsAreNamed) {

@@ -13,7 +13,7 @@ using Controller = std::unique_ptr<ResolutionController>;
 
 // A square output of 1000 pixels with both axes in turns: a scale of .9 is the rung nearest to 900 x 900 from
 // below, that is 900 x 900 itself.
-constexpr LadderSettings kLadder = {.output = {1000, 1000}, .order = AxisOrder::kBoth};
+constexpr LadderSettings kLadder = {.output_extent = {1000, 1000}, .order = AxisOrder::kBoth};
 
 Controller proportional(ProportionalSettings settings) {
   settings.ladder = kLadder;
@@ -32,7 +32,7 @@ Controller minimum_of_n(MinimumOfNSettings settings) {
 Extent after(ResolutionController& controller, FrameTiming timing) {
   static std::uint64_t frame = 0;
   timing.frame = ++frame;
-  if (timing.render == Extent{}) timing.render = controller.next();
+  if (timing.render_extent == Extent{}) timing.render_extent = controller.next();
   EXPECT_TRUE(controller.observe(timing).ok());
   return controller.next();
 }
@@ -115,10 +115,12 @@ TEST(SeedControllers, BadSettingsNameTheField) {
   }
   refused(make_minimum_of_n_controller({.ladder = kLadder, .count = 0}), "count");
   refused(make_minimum_of_n_controller({.ladder = kLadder, .count = 1001}), "count");
-  refused(make_proportional_controller({.ladder = {.output = {64, 64}, .min_scale = 1, .max_scale = 0.5}}),
-          "max_scale");
-  refused(make_minimum_of_n_controller({.ladder = {.output = {64, 64}, .min_scale = 1, .max_scale = 0.5}}),
-          "max_scale");
+  refused(
+      make_proportional_controller({.ladder = {.output_extent = {64, 64}, .min_scale = 1, .max_scale = 0.5}}),
+      "max_scale");
+  refused(
+      make_minimum_of_n_controller({.ladder = {.output_extent = {64, 64}, .min_scale = 1, .max_scale = 0.5}}),
+      "max_scale");
 }
 
 }  // namespace

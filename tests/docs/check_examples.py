@@ -29,7 +29,7 @@ SCENES = {
     ("integrate.md", "c", 0): "",
     ("control.md", "cpp", 0): """
         struct Measured {
-          std::uint64_t frame; Extent render; double gpu_ms, cpu_ms, interval_ms; int queued, missed_vsyncs;
+          std::uint64_t frame; Extent render_extent; double gpu_ms, cpu_ms, interval_ms; int queued, missed_vsyncs;
         };
         std::vector<Measured> timers_that_came_back();
         extern DynamicViewport viewport;

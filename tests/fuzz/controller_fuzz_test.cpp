@@ -49,19 +49,19 @@ int wild_int(Random& random, int plausible) {
 
 // Sides stay small most of the time, so that thousands of ladders are made quickly.
 LadderSettings wild_ladder(Random& random) {
-  LadderSettings settings = {.output = {wild_int(random, 300), wild_int(random, 200)},
+  LadderSettings settings = {.output_extent = {wild_int(random, 300), wild_int(random, 200)},
                              .order = static_cast<AxisOrder>(random.below(3))};
   settings.min_scale = wild(random, 0.3);
   settings.max_scale = wild(random, 1.0);
   settings.step = wild_int(random, 4);
-  settings.floor = {wild_int(random, 16), wild_int(random, 16)};
+  settings.min_extent = {wild_int(random, 16), wild_int(random, 16)};
   return settings;
 }
 
 FrameTiming wild_timing(Random& random, const ResolutionController& controller, std::uint64_t frame) {
   FrameTiming timing;
   timing.frame = random.below(8) == 0 ? random.next() >> random.below(64) : frame;
-  timing.render =
+  timing.render_extent =
       random.below(4) == 0 ? Extent{wild_int(random, 4000), wild_int(random, 4000)} : controller.next();
   timing.gpu_ms = wild(random, controller.target_ms());
   timing.cpu_ms = random.below(2) == 0 ? 0 : wild(random, controller.target_ms());
@@ -111,7 +111,7 @@ TEST_P(ControllerFuzz, WildSettingsAndTimings) {
       ASSERT_LE(controller.next().width, 2 * output.width);
       ASSERT_GE(controller.next().height, 1);
       ASSERT_LE(controller.next().height, 2 * output.height);
-      ASSERT_TRUE(controller.target_ms() > 0 && controller.target_ms() <= ResolutionController::kLongestMs);
+      ASSERT_TRUE(controller.target_ms() > 0 && controller.target_ms() <= ResolutionController::kMaxMs);
     }
   }
   EXPECT_GT(made, 0);
@@ -123,13 +123,13 @@ TEST_P(ControllerFuzz, WildSettingsAndTimings) {
 // After any wild past, an ordinary constant load ends where it would have ended without it.
 TEST_P(ControllerFuzz, RecoversFromAnyPast) {
   Random random(12);
-  const LadderSettings ladder = {.output = {640, 360}};
+  const LadderSettings ladder = {.output_extent = {640, 360}};
   const auto settle = [](ResolutionController& controller, std::uint64_t first) {
     for (std::uint64_t frame = first; frame < first + 1200; ++frame) {
       const double area = controller.ladder().area_fraction(controller.next());
       EXPECT_TRUE(controller
                       .observe({.frame = frame,
-                                .render = controller.next(),
+                                .render_extent = controller.next(),
                                 .gpu_ms = 25 * (0.3 + 0.7 * area),
                                 .interval_ms = 16.7,
                                 .queued = 1})

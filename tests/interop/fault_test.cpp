@@ -121,7 +121,7 @@ constexpr auto kForGood = PretendFault::Lasts::kForGood;
 class FaultyService : public DeviceFault {
  protected:
   FaultyService() : device_(Device::open().value()) {
-    ResolveSettings settings{.method = Method::kQuincunx, .output = kOutput, .target = kRender};
+    ResolveSettings settings{.method = Method::kQuincunx, .output_extent = kOutput, .target_extent = kRender};
     settings.quincunx.form = TwoFrameForm::kReprojected;
     settings.blur.shutter = 0.5f;
     settings.sharpness = 0.5f;
@@ -131,8 +131,7 @@ class FaultyService : public DeviceFault {
       frames_[i].velocity = filled(settings.velocity, static_cast<std::uint32_t>(i + 3));
       frames_[i].depth = filled(PixelFormat::kR32F, static_cast<std::uint32_t>(i + 5));
     }
-    resolved_ = device_.allocate(kOutput, settings.resolved).value();
-    blurred_ = device_.allocate(kOutput, settings.resolved).value();
+    linear_ = device_.allocate(kOutput, settings.linear).value();
     presented_ = device_.allocate(kOutput, PixelFormat::kRGBA8).value();
   }
 
@@ -143,8 +142,8 @@ class FaultyService : public DeviceFault {
     return service.dispatch({.colour = images.colour.view(),
                              .depth = images.depth.view(),
                              .velocity = images.velocity.view(),
-                             .render = kRender},
-                            {resolved_.view(), presented_.view(), blurred_.view()});
+                             .render_extent = kRender},
+                            {linear_.view(), presented_.view()});
   }
 
   Bytes picture() const {
@@ -170,7 +169,7 @@ class FaultyService : public DeviceFault {
   Device device_;
   ResolvePlan plan_;
   std::array<Frame, 2> frames_;
-  Image resolved_, blurred_, presented_;
+  Image linear_, presented_;
 };
 
 TEST_F(FaultyService, CreationFailsInWordsOrFindsAnotherWay) {

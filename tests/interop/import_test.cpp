@@ -334,8 +334,8 @@ INSTANTIATE_TEST_SUITE_P(All, ImportTest, ::testing::Values(Way::kCopy, Way::kSh
 
 TEST(BridgeSettingsOfAPlan, HandOverWhatItsFramesNeed) {
   const ResolveSettings resolve = {.method = Method::kTemporal,
-                                   .output = kOutput,
-                                   .target = kTarget,
+                                   .output_extent = kOutput,
+                                   .target_extent = kTarget,
                                    .colour = PixelFormat::kRGBA32F,
                                    .velocity = PixelFormat::kRG32F};
   const BridgeSettings all = bridge_settings(plan_for({}, resolve).value());
@@ -344,7 +344,8 @@ TEST(BridgeSettingsOfAPlan, HandOverWhatItsFramesNeed) {
   EXPECT_TRUE(all.depth && all.velocity && all.reactive);
   EXPECT_EQ(all.colour, PixelFormat::kRGBA32F);
   EXPECT_EQ(all.velocity_format, PixelFormat::kRG32F);
-  const ResolveSettings one = {.method = Method::kBilinear, .output = kOutput, .target = kTarget};
+  const ResolveSettings one = {
+      .method = Method::kBilinear, .output_extent = kOutput, .target_extent = kTarget};
   const BridgeSettings few = bridge_settings(plan_for({}, one).value());
   EXPECT_FALSE(few.depth || few.velocity || few.reactive);
 }

@@ -230,7 +230,8 @@ class SeparateMemory : public InteropTest {
     settings.interop = Interop::kCopy;
     auto bridge = Bridge::create(*context_, device, settings);
     const ResolvePlan plan =
-        plan_for({}, {.method = Method::kQuincunx, .output = kOutput, .target = kTarget}).value();
+        plan_for({}, {.method = Method::kQuincunx, .output_extent = kOutput, .target_extent = kTarget})
+            .value();
     auto service = ResolveService::create(device, plan);
     EXPECT_TRUE(bridge.ok()) << bridge.status().message();
     EXPECT_TRUE(service.ok()) << service.status().message();
@@ -259,7 +260,7 @@ class SeparateMemory : public InteropTest {
                                                  .depth = inputs->depth,
                                                  .velocity = inputs->velocity,
                                                  .reactive = inputs->reactive,
-                                                 .render = render},
+                                                 .render_extent = render},
                                                 {.presented = presented.value()});
     EXPECT_TRUE(report.ok()) << report.status.message();
     EXPECT_EQ(report.used_previous, frame > 0);

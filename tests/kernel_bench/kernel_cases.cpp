@@ -21,7 +21,8 @@ struct Scene {
   SceneNeeds needs = {.transparents = false};
   ResolveSettings settings;
   FrameInputs current, previous;
-  ImageView unsharpened = {};  // what sharpen reads; the service's own memory holds nothing yet
+  // What sharpen and motion_blur read; the service's own memory holds nothing yet.
+  ImageView unsharpened = {}, resolved = {};
 };
 
 Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
@@ -29,7 +30,8 @@ Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
   Scene scene;
   scene.suffix = fmt::format(" {:.2f} {}", scale, colour == PixelFormat::kRGBA16F ? "half" : "float");
   scene.scale = scale;
-  scene.settings = {.output = stage.output(), .target = render, .colour = colour, .present = false};
+  scene.settings = {
+      .output_extent = stage.output(), .target_extent = render, .colour = colour, .present = false};
   scene.current = stage.frame(render, colour, .25f, 0);
   scene.previous = stage.frame(render, colour, -.25f, 1);
   return scene;
@@ -49,6 +51,7 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
       [chain, passes, &stage, outputs, scene](cl::Event* events) {
         PassFrame frame = chain->frame(scene.current, &scene.previous, outputs, stage.counter());
         if (scene.unsharpened) frame[Resource::kUnsharpened] = scene.unsharpened;
+        if (scene.resolved) frame[Resource::kResolved] = scene.resolved;
         for (Pass* pass : passes)
           PassChain::enqueue(*pass, frame, events++);
       },
@@ -58,21 +61,21 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
 // Times whole frames, each with the history that those before it have left.
 void add_frames(std::vector<Case>& cases, Stage& stage, Case what, const Scene& scene) {
   auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
-  const FrameOutputs outputs{.resolved = stage.noise(stage.output(), scene.settings.resolved)};
+  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.linear)};
   FrameReport first;
   chain->run(chain->frame(scene.current, nullptr, outputs, stage.counter()), outputs, first, nullptr);
   FrameReport report;
   chain->run(chain->frame(scene.current, &scene.previous, outputs, stage.counter()), outputs, report,
              nullptr);
-  for (int i = 0; i < report.pass_count; ++i)
-    what.bytes += report.passes[static_cast<std::size_t>(i)].bytes;
+  for (const PassReport& pass : report.passes)
+    what.bytes += pass.bytes;
   Stage::add(
       cases, std::move(what),
       [chain, &stage, outputs, current = scene.current, previous = scene.previous](cl::Event* events) {
         FrameReport unused;
         chain->run(chain->frame(current, &previous, outputs, stage.counter()), outputs, unused, events);
       },
-      report.pass_count);
+      static_cast<int>(report.passes.size()));
 }
 
 void add_scale(std::vector<Case>& cases, Stage& stage, Scene scene, Method method, double wanted,
@@ -80,7 +83,7 @@ void add_scale(std::vector<Case>& cases, Stage& stage, Scene scene, Method metho
   scene.settings.method = method;
   std::string kernel;
   for (const PassSpec& spec : list_passes(PlanFacts(scene.needs, scene.settings)).passes) {
-    const bool is_wider = widens(scene.current.render, stage.output());
+    const bool is_wider = widens(scene.current.render_extent, stage.output());
     if (spec.viewports == Viewports::kAll || (spec.viewports == Viewports::kWider) == is_wider)
       kernel = spec.kernel;
   }
@@ -88,14 +91,14 @@ void add_scale(std::vector<Case>& cases, Stage& stage, Scene scene, Method metho
   // A filter's kernel serves several methods, so both are named.
   const std::string name = filters ? fmt::format("{} {}", kernel, name_of(method)) : kernel;
   add_passes(cases, stage, {.name = name + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, {kernel});
+             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, {kernel});
 }
 
 void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
                  const std::string& suffix = {}) {
   add_passes(cases, stage,
              {.name = "resolve_quincunx" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, {"resolve_quincunx"});
+             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, {"resolve_quincunx"});
 }
 
 // Both kernels, or where nothing moves the second alone.
@@ -105,7 +108,7 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, Scene scene, double
   scene.settings.velocity = PixelFormat::kRG32F;
   scene.needs.moving_objects = pixels != 0;
   scene.needs.camera_motion = pixels != 0;
-  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+  scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
     // Surfaces of some size that move apart.
     const bool odd = (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
@@ -114,7 +117,7 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, Scene scene, double
   if (pixels != 0) kernels.insert(kernels.begin(), "reproject");
   add_passes(cases, stage,
              {.name = "resolve_reprojected" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.resolved = stage.noise(stage.output(), scene.settings.resolved)}, kernels);
+             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, kernels);
 }
 
 // All kernels; everything moves by `pixels`, or if surfaces move `apart`, those of the case above. As these
@@ -124,13 +127,13 @@ void add_temporal(std::vector<Case>& cases, Stage& stage, Scene scene, double wa
   scene.settings.method = Method::kTemporal;
   scene.settings.temporal.preset = preset;
   scene.settings.velocity = PixelFormat::kRG32F;
-  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+  scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
     const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
   });
   // A wall of one colour: whatever moves, history agrees with the frame.
-  scene.current.colour = stage.constant(scene.current.render, scene.settings.colour);
-  scene.current.depth = stage.constant(scene.current.render, PixelFormat::kR32F);
+  scene.current.colour = stage.constant(scene.current.render_extent, scene.settings.colour);
+  scene.current.depth = stage.constant(scene.current.render_extent, PixelFormat::kR32F);
   const Vec2 jitter = scene.previous.jitter;
   scene.previous = scene.current;
   scene.previous.jitter = jitter;
@@ -155,15 +158,16 @@ void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, doubl
   scene.settings.shading = Shading::kCheckerboard;
   scene.settings.velocity = PixelFormat::kRG32F;
   scene.needs.moving_objects = scene.needs.camera_motion = pixels != 0;
-  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+  scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
     const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
   });
-  scene.current.depth = scene.previous.depth = stage.constant(scene.current.render, PixelFormat::kR32F);
+  scene.current.depth = scene.previous.depth =
+      stage.constant(scene.current.render_extent, PixelFormat::kR32F);
   scene.current.parity = 1;
   auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
   Pass* const pass = chain->find("resolve_checkerboard");
-  const FrameOutputs outputs{.resolved = stage.noise(stage.output(), scene.settings.resolved)};
+  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.linear)};
   FrameReport unused;  // report of the frame that leaves its history
   chain->run(chain->frame(scene.previous, nullptr, outputs, stage.counter()), outputs, unused, nullptr);
   Stage::add(cases,
@@ -182,13 +186,13 @@ void add_blur(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted
               const std::function<double(int x, int y)>& pixels) {
   scene.settings.blur.shutter = 1;
   scene.settings.velocity = PixelFormat::kRG32F;
-  scene.current.velocity = stage.velocity(scene.current.render, [&](int x, int y) {
+  scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
     return static_cast<float>(pixels(x, y) / stage.output().width);
   });
+  scene.resolved = stage.noise(stage.output(), scene.settings.linear, 1);
   add_passes(cases, stage,
              {.name = "motion_blur" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted}, scene,
-             {.resolved = stage.noise(stage.output(), scene.settings.resolved, 0),
-              .blurred = stage.noise(stage.output(), scene.settings.resolved, 1)},
+             {.linear = stage.noise(stage.output(), scene.settings.linear)},
              {"motion_tiles", "motion_neighbours", "motion_blur"});
 }
 
@@ -202,13 +206,13 @@ void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
 void add_sharpens(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
-    scene.settings.resolved = resolved;
+    scene.settings.linear = resolved;
     scene.settings.sharpness = .5f;
     scene.unsharpened = stage.noise(stage.output(), resolved, 1);
     add_passes(cases, stage,
                {.name = fmt::format("sharpen {}", resolved == PixelFormat::kRGBA32F ? "float" : "half"),
                 .wanted = 2},
-               scene, {.resolved = stage.noise(stage.output(), resolved)}, {"sharpen"});
+               scene, {.linear = stage.noise(stage.output(), resolved)}, {"sharpen"});
   }
 }
 
@@ -216,7 +220,7 @@ void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
       Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
-      scene.settings.resolved = resolved;
+      scene.settings.linear = resolved;
       scene.settings.tone_map = tone_map;
       scene.settings.present = true;
       add_passes(cases, stage,
@@ -224,7 +228,7 @@ void add_presents(std::vector<Case>& cases, Stage& stage) {
                                       resolved == PixelFormat::kRGBA32F ? "float" : "half"),
                   .wanted = 1.2},
                  scene,
-                 {.resolved = stage.noise(stage.output(), resolved),
+                 {.linear = stage.noise(stage.output(), resolved),
                   .presented = stage.noise(stage.output(), PixelFormat::kRGBA8)},
                  {"present"});
     }
@@ -335,7 +339,7 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     scene.needs.moving_objects = scene.needs.camera_motion = false;
     add_resolve(cases, stage, scene, 5, " still");
     scene.needs.moving_objects = scene.needs.camera_motion = true;
-    scene.settings.resolved = PixelFormat::kRGBA16F;
+    scene.settings.linear = PixelFormat::kRGBA16F;
     add_scale(cases, stage, scene, Method::kBilinear, 1.1, " to half");
     add_resolve(cases, stage, scene, 5, " to half");
   }

@@ -107,7 +107,7 @@ FrameInputs Stage::frame(Extent render, PixelFormat colour, float jitter, int in
   inputs.velocity = noise(render, PixelFormat::kRG16F, index);
   inputs.depth = noise(render, PixelFormat::kR32F, index);
   inputs.reactive = noise(render, PixelFormat::kR8, index);
-  inputs.render = render;
+  inputs.render_extent = render;
   inputs.jitter = {jitter, jitter};
   return inputs;
 }

@@ -41,19 +41,20 @@ class ConvertInputs : public ::testing::TestWithParam<Variant> {
                                       .storage = GetParam().storage};
     testing::PassRig pass({}, settings, "convert_inputs");
     inputs.jitter = kJitter;
-    const FrameInputs previous = {.render = {100, 75}, .jitter = kPreviousJitter};
-    const std::vector<Pixel> before(static_cast<std::size_t>(inputs.render.area()), Pixel{-7, -7, -7, -7});
-    const ImageView view = rig.image(format, settings.storage, inputs.render, before, -7, tight);
+    const FrameInputs previous = {.render_extent = {100, 75}, .jitter = kPreviousJitter};
+    const std::vector<Pixel> before(static_cast<std::size_t>(inputs.render_extent.area()),
+                                    Pixel{-7, -7, -7, -7});
+    const ImageView view = rig.image(format, settings.storage, inputs.render_extent, before, -7, tight);
     pass.run(inputs, previous, {1, 1}, {}, {{made, view}});
     const std::vector<Pixel> all = rig.pixels(view, view.extent);
     for (int y = 0; y < view.extent.height; ++y) {
       for (int x = 0; x < view.extent.width; ++x) {
-        if (x >= inputs.render.width || y >= inputs.render.height) {
+        if (x >= inputs.render_extent.width || y >= inputs.render_extent.height) {
           EXPECT_EQ(all[static_cast<std::size_t>(y * view.extent.width + x)][0], -7) << "beyond the viewport";
         }
       }
     }
-    return rig.bytes(view, inputs.render);
+    return rig.bytes(view, inputs.render_extent);
   }
 
   ImageView image(Rig& rig, PixelFormat format, Extent render, const std::vector<Pixel>& pixels,
@@ -64,7 +65,7 @@ class ConvertInputs : public ::testing::TestWithParam<Variant> {
   void compare_depth(Extent render, const std::vector<Pixel>& given, DepthConvention kind, float near_plane,
                      float far_plane) const {
     Rig rig;
-    FrameInputs inputs = {.render = render, .near_plane = near_plane, .far_plane = far_plane};
+    FrameInputs inputs = {.render_extent = render, .near_plane = near_plane, .far_plane = far_plane};
     inputs.depth = image(rig, PixelFormat::kR32F, render, given);
     const auto actual = testing::decode(
         PixelFormat::kR32F, run(rig, {.depth = kind}, inputs, Resource::kDepth, PixelFormat::kR32F));
@@ -114,7 +115,7 @@ TEST_P(ConvertInputs, VelocityMatchesTheReference) {
       std::vector<Pixel> given = testing::pattern_pixels(Pattern::kNoise, render, 3);
       for (std::size_t i = 0; i < given.size(); i += 3)
         given[i] = {};
-      FrameInputs inputs = {.render = render, .velocity_scale = scale};
+      FrameInputs inputs = {.render_extent = render, .velocity_scale = scale};
       inputs.velocity = image(rig, GetParam().velocity, render, given);
       const auto actual = testing::decode(GetParam().velocity, run(rig, {.velocity_jittered = true}, inputs,
                                                                    Resource::kVelocity, GetParam().velocity));
@@ -150,7 +151,7 @@ TEST_P(ConvertInputs, RowsOfImagesAreTurnedBitForBit) {
   for (const Extent render : kSizes) {
     Rig rig;
     const std::vector<Pixel> given = testing::pattern_pixels(Pattern::kExtremes, render, 4);
-    FrameInputs inputs = {.render = render};
+    FrameInputs inputs = {.render_extent = render};
     inputs.colour = image(rig, PixelFormat::kRGBA16F, render, given, 3);
     const auto upright = rig.bytes(inputs.colour, render);
     const auto turned =
@@ -172,7 +173,7 @@ TEST_P(ConvertInputs, NothingOutsideTheViewportMatters) {
     } spec;
     testing::expect_same_whatever_is_outside(spec, [&] {
       Rig rig;
-      FrameInputs inputs = {.render = render, .near_plane = .1f, .far_plane = 50};
+      FrameInputs inputs = {.render_extent = render, .near_plane = .1f, .far_plane = 50};
       inputs.depth = image(rig, PixelFormat::kR32F, render,
                            testing::pattern_pixels(Pattern::kNoise, render, 2), spec.outside, spec.tight);
       return run(rig, {.depth = DepthConvention::kForward}, inputs, Resource::kDepth, PixelFormat::kR32F,

@@ -40,7 +40,7 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
     settings_.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
     settings_.colour = GetParam().colour;
-    settings_.far = FarMotion::kEvidence;
+    settings_.sky_motion = SkyMotion::kEvidence;
   }
 
   struct Inputs {
@@ -116,7 +116,7 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
   }
 
   static Extent cells_of(const Inputs& in) {
-    return extent_of(Area::kFarCells, {in.current.render, in.previous.render, kOutput});
+    return extent_of(Area::kFarCells, {in.current.render_extent, in.previous.render_extent, kOutput});
   }
 
   std::vector<FarSums> run_surroundings(const Inputs& in) {
@@ -138,7 +138,7 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
     const cl::Buffer match = upload(std::vector{FarMatch{7, 11}});
     PassRig pass(SceneNeeds{}, settings_, "far_fit");
     FrameInputs frame;
-    frame.render = {1, 1};
+    frame.render_extent = {1, 1};
     pass.run(frame, frame, kOutput, {},
              {{Resource::kFarSums, records<FarSums>(sums, 1)},
               {Resource::kPreviousFarMotion, records<FarModel>(before, 1)},
@@ -161,16 +161,16 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
                                           bool tight = false) {
     const cl::Buffer motion = upload(std::vector{model(is_known)});
     const cl::Buffer match = upload(std::vector{found});
-    const std::vector<Pixel> before(static_cast<std::size_t>(in.current.render.area()),
+    const std::vector<Pixel> before(static_cast<std::size_t>(in.current.render_extent.area()),
                                     Pixel{-7, -7, -7, -7});
     const ImageView view =
-        rig.image(settings_.velocity, settings_.storage, in.current.render, before, -7, tight);
+        rig.image(settings_.velocity, settings_.storage, in.current.render_extent, before, -7, tight);
     PassRig pass(SceneNeeds{}, settings_, "far_velocity");
     pass.run(in.current, in.previous, kOutput, {},
              {{Resource::kFarMotion, records<FarModel>(motion, 1)},
               {Resource::kFarMatch, records<FarMatch>(match, 1)},
               {Resource::kVelocity, view}});
-    return rig.bytes(view, in.current.render);
+    return rig.bytes(view, in.current.render_extent);
   }
 
   void expect_near(double expected, const Bounded& bound, double actual, const std::string& what) {

@@ -302,7 +302,7 @@ TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spe
 TestFrame make_frame(Rig& rig, const FrameFormats& formats, const FrameSpec& spec,
                      const std::vector<Pixel>& colour) {
   TestFrame frame;
-  frame.inputs.render = spec.render;
+  frame.inputs.render_extent = spec.render;
   frame.inputs.jitter = spec.jitter;
   frame.reference.width = spec.render.width;
   frame.reference.height = spec.render.height;

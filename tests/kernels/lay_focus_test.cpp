@@ -74,8 +74,8 @@ class LayFocus : public ::testing::TestWithParam<Variant> {
                                  const Placed& placed, double outside = 1e30, bool tight = false) {
     Rig rig;
     PassRig pass({},
-                 {.output = kOutput,
-                  .resolved = format(),
+                 {.output_extent = kOutput,
+                  .linear = format(),
                   .focus = {.extent = placed.region, .mask = GetParam().mask}},
                  "lay_focus");
     const ImageView under = rig.image(format(), Storage::kBuffer, kOutput, picture, outside, tight);

@@ -282,7 +282,7 @@ LayerStageInputs LayerStages::inputs(Rig& rig, const StageSpec& spec) const {
 
   in.picture = make_picture(spec.output, variant_.resolved, spec.seed + 10000);
   in.previous = in.stage.frame;
-  in.previous.render = spec.previous;
+  in.previous.render_extent = spec.previous;
   in.previous.jitter = kPreviousJitter;
   in.previous.depth = depth_image(rig, spec, variant_.storage, spec.previous, past.frame.depth);
   return in;

@@ -227,7 +227,7 @@ TestFrame RecordStages::surfaces(Rig& rig, const LayerSpec& spec, bool is_previo
       depth.push_back({seen.depth, 0, 0, 0});
     }
   }
-  frame.inputs.render = render;
+  frame.inputs.render_extent = render;
   frame.inputs.jitter = jitter;
   frame.inputs.velocity =
       rig.image(variant_.velocity, variant_.storage, render, velocity, spec.outside, spec.tight);

@@ -94,7 +94,7 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
   MotionBlur() {
     settings_.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
-    settings_.resolved = GetParam().resolved;
+    settings_.linear = GetParam().resolved;
     settings_.method = Method::kBilinear;
     settings_.present = false;
     settings_.blur.shutter = .5f;
@@ -127,7 +127,7 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
         twin.depth.push_back(testing::stored_value(PixelFormat::kR32F, depth.back()[0]));
       }
     }
-    frame.inputs.render = render;
+    frame.inputs.render_extent = render;
     frame.inputs.jitter = jitter;
     frame.inputs.velocity =
         rig.image(settings_.velocity, settings_.storage, render, velocity, outside, tight);
@@ -136,13 +136,13 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
   }
 
   Run run(Rig& rig, const TestFrame& frame, Extent output, const std::vector<Pixel>& resolved) {
-    settings_.output = output;
-    settings_.target = frame.inputs.render;
+    settings_.output_extent = output;
+    settings_.target_extent = frame.inputs.render_extent;
     PassChain chain(testing::device(), PlanFacts({}, settings_));
-    const ImageView source = rig.image(settings_.resolved, Storage::kBuffer, output, resolved, 1e30);
-    const ImageView view = rig.output(settings_.resolved, output);
-    const PassFrame bound =
-        chain.frame(frame.inputs, nullptr, {.resolved = source, .blurred = view}, rig.counter());
+    const ImageView source = rig.image(settings_.linear, Storage::kBuffer, output, resolved, 1e30);
+    const ImageView view = rig.output(settings_.linear, output);
+    PassFrame bound = chain.frame(frame.inputs, nullptr, {.linear = view}, rig.counter());
+    bound[Resource::kResolved] = source;
     for (const char* kernel : {"motion_tiles", "motion_neighbours", "motion_blur"})
       PassChain::enqueue(*chain.find(kernel), bound, nullptr);
     return {rig.bytes(view, output), kinds_of(chain.newest(Resource::kTileBlurs))};
@@ -171,7 +171,7 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
     std::vector<Pixel> pixels = testing::pattern_pixels(testing::Pattern::kNoise, output, seed);
     for (Pixel& pixel : pixels) {
       for (double& value : pixel)
-        value = testing::stored_value(settings_.resolved, value);
+        value = testing::stored_value(settings_.linear, value);
     }
     return pixels;
   }
@@ -190,12 +190,12 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
       ASSERT_EQ(actual.kinds[i], tiles[i].kind) << what << ", tile " << i;
     const reference::Picture expected = reference::motion_blur(input, resolved);
     testing::expect_close(
-        expected, testing::decode(settings_.resolved, actual.bytes),
+        expected, testing::decode(settings_.linear, actual.bytes),
         [&](std::size_t i) {
           return kMeanError * expected.largest[i] + kDenormal +
-                 testing::output_rounding(settings_.resolved, expected.largest[i]);
+                 testing::output_rounding(settings_.linear, expected.largest[i]);
         },
-        what, settings_.resolved);
+        what, settings_.linear);
   }
 
   ResolveSettings settings_;
@@ -247,12 +247,12 @@ TEST_P(MotionBlur, StillPicturesAndStillObjectsKeepEveryBit) {
   const Extent output{96, 64};
   const std::vector<Pixel> resolved = picture(output, 5);
   Rig rig;
-  const ImageView source = rig.image(settings_.resolved, Storage::kBuffer, output, resolved, 0);
+  const ImageView source = rig.image(settings_.linear, Storage::kBuffer, output, resolved, 0);
   const Run still = run(rig, frame_of(rig, scenes(1.0 / 96)[0], output, {}, 0), output, resolved);
   EXPECT_EQ(still.bytes, rig.bytes(source, output));
   // In front of a moving background: not a bit of halo. 2^-24 and more of a colour may go in the mean.
   const Run before = run(rig, frame_of(rig, scenes(1.0 / 96)[4], output, {}, 0), output, resolved);
-  const std::vector<Pixel> pixels = testing::decode(settings_.resolved, before.bytes);
+  const std::vector<Pixel> pixels = testing::decode(settings_.linear, before.bytes);
   int inside = 0;
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
@@ -261,7 +261,7 @@ TEST_P(MotionBlur, StillPicturesAndStillObjectsKeepEveryBit) {
       for (std::size_t c = 0; c < 4; ++c) {
         EXPECT_NEAR(pixels[i][c], resolved[i][c],
                     kMeanError * std::abs(resolved[i][c]) +
-                        testing::output_rounding(settings_.resolved, std::abs(resolved[i][c])))
+                        testing::output_rounding(settings_.linear, std::abs(resolved[i][c])))
             << x << ", " << y;
       }
       ++inside;
@@ -293,7 +293,7 @@ TEST_P(MotionBlur, TheStreakEndsWhereTheShutterEnds) {
     resolved.push_back(i % output.width >= 64 ? Pixel{1, 1, 1, 1} : Pixel{0, 0, 0, 1});
   Rig rig;
   const Run result = run(rig, frame_of(rig, scene, output, {}, 0), output, resolved);
-  const std::vector<Pixel> pixels = testing::decode(settings_.resolved, result.bytes);
+  const std::vector<Pixel> pixels = testing::decode(settings_.linear, result.bytes);
   for (int x = 0; x < output.width; ++x) {
     double mean = 0;
     for (int y = 0; y < output.height; ++y)

@@ -44,7 +44,8 @@ class Overlay : public ::testing::TestWithParam<Variant> {
     settings_.method = v.reactive ? Method::kQuincunx : Method::kBilinear;
     settings_.storage = v.storage;
     settings_.colour = v.colour;
-    settings_.output = settings_.target = settings_.particle_target = {1, 1};  // the plan's; not the frames'
+    settings_.output_extent = settings_.target_extent =
+        settings_.particle_target_extent = {1, 1};  // the plan's; not the frames'
     pass_ = std::make_unique<PassRig>(SceneNeeds{}, settings_, "overlay_particles");
   }
 
@@ -114,10 +115,11 @@ class Overlay : public ::testing::TestWithParam<Variant> {
     inputs.particle_colour = over.inputs.colour;
     inputs.particle_depth = over.inputs.depth;
     inputs.particle_reactive = over.inputs.reactive;
-    inputs.particle_render = over.inputs.render;
-    const std::vector<Pixel> untouched(static_cast<std::size_t>(inputs.render.area()), Pixel{-7, -7, -7, -7});
+    inputs.particle_render_extent = over.inputs.render_extent;
+    const std::vector<Pixel> untouched(static_cast<std::size_t>(inputs.render_extent.area()),
+                                       Pixel{-7, -7, -7, -7});
     const auto output = [&](PixelFormat format) {
-      return rig.image(format, settings_.storage, inputs.render, untouched, -7, tight);
+      return rig.image(format, settings_.storage, inputs.render_extent, untouched, -7, tight);
     };
     const Overlaid made = {output(settings_.colour), output(PixelFormat::kR8)};
     pass_->run(inputs, inputs, {1, 1}, {},
@@ -125,7 +127,7 @@ class Overlay : public ::testing::TestWithParam<Variant> {
     const std::vector<Pixel> all = rig.pixels(made.colour, made.colour.extent);
     for (int i = 0; i < made.colour.extent.area(); ++i) {
       const int x = i % made.colour.extent.width, y = i / made.colour.extent.width;
-      if (x < inputs.render.width && y < inputs.render.height) continue;
+      if (x < inputs.render_extent.width && y < inputs.render_extent.height) continue;
       EXPECT_EQ(all[static_cast<std::size_t>(i)][0], -7) << "beyond the viewport";
     }
     return made;
@@ -134,8 +136,8 @@ class Overlay : public ::testing::TestWithParam<Variant> {
   std::vector<unsigned char> run_bits(Rig& rig, const TestFrame& bare, const TestFrame& over,
                                       bool tight = false) {
     const Overlaid made = run(rig, bare, over, tight);
-    std::vector<unsigned char> all = rig.bytes(made.colour, bare.inputs.render);
-    const auto marks = rig.bytes(made.reactive, bare.inputs.render);
+    std::vector<unsigned char> all = rig.bytes(made.colour, bare.inputs.render_extent);
+    const auto marks = rig.bytes(made.reactive, bare.inputs.render_extent);
     all.insert(all.end(), marks.begin(), marks.end());
     return all;
   }

@@ -26,7 +26,7 @@ PassRig::PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::
 
 void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
                   Bound bound, Extent previous_output) {
-  PassTables tables(impl(), {current.render, output, output});
+  PassTables tables(impl(), {current.render_extent, output, output});
   PassFrame frame{.queue = impl().queue,
                   .tables = tables,
                   .current = current,

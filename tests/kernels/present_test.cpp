@@ -34,14 +34,14 @@ class Present : public ::testing::TestWithParam<Variant> {
  protected:
   std::vector<unsigned char> present(Rig& rig, const std::vector<Pixel>& pixels, Extent extent,
                                      float exposure, std::int64_t* non_finite = nullptr) {
-    const ResolveSettings settings{.output = extent,
-                                   .resolved = GetParam().resolved,
+    const ResolveSettings settings{.output_extent = extent,
+                                   .linear = GetParam().resolved,
                                    .storage = GetParam().storage,
                                    .tone_map = GetParam().tone_map,
                                    .dither = GetParam().dither};
     PassRig pass({}, settings, "present");
     const double poison = std::nan("");
-    const ImageView source = rig.image(settings.resolved, Storage::kBuffer, extent, pixels, poison);
+    const ImageView source = rig.image(settings.linear, Storage::kBuffer, extent, pixels, poison);
     const ImageView view = rig.output(PixelFormat::kRGBA8, extent, settings.storage);
     const Counter counter = rig.counter();
     FrameInputs inputs;

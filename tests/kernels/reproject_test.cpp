@@ -19,7 +19,8 @@ using testing::TestFrame;
 
 // With one layer: where there are two, layer_split goes on with what reproject wrote.
 ResolveSettings settings_for(Extent output) {
-  ResolveSettings settings{.method = Method::kTemporal, .output = output, .target = output, .present = false};
+  ResolveSettings settings{
+      .method = Method::kTemporal, .output_extent = output, .target_extent = output, .present = false};
   settings.temporal.preset = TemporalPreset::kFast;
   return settings;
 }
@@ -28,7 +29,7 @@ ResolveSettings settings_for(Extent output) {
 std::vector<Pixel> reproject(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs* before) {
   FrameReport report;
   chain.run(chain.frame(now, before, {}, rig.counter()), {}, report, nullptr);
-  return rig.pixels(chain.newest(Resource::kReprojection), now.render);
+  return rig.pixels(chain.newest(Resource::kReprojection), now.render_extent);
 }
 
 TEST(TemporalReproject, MotionEdgesMatchTheReference) {
@@ -185,7 +186,7 @@ TEST(TemporalReproject, HistoryOutlivesACameraThatWalksBackwards) {
 std::vector<float> open_trust(Rig& rig, PassChain& chain, const FrameInputs& now, const FrameInputs& before) {
   const PassFrame frame = chain.frame(now, &before, {}, rig.counter());
   PassChain::enqueue(*chain.find("reproject"), frame, nullptr);
-  std::vector<float> trust(static_cast<std::size_t>(now.render.area()));
+  std::vector<float> trust(static_cast<std::size_t>(now.render_extent.area()));
   const ImageView view = frame[Resource::kOpenTrust];
   clEnqueueReadBuffer(testing::impl().queue(), view.memory, CL_TRUE, view.offset,
                       trust.size() * sizeof(float), trust.data(), 0, nullptr, nullptr);

@@ -229,8 +229,8 @@ class Resize : public ::testing::TestWithParam<StageVariant> {
  private:
   static testing::PassRig rig_of(const char* kernel) {
     PlanFacts facts = TemporalStages(GetParam()).facts(TemporalPreset::kBalanced);
-    facts.settings.output = {2, 1};
-    facts.settings.least_output = {1, 1};
+    facts.settings.output_extent = {2, 1};
+    facts.settings.min_output_extent = {1, 1};
     return {facts.needs, facts.settings, kernel};
   }
 };
@@ -291,7 +291,7 @@ TEST_P(Resize, ATightFrameIsReadWithinItsEdges) {
 TEST_P(Resize, RecordsKeepTheirPlacesInThePicture_small) {
   const Extent grid{13, 3};
   FrameInputs frame;
-  frame.render = grid;
+  frame.render_extent = grid;
   std::vector<cl_uint> keys(static_cast<std::size_t>(grid.area()));
   std::vector<LayerRecord> records(keys.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {

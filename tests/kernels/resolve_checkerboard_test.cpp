@@ -135,7 +135,7 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
   }
 
   Filled run(Rig& rig, const TestFrame& now, const TestFrame& before, bool tight = false) {
-    const Extent render = now.inputs.render;
+    const Extent render = now.inputs.render_extent;
     const auto output = [&](PixelFormat format) {
       const double value = untouched_value(format);
       const std::vector<Pixel> untouched(static_cast<std::size_t>(render.area()),
@@ -172,7 +172,7 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
 
   std::vector<unsigned char> run_bits(Rig& rig, const TestFrame& now, const TestFrame& before,
                                       bool tight = false) {
-    return bits(rig, run(rig, now, before, tight), now.inputs.render);
+    return bits(rig, run(rig, now, before, tight), now.inputs.render_extent);
   }
 
   void compare(const FrameSpec& spec, const FrameSpec& spec_before, int parity);

@@ -40,7 +40,7 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
   Resolve() {
     const Variant& v = GetParam();
     settings_ = {
-        .colour = v.colour, .velocity = v.velocity_format, .resolved = v.resolved, .storage = v.storage};
+        .colour = v.colour, .velocity = v.velocity_format, .linear = v.resolved, .storage = v.storage};
     settings_.quincunx.sampling = v.sampling;
     const bool moves = v.velocity == VelocitySource::kTarget;
     const SceneNeeds needs{.moving_objects = moves, .camera_motion = moves, .transparents = v.reactive};
@@ -54,11 +54,11 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
 
   template <typename Enqueue>
   Resolved run(Rig& rig, Extent output, Enqueue enqueue) {
-    const ImageView view = rig.output(settings_.resolved, output);
+    const ImageView view = rig.output(settings_.linear, output);
     const Counter counter = rig.counter();
     enqueue(view, counter);
     Resolved result{rig.bytes(view, output), {}, 0};
-    result.pixels = testing::decode(settings_.resolved, result.bytes);
+    result.pixels = testing::decode(settings_.linear, result.bytes);
     result.non_finite = rig.count(counter);
     return result;
   }
@@ -102,10 +102,10 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
     const reference::Picture picture = expected(current, previous, output);
     const auto bound = [&](std::size_t i) {
       return kResolveError * picture.largest[i] + kDenormal +
-             testing::output_rounding(settings_.resolved, picture.largest[i]);
+             testing::output_rounding(settings_.linear, picture.largest[i]);
     };
     const std::string what = testing::name_of(now, before, output);
-    testing::expect_close(picture, actual.pixels, bound, what, settings_.resolved);
+    testing::expect_close(picture, actual.pixels, bound, what, settings_.linear);
     EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
   }
 
@@ -142,7 +142,7 @@ TEST_P(Resolve, AConstantStaysConstant) {
   for (const Pixel& pixel : resolve(rig, current, previous, {64, 33}).pixels) {
     for (std::size_t c = 0; c < 4; ++c) {
       ASSERT_NEAR(pixel[c], value[c],
-                  kResolveError * value[c] + testing::output_rounding(settings_.resolved, value[c]));
+                  kResolveError * value[c] + testing::output_rounding(settings_.linear, value[c]));
     }
   }
 }

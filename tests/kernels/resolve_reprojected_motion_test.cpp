@@ -14,7 +14,7 @@ using testing::TestFrame;
 constexpr double kRounding = 0x1p-24;
 
 PlanFacts reprojected_facts(Extent output, Extent target) {
-  ResolveSettings settings{.output = output, .target = target, .present = false};
+  ResolveSettings settings{.output_extent = output, .target_extent = target, .present = false};
   settings.quincunx.form = TwoFrameForm::kReprojected;
   return {{.transparents = false}, settings};
 }
@@ -22,7 +22,7 @@ PlanFacts reprojected_facts(Extent output, Extent target) {
 void resolve(PassChain& chain, const TestFrame& current, const TestFrame& previous, const ImageView& view,
              Counter counter) {
   FrameReport report;
-  chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
+  chain.run(chain.frame(current.inputs, &previous.inputs, {.linear = view}, counter), {.linear = view},
             report, nullptr);
 }
 
@@ -54,9 +54,9 @@ TEST(ReprojectedMotion, AMovingRampComesBackInPlace) {
     // The surface at u now was at u - motion: there the previous frame showed the same colour.
     const TestFrame current = ramp(jitter, {91, 46}, 0);
     const TestFrame previous = ramp(-jitter, {100, 50}, 1);
-    const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output);
+    const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output_extent);
     resolve(chain, current, previous, view, rig.counter());
-    const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output);
+    const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output_extent);
     for (int y = 8; y < 56; ++y) {
       for (int x = 8; x < 120; ++x) {
         // Weights by distance shift a ramp by .19 samples at most (a quarter of the way between two of them);
@@ -90,9 +90,9 @@ TEST(ReprojectedMotion, WhatWasHiddenLeavesNoGhost) {
   PassChain chain(testing::device(), facts);
   const TestFrame previous = scene(20, -.25f);
   const TestFrame current = scene(28, .25f);
-  const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output);
+  const ImageView view = rig.output(PixelFormat::kRGBA32F, facts.settings.output_extent);
   resolve(chain, current, previous, view, rig.counter());
-  const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output);
+  const std::vector<Pixel> pixels = rig.pixels(view, facts.settings.output_extent);
   const auto red = [&](int x) { return pixels[static_cast<std::size_t>(24 * 96 + x)][0]; };
   for (int x = 0; x < 96; ++x) {
     const double at = (x + .5) * render.width / 96;  // render pixels

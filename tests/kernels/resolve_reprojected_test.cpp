@@ -58,7 +58,7 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
  protected:
   Reprojected() {
     const Variant& v = GetParam();
-    settings_ = {.colour = v.colour, .velocity = v.velocity, .resolved = v.resolved, .storage = v.storage};
+    settings_ = {.colour = v.colour, .velocity = v.velocity, .linear = v.resolved, .storage = v.storage};
     settings_.present = false;
     settings_.quincunx.form = TwoFrameForm::kReprojected;
     settings_.quincunx.residual_weight = v.residual ? .5f : 0;
@@ -72,10 +72,10 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
 
   // One for all frames of an output, up to twice its size.
   PassChain& chain_for(Extent output) {
-    if (!chain_ || settings_.output != output) {
+    if (!chain_ || settings_.output_extent != output) {
       const Variant& v = GetParam();
-      settings_.output = output;
-      settings_.target = {2 * output.width + 3, 2 * output.height};
+      settings_.output_extent = output;
+      settings_.target_extent = {2 * output.width + 3, 2 * output.height};
       const SceneNeeds needs{.moving_objects = v.moves, .camera_motion = v.moves, .transparents = v.reactive};
       chain_.emplace(testing::device(), PlanFacts(needs, settings_));
     }
@@ -84,16 +84,16 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
 
   Resolved resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) override {
     PassChain& chain = chain_for(output);
-    const ImageView view = rig.output(settings_.resolved, output);
+    const ImageView view = rig.output(settings_.linear, output);
     const Counter counter = rig.counter();
     FrameReport report;
-    chain.run(chain.frame(current.inputs, &previous.inputs, {.resolved = view}, counter), {.resolved = view},
+    chain.run(chain.frame(current.inputs, &previous.inputs, {.linear = view}, counter), {.linear = view},
               report, nullptr);
     Resolved run{rig.bytes(view, output), {}, rig.count(counter)};
-    run.pixels = testing::decode(settings_.resolved, run.bytes);
+    run.pixels = testing::decode(settings_.linear, run.bytes);
     reprojections_.assign(current.reference.colour.size(), {0, 0, 1});
     if (const ImageView found = chain.newest(Resource::kReprojection)) {
-      const std::vector<Pixel> pixels = rig.pixels(found, current.inputs.render);
+      const std::vector<Pixel> pixels = rig.pixels(found, current.inputs.render_extent);
       std::transform(pixels.begin(), pixels.end(), reprojections_.begin(), [](const Pixel& pixel) {
         return reference::Reprojection{pixel[0], pixel[1], pixel[2]};
       });
@@ -145,9 +145,9 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
                                        !GetParam().moves && GetParam().reactive, output.width, output.height);
     const auto bound = [&](std::size_t i) {
       return weight_error(expected.motion[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
-             16 * kDenormal + testing::output_rounding(settings_.resolved, expected.largest[i]);
+             16 * kDenormal + testing::output_rounding(settings_.linear, expected.largest[i]);
     };
-    testing::expect_close(expected, run.pixels, bound, what, settings_.resolved);
+    testing::expect_close(expected, run.pixels, bound, what, settings_.linear);
     EXPECT_GE(run.non_finite, expected.non_finite) << what;
     EXPECT_LE(run.non_finite, expected.non_finite + expected.undecided) << what;
   }
@@ -232,7 +232,7 @@ TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
         // Eight weights at most, each off by its error, over a sum of 1.
         ASSERT_NEAR(pixel[c], bilinear.value[c],
                     (8 * weight_error(0) + kBlendError) * bilinear.largest +
-                        testing::output_rounding(settings_.resolved, bilinear.largest))
+                        testing::output_rounding(settings_.linear, bilinear.largest))
             << x << ", " << y;
       }
     }

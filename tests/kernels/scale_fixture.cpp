@@ -37,7 +37,7 @@ ScaleRig::ScaleRig(const ScaleVariant& variant)
     : variant_(variant), formats_{.storage = variant.storage, .colour = variant.colour} {
   settings_.storage = variant.storage;
   settings_.colour = variant.colour;
-  settings_.resolved = variant.resolved;
+  settings_.linear = variant.resolved;
   settings_.clamp_ringing = variant.clamp_ringing;
   settings_.method = variant.method;
   settings_.present = false;
@@ -46,25 +46,26 @@ ScaleRig::ScaleRig(const ScaleVariant& variant)
 
 // Each chain serves one output, and viewports up to twice as wide and high or up to `render`.
 PassChain& ScaleRig::chain_for(Extent output, Extent render) {
-  const bool serves = chain_ && settings_.output == output && render.width <= settings_.target.width &&
-                      render.height <= settings_.target.height;
+  const bool serves = chain_ && settings_.output_extent == output &&
+                      render.width <= settings_.target_extent.width &&
+                      render.height <= settings_.target_extent.height;
   if (!serves) {
-    settings_.output = output;
-    settings_.target = {std::max(2 * output.width, render.width), std::max(2 * output.height, render.height)};
+    settings_.output_extent = output;
+    settings_.target_extent = {std::max(2 * output.width, render.width),
+                               std::max(2 * output.height, render.height)};
     chain_ = std::make_unique<PassChain>(device(), PlanFacts({}, settings_));
   }
   return *chain_;
 }
 
 ScaleRig::Run ScaleRig::run(Rig& rig, const TestFrame& frame, Extent output) {
-  const ImageView view = rig.output(settings_.resolved, output);
+  const ImageView view = rig.output(settings_.linear, output);
   const Counter counter = rig.counter();
-  PassChain& chain = chain_for(output, frame.inputs.render);
+  PassChain& chain = chain_for(output, frame.inputs.render_extent);
   FrameReport report;
-  chain.run(chain.frame(frame.inputs, nullptr, {.resolved = view}, counter), {.resolved = view}, report,
-            nullptr);
+  chain.run(chain.frame(frame.inputs, nullptr, {.linear = view}, counter), {.linear = view}, report, nullptr);
   Run result{rig.bytes(view, output), {}, 0};
-  result.pixels = decode(settings_.resolved, result.bytes);
+  result.pixels = decode(settings_.linear, result.bytes);
   result.non_finite = rig.count(counter);
   const std::vector<Pixel> all = rig.pixels(view, view.extent);
   for (int y = 0; y < view.extent.height; ++y) {
@@ -79,7 +80,7 @@ ScaleRig::Run ScaleRig::run(Rig& rig, const TestFrame& frame, Extent output) {
 reference::Sampler ScaleRig::sampler(const TestFrame& frame, Extent output) const {
   const reference::Frame& source = frame.reference;
   const auto seed = static_cast<std::uint32_t>(frame.inputs.frame_index);
-  const Extent render = frame.inputs.render;
+  const Extent render = frame.inputs.render_extent;
   const double scale = std::sqrt(static_cast<double>(render.area()) / static_cast<double>(output.area()));
   const double amplitude = static_cast<double>(settings_.grain) * std::max(0.0, 1 - scale);
   switch (variant_.method) {
@@ -114,7 +115,7 @@ void ScaleRig::compare(const FrameSpec& spec, Extent output, const std::vector<P
   source.inputs.frame_index = spec.seed;
   const Run actual = run(rig, source, output);
   reference::Picture expected = reference::scale(output.width, output.height, sampler(source, output));
-  if (settings_.resolved == PixelFormat::kRGBA16F) {
+  if (settings_.linear == PixelFormat::kRGBA16F) {
     for (Pixel& pixel : expected.pixels) {
       for (double& value : pixel)
         value = std::clamp(value, -kLargestHalf, kLargestHalf);
@@ -126,12 +127,12 @@ void ScaleRig::compare(const FrameSpec& spec, Extent output, const std::vector<P
     for (const double value : expected.pixels[i])
       magnitude = std::max(magnitude, std::abs(value));
     return error * expected.largest[i] + kDenormal * (1 + error / kRounding) +
-           output_rounding(settings_.resolved, magnitude);
+           output_rounding(settings_.linear, magnitude);
   };
   const std::string what =
       fmt::format("{}x{} -> {}x{}, jitter {}, {}, {}", spec.render.width, spec.render.height, output.width,
                   output.height, spec.jitter.x, spec.jitter.y, name_of(spec.colour));
-  expect_close(expected, actual.pixels, bound, what, settings_.resolved);
+  expect_close(expected, actual.pixels, bound, what, settings_.linear);
   EXPECT_EQ(actual.non_finite, expected.non_finite) << what;
 }
 

@@ -123,7 +123,7 @@ std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned 
 PlanFacts TemporalStages::facts(TemporalPreset preset) const {
   ResolveSettings settings{.method = Method::kTemporal,
                            .colour = variant_.colour,
-                           .resolved = variant_.resolved,
+                           .linear = variant_.resolved,
                            .storage = variant_.storage};
   if (variant_.checkerboard) settings.shading = Shading::kCheckerboard;
   settings.temporal = {.preset = preset, .history = variant_.history};
@@ -311,7 +311,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   const std::string options = spec_of(facts(how.preset), "resolve_temporal").options;
   cl::Kernel resolve = kernel("resolve_temporal", how.layers.empty() ? without_layers(options) : options);
   resolve.setArg(0, params);
-  resolve.setArg(1, tables.get(impl().queue, {output, in.frame.render, in.frame.jitter}));
+  resolve.setArg(1, tables.get(impl().queue, {output, in.frame.render_extent, in.frame.jitter}));
   set_memory(resolve, 2, in.frame.colour.memory);
   set_memory(resolve, 3, variant_.moves ? in.reprojection.memory : before());
   set_memory(resolve, 4, (variant_.reactive ? in.frame.reactive : in.frame.colour).memory);

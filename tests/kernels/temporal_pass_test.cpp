@@ -20,8 +20,8 @@ constexpr Vec2 kJitters[] = {{.25f, -.25f}, {-.125f, .375f}, {.4375f, .0625f}, {
 
 ResolveSettings settings_for(Extent output, PixelFormat history = PixelFormat::kRGBA32F) {
   ResolveSettings settings{.method = Method::kTemporal,
-                           .output = output,
-                           .target = {2 * output.width, 2 * output.height},
+                           .output_extent = output,
+                           .target_extent = {2 * output.width, 2 * output.height},
                            .present = false};
   settings.temporal.history = history;
   return settings;
@@ -46,14 +46,14 @@ class Sequence {
     // One surface, which hides nothing.
     now.inputs.depth =
         rig_.image(PixelFormat::kR32F, Storage::kBuffer, render, constant(render, {1, 0, 0, 0}), 0);
-    const ImageView view = rig_.output(settings_.resolved, settings_.output);
+    const ImageView view = rig_.output(settings_.linear, settings_.output_extent);
     const Counter counter = rig_.counter();
     FrameReport report;
-    chain_.run(chain_.frame(now.inputs, count_ == 1 ? nullptr : &before_, {.resolved = view}, counter),
-               {.resolved = view}, report, nullptr);
+    chain_.run(chain_.frame(now.inputs, count_ == 1 ? nullptr : &before_, {.linear = view}, counter),
+               {.linear = view}, report, nullptr);
     before_ = now.inputs;
-    shown = rig_.pixels(view, settings_.output);
-    history_bytes = rig_.bytes(chain_.newest(Resource::kHistory), settings_.output);
+    shown = rig_.pixels(view, settings_.output_extent);
+    history_bytes = rig_.bytes(chain_.newest(Resource::kHistory), settings_.output_extent);
     history = testing::decode(settings_.temporal.history, history_bytes);
     non_finite = rig_.count(counter);
   }

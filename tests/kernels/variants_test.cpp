@@ -83,7 +83,8 @@ using PlanAxis = std::vector<PlanChange>;
 
 // The defaults, with sizes.
 PlanInputs first_plan(Extent output = {64, 64}) {
-  return {.needs = {}, .settings = {.output = output, .target = {2 * output.width, 2 * output.height}}};
+  return {.needs = {},
+          .settings = {.output_extent = output, .target_extent = {2 * output.width, 2 * output.height}}};
 }
 
 // Returns all values of all fields. Not each combination is accepted by plan_for().
@@ -127,12 +128,12 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   need(&SceneNeeds::camera_motion);
   need(&SceneNeeds::transparents);
   need(&SceneNeeds::background);
-  setting(&Settings::least_output, {Extent{}, Extent{1, 1}});
-  setting(&Settings::target, {large, small});
-  setting(&Settings::particle_target, {Extent{}, small});
+  setting(&Settings::min_output_extent, {Extent{}, Extent{1, 1}});
+  setting(&Settings::target_extent, {large, small});
+  setting(&Settings::particle_target_extent, {Extent{}, small});
   setting(&Settings::colour, {kRGBA16F, kRGBA32F, kRGBA8});
   setting(&Settings::velocity, {kRG16F, kRG32F});
-  setting(&Settings::resolved, {kRGBA32F, kRGBA16F});
+  setting(&Settings::linear, {kRGBA32F, kRGBA16F});
   setting(&Settings::conventions,
           {InputConventions{}, InputConventions{.depth = DepthConvention::kLinear, .velocity_jittered = true},
            InputConventions{
@@ -146,7 +147,7 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   setting(&Settings::dither, {false, true});
   setting(&Settings::clamp_ringing, {false, true});
   setting(&Settings::drawn_velocity, {DrawnVelocity::kOwn, DrawnVelocity::kDilated});
-  setting(&Settings::far, {FarMotion::kAsDrawn, FarMotion::kCamera, FarMotion::kEvidence});
+  setting(&Settings::sky_motion, {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence});
   setting(&Settings::sharpness, {0.0f, .5f});
   setting(&Settings::measures_content, {false, true});
   setting(&Settings::fades, {false, true});
@@ -172,7 +173,7 @@ bool is_listed(const ResolveSettings& settings) {
   const ResolveSettings first = first_plan().settings;
   return settings.temporal.view == TemporalView::kPicture ||
          (settings.storage == first.storage && settings.colour == first.colour &&
-          settings.velocity == first.velocity && settings.resolved == first.resolved &&
+          settings.velocity == first.velocity && settings.linear == first.linear &&
           settings.temporal.history == first.temporal.history);
 }
 
@@ -256,7 +257,7 @@ TEST(Variants, NoPlanHasMorePassesThanAReport) {
       grows = true;
     });
   }
-  EXPECT_LE(most, static_cast<std::size_t>(FrameReport::kMaxPasses));
+  EXPECT_LE(most, PassReports::max_size());
   EXPECT_GE(most, 50u) << "the temporal upscaler with all that goes with it";
 }
 

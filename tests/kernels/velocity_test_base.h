@@ -36,7 +36,7 @@ class VelocityTest : public ::testing::TestWithParam<VelocityVariant> {
   virtual TestFrame turned_frame(Rig& rig, const FrameSpec& spec) const = 0;
 
   std::vector<unsigned char> run(Rig& rig, const TestFrame& frame, bool tight = false) {
-    const Extent render = frame.inputs.render;
+    const Extent render = frame.inputs.render_extent;
     const std::vector<Pixel> before(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
     const ImageView view = rig.image(settings_.velocity, settings_.storage, render, before, -7, tight);
     pass_->run(frame.inputs, {}, {1, 1}, {}, {{Resource::kVelocity, view}});

@@ -142,7 +142,7 @@ class Focused : public ::testing::Test {
       const auto inputs = frames.acquire();
       EXPECT_TRUE(inputs.ok());
       const FrameReport report =
-          frames.dispatch(service.value(), inputs.value(), {.resolved = resolved.view()});
+          frames.dispatch(service.value(), inputs.value(), {.linear = resolved.view()});
       EXPECT_TRUE(report.ok()) << report.status.message();
       EXPECT_EQ(report.focused, !options.focus.empty());
       if (i >= options.frames - kept) {

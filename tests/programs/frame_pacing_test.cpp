@@ -18,7 +18,7 @@ constexpr double kRefreshMs = 20;  // at 50 Hz
 PacingSettings settings(ControllerKind kind = ControllerKind::kPredictive) {
   PacingSettings result;
   result.controller = kind;
-  result.ladder = {.output = {1280, 720}, .min_scale = 0.5};
+  result.ladder = {.output_extent = {1280, 720}, .min_scale = 0.5};
   result.target_fps = 1000 / kRefreshMs;
   return result;
 }
@@ -82,9 +82,9 @@ TEST(FramePacing, AChangeOfMethodIsNotedWithTheFrameThatBeginsIt) {
   for (int i = 0; i < 300; ++i) {
     now = std::max(now, pacing.free_at().value());
     const QualityChoice choice = pacing.choice().value();
-    EXPECT_EQ(choice.render, pacing.next());
-    const std::uint64_t frame = pacing.begin(now, choice.render);
-    FrameCosts costs{.gpu_ms = 1 + 38 * area(choice.render), .resolve_ms = 1};
+    EXPECT_EQ(choice.render_extent, pacing.next());
+    const std::uint64_t frame = pacing.begin(now, choice.render_extent);
+    FrameCosts costs{.gpu_ms = 1 + 38 * area(choice.render_extent), .resolve_ms = 1};
     pacing.finish(frame, now += costs.gpu_ms);
     costs.content.emplace().light = i < 150 ? 0 : 1;
     pacing.observe(frame, costs);

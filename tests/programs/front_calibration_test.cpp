@@ -74,7 +74,7 @@ TEST_F(FrontCalibrationRun, KeepsTheScenesFrontAndExplainsIt) {
       << calibrated.out;
   const ErrorFront front = kept();
   EXPECT_EQ(front.source().scene, "wheel");
-  EXPECT_EQ(front.source().output, (Extent{128, 72}));
+  EXPECT_EQ(front.source().output_extent, (Extent{128, 72}));
   ASSERT_EQ(front.methods().size(), front_variants().size());
   for (std::size_t i = 0; i < front_variants().size(); ++i)
     EXPECT_EQ(front.methods()[i], front_variants()[i]);

@@ -30,7 +30,7 @@ struct Played {
 };
 
 QualityChoice choice_at(int frame, const MethodVariant& from, const MethodVariant& to, bool fades) {
-  QualityChoice choice = {.render = {100, 56}, .method = frame < kBefore ? from : to};
+  QualityChoice choice = {.render_extent = {100, 56}, .method = frame < kBefore ? from : to};
   const int faded = frame - kBefore + 1;
   if (!fades || faded < 1 || faded > kFade) return choice;
   choice.fading_from = from;
@@ -69,7 +69,7 @@ Played play(const MethodVariant& from, const MethodVariant& to, bool fades) {
     const QualityChoice choice = choice_at(index, from, to, fades);
     const MethodSampling sampling = sampling_for(choice);
     frames.sequence().set_sampling(sampling.jitter, sampling.detail);
-    EXPECT_TRUE(frames.draw(index, frames.sequence().at(index, choice.render)).ok());
+    EXPECT_TRUE(frames.draw(index, frames.sequence().at(index, choice.render_extent)).ok());
     const auto inputs = frames.acquire();
     EXPECT_TRUE(inputs.ok()) << inputs.status().message();
     const FrameReport report =
@@ -110,7 +110,7 @@ TEST(MethodResolves, AReportHasThePassesOfBothAndTheContent) {
   const Played run = play(kOld, kNew, true);
   ASSERT_EQ(run.reports.size(), static_cast<std::size_t>(kFrames));
   const auto has = [](const FrameReport& report, std::string_view kernel) {
-    return std::any_of(report.passes.begin(), report.passes.begin() + report.pass_count,
+    return std::any_of(report.passes.begin(), report.passes.end(),
                        [&](const PassReport& pass) { return pass.kernel == kernel; });
   };
   for (int index = 0; index < kFrames; ++index) {

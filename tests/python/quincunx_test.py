@@ -83,7 +83,7 @@ class Structs(unittest.TestCase):
         for name, number in {"QUINCUNX_TEMPORAL": quincunx.METHODS["temporal"], "QUINCUNX_HOST": quincunx.HOST,
                              "QUINCUNX_REPROJECTED": quincunx.number_of("two_frame_form", "reprojected"),
                              "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],
-                             "QUINCUNX_BY_EVIDENCE": quincunx.number_of("far_motion", "evidence"),
+                             "QUINCUNX_BY_EVIDENCE": quincunx.number_of("sky_motion", "evidence"),
                              "QUINCUNX_DILATED_VELOCITY": quincunx.number_of("drawn_velocity", "dilated"),
                              "QUINCUNX_LINEAR": quincunx.number_of("depth_convention", "linear"),
                              "QUINCUNX_BOTTOM": quincunx.number_of("origin", "bottom"),
@@ -158,7 +158,7 @@ class Example(unittest.TestCase):
 class Errors(unittest.TestCase):
     def test_what_the_library_refuses_is_its_sentence(self):
         resolver = quincunx.Resolver((40, 30), method="bilinear", present=0)
-        with self.assertRaisesRegex(quincunx.Error, "render is 50x20; it must lie within 1x1 and the target's 40x30"):
+        with self.assertRaisesRegex(quincunx.Error, "render_extent is 50x20; it must lie within 1x1 and the target's 40x30"):
             resolver.resolve(np.zeros((20, 50, 4)))
         with self.assertRaisesRegex(quincunx.Error, "velocity is missing; the plan needs it as RG32F"):
             quincunx.Resolver((40, 30), transparents=False).resolve(np.zeros((20, 30, 4)))

@@ -76,7 +76,7 @@ TEST_F(Input, WhatThePlanDoesNotReadIsForgotten) {
   SequenceFormat format = settled({}, file).value();
   ResolveSettings settings;
   settings.method = Method::kBilinear;
-  settings.output = settings.target = kOutput;
+  settings.output_extent = settings.target_extent = kOutput;
   ASSERT_TRUE(keep_what_is_read(format, plan_for(needs_of(format), settings).value()).ok());
   EXPECT_FALSE(format.channels.has_velocity());
   EXPECT_FALSE(format.channels.has_depth());

@@ -190,12 +190,12 @@ namespace {
 
 constexpr Extent kExtent = {64, 48};
 
-ResolvePlan plan(FarMotion far = FarMotion::kAsDrawn) {
+ResolvePlan plan(SkyMotion far = SkyMotion::kAsDrawn) {
   ResolveSettings settings;
   settings.method = Method::kTemporal;
-  settings.output = settings.target = {128, 96};
+  settings.output_extent = settings.target_extent = {128, 96};
   settings.colour = PixelFormat::kRGBA32F;
-  settings.far = far;
+  settings.sky_motion = far;
   return plan_for({}, settings).value();
 }
 
@@ -271,7 +271,7 @@ Matrix camera(double degrees) {
   return m;
 }
 
-std::vector<std::string> said_of_sky(double degrees, Vec2 motion, float depth, FarMotion far) {
+std::vector<std::string> said_of_sky(double degrees, Vec2 motion, float depth, SkyMotion far) {
   SequenceWatch watch(plan(far), 1);
   std::vector<std::string> said;
   for (int i = 0; i < 4; ++i) {
@@ -287,14 +287,14 @@ std::vector<std::string> said_of_sky(double degrees, Vec2 motion, float depth, F
 }
 
 TEST(Watch, ASkyThatStandsStillBeforeATurningCameraIsNamedOnce) {
-  const auto said = said_of_sky(2, {}, 0, FarMotion::kAsDrawn);
+  const auto said = said_of_sky(2, {}, 0, SkyMotion::kAsDrawn);
   ASSERT_EQ(said.size(), 1u);
   EXPECT_EQ(said[0],
-            "the sky of frame 1 has a motion of 0, although the camera turns: --far camera moves it");
-  EXPECT_TRUE(said_of_sky(0, {}, 0, FarMotion::kAsDrawn).empty()) << "the camera does not turn";
-  EXPECT_TRUE(said_of_sky(2, {.01f, 0}, 0, FarMotion::kAsDrawn).empty()) << "the sky has motion";
-  EXPECT_TRUE(said_of_sky(2, {}, .1f, FarMotion::kAsDrawn).empty()) << "there is no sky";
-  EXPECT_TRUE(said_of_sky(2, {}, 0, FarMotion::kCamera).empty()) << "it is moved already";
+            "the sky of frame 1 has a motion of 0, although the camera turns: --sky-motion camera moves it");
+  EXPECT_TRUE(said_of_sky(0, {}, 0, SkyMotion::kAsDrawn).empty()) << "the camera does not turn";
+  EXPECT_TRUE(said_of_sky(2, {.01f, 0}, 0, SkyMotion::kAsDrawn).empty()) << "the sky has motion";
+  EXPECT_TRUE(said_of_sky(2, {}, .1f, SkyMotion::kAsDrawn).empty()) << "there is no sky";
+  EXPECT_TRUE(said_of_sky(2, {}, 0, SkyMotion::kCamera).empty()) << "it is moved already";
 }
 
 class WatchedRun : public testing::SequenceTest {};

@@ -145,12 +145,13 @@ TEST_F(Refusal, FarMotionNeedsMatricesAndDepth) {
   testing::FrameFile file = frame(1);
   file.depth = true;
   write_frame(input(1), file);
-  expect_refused(kRun + "--far camera", 1, "has no attribute 'worldToNDC', which --far camera needs");
-  resolve_to("u", "--far camera --method bilinear");
+  expect_refused(kRun + "--sky-motion camera", 1,
+                 "has no attribute 'worldToNDC', which --sky-motion camera needs");
+  resolve_to("u", "--sky-motion camera --method bilinear");
   file.attributes.push_back({"worldToNDC", tools::Matrix{}});
   file.depth = false;
   write_frame(input(1), file);
-  expect_refused(kRun + "--far camera", 1, "--far camera reads depth here");
+  expect_refused(kRun + "--sky-motion camera", 1, "--sky-motion camera reads depth here");
 }
 
 TEST_F(Refusal, ADilatedVelocityNeedsDepth) {

@@ -74,14 +74,14 @@ TEST_F(Run, TheProgramGivesWhatTheServiceGives) {
 
   const Device device = Device::open().value();
   ResolveSettings settings;
-  settings.output = kOutput;
-  settings.target = {27, 14};
+  settings.output_extent = kOutput;
+  settings.target_extent = {27, 14};
   settings.velocity = PixelFormat::kRG32F;
   settings.colour = PixelFormat::kRGBA32F;
   settings.present = false;
   auto service = ResolveService::create(device, plan_for({.camera_motion = false}, settings).value());
   ASSERT_TRUE(service.ok()) << service.status().message();
-  const Image resolved = std::move(device.allocate(kOutput, settings.resolved)).value();
+  const Image resolved = std::move(device.allocate(kOutput, settings.linear)).value();
   std::vector<Image> images;
   for (int i = 0; i < 2; ++i) {
     const tools::LoadedImage file = image(input(i + 1));
@@ -109,9 +109,9 @@ TEST_F(Run, TheProgramGivesWhatTheServiceGives) {
     inputs.colour = upload(PixelFormat::kRGBA32F, colour.data());
     inputs.velocity = upload(PixelFormat::kRG32F, velocity.data());
     inputs.reactive = upload(PixelFormat::kR8, reactive.data());
-    inputs.render = file.extent;
+    inputs.render_extent = file.extent;
     inputs.jitter = testing::quincunx_jitter(i + 1);
-    const FrameReport report = service->dispatch(inputs, {.resolved = resolved.view()});
+    const FrameReport report = service->dispatch(inputs, {.linear = resolved.view()});
     ASSERT_TRUE(report.ok()) << report.status.message();
     EXPECT_EQ(report.used_previous, i == 1);
     std::vector<float> pixels(kOutput.area() * 4);
@@ -236,7 +236,7 @@ TEST_F(Run, FarMotionFromTheCameraMovesASky) {
   }
   for (const char* method : {"quincunx", "quincunx:reprojected", "temporal"}) {
     resolve_to("camera", fmt::format("--method {} --velocity camera", method));
-    resolve_to("far", fmt::format("--method {} --far camera", method));
+    resolve_to("far", fmt::format("--method {} --sky-motion camera", method));
     resolve_to("drawn", fmt::format("--method {}", method));
     for (int number = 1; number <= 3; ++number)
       EXPECT_EQ(channel(output(number, "camera"), "R"), channel(output(number, "far"), "R"))

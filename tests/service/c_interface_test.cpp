@@ -96,8 +96,8 @@ class CRig {
  public:
   CRig(const SceneNeeds& needs, ResolveSettings settings, Extent output, Extent target)
       : settings_(settings) {
-    settings_.output = output;
-    settings_.target = target;
+    settings_.output_extent = output;
+    settings_.target_extent = target;
     settings_.colour = PixelFormat::kRGBA32F;
     settings_.velocity = PixelFormat::kRG32F;
     settings_.dither = false;
@@ -108,14 +108,14 @@ class CRig {
     quincunx_service* service = nullptr;
     EXPECT_EQ(quincunx_service_create(device, plan_.get(), &service), QUINCUNX_OK) << quincunx_last_error();
     service_.reset(service);
-    resolved_ = std::make_unique<HostPicture>(output, settings_.resolved);
+    resolved_ = std::make_unique<HostPicture>(output, settings_.linear);
     presented_ = std::make_unique<HostPicture>(output, PixelFormat::kRGBA8);
-    outputs_ = {sizeof(outputs_), resolved_->image(), presented_->image(), nullptr};
+    outputs_ = {sizeof(outputs_), resolved_->image(), presented_->image()};
   }
 
   // The frame's images are gone when it returns.
   quincunx_status resolve(const HostFrame& frame, quincunx_report* report = nullptr) {
-    const Extent size = settings_.targets == Targets::kPlaced ? frame.render : settings_.target;
+    const Extent size = settings_.targets == Targets::kPlaced ? frame.render : settings_.target_extent;
     HostPicture colour(size, settings_.colour), velocity(size, settings_.velocity);
     HostPicture depth(size, PixelFormat::kR32F), reactive(size, PixelFormat::kR8);
     colour.fill<Pixel>(frame.render, frame.colour);
@@ -225,9 +225,11 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
   COwner<quincunx_device> device(raw);
   EXPECT_EQ(quincunx_device_queue(raw), own.queue());
   EXPECT_STREQ(quincunx_device_name(raw), own.info().name.c_str());
-  const auto plan = c_plan(
-      {.background = false},
-      {.method = Method::kBilinear, .output = kOutput, .target = kTarget, .present = false, .clear = true});
+  const auto plan = c_plan({.background = false}, {.method = Method::kBilinear,
+                                                   .output_extent = kOutput,
+                                                   .target_extent = kTarget,
+                                                   .present = false,
+                                                   .clear = true});
   quincunx_service* made = nullptr;
   ASSERT_EQ(quincunx_service_create(raw, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
   COwner<quincunx_service> service(made);
@@ -253,7 +255,7 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
   inputs.render_width = 20;
   inputs.render_height = 10;
   inputs.frame_index = 77;
-  const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr, nullptr};
+  const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
   quincunx_pass_report passes[20];
   quincunx_report report = {};
   report.struct_size = sizeof(report);
@@ -301,7 +303,8 @@ TEST(CInterface, ABadFrameIsRefusedWhole) {
 // The C interface answers bad input with a code and a sentence.
 
 TEST(CErrors, ValidateNamesTheField) {
-  const auto plan = c_plan({}, {.method = Method::kBilinear, .output = kOutput, .target = kTarget});
+  const auto plan =
+      c_plan({}, {.method = Method::kBilinear, .output_extent = kOutput, .target_extent = kTarget});
   float texels[4] = {};
   quincunx_image colour = {sizeof(colour), QUINCUNX_HOST, QUINCUNX_RGBA16F, 64, 36, 0, 0, texels};
   quincunx_image picture = {sizeof(picture), QUINCUNX_HOST, QUINCUNX_RGBA32F, 48, 27, 0, 0, texels};
@@ -310,7 +313,7 @@ TEST(CErrors, ValidateNamesTheField) {
   inputs.colour = &colour;
   inputs.render_width = 64;
   inputs.render_height = 36;
-  quincunx_outputs outputs = {sizeof(outputs), &picture, nullptr, nullptr};
+  quincunx_outputs outputs = {sizeof(outputs), &picture, nullptr};
   const auto check = [&] { return quincunx_validate(plan.get(), &inputs, &outputs); };
   ASSERT_EQ(check(), QUINCUNX_OK) << quincunx_last_error();  // and no texel was read
   const auto refuses = [&](const char* words) {
@@ -381,15 +384,16 @@ SceneNeeds other_needs() {
 
 ResolveSettings other_settings() {
   ResolveSettings settings;
-  auto& [method, output, least_output, target, particle_target, colour, velocity, resolved, conventions,
-         storage, targets, shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves,
-         drawn_velocity, far, quincunx, temporal, blur, sharpness, focus, measures_content, fades] = settings;
+  auto& [method, output, min_output, target, particle_target, colour, velocity, linear, conventions, storage,
+         targets, shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves,
+         drawn_velocity, sky_motion, quincunx, temporal, blur, sharpness, focus, measures_content, fades] =
+      settings;
   method = Method::kTemporal;
   output = {3, 4};
   target = {5, 6};
   colour = PixelFormat::kRGBA8;
   velocity = PixelFormat::kRG32F;
-  resolved = PixelFormat::kRGBA16F;
+  linear = PixelFormat::kRGBA16F;
   auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin] =
       conventions;
   depth = DepthConvention::kLinear;
@@ -405,7 +409,7 @@ ResolveSettings other_settings() {
   tone_map = ToneMap::kReinhard;
   grain = 0.125f;
   drawn_velocity = DrawnVelocity::kDilated;
-  far = FarMotion::kEvidence;
+  sky_motion = SkyMotion::kEvidence;
   sharpness = 0.75f;
   auto& [form, sampling, velocity_weight, residual_weight] = quincunx;
   form = TwoFrameForm::kReprojected;
@@ -471,7 +475,7 @@ struct LaterSettings {
 };
 
 TEST(CSettings, AProgramThatIsNewerIsUnderstoodUntilItUsesWhatIsNew) {
-  LaterSettings later = {c::to_c({{}, {.output = {64, 36}, .target = {64, 36}}}), 0};
+  LaterSettings later = {c::to_c({{}, {.output_extent = {64, 36}, .target_extent = {64, 36}}}), 0};
   later.settings.struct_size = sizeof(later);
   quincunx_plan* plan = nullptr;
   ASSERT_EQ(quincunx_plan_create(&later.settings, &plan), QUINCUNX_OK) << quincunx_last_error();
@@ -496,9 +500,10 @@ TEST(CSettings, AStructWithoutItsSizeIsRefused) {
 }
 
 TEST(CSettings, NeedsAreThoseOfThePlan) {
-  const auto plan = testing::c_plan(
-      {.moving_objects = false},
-      {.method = Method::kTemporal, .output = {64, 36}, .target = {64, 36}, .blur = {.shutter = 0.5f}});
+  const auto plan = testing::c_plan({.moving_objects = false}, {.method = Method::kTemporal,
+                                                                .output_extent = {64, 36},
+                                                                .target_extent = {64, 36},
+                                                                .blur = {.shutter = 0.5f}});
   quincunx_needs needs = {};
   needs.struct_size = sizeof(needs);
   ASSERT_EQ(quincunx_plan_needs(plan.get(), &needs), QUINCUNX_OK) << quincunx_last_error();
@@ -508,7 +513,6 @@ TEST(CSettings, NeedsAreThoseOfThePlan) {
   EXPECT_EQ(needs.reads_camera, 1);
   EXPECT_EQ(needs.keeps_previous_frame, 1);
   EXPECT_EQ(needs.accumulates, 1);
-  EXPECT_EQ(needs.blurs, 1);
   EXPECT_GT(needs.frame_bytes, 64u * 36 * 12);
   EXPECT_NE(std::string(quincunx_plan_text(plan.get())).find("velocity_from_depth"), std::string::npos);
 }

@@ -30,7 +30,8 @@ const PlannedBuffer* buffer_of(const ResolvePlan& plan, const std::string& name)
 }
 
 ResolvePlan plan_of(Method method, Shading shading, const SceneNeeds& needs) {
-  return plan_for(needs, {.method = method, .output = kExtent, .target = kExtent, .shading = shading})
+  return plan_for(needs,
+                  {.method = method, .output_extent = kExtent, .target_extent = kExtent, .shading = shading})
       .value();
 }
 
@@ -117,8 +118,8 @@ TEST(Checkerboard, TwoFramesOfEightBitsMakeAStillPictureWhole) {
 
 TEST(CheckerboardPlan, OfEightBitsFillsCodes) {
   const ResolveSettings settings{.method = Method::kBilinear,
-                                 .output = kExtent,
-                                 .target = kExtent,
+                                 .output_extent = kExtent,
+                                 .target_extent = kExtent,
                                  .colour = PixelFormat::kRGBA8,
                                  .shading = Shading::kCheckerboard};
   const auto plan = plan_for(kMoving, settings);

@@ -91,17 +91,18 @@ TEST_P(FromTheBottom, TheSamePicturesTurned) {
     HostFrame frame = random_frame(random, kTarget);
     frame.reset = i == 8;
     if (settings.shading == Shading::kCheckerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
-    if (settings.least_output != Extent{} && i % 3 != 0) frame.output = random_frame(random, kOutput).render;
+    if (settings.min_output_extent != Extent{} && i % 3 != 0)
+      frame.output = random_frame(random, kOutput).render;
     frame.camera.clip_to_previous_clip[8] = static_cast<float>(i) / 512;
     HostFrame close = random_frame(random, kTarget);
     close.reset = frame.reset;
-    const HostFrame particles =
-        random_frame(random, settings.particle_target == Extent{} ? kTarget : settings.particle_target);
+    const HostFrame particles = random_frame(
+        random, settings.particle_target_extent == Extent{} ? kTarget : settings.particle_target_extent);
 
     const auto dispatch = [&](ServiceRig& rig, bool turns) {
       FrameInputs inputs = rig.upload(turns ? turned(frame) : frame);
-      if (settings.particle_target != Extent{}) {
-        const Extent extent = inputs.particle_render = particles.render;
+      if (settings.particle_target_extent != Extent{}) {
+        const Extent extent = inputs.particle_render_extent = particles.render;
         inputs.particle_colour = image(extent, PixelFormat::kRGBA32F, storage, particles.colour, turns);
         inputs.particle_depth = image(extent, PixelFormat::kR32F, storage, particles.depth, turns);
         inputs.particle_reactive = image(extent, PixelFormat::kR8, storage, particles.reactive, turns);
@@ -116,8 +117,7 @@ TEST_P(FromTheBottom, TheSamePicturesTurned) {
                         .rectangle_count = 1,
                         .feather = 3};
       focus.mask = image(region, PixelFormat::kR8, Storage::kBuffer, close.reactive, turns);
-      return rig.service().dispatch(
-          inputs, focus, outputs_for(rig.service().plan(), rig.resolved_view(), rig.presented_view()));
+      return rig.service().dispatch(inputs, focus, {rig.resolved_view(), rig.presented_view()});
     };
     ASSERT_TRUE(dispatch(top, false).ok());
     const FrameReport report = dispatch(bottom, true);
@@ -144,7 +144,7 @@ const Run kOrigins[] = {
                   .sharpness = .5f}},
     {.name = "temporal", .settings = {.method = Method::kTemporal}, .needs = kOpaque},
     {.name = "temporal_camera", .settings = {.method = Method::kTemporal}, .needs = kCameraOnly},
-    {.name = "temporal_dual", .settings = {.method = Method::kTemporal, .least_output = {1, 1}}},
+    {.name = "temporal_dual", .settings = {.method = Method::kTemporal, .min_output_extent = {1, 1}}},
     {.name = "temporal_placed",
      .settings = {.method = Method::kTemporal, .targets = Targets::kPlaced},
      .needs = kOpaque},
@@ -153,10 +153,10 @@ const Run kOrigins[] = {
      .needs = kOpaque},
     {.name = "placed_images",
      .settings = {.method = Method::kQuincunx, .storage = Storage::kImage, .targets = Targets::kPlaced}},
-    {.name = "far_evidence", .settings = {.method = Method::kTemporal, .far = FarMotion::kEvidence}},
+    {.name = "far_evidence", .settings = {.method = Method::kTemporal, .sky_motion = SkyMotion::kEvidence}},
     {.name = "checkerboard",
      .settings = {.method = Method::kTemporal,
-                  .particle_target = {40, 20},
+                  .particle_target_extent = {40, 20},
                   .shading = Shading::kCheckerboard}},
     {.name = "checkerboard_images",
      .settings = {.method = Method::kQuincunx,
@@ -165,12 +165,12 @@ const Run kOrigins[] = {
                   .drawn_velocity = DrawnVelocity::kDilated}},
     {.name = "focus",
      .settings = {.method = Method::kQuincunx,
-                  .focus = {.extent = {20, 12}, .target = kTarget, .mask = true}}},
+                  .focus = {.extent = {20, 12}, .target_extent = kTarget, .mask = true}}},
     {.name = "focus_images",
      .settings = {.method = Method::kCatmullRom,
-                  .particle_target = {40, 20},
+                  .particle_target_extent = {40, 20},
                   .storage = Storage::kImage,
-                  .focus = {.extent = {20, 12}, .target = kTarget, .mask = true}}},
+                  .focus = {.extent = {20, 12}, .target_extent = kTarget, .mask = true}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, FromTheBottom, ::testing::ValuesIn(kOrigins), name_of_run);
@@ -322,7 +322,7 @@ std::vector<std::vector<Pixel>> pictures_of(const Device& device, const Run& run
   ResolveSettings settings = run.settings;
   settings.conventions = given.conventions;
   ServiceRig rig(device, run.needs, settings, kOutput, kTarget);
-  const Image finished = device.allocate(kOutput, settings.resolved).value();
+  const Image finished = device.allocate(kOutput, settings.linear).value();
   std::vector<std::vector<Pixel>> pictures;
   HostFrame previous = scene_frame(0, given.depths);
   for (int i = 0; i < 7; ++i) {
@@ -330,8 +330,7 @@ std::vector<std::vector<Pixel>> pictures_of(const Device& device, const Run& run
     FrameInputs inputs = rig.upload(as_given(given, frame, previous));
     inputs.near_plane = given.near_plane;
     inputs.far_plane = given.far_plane;
-    const FrameReport report =
-        rig.service().dispatch(inputs, outputs_for(rig.service().plan(), finished.view(), {}));
+    const FrameReport report = rig.service().dispatch(inputs, {.linear = finished.view()});
     EXPECT_TRUE(report.ok()) << report.status.message();
     pictures.emplace_back(static_cast<std::size_t>(kOutput.area()));
     EXPECT_TRUE(device.download(finished.view(), kOutput, pictures.back().data()).ok());
@@ -360,7 +359,7 @@ const Run kMethods[] = {
     {.name = "temporal_dilated_far",
      .settings = {.method = Method::kTemporal,
                   .drawn_velocity = DrawnVelocity::kDilated,
-                  .far = FarMotion::kCamera}},
+                  .sky_motion = SkyMotion::kCamera}},
     {.name = "velocity", .settings = {.method = Method::kQuincunx}},
     {.name = "reprojected_blurred",
      .settings = {.method = Method::kQuincunx,
@@ -380,8 +379,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, Conventions, ::testing::ValuesIn(kMethods), na
 
 ResolvePlan plan_with(const InputConventions& conventions, Storage storage = Storage::kBuffer) {
   return plan_for({}, {.method = Method::kTemporal,
-                       .output = kOutput,
-                       .target = kTarget,
+                       .output_extent = kOutput,
+                       .target_extent = kTarget,
                        .conventions = conventions,
                        .storage = storage})
       .value();
@@ -425,8 +424,8 @@ TEST(ConventionsPlan, OnlyWhatHasToBeIsConverted) {
                                 "reactive is an image that begins with the lowest row"}));
   EXPECT_FALSE(images.keeps_previous_frame());
   const ResolvePlan one_frame = plan_for({}, {.method = Method::kBilinear,
-                                              .output = kOutput,
-                                              .target = kTarget,
+                                              .output_extent = kOutput,
+                                              .target_extent = kTarget,
                                               .conventions = {.depth = kForward, .velocity_jittered = true}})
                                     .value();
   EXPECT_TRUE(conversions(one_frame).empty());

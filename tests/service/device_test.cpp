@@ -303,11 +303,11 @@ TEST(ShippedProfiles, AreWholeAndOneForEachPlatformAndKind) {
 // Frames of a service that has most kinds of passes, as bits of the last presented picture and of the history.
 std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfile& profile, Method method) {
   constexpr Extent kRender = {83, 41}, kOutput = {131, 67};
-  ResolveSettings settings{.method = method, .output = kOutput, .target = kRender};
+  ResolveSettings settings{.method = method, .output_extent = kOutput, .target_extent = kRender};
   settings.quincunx.form = TwoFrameForm::kReprojected;
   settings.sharpness = 0.5f;
   settings.blur.shutter = 0.5f;
-  settings.far = FarMotion::kEvidence;
+  settings.sky_motion = SkyMotion::kEvidence;
   const ResolvePlan plan = plan_for({.moving_objects = true, .transparents = true}, settings).value();
   const Device own = device.with_profile(profile);
   ResolveService service = ResolveService::create(own, plan).value();
@@ -329,22 +329,21 @@ std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfi
     frames.push_back({filled(settings.colour, 0x3400, 0x800), filled(settings.velocity, 0x1c00, 0x400),
                       filled(PixelFormat::kR32F, 0x3e00, 0x100), filled(PixelFormat::kR8, 0, 0x100)});
   }
-  const Image resolved = own.allocate(kOutput, settings.resolved).value();
-  const Image blurred = own.allocate(kOutput, settings.resolved).value();
+  const Image linear = own.allocate(kOutput, settings.linear).value();
   const Image presented = own.allocate(kOutput, PixelFormat::kRGBA8).value();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameReport report = service.dispatch({.colour = frames[i].colour.view(),
                                                  .depth = frames[i].depth.view(),
                                                  .velocity = frames[i].velocity.view(),
                                                  .reactive = frames[i].reactive.view(),
-                                                 .render = kRender,
+                                                 .render_extent = kRender,
                                                  .jitter = {0.25f, i % 2 == 0 ? 0.25f : -0.25f},
                                                  .frame_index = i},
-                                                {resolved.view(), presented.view(), blurred.view()});
+                                                {linear.view(), presented.view()});
     EXPECT_TRUE(report.ok()) << report.status.message();
   }
   std::vector<unsigned char> bytes(static_cast<std::size_t>(kOutput.area()) * 20);
-  EXPECT_TRUE(own.download(blurred.view(), kOutput, bytes.data()).ok());
+  EXPECT_TRUE(own.download(linear.view(), kOutput, bytes.data()).ok());
   EXPECT_TRUE(own.download(presented.view(), kOutput, bytes.data() + kOutput.area() * 16).ok());
   return bytes;
 }

@@ -36,7 +36,7 @@ class DualOutput : public ::testing::TestWithParam<Dual> {};
 TEST_P(DualOutput, AtItsLargestItChangesNoBit) {
   ResolveSettings settings = GetParam().settings;
   ServiceRig fixed({}, settings, kOutput, kTarget);
-  settings.least_output = {1, 1};
+  settings.min_output_extent = {1, 1};
   ServiceRig dual({}, settings, kOutput, kTarget);
   const bool blurs = settings.blur.shutter > 0;  // then the displayed picture is the blurred one
   std::mt19937 random(7);
@@ -57,19 +57,21 @@ TEST_P(DualOutput, ASmallerOneHasTheBitsOfAPlanOfThatSize) {
   constexpr Extent kSmall{31, 22};
   ResolveSettings settings = GetParam().settings;
   ServiceRig fixed({}, settings, kSmall, kTarget);
-  settings.least_output = {1, 1};
+  settings.min_output_extent = {1, 1};
   ServiceRig dual({}, settings, kOutput, kTarget);
   std::mt19937 random(8);
   for (int i = 0; i < 60; ++i) {
     HostFrame frame = testing::random_frame(random, kTarget);
     const Pixels expected = fixed.resolve(frame);
     frame.output = kSmall;
-    const FrameReport report =
-        dual.service().dispatch(dual.upload(frame), {.resolved = dual.resolved_view()});
+    const FrameReport report = dual.dispatch(dual.upload(frame));
     ASSERT_TRUE(report.ok()) << report.status.message();
-    EXPECT_EQ(report.output, kSmall);
+    EXPECT_EQ(report.output_extent, kSmall);
     Pixels actual(expected.size());
-    ASSERT_TRUE(dual.device().download(dual.resolved_view(), kSmall, actual.data()).ok());
+    const bool blurs = dual.service().plan().blurs();
+    const ImageView picture =
+        dual.service().picture(blurs ? PictureStage::kBlurred : PictureStage::kResolved);
+    ASSERT_TRUE(dual.device().download(picture, kSmall, actual.data()).ok());
     ASSERT_EQ(std::memcmp(expected.data(), actual.data(), expected.size() * sizeof(Pixel)), 0) << i;
   }
 }
@@ -134,8 +136,8 @@ double decibels(double error) {
 Errors errors_of(const Change& change, Course run) {
   const TemporalScene scene = scene_of(change.pans);
   const int phases = testing::halton_phases(scene.output, kSamples);
-  ServiceRig rig({.transparents = false}, {.method = Method::kTemporal, .least_output = {1, 1}}, scene.output,
-                 {160, 96});
+  ServiceRig rig({.transparents = false}, {.method = Method::kTemporal, .min_output_extent = {1, 1}},
+                 scene.output, {160, 96});
   Errors errors;
   for (int i = 0; i < kFramesBefore + kFramesAfter; ++i) {
     HostFrame frame = scene.render(i, kSamples, testing::halton_jitter(i, phases));
@@ -197,9 +199,9 @@ INSTANTIATE_TEST_SUITE_P(Changes, ChangeOfOutput, ::testing::ValuesIn(kChanges),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(DualPlan, SaysWhatItDoes) {
-  ResolveSettings settings{.method = Method::kTemporal, .output = kOutput, .target = kTarget};
+  ResolveSettings settings{.method = Method::kTemporal, .output_extent = kOutput, .target_extent = kTarget};
   EXPECT_NE(plan_for({}, settings)->explain().find("Output         always 48x27"), std::string::npos);
-  settings.least_output = {24, 14};
+  settings.min_output_extent = {24, 14};
   const std::string text = plan_for({}, settings)->explain();
   EXPECT_NE(text.find("Output         dynamic: 24x14 to 48x27, shown in 48x27"), std::string::npos) << text;
   for (const char* kernel :
@@ -210,12 +212,12 @@ TEST(DualPlan, SaysWhatItDoes) {
 }
 
 TEST(DualPlan, RefusesOutputsOutsideItsRange) {
-  ResolveSettings settings{.method = Method::kBilinear, .output = kOutput, .target = kTarget};
+  ResolveSettings settings{.method = Method::kBilinear, .output_extent = kOutput, .target_extent = kTarget};
   for (const Extent least : {Extent{49, 27}, Extent{48, 0}, Extent{-1, 5}}) {
-    settings.least_output = least;
+    settings.min_output_extent = least;
     const auto plan = plan_for({}, settings);
     ASSERT_FALSE(plan.ok());
-    EXPECT_NE(plan.status().message().find("settings.least_output is"), std::string::npos);
+    EXPECT_NE(plan.status().message().find("settings.min_output_extent is"), std::string::npos);
   }
   const auto refused = [](ServiceRig& rig, Extent output) {
     HostFrame frame;
@@ -226,11 +228,13 @@ TEST(DualPlan, RefusesOutputsOutsideItsRange) {
     return std::string(report.status.message());
   };
   ServiceRig fixed({}, {.method = Method::kBilinear}, kOutput, kTarget);
-  EXPECT_NE(refused(fixed, {24, 14}).find("output is 24x14; the plan has always 48x27"), std::string::npos);
-  ServiceRig dual({}, {.method = Method::kBilinear, .least_output = {24, 14}}, kOutput, kTarget);
-  EXPECT_NE(refused(dual, {23, 20}).find("output is 23x20; it must lie within the plan's 24x14 and 48x27"),
+  EXPECT_NE(refused(fixed, {24, 14}).find("output_extent is 24x14; the plan has always 48x27"),
             std::string::npos);
-  EXPECT_NE(refused(dual, {49, 20}).find("output is 49x20"), std::string::npos);
+  ServiceRig dual({}, {.method = Method::kBilinear, .min_output_extent = {24, 14}}, kOutput, kTarget);
+  EXPECT_NE(
+      refused(dual, {23, 20}).find("output_extent is 23x20; it must lie within the plan's 24x14 and 48x27"),
+      std::string::npos);
+  EXPECT_NE(refused(dual, {49, 20}).find("output_extent is 49x20"), std::string::npos);
 }
 
 }  // namespace

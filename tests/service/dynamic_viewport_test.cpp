@@ -122,7 +122,8 @@ TEST(DynamicViewport, BadSettingsAreNamed) {
   EXPECT_NE(message(DynamicViewport::create({1280, 720}, std::nanf(""))).find("max_scale"),
             std::string::npos);
   EXPECT_NE(message(DynamicViewport::create({1280, 720}, 1, 0)).find("step"), std::string::npos);
-  EXPECT_NE(message(DynamicViewport::create({1280, 720}, 1, 2, {0, 8})).find("floor"), std::string::npos);
+  EXPECT_NE(message(DynamicViewport::create({1280, 720}, 1, 2, {0, 8})).find("min_extent"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -116,7 +116,8 @@ TEST(EncodedColourPicture, IsShownAsItWasDrawn) {
 }
 
 TEST(EncodedColourPlan, SaysWhoToneMaps) {
-  const ResolveSettings settings{.output = {64, 64}, .target = {64, 64}, .colour = PixelFormat::kRGBA8};
+  const ResolveSettings settings{
+      .output_extent = {64, 64}, .target_extent = {64, 64}, .colour = PixelFormat::kRGBA8};
   const auto plan = plan_for({}, settings);
   ASSERT_TRUE(plan.ok()) << plan.status().message();
   const std::string text = plan->explain();

@@ -75,9 +75,9 @@ bool is_covered(const TemporalScene& scene, int x, int y, int frame, double marg
   });
 }
 
-SkyErrors errors_of(const TemporalScene& scene, ResolveSettings settings, FarMotion far) {
+SkyErrors errors_of(const TemporalScene& scene, ResolveSettings settings, SkyMotion far) {
   constexpr double kBeside = 4;  // output pixels
-  settings.far = far;
+  settings.sky_motion = far;
   TemporalRun run(scene, settings);
   SkyErrors errors;
   for (int frame = 0; frame < kEnd; ++frame) {
@@ -92,10 +92,10 @@ SkyErrors errors_of(const TemporalScene& scene, ResolveSettings settings, FarMot
   return errors;
 }
 
-void expect_as_good_as_drawn(FarMotion far, Place pan, Place turn, double allowed_db) {
+void expect_as_good_as_drawn(SkyMotion far, Place pan, Place turn, double allowed_db) {
   const TemporalScene scene = scene_under(pan, turn);
   for (const ResolveSettings& settings : kMethods) {
-    const SkyErrors drawn = errors_of(with_drawn_sky(scene), settings, FarMotion::kAsDrawn);
+    const SkyErrors drawn = errors_of(with_drawn_sky(scene), settings, SkyMotion::kAsDrawn);
     const SkyErrors found = errors_of(scene, settings, far);
     EXPECT_GE(testing::psnr(found.open), testing::psnr(drawn.open) - allowed_db)
         << name_of(settings.method) << ", pan " << pan << ", turn " << turn;
@@ -105,26 +105,26 @@ void expect_as_good_as_drawn(FarMotion far, Place pan, Place turn, double allowe
 }
 
 // Velocities from the camera differ from drawn ones by their rounding, whereby other texels are copied.
-TEST(FarMotion, FromTheCameraItIsAsGoodAsDrawn) {
-  expect_as_good_as_drawn(FarMotion::kCamera, {-.4, .1}, 1, .3);
-  expect_as_good_as_drawn(FarMotion::kCamera, {-2.3, .4}, {.999992, .004}, .3);
-  expect_as_good_as_drawn(FarMotion::kCamera, {-6.2, 0}, 1, .3);
+TEST(SkyMotion, FromTheCameraItIsAsGoodAsDrawn) {
+  expect_as_good_as_drawn(SkyMotion::kCamera, {-.4, .1}, 1, .3);
+  expect_as_good_as_drawn(SkyMotion::kCamera, {-2.3, .4}, {.999992, .004}, .3);
+  expect_as_good_as_drawn(SkyMotion::kCamera, {-6.2, 0}, 1, .3);
 }
 
 // The posts and the ground pan with the sky, only faster.
-TEST(FarMotion, FromEvidenceItIsNearlyAsGoodAsDrawn) {
+TEST(SkyMotion, FromEvidenceItIsNearlyAsGoodAsDrawn) {
   for (const Place pan : {Place(-.4, .1), Place(-6.2, 0)})
-    expect_as_good_as_drawn(FarMotion::kEvidence, pan, 1, 1);
+    expect_as_good_as_drawn(SkyMotion::kEvidence, pan, 1, 1);
 }
 
 // The fit is worse for this pan: with temporal the sky loses 5 to 6 dB to drawn motion, and gains over none at all as
 // much as is expected here. Silhouettes with a layer of their own have less to gain: a sky that is taken for another
 // picture leaves them alone.
-TEST(FarMotion, FromEvidenceASkyIsBetterThanWithoutMotion) {
+TEST(SkyMotion, FromEvidenceASkyIsBetterThanWithoutMotion) {
   const TemporalScene scene = scene_under({-2.3, .4}, 1);
   for (const ResolveSettings& settings : kMethods) {
-    const SkyErrors still = errors_of(scene, settings, FarMotion::kAsDrawn);
-    const SkyErrors found = errors_of(scene, settings, FarMotion::kEvidence);
+    const SkyErrors still = errors_of(scene, settings, SkyMotion::kAsDrawn);
+    const SkyErrors found = errors_of(scene, settings, SkyMotion::kEvidence);
     const bool has_layers =
         settings.method == Method::kTemporal && settings.temporal.preset != TemporalPreset::kFast;
     EXPECT_GE(testing::psnr(found.open), testing::psnr(still.open) + (has_layers ? .7 : 1))
@@ -135,12 +135,12 @@ TEST(FarMotion, FromEvidenceASkyIsBetterThanWithoutMotion) {
 }
 
 // All of this serves one purpose: as it was drawn the sky is smeared, and so are the things before it.
-TEST(FarMotion, WithoutItASkyIsMuchWorse) {
+TEST(SkyMotion, WithoutItASkyIsMuchWorse) {
   for (const Place pan : {Place(-2.3, .4), Place(-6.2, 0)}) {
     const TemporalScene scene = scene_under(pan, 1);
     for (const ResolveSettings& settings : {kMethods[0], kMethods[3]}) {
-      const SkyErrors drawn = errors_of(with_drawn_sky(scene), settings, FarMotion::kAsDrawn);
-      const SkyErrors still = errors_of(scene, settings, FarMotion::kAsDrawn);
+      const SkyErrors drawn = errors_of(with_drawn_sky(scene), settings, SkyMotion::kAsDrawn);
+      const SkyErrors still = errors_of(scene, settings, SkyMotion::kAsDrawn);
       EXPECT_LT(testing::psnr(still.open), testing::psnr(drawn.open) - 1) << name_of(settings.method) << pan;
       EXPECT_LT(testing::psnr(still.beside), testing::psnr(drawn.beside) - 1)
           << name_of(settings.method) << pan;
@@ -149,11 +149,11 @@ TEST(FarMotion, WithoutItASkyIsMuchWorse) {
 }
 
 // Where nothing is far and without motion not one bit changes.
-TEST(FarMotion, ADrawnSkyIsLeftAlone) {
+TEST(SkyMotion, ADrawnSkyIsLeftAlone) {
   const TemporalScene scene = with_drawn_sky(scene_under({-2.3, .4}, 1));
   for (ResolveSettings settings : kMethods) {
     TemporalRun as_drawn(scene, settings);
-    settings.far = FarMotion::kCamera;
+    settings.sky_motion = SkyMotion::kCamera;
     TemporalRun completed(scene, settings);
     EXPECT_EQ(as_drawn.until(6), completed.until(6)) << name_of(settings.method);
   }
@@ -161,13 +161,13 @@ TEST(FarMotion, ADrawnSkyIsLeftAlone) {
 
 // A picture that hangs behind the scene and moves with the camera does not move on the screen, whatever all else does.
 // The match of its colours tells.
-TEST(FarMotion, FromEvidenceAPictureThatHangsBehindStandsStill) {
+TEST(SkyMotion, FromEvidenceAPictureThatHangsBehindStandsStill) {
   for (const Place pan : {Place(-2.3, .4), Place(-6.2, 0)}) {
     TemporalScene scene = scene_under(pan, 1);
     scene.surfaces.back().velocity = 0;
     for (const ResolveSettings& settings : {kMethods[0], kMethods[3]}) {
-      const SkyErrors drawn = errors_of(scene, settings, FarMotion::kAsDrawn);
-      const SkyErrors found = errors_of(scene, settings, FarMotion::kEvidence);
+      const SkyErrors drawn = errors_of(scene, settings, SkyMotion::kAsDrawn);
+      const SkyErrors found = errors_of(scene, settings, SkyMotion::kEvidence);
       EXPECT_GE(testing::psnr(found.open), testing::psnr(drawn.open) - .1) << name_of(settings.method) << pan;
       EXPECT_GE(testing::psnr(found.beside), testing::psnr(drawn.beside) - .1)
           << name_of(settings.method) << pan;
@@ -176,11 +176,11 @@ TEST(FarMotion, FromEvidenceAPictureThatHangsBehindStandsStill) {
 }
 
 // A camera that stands still moves nothing: what was drawn as standing still does so, but for rounding.
-TEST(FarMotion, UnderAStillCameraTheSkyStandsStill) {
+TEST(SkyMotion, UnderAStillCameraTheSkyStandsStill) {
   TemporalScene scene = scene_under(0, 1);
   for (ResolveSettings settings : kMethods) {
     TemporalRun as_drawn(scene, settings);
-    settings.far = FarMotion::kCamera;
+    settings.sky_motion = SkyMotion::kCamera;
     TemporalRun completed(scene, settings);
     EXPECT_LE(testing::largest_difference(as_drawn.until(12), completed.until(12), kOutput), 1e-4)
         << name_of(settings.method);

@@ -41,7 +41,7 @@ class Particles {
     inputs.particle_colour = colour_.view();
     inputs.particle_depth = depth_.view();
     inputs.particle_reactive = reactive_.view();
-    inputs.particle_render = extent;
+    inputs.particle_render_extent = extent;
   }
 
  private:
@@ -76,7 +76,7 @@ HostFrame particles_of(const HostFrame& frame, Extent own) {
 class ParticleOverlay : public ::testing::TestWithParam<Run> {
  protected:
   static ResolveSettings with_particles(ResolveSettings settings) {
-    settings.particle_target = kTarget;
+    settings.particle_target_extent = kTarget;
     return settings;
   }
 };
@@ -162,7 +162,7 @@ TEST_P(ParticleOverlay, PoisonOutsideTheirViewportNeverShows) {
 // history of the frame before is resized before they are laid over.
 TEST_P(ParticleOverlay, NoneChangeNoBit) {
   ResolveSettings settings = GetParam().settings;
-  settings.least_output = {1, 1};
+  settings.min_output_extent = {1, 1};
   ServiceRig apart({}, with_particles(settings), kOutput, kTarget);
   ServiceRig without({}, settings, kOutput, kTarget);
   Particles particles(apart.device());
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, ParticleOverlay, ::testing::ValuesIn(kRuns),
 
 // Where targets are images, so are the service's own that hold the particles as well.
 TEST(ParticleImages, MakeThePicturesOfBuffers) {
-  ResolveSettings settings{.method = Method::kTemporal, .particle_target = kTarget};
+  ResolveSettings settings{.method = Method::kTemporal, .particle_target_extent = kTarget};
   ServiceRig buffers({}, settings, kOutput, kTarget);
   settings.storage = Storage::kImage;
   ServiceRig images(buffers.device(), {}, settings, kOutput, kTarget);
@@ -212,8 +212,10 @@ TEST(ParticleImages, MakeThePicturesOfBuffers) {
 }
 
 TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
-  ResolveSettings settings{
-      .method = Method::kBilinear, .output = {64, 36}, .target = {64, 36}, .particle_target = {32, 18}};
+  ResolveSettings settings{.method = Method::kBilinear,
+                           .output_extent = {64, 36},
+                           .target_extent = {64, 36},
+                           .particle_target_extent = {32, 18}};
   const auto plan = plan_for({}, settings);
   ASSERT_TRUE(plan.ok()) << plan.status().message();
   EXPECT_EQ(plan->passes.front().kernel, "overlay_particles");
@@ -222,7 +224,7 @@ TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
   std::uint64_t own = 0;
   for (const PlannedBuffer& buffer : plan->buffers) {
     if (buffer.scaling != Scaling::kOwn) continue;
-    EXPECT_EQ(buffer.extent, settings.particle_target);
+    EXPECT_EQ(buffer.extent, settings.particle_target_extent);
     EXPECT_FALSE(buffer.owned);
     own += buffer.bytes;
   }
@@ -233,14 +235,14 @@ TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
 }
 
 TEST(ParticlePlan, RefusesATargetThatDoesNotFitAndEncodedColour) {
-  ResolveSettings settings{.output = {64, 36}, .target = {64, 36}};
+  ResolveSettings settings{.output_extent = {64, 36}, .target_extent = {64, 36}};
   for (const Extent target : {Extent{65, 36}, {64, 37}, {0, 5}, {-4, 5}}) {
-    settings.particle_target = target;
+    settings.particle_target_extent = target;
     const auto plan = plan_for({}, settings);
     ASSERT_FALSE(plan.ok());
     EXPECT_NE(plan.status().message().find("particle_target"), std::string::npos) << plan.status().message();
   }
-  settings.particle_target = {32, 18};
+  settings.particle_target_extent = {32, 18};
   settings.colour = PixelFormat::kRGBA8;
   const auto plan = plan_for({}, settings);
   ASSERT_FALSE(plan.ok());
@@ -248,17 +250,17 @@ TEST(ParticlePlan, RefusesATargetThatDoesNotFitAndEncodedColour) {
 }
 
 TEST(ParticlePlan, AFrameWithoutThemIsRefused) {
-  ServiceRig rig({}, {.method = Method::kQuincunx, .particle_target = kTarget}, kOutput, kTarget);
+  ServiceRig rig({}, {.method = Method::kQuincunx, .particle_target_extent = kTarget}, kOutput, kTarget);
   HostFrame frame;
   frame.render = {20, 10};
   FrameInputs inputs = rig.upload(frame);
   const std::string missing = rig.dispatch(inputs).status.message();
   for (const char* field : {"particle_colour is missing", "particle_depth is missing",
-                            "particle_reactive is missing", "particle_render is 0x0"})
+                            "particle_reactive is missing", "particle_render_extent is 0x0"})
     EXPECT_NE(missing.find(field), std::string::npos) << missing;
   Particles particles(rig.device());
   particles.add_to(inputs, {97, 10});
-  EXPECT_NE(rig.dispatch(inputs).status.message().find("particle_render is 97x10"), std::string::npos);
+  EXPECT_NE(rig.dispatch(inputs).status.message().find("particle_render_extent is 97x10"), std::string::npos);
   particles.add_to(inputs, {10, 10});
   EXPECT_TRUE(rig.dispatch(inputs).ok()) << rig.dispatch(inputs).status.message();
 }

@@ -154,15 +154,15 @@ TEST_F(PassTimerTest, AQueueWithoutProfilingTakesNoTimes) {
 TEST_F(PassTimerTest, ALiarsPassesHaveNoTimesUnlessTheServiceMayWait) {
   g_lie = Lie::kZero;
   for (const FrameReport& report : run_frames(false).reports) {
-    ASSERT_GT(report.pass_count, 1);
-    for (int i = 0; i < report.pass_count; ++i)
-      EXPECT_EQ(report.passes[i].ms, -1) << report.passes[i].kernel;
+    ASSERT_GT(report.passes.size(), 1u);
+    for (const PassReport& pass : report.passes)
+      EXPECT_EQ(pass.ms, -1) << pass.kernel;
   }
   g_asked = 0;
   for (const FrameReport& report : run_frames(true).reports) {
-    ASSERT_GT(report.pass_count, 1);
-    for (int i = 0; i < report.pass_count; ++i)
-      EXPECT_GT(report.passes[i].ms, 0) << report.passes[i].kernel;
+    ASSERT_GT(report.passes.size(), 1u);
+    for (const PassReport& pass : report.passes)
+      EXPECT_GT(pass.ms, 0) << pass.kernel;
   }
   EXPECT_EQ(g_asked, 0) << "events that lie are asked for nothing";
 }
@@ -180,8 +180,8 @@ TEST_F(PassTimerTest, NothingElseChanges) {
     EXPECT_EQ(a.frame_index, b.frame_index);
     EXPECT_EQ(a.used_previous, b.used_previous);
     EXPECT_EQ(a.non_finite_pixels, b.non_finite_pixels);
-    ASSERT_EQ(a.pass_count, b.pass_count);
-    for (int pass = 0; pass < a.pass_count; ++pass) {
+    ASSERT_EQ(a.passes.size(), b.passes.size());
+    for (std::size_t pass = 0; pass < a.passes.size(); ++pass) {
       EXPECT_STREQ(a.passes[pass].kernel, b.passes[pass].kernel);
       EXPECT_EQ(a.passes[pass].bytes, b.passes[pass].bytes);
       EXPECT_GT(a.passes[pass].ms, 0);

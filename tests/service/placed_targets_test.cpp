@@ -67,8 +67,8 @@ const PlacedRun kRuns[] = {
     {.name = "quality",
      .settings = {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kQuality}}},
     {.name = "temporal_camera", .settings = {.method = Method::kTemporal}, .needs = kCameraOnly},
-    {.name = "far_camera", .settings = {.method = Method::kTemporal, .far = FarMotion::kCamera}},
-    {.name = "far_evidence", .settings = {.method = Method::kQuincunx, .far = FarMotion::kEvidence}},
+    {.name = "far_camera", .settings = {.method = Method::kTemporal, .sky_motion = SkyMotion::kCamera}},
+    {.name = "far_evidence", .settings = {.method = Method::kQuincunx, .sky_motion = SkyMotion::kEvidence}},
     {.name = "quincunx_images",
      .settings = {.method = Method::kQuincunx, .storage = Storage::kImage},
      .frames = 30},
@@ -91,7 +91,7 @@ TEST(PlacedPlan, RefusesImagesOfAnotherSize) {
   frame.render = {20, 10};
   FrameInputs inputs = rig.upload(frame);
   ASSERT_TRUE(rig.dispatch(inputs).ok());
-  inputs.render = {20, 9};
+  inputs.render_extent = {20, 9};
   const FrameReport report = rig.dispatch(inputs);
   EXPECT_EQ(report.status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(report.status.message().find("placed targets have exactly the viewport's 20x9"),
@@ -100,7 +100,8 @@ TEST(PlacedPlan, RefusesImagesOfAnotherSize) {
 }
 
 TEST(PlacedPlan, IsTheSamePassesAndSaysSo) {
-  ResolveSettings settings = {.method = Method::kTemporal, .output = kOutput, .target = kTarget};
+  ResolveSettings settings = {
+      .method = Method::kTemporal, .output_extent = kOutput, .target_extent = kTarget};
   const ResolvePlan viewport = plan_for({}, settings).value();
   settings.targets = Targets::kPlaced;
   const ResolvePlan placed = plan_for({}, settings).value();
@@ -113,7 +114,7 @@ TEST(PlacedPlan, IsTheSamePassesAndSaysSo) {
 }
 
 TEST(PlacedPlan, PresentsIntoABuffer) {
-  ResolveSettings settings = {.output = kOutput, .target = kTarget, .storage = Storage::kImage};
+  ResolveSettings settings = {.output_extent = kOutput, .target_extent = kTarget, .storage = Storage::kImage};
   EXPECT_EQ(plan_for({}, settings)->presented_storage(), Storage::kImage);
   settings.targets = Targets::kPlaced;
   const ResolvePlan plan = plan_for({}, settings).value();

@@ -45,7 +45,7 @@ TEST(QualityFrames, NothingMovesWhereNothingCan) {
   const FrameReport report = completed(rig, rig.upload({.render = kOutput}));
   ASSERT_TRUE(report.content.has_value());
   EXPECT_EQ(report.content->moving, 0);
-  EXPECT_EQ(report.pass_count, 2) << "the filter and the present pass";
+  EXPECT_EQ(report.passes.size(), 2u) << "the filter and the present pass";
 }
 
 TEST(QualityFrames, WhatNobodyAsksForIsNotMeasured) {

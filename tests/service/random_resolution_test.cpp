@@ -71,7 +71,7 @@ TEST_P(RandomResolution, PoisonOutsideNeverShows) {
                           -std::numeric_limits<float>::infinity(), 1e30f};
   for (int i = 0; i < run.frames; ++i) {
     HostFrame frame = random_frame(random, kTarget);
-    if (run.settings.least_output != Extent{}) frame.output = random_output(random, i);
+    if (run.settings.min_output_extent != Extent{}) frame.output = random_output(random, i);
     const bool checkerboard = run.settings.shading == Shading::kCheckerboard;
     if (checkerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
     poisoned.flood(poison(values[i % 4]));
@@ -113,21 +113,23 @@ const LongRun kRuns[] = {
      {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard},
      200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},
-    {"dual_bilinear", {.method = Method::kBilinear, .least_output = {1, 1}}, 400},
-    {"dual_lanczos3", {.method = Method::kLanczos3, .least_output = {1, 1}}, 400},
+    {"dual_bilinear", {.method = Method::kBilinear, .min_output_extent = {1, 1}}, 400},
+    {"dual_lanczos3", {.method = Method::kLanczos3, .min_output_extent = {1, 1}}, 400},
     {"dual_reprojected",
      {.method = Method::kQuincunx,
-      .least_output = {1, 1},
+      .min_output_extent = {1, 1},
       .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
       .blur = {.shutter = 0.5f},
       .sharpness = .5f},
      400},
-    {"dual_temporal", {.method = Method::kTemporal, .least_output = {1, 1}}, 1000},
+    {"dual_temporal", {.method = Method::kTemporal, .min_output_extent = {1, 1}}, 1000},
     {"dual_temporal_half",
-     {.method = Method::kTemporal, .least_output = {1, 1}, .temporal = {.history = PixelFormat::kRGBA16F}},
+     {.method = Method::kTemporal,
+      .min_output_extent = {1, 1},
+      .temporal = {.history = PixelFormat::kRGBA16F}},
      200},
     {"dual_checkerboard",
-     {.method = Method::kTemporal, .least_output = {1, 1}, .shading = Shading::kCheckerboard},
+     {.method = Method::kTemporal, .min_output_extent = {1, 1}, .shading = Shading::kCheckerboard},
      400},
 };
 

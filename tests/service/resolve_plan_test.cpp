@@ -18,8 +18,8 @@ namespace {
 ResolveSettings settings(Method method) {
   ResolveSettings result;
   result.method = method;
-  result.output = {1280, 720};
-  result.target = {1280, 720};
+  result.output_extent = {1280, 720};
+  result.target_extent = {1280, 720};
   return result;
 }
 
@@ -67,7 +67,7 @@ TEST(ResolvePlan, OnlyACameraMeansDepthInsteadOfAVelocityTarget) {
 
 TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.far = FarMotion::kCamera;
+  wanted.sky_motion = SkyMotion::kCamera;
   const ResolvePlan p = plan({}, wanted);
   EXPECT_EQ(p.passes.front().kernel, "far_velocity");
   EXPECT_TRUE(p.reads_depth);
@@ -75,14 +75,14 @@ TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
   for (const PlannedBuffer& buffer : p.buffers)
     EXPECT_EQ(buffer.owned, buffer.name.starts_with("velocity") || buffer.name == "resolved") << buffer.name;
   EXPECT_TRUE(has_buffer(p, "drawn velocity"));
-  const Status missing = validate(p, {.render = {640, 360}}, {});
+  const Status missing = validate(p, {.render_extent = {640, 360}}, {});
   EXPECT_NE(missing.message().find("velocity is missing"), std::string::npos) << missing.message();
   EXPECT_EQ(missing.message().find("drawn velocity"), std::string::npos) << missing.message();
 }
 
 TEST(ResolvePlan, FarMotionFromEvidenceNeedsNoCameraButTwoFrames) {
   ResolveSettings wanted = settings(Method::kTemporal);
-  wanted.far = FarMotion::kEvidence;
+  wanted.sky_motion = SkyMotion::kEvidence;
   const ResolvePlan p = plan({}, wanted);
   for (const char* kernel : {"far_surroundings", "far_fit", "far_match", "far_velocity"})
     EXPECT_TRUE(has_pass(p, kernel)) << kernel;
@@ -97,7 +97,7 @@ TEST(ResolvePlan, FarMotionFromEvidenceNeedsNoCameraButTwoFrames) {
 
 TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.far = FarMotion::kCamera;
+  wanted.sky_motion = SkyMotion::kCamera;
   EXPECT_TRUE(leaves_out(plan({.camera_motion = false}, wanted), "far_velocity"));
   EXPECT_TRUE(leaves_out(plan({.moving_objects = false}, wanted), "far_velocity"));
   wanted.method = Method::kBilinear;
@@ -115,7 +115,7 @@ TEST(ResolvePlan, ADilatedVelocityIsTakenBackFirst) {
   EXPECT_FALSE(p.reads_camera()) << "it is of use, not needed";
   EXPECT_TRUE(has_buffer(p, "dilated velocity"));
   EXPECT_FALSE(has_buffer(p, "drawn velocity"));
-  wanted.far = FarMotion::kCamera;
+  wanted.sky_motion = SkyMotion::kCamera;
   wanted.shading = Shading::kCheckerboard;
   const ResolvePlan all = plan({}, wanted);
   ASSERT_GE(all.passes.size(), 3u);
@@ -233,7 +233,7 @@ TEST(ResolvePlan, SharpnessBeyondZeroToOneIsRefused) {
 
 TEST(ResolvePlan, EachBufferSaysHowItFollowsTheResolution) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.target = {2560, 1440};
+  wanted.target_extent = {2560, 1440};
   for (const PlannedBuffer& buffer : plan({}, wanted).buffers) {
     const bool history = buffer.name.ends_with("of the previous frame");
     const bool output = buffer.name == "resolved" || buffer.name == "presented";
@@ -241,7 +241,7 @@ TEST(ResolvePlan, EachBufferSaysHowItFollowsTheResolution) {
                               : history ? Scaling::kHistory
                                         : Scaling::kScales)
         << buffer.name;
-    EXPECT_EQ(buffer.extent, output ? wanted.output : wanted.target) << buffer.name;
+    EXPECT_EQ(buffer.extent, output ? wanted.output_extent : wanted.target_extent) << buffer.name;
   }
 }
 
@@ -280,17 +280,17 @@ TEST(ResolvePlan, ExplainSaysEverything) {
 
 TEST(ResolvePlan, EveryBadFieldIsNamed) {
   ResolveSettings bad = settings(Method::kQuincunx);
-  bad.output = {0, 720};
-  bad.target = {1280, -1};
+  bad.output_extent = {0, 720};
+  bad.target_extent = {1280, -1};
   bad.colour = PixelFormat::kR8;
   bad.velocity = PixelFormat::kRGBA16F;
-  bad.resolved = PixelFormat::kRGBA8;
+  bad.linear = PixelFormat::kRGBA8;
   bad.quincunx.velocity_weight = std::nanf("");
   const auto result = plan_for({}, bad);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.status().code(), StatusCode::kInvalidArgument);
-  for (const char* field : {"settings.output", "settings.target", "settings.colour", "settings.velocity",
-                            "settings.resolved", "settings.quincunx.velocity_weight"}) {
+  for (const char* field : {"settings.output_extent", "settings.target_extent", "settings.colour",
+                            "settings.velocity", "settings.linear", "settings.quincunx.velocity_weight"}) {
     EXPECT_NE(result.status().message().find(field), std::string::npos) << field;
   }
 }
@@ -325,7 +325,7 @@ TEST(ResolvePlan, AnEditedPlanIsRefusedByName) {
 // all made.
 TEST(ResolvePlan, WhatIsKeptOverADynamicOutputIsResized) {
   ResolveSettings wanted = settings(Method::kTemporal);
-  wanted.least_output = {640, 360};
+  wanted.min_output_extent = {640, 360};
   const std::vector<PassSpec> passes =
       list_passes(PlanFacts({.transparents = false, .background = false}, wanted)).passes;
   EXPECT_EQ(unresized(passes), std::nullopt);

@@ -61,8 +61,8 @@ class ServiceRig {
   ServiceRig(const Device& device, const SceneNeeds& needs, ResolveSettings settings, Extent output,
              Extent target)
       : device_(device) {
-    settings.output = output;
-    settings.target = target;
+    settings.output_extent = output;
+    settings.target_extent = target;
     if (settings.colour != PixelFormat::kRGBA8) settings.colour = PixelFormat::kRGBA32F;
     settings.velocity = PixelFormat::kRG32F;
     settings.dither = false;
@@ -77,7 +77,7 @@ class ServiceRig {
     }
     if (places())
       memory_ = device_.allocate({static_cast<int>(2 * half_bytes()), 1}, PixelFormat::kR8).value();
-    resolved_ = device_.allocate(output, settings.resolved).value();
+    resolved_ = device_.allocate(output, settings.linear).value();
     presented_ = device_.allocate(output, PixelFormat::kRGBA8, plan_.presented_storage()).value();
   }
 
@@ -104,8 +104,8 @@ class ServiceRig {
     inputs.velocity = slot.velocity.view();
     inputs.depth = slot.depth.view();
     inputs.reactive = slot.reactive.view();
-    inputs.render = frame.render;
-    inputs.output = frame.output;
+    inputs.render_extent = frame.render;
+    inputs.output_extent = frame.output;
     inputs.jitter = frame.jitter;
     inputs.camera = frame.camera;
     inputs.reset = frame.reset;
@@ -115,8 +115,6 @@ class ServiceRig {
   }
 
   FrameReport dispatch(const FrameInputs& inputs) {
-    if (plan_.is_dual())
-      return service_->dispatch(inputs, outputs_for(plan_, resolved_.view(), presented_.view()));
     return service_->dispatch(inputs, {resolved_.view(), presented_.view()});
   }
 
@@ -128,14 +126,14 @@ class ServiceRig {
 
   // The displayed picture where the output is dynamic.
   std::vector<Pixel> resolved() {
-    const Extent output = plan_.settings.output;
+    const Extent output = plan_.settings.output_extent;
     std::vector<Pixel> pixels(static_cast<std::size_t>(output.area()));
     EXPECT_TRUE(device_.download(resolved_.view(), output, pixels.data()).ok());
     return pixels;
   }
 
   std::vector<std::uint8_t> presented() {
-    const Extent output = plan_.settings.output;
+    const Extent output = plan_.settings.output_extent;
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(output.area()) * 4);
     EXPECT_TRUE(device_.download(presented_.view(), output, pixels.data()).ok());
     return pixels;
@@ -161,7 +159,9 @@ class ServiceRig {
   }
 
   // Planes of the largest size, each from a multiple of 16.
-  std::size_t half_bytes() const { return static_cast<std::size_t>(plan_.settings.target.area()) * 29 + 64; }
+  std::size_t half_bytes() const {
+    return static_cast<std::size_t>(plan_.settings.target_extent.area()) * 29 + 64;
+  }
 
   void place(Slot& slot, Extent render) {
     std::size_t offset = count_ % 2 * half_bytes();
@@ -173,7 +173,7 @@ class ServiceRig {
         *image = Image::borrow(
             {.memory = memory_.view().memory, .format = format, .extent = render, .offset = offset});
       }
-      offset += static_cast<std::size_t>(plan_.settings.target.area()) * bytes_per_pixel(format);
+      offset += static_cast<std::size_t>(plan_.settings.target_extent.area()) * bytes_per_pixel(format);
     }
   }
 

@@ -256,7 +256,7 @@ TEST(Service, ABadFrameIsRefusedWholeAndHistoryStays) {
   const FrameReport refused = rig.dispatch(bad);
   EXPECT_FALSE(refused.ok());
   EXPECT_NE(refused.status.message().find("jitter.x"), std::string::npos);
-  EXPECT_EQ(refused.pass_count, 0);
+  EXPECT_TRUE(refused.passes.empty());
   EXPECT_TRUE(same_bits(rig.resolved(), before)) << "no output is touched";
   EXPECT_TRUE(same_bits(rig.resolve(two), control.resolve(two)));
 }
@@ -283,9 +283,9 @@ TEST(Service, ReportsComeInOrderWithTimesAndBytes) {
     ASSERT_TRUE(report.has_value());
     EXPECT_EQ(report->frame_index, index);
     EXPECT_EQ(report->used_previous, index > 0);
-    EXPECT_EQ(report->render, (Extent{32 + 2 * static_cast<int>(index), 40}));
+    EXPECT_EQ(report->render_extent, (Extent{32 + 2 * static_cast<int>(index), 40}));
     EXPECT_FLOAT_EQ(report->ratio.y, 40.0f / 64);
-    ASSERT_EQ(report->pass_count, 2);
+    ASSERT_EQ(report->passes.size(), 2u);
     EXPECT_STREQ(report->passes[0].kernel, index > 0 ? "resolve_quincunx" : "scale_bilinear");
     EXPECT_STREQ(report->passes[1].kernel, "present");
     for (int i = 0; i < 2; ++i) {
@@ -351,7 +351,7 @@ TEST(Service, ExposureMayBeAnImage) {
 TEST(Service, ClearFillsTheRectangleOnly) {
   Device device = Device::open().value();
   ResolveSettings settings;
-  settings.output = settings.target = {16, 12};
+  settings.output_extent = settings.target_extent = {16, 12};
   settings.colour = PixelFormat::kRGBA32F;
   settings.clear = true;
   auto service = ResolveService::create(device, plan_for({.background = false}, settings).value());

@@ -27,7 +27,7 @@ constexpr Extent kOutput{16, 12}, kParticleTarget{8, 6}, kRegion{8, 6};
 
 struct Combination {
   SceneNeeds needs;
-  ResolveSettings settings = {.output = kOutput, .target = kOutput};
+  ResolveSettings settings = {.output_extent = kOutput, .target_extent = kOutput};
 };
 
 struct Choice {
@@ -80,21 +80,21 @@ const std::vector<Axis>& axes_of_inputs() {
        needs("still", false, false, true)},
       {setting("full", &ResolveSettings::shading, Shading::kFull),
        setting("checkerboard", &ResolveSettings::shading, Shading::kCheckerboard)},
-      {setting("together", &ResolveSettings::particle_target, Extent{}),
-       setting("particles", &ResolveSettings::particle_target, kParticleTarget)},
+      {setting("together", &ResolveSettings::particle_target_extent, Extent{}),
+       setting("particles", &ResolveSettings::particle_target_extent, kParticleTarget)},
       {setting("own", &ResolveSettings::drawn_velocity, DrawnVelocity::kOwn),
        setting("dilated", &ResolveSettings::drawn_velocity, DrawnVelocity::kDilated)},
-      {setting("far as drawn", &ResolveSettings::far, FarMotion::kAsDrawn),
-       setting("far camera", &ResolveSettings::far, FarMotion::kCamera),
-       setting("far evidence", &ResolveSettings::far, FarMotion::kEvidence)},
+      {setting("far as drawn", &ResolveSettings::sky_motion, SkyMotion::kAsDrawn),
+       setting("far camera", &ResolveSettings::sky_motion, SkyMotion::kCamera),
+       setting("far evidence", &ResolveSettings::sky_motion, SkyMotion::kEvidence)},
       {setting("sharp", &ResolveSettings::blur, MotionBlurSettings{}),
        setting("blurred", &ResolveSettings::blur, MotionBlurSettings{.shutter = .5f})},
       {setting("uncounted", &ResolveSettings::measures_content, false),
        setting("content", &ResolveSettings::measures_content, true)},
       {setting("native", &ResolveSettings::conventions, InputConventions{}),
        setting("given", &ResolveSettings::conventions, kGiven)},
-      {setting("fixed", &ResolveSettings::least_output, Extent{}),
-       setting("dual", &ResolveSettings::least_output, Extent{8, 6})}};
+      {setting("fixed", &ResolveSettings::min_output_extent, Extent{}),
+       setting("dual", &ResolveSettings::min_output_extent, Extent{8, 6})}};
   return axes;
 }
 
@@ -264,26 +264,26 @@ struct InputCase {
 };
 
 bool has_particles(const ResolvePlan& plan) {
-  return plan.settings.particle_target != Extent{};
+  return plan.settings.particle_target_extent != Extent{};
 }
 
 const InputCase kInputs[] = {
-    {"colour", &FrameInputs::colour, &FrameInputs::render,
+    {"colour", &FrameInputs::colour, &FrameInputs::render_extent,
      [](const ResolvePlan& plan) { return plan.settings.colour; }, [](const ResolvePlan&) { return true; }},
-    {"velocity", &FrameInputs::velocity, &FrameInputs::render,
+    {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent,
      [](const ResolvePlan& plan) { return plan.settings.velocity; },
      [](const ResolvePlan& plan) { return plan.velocity == VelocitySource::kTarget; }},
-    {"depth", &FrameInputs::depth, &FrameInputs::render,
+    {"depth", &FrameInputs::depth, &FrameInputs::render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR32F; },
      [](const ResolvePlan& plan) { return plan.reads_depth; }},
-    {"reactive", &FrameInputs::reactive, &FrameInputs::render,
+    {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR8; },
      [](const ResolvePlan& plan) { return plan.reads_reactive; }},
-    {"particle_colour", &FrameInputs::particle_colour, &FrameInputs::particle_render,
+    {"particle_colour", &FrameInputs::particle_colour, &FrameInputs::particle_render_extent,
      [](const ResolvePlan& plan) { return plan.settings.colour; }, has_particles},
-    {"particle_depth", &FrameInputs::particle_depth, &FrameInputs::particle_render,
+    {"particle_depth", &FrameInputs::particle_depth, &FrameInputs::particle_render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR32F; }, has_particles},
-    {"particle_reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render,
+    {"particle_reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR8; },
      [](const ResolvePlan& plan) { return has_particles(plan) && plan.reads_reactive; }},
 };
@@ -328,14 +328,15 @@ TEST(SettingsCombinations, RefuseEachImageThatIsMissingOrTooSmall) {
     const Combination made = combine(axes, row);
     const Result<ResolvePlan> plan = plan_for(made.needs, made.settings);
     ASSERT_TRUE(plan.ok()) << names_of(axes, row) << ": " << plan.status().message();
-    FrameInputs inputs{.render = {13, 8}, .near_plane = .5f, .far_plane = 100, .particle_render = {5, 4}};
+    FrameInputs inputs{
+        .render_extent = {13, 8}, .near_plane = .5f, .far_plane = 100, .particle_render_extent = {5, 4}};
     for (const InputCase& input : kInputs) {
       if (input.needed(plan.value()))
         inputs.*input.image = {
             .memory = made_up, .format = input.format(plan.value()), .extent = inputs.*input.viewport};
     }
-    const FrameOutputs outputs = outputs_for(
-        plan.value(), {.memory = made_up, .format = PixelFormat::kRGBA32F, .extent = kOutput}, ImageView{});
+    const FrameOutputs outputs{
+        .linear = {.memory = made_up, .format = PixelFormat::kRGBA32F, .extent = kOutput}};
     expect_refusals(plan.value(), inputs,
                     [&](const FrameInputs& frame) { return validate(plan.value(), frame, outputs); });
     if (HasFatalFailure()) FAIL() << names_of(axes, row);
@@ -358,9 +359,9 @@ class Runner {
     const Extent outputs_of_dual[] = {kOutput, {10, 8}, {12, 9}};
     for (std::size_t i = 0; i < std::size(renders); ++i) {
       FrameInputs inputs = frame_of(plan_, renders[i], i);
-      if (plan_.is_dual()) inputs.output = outputs_of_dual[i];
+      if (plan_.is_dual()) inputs.output_extent = outputs_of_dual[i];
       if (plan_.settings.fades) {
-        inputs.fading_from = image(kOutput, plan_.settings.resolved, Storage::kBuffer);
+        inputs.fading_from = image(kOutput, plan_.settings.linear, Storage::kBuffer);
         inputs.fade_weight = .5f;
       }
       std::optional<FocusInputs> focus;
@@ -368,10 +369,10 @@ class Runner {
         focus = FocusInputs{.frame = frame_of(*region, {7, 5}, i), .x = 3, .y = 2};
         if (plan_.settings.focus.mask) focus->mask = image(kRegion, PixelFormat::kR8, Storage::kBuffer);
       }
-      const FrameOutputs outputs =
-          outputs_for(plan_, image(kOutput, plan_.settings.resolved, Storage::kBuffer),
-                      plan_.settings.present ? image(kOutput, PixelFormat::kRGBA8, plan_.presented_storage())
-                                             : ImageView{});
+      const FrameOutputs outputs{image(kOutput, plan_.settings.linear, Storage::kBuffer),
+                                 plan_.settings.present
+                                     ? image(kOutput, PixelFormat::kRGBA8, plan_.presented_storage())
+                                     : ImageView{}};
       if (i == 1) expect_dispatch_refuses(service, inputs, focus, region, outputs);
       const FrameReport report =
           focus ? service.dispatch(inputs, *focus, outputs) : service.dispatch(inputs, outputs);
@@ -415,19 +416,19 @@ class Runner {
 
   // With the images that the plan needs, and no others.
   FrameInputs frame_of(const ResolvePlan& plan, Extent render, std::size_t index) {
-    FrameInputs inputs{.render = render,
+    FrameInputs inputs{.render_extent = render,
                        .jitter = {.25f, -.125f},
                        .near_plane = .5f,
                        .far_plane = 100,
                        .frame_index = index};
     inputs.parity = static_cast<int>(index % 2);
-    if (has_particles(plan)) inputs.particle_render = {5, 4};
+    if (has_particles(plan)) inputs.particle_render_extent = {5, 4};
     inputs.camera.clip_to_previous_clip[8] = .01f;
     const bool placed = plan.settings.targets == Targets::kPlaced;
     for (const InputCase& input : kInputs) {
       if (!input.needed(plan)) continue;
-      const bool is_particles = input.viewport == &FrameInputs::particle_render;
-      const Extent target = is_particles ? plan.settings.particle_target : plan.settings.target;
+      const bool is_particles = input.viewport == &FrameInputs::particle_render_extent;
+      const Extent target = is_particles ? plan.settings.particle_target_extent : plan.settings.target_extent;
       inputs.*input.image = image(placed ? inputs.*input.viewport : target, input.format(plan),
                                   plan.settings.storage, input.image == &FrameInputs::velocity ? 0x18 : 0x30);
     }

@@ -45,8 +45,8 @@ const Pixel& at(const std::vector<Pixel>& picture, int x, int y) {
 
 std::vector<std::string> kernels_of(const FrameReport& report) {
   std::vector<std::string> kernels;
-  for (int i = 0; i < report.pass_count; ++i)
-    kernels.emplace_back(report.passes[static_cast<std::size_t>(i)].kernel);
+  for (const PassReport& pass : report.passes)
+    kernels.emplace_back(pass.kernel);
   return kernels;
 }
 
@@ -88,8 +88,7 @@ TEST(ServiceSharpen, ItRunsAfterTheResolveAndBeforeTheBlur) {
   ASSERT_TRUE(rig.service().finish().ok());
   const auto finished = rig.service().next_completed();
   ASSERT_TRUE(finished.has_value());
-  for (int i = 0; i < finished->pass_count; ++i) {
-    const PassReport& pass = finished->passes[static_cast<std::size_t>(i)];
+  for (const PassReport& pass : finished->passes) {
     EXPECT_GE(pass.ms, 0) << pass.kernel;
     if (std::strcmp(pass.kernel, "sharpen") != 0) continue;
     EXPECT_EQ(pass.bytes, 48u * 36 * 16 * 2);

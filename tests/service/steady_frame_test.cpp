@@ -136,8 +136,8 @@ void place(FrameInputs& inputs, Extent render) {
 // With a focus where the plan has one, from the upper left part of the frame's own images.
 FrameReport dispatch(ServiceRig& rig, const FrameInputs& inputs) {
   if (!rig.service().plan().has_focus()) return rig.dispatch(inputs);
-  FocusInputs focus{.frame = inputs, .x = inputs.render.width % 30, .y = 4};
-  focus.frame.render = {1 + inputs.render.width % 48, 1 + inputs.render.height % 36};
+  FocusInputs focus{.frame = inputs, .x = inputs.render_extent.width % 30, .y = 4};
+  focus.frame.render_extent = {1 + inputs.render_extent.width % 48, 1 + inputs.render_extent.height % 36};
   return rig.service().dispatch(inputs, focus, {rig.resolved_view(), rig.presented_view()});
 }
 
@@ -162,9 +162,10 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
   g_counting = true;
   for (int i = 0; i < kFrames; ++i) {
     FrameInputs inputs = frames[i % slots];
-    inputs.render = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
-    if (placed) place(inputs, inputs.render);
-    if (settings.least_output != Extent{}) inputs.output = {1 + (i / 2 * 29) % 64, 1 + (i / 2 * 17) % 48};
+    inputs.render_extent = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
+    if (placed) place(inputs, inputs.render_extent);
+    if (settings.min_output_extent != Extent{})
+      inputs.output_extent = {1 + (i / 2 * 29) % 64, 1 + (i / 2 * 17) % 48};
     inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
     inputs.reset = i % 50 == 49;
     refused += dispatch(rig, inputs).ok() ? 0 : 1;
@@ -221,15 +222,16 @@ TEST(SteadyFrame, PlacedTargetsOfAnotherSizeEveryFrame) {
   run_steady_frames({.moving_objects = false}, {.method = Method::kQuincunx, .targets = Targets::kPlaced});
 }
 TEST(SteadyFrame, AnOutputOfAnotherSizeEverySecondFrame) {
-  run_steady_frames({}, {.method = Method::kTemporal, .least_output = {1, 1}});
-  run_steady_frames({}, {.method = Method::kCatmullRom, .least_output = {1, 1}});
+  run_steady_frames({}, {.method = Method::kTemporal, .min_output_extent = {1, 1}});
+  run_steady_frames({}, {.method = Method::kCatmullRom, .min_output_extent = {1, 1}});
 }
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});
 }
 
 TEST(SteadyFrame, AFocusThatWanders) {
-  run_steady_frames({}, {.method = Method::kTemporal, .focus = {.extent = {32, 24}, .target = {48, 36}}});
+  run_steady_frames({},
+                    {.method = Method::kTemporal, .focus = {.extent = {32, 24}, .target_extent = {48, 36}}});
 }
 
 TEST(SteadyFrame, TheCountersCount) {

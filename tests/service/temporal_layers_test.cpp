@@ -204,7 +204,7 @@ TEST(TemporalLayers, AlphaOfAWireBeforeNothingIsItsCoverage) {
 TEST(TemporalLayers, AViewOfThemIsRefusedWhereThereIsOne) {
   const auto refused = [](const SceneNeeds& needs, TemporalPreset one) {
     ResolveSettings settings = preset(one, TemporalView::kCoverage);
-    settings.output = settings.target = {64, 64};
+    settings.output_extent = settings.target_extent = {64, 64};
     return plan_for(needs, settings).status().message();
   };
   EXPECT_NE(refused({}, TemporalPreset::kFast).find("settings.temporal.view is coverage"), std::string::npos);

@@ -21,15 +21,15 @@ ImageView view(PixelFormat format, Extent extent = {1280, 720}) {
 class Validate : public ::testing::Test {
  protected:
   Validate() {
-    settings_.output = {1280, 720};
-    settings_.target = {1280, 720};
+    settings_.output_extent = {1280, 720};
+    settings_.target_extent = {1280, 720};
     inputs_.colour = view(PixelFormat::kRGBA16F);
     inputs_.velocity = view(PixelFormat::kRG16F);
     inputs_.reactive = view(PixelFormat::kR8);
     inputs_.depth = view(PixelFormat::kR32F);
-    inputs_.render = {908, 512};
+    inputs_.render_extent = {908, 512};
     inputs_.jitter = {0.25f, -0.25f};
-    outputs_.resolved = view(PixelFormat::kRGBA32F);
+    outputs_.linear = view(PixelFormat::kRGBA32F);
     outputs_.presented = view(PixelFormat::kRGBA8);
   }
 
@@ -44,7 +44,7 @@ class Validate : public ::testing::Test {
 
 TEST_F(Validate, AGoodFramePasses) {
   EXPECT_TRUE(check().ok()) << check().message();
-  outputs_.resolved = {};
+  outputs_.linear = {};
   EXPECT_TRUE(check().ok());
 }
 
@@ -55,9 +55,9 @@ TEST_F(Validate, ACheckerboardHasAShadedPixel) {
   EXPECT_NE(check().message().find("parity is 2; it must be 0 or 1"), std::string::npos) << check().message();
   inputs_.parity = 1;
   EXPECT_TRUE(check().ok()) << check().message();
-  inputs_.render = {1, 1};
+  inputs_.render_extent = {1, 1};
   EXPECT_NE(check().message().find("it must be 0 where the viewport is a single pixel"), std::string::npos);
-  inputs_.render = {1, 2};
+  inputs_.render_extent = {1, 2};
   EXPECT_TRUE(check().ok()) << check().message();
   inputs_.depth = {};
   EXPECT_FALSE(check().ok()) << "surfaces are told by depth";
@@ -78,9 +78,9 @@ TEST_F(Validate, WhatThePlanDoesNotReadMayBeMissing) {
 TEST_F(Validate, DilatedVelocityIsNeededAsOwnVelocityIs) {
   settings_.drawn_velocity = DrawnVelocity::kDilated;
   for (const Method method : {Method::kQuincunx, Method::kTemporal}) {
-    for (const FarMotion far : {FarMotion::kAsDrawn, FarMotion::kCamera, FarMotion::kEvidence}) {
+    for (const SkyMotion far : {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence}) {
       settings_.method = method;
-      settings_.far = far;
+      settings_.sky_motion = far;
       inputs_.velocity = view(PixelFormat::kRG16F);
       EXPECT_TRUE(check().ok()) << check().message();
       inputs_.velocity.extent = {907, 512};
@@ -111,17 +111,17 @@ TEST_F(Validate, EachBadFieldIsNamed) {
       {"velocity is missing", [](auto& in, auto&) { in.velocity = {}; }},
       {"velocity_scale.x", [nan](auto& in, auto&) { in.velocity_scale.x = nan; }},
       {"reactive is missing", [](auto& in, auto&) { in.reactive = {}; }},
-      {"render is 0x512", [](auto& in, auto&) { in.render.width = 0; }},
-      {"render is 1281x512", [](auto& in, auto&) { in.render.width = 1281; }},
+      {"render_extent is 0x512", [](auto& in, auto&) { in.render_extent.width = 0; }},
+      {"render_extent is 1281x512", [](auto& in, auto&) { in.render_extent.width = 1281; }},
       {"jitter.x", [nan](auto& in, auto&) { in.jitter.x = nan; }},
       {"jitter.y", [](auto& in, auto&) { in.jitter.y = 1.5f; }},
       {"exposure", [](auto& in, auto&) { in.exposure = -1; }},
       {"outputs", [](auto&, auto& out) { out = {}; }},
-      {"resolved.extent",
+      {"linear.extent",
        [](auto&, auto& out) {
-         out.resolved.extent = {1280, 721};
+         out.linear.extent = {1280, 721};
        }},
-      {"resolved.format", [](auto&, auto& out) { out.resolved.format = PixelFormat::kRGBA16F; }},
+      {"linear.format", [](auto&, auto& out) { out.linear.format = PixelFormat::kRGBA16F; }},
       {"presented.format", [](auto&, auto& out) { out.presented.format = PixelFormat::kRGBA16F; }},
       {"presented.extent",
        [](auto&, auto& out) {

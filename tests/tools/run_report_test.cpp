@@ -76,9 +76,8 @@ TEST(PassStatistics, UnknownSamplesDoNotCount) {
 FrameReport two_passes(std::uint64_t frame, double resolve_ms, double present_ms) {
   FrameReport report;
   report.frame_index = frame;
-  report.pass_count = 2;
-  report.passes[0] = {.kernel = "resolve_quincunx", .ms = resolve_ms, .bytes = 100};
-  report.passes[1] = {.kernel = "present", .ms = present_ms, .bytes = 50};
+  report.passes.push_back({.kernel = "resolve_quincunx", .ms = resolve_ms, .bytes = 100});
+  report.passes.push_back({.kernel = "present", .ms = present_ms, .bytes = 50});
   return report;
 }
 

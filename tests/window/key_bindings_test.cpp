@@ -131,10 +131,9 @@ TEST(FrameTrace, KeepsTheLastFramesAndCountsDroppedOnes) {
   FrameTrace trace;
   FrameTimes times;
   times.draw_ms = 4;
-  times.report.render = {50, 50};
-  times.report.pass_count = 2;
-  times.report.passes[0] = {.kernel = "resolve_quincunx", .ms = 2};
-  times.report.passes[1] = {.kernel = "present", .ms = -1};  // not known
+  times.report.render_extent = {50, 50};
+  times.report.passes.push_back({.kernel = "resolve_quincunx", .ms = 2});
+  times.report.passes.push_back({.kernel = "present", .ms = -1});  // not known
   for (std::size_t i = 0; i < FrameTrace::kLength + 5; ++i)
     trace.add(times, {100, 100}, 16, i % 5 == 0 ? 2 : 0);
   EXPECT_EQ(trace.points().size(), FrameTrace::kLength);

@@ -49,14 +49,16 @@ typedef struct quincunx_inputs {
   float far_plane;
 } quincunx_inputs;
 
-/* At least one, of the output's size; NULL leaves a picture out. Host memory beyond a row's texels stays as it is. */
+/* The finished picture. At least one, of the output's size; NULL leaves it out. Host memory beyond a row's texels stays
+ * as it is. */
 typedef struct quincunx_outputs {
-  size_t struct_size;             /* sizeof(quincunx_outputs) */
-  const quincunx_image* resolved; /* RGBA32F or RGBA16F, linear; as settings.resolved_format says */
+  size_t struct_size;           /* sizeof(quincunx_outputs) */
+  const quincunx_image* linear; /* RGBA32F or RGBA16F, linear light; as settings.linear_format says */
   const quincunx_image*
       presented; /* RGBA8: exposed, tone mapped, sRGB encoded; where settings.present is set */
-  const quincunx_image* blurred; /* as resolved, other memory; where the plan blurs */
 } quincunx_outputs;
+
+enum { QUINCUNX_MAX_PASSES = 72 };
 
 typedef struct quincunx_pass_report {
   const char* kernel; /* "resolve_quincunx"; static */
@@ -67,7 +69,7 @@ typedef struct quincunx_pass_report {
 typedef struct quincunx_report {
   size_t struct_size;           /* sizeof(quincunx_report) */
   quincunx_pass_report* passes; /* in: room for pass_capacity of them, or NULL */
-  int32_t pass_capacity;        /* in; at least 24 holds all */
+  int32_t pass_capacity;        /* in; QUINCUNX_MAX_PASSES holds all */
   int32_t pass_count;           /* how many passes ran, which may be more than there is room for */
   uint64_t frame_index;
   int64_t

@@ -27,7 +27,7 @@ enum {
 enum { QUINCUNX_MEAN = 0, QUINCUNX_BY_VELOCITY = 1, QUINCUNX_REPROJECTED = 2 };
 enum { QUINCUNX_SAMPLE_POINT = 0, QUINCUNX_SAMPLE_BILINEAR = 1 };                 /* sampling */
 enum { QUINCUNX_FAST = 0, QUINCUNX_BALANCED = 1, QUINCUNX_QUALITY = 2 };          /* temporal_preset */
-enum { QUINCUNX_AS_DRAWN = 0, QUINCUNX_BY_CAMERA = 1, QUINCUNX_BY_EVIDENCE = 2 }; /* far_motion */
+enum { QUINCUNX_AS_DRAWN = 0, QUINCUNX_BY_CAMERA = 1, QUINCUNX_BY_EVIDENCE = 2 }; /* sky_motion */
 enum { QUINCUNX_OWN_VELOCITY = 0, QUINCUNX_DILATED_VELOCITY = 1 };                /* drawn_velocity */
 enum { QUINCUNX_CLAMP = 0, QUINCUNX_REINHARD = 1, QUINCUNX_ACES = 2 };            /* tone_map */
 enum { QUINCUNX_FULL = 0, QUINCUNX_CHECKERBOARD = 1 };                            /* shading */
@@ -80,7 +80,7 @@ typedef struct quincunx_settings {
   int32_t target_width, target_height; /* of the inputs: at least the largest viewport; no default */
   int32_t colour_format;               /* of the input: RGBA8, RGBA16F (default) or RGBA32F */
   int32_t velocity_format;             /* of the input: RG16F (default) or RG32F */
-  int32_t resolved_format;             /* of the resolved picture: RGBA16F or RGBA32F (default) */
+  int32_t linear_format;               /* of the linear picture: RGBA16F or RGBA32F (default) */
   int32_t storage;                     /* of memory objects: QUINCUNX_BUFFER (default) or QUINCUNX_IMAGE2D */
   int32_t targets;                     /* default QUINCUNX_VIEWPORT */
   int32_t shading;                     /* default QUINCUNX_FULL */
@@ -90,7 +90,7 @@ typedef struct quincunx_settings {
   int32_t dither;                      /* of the presented picture; default 1 */
   int32_t clamp_ringing;               /* of filters that ring; default 1 */
   int32_t noise_moves;                 /* of the noise methods: another pattern every frame; default 1 */
-  int32_t far_motion;                  /* of far samples without velocity; default QUINCUNX_AS_DRAWN */
+  int32_t sky_motion;                  /* of far samples without velocity; default QUINCUNX_AS_DRAWN */
   int32_t two_frame_form;              /* default QUINCUNX_BY_VELOCITY */
   int32_t sampling;                    /* of two frames; default QUINCUNX_SAMPLE_BILINEAR */
   int32_t temporal_preset;             /* default QUINCUNX_BALANCED */
@@ -123,9 +123,9 @@ typedef struct quincunx_needs {
   int32_t reads_camera;   /* inputs.clip_to_previous_clip is needed */
   int32_t
       keeps_previous_frame;  /* memory objects of a frame must stay until the work of the next one is done */
-  int32_t blurs;             /* outputs.blurred is the finished picture, else outputs.resolved */
   int32_t presented_storage; /* of outputs.presented: QUINCUNX_BUFFER or QUINCUNX_IMAGE2D */
   int32_t accumulates;       /* all frames since the last reset count */
+  int32_t padding;           /* 0 */
   uint64_t frame_bytes;      /* of the inputs of one frame, at most */
 } quincunx_needs;
 

@@ -20,8 +20,8 @@ namespace quincunx {
 
 class QUINCUNX_API CostTable {
  public:
-  static constexpr double kLargestArea = 4;  // scale 2 on both axes
-  static constexpr int kBinsPerArea = 64;    // resolutions of one 64th of the output's area count as the same
+  static constexpr double kMaxArea = 4;    // scale 2 on both axes
+  static constexpr int kBinsPerArea = 64;  // resolutions of one 64th of the output's area count as the same
 
   // An entry's confidence halves in half_life_frames. Errors: kInvalidArgument for one outside [1, 1e9].
   static Result<CostTable> create(double half_life_frames = 3600);

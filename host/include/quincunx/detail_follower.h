@@ -18,7 +18,7 @@ namespace quincunx {
 struct DetailSettings {
   int levels = 4;            // in [2, 64]; 0 is the full detail, levels - 1 the least
   double full_area = 0.8;    // area fraction from which detail is full
-  double least_area = 0.3;   // area fraction to which it falls to the least; in (0, full_area)
+  double min_area = 0.3;     // area fraction to which it falls to the least; in (0, full_area)
   double hysteresis = 0.25;  // part of a level that has to be passed before it is left; in [0, 1]
   int rest_frames = 30;      // at least, between two changes; at least 0
 };
@@ -45,11 +45,11 @@ class QUINCUNX_API DetailFollower {
 };
 
 // The output extent that goes with a render extent: the smallest rung of `outputs` whose area the render
-// extent fills to at most `most_filled` (in (0, 1]); where all are filled more, the highest rung. With 0.64,
+// extent fills to at most `max_filled` (in (0, 1]); where all are filled more, the highest rung. With 0.64,
 // passes after upscaling run at the lowest output until the render extent reaches .8 of it on each axis, and
-// at larger ones from there on. Errors: kInvalidArgument for an empty render extent or a most_filled outside
+// at larger ones from there on. Errors: kInvalidArgument for an empty render extent or a max_filled outside
 // its range.
 QUINCUNX_API Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render,
-                                        double most_filled = 0.64);
+                                        double max_filled = 0.64);
 
 }  // namespace quincunx

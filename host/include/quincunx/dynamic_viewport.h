@@ -16,10 +16,10 @@ class QUINCUNX_API DynamicViewport {
  public:
   // Target extent = ceil(output * max_scale). Viewports of set_scale() are the output extent plus a multiple
   // of `step` pixels on each axis, so that scale 1 is exactly the output, whatever its parity; no side falls
-  // below `floor` (or the output where that is smaller) nor exceeds the target. Errors: kInvalidArgument for
-  // an empty output, a max_scale outside [1, 2] or not finite, a step below 1, a floor below 1.
+  // below `min_extent` (or the output where that is smaller) nor exceeds the target. Errors: kInvalidArgument for
+  // an empty output, a max_scale outside [1, 2] or not finite, a step below 1, a min_extent below 1.
   static Result<DynamicViewport> create(Extent output, float max_scale = 1.0f, int step = 2,
-                                        Extent floor = {8, 8});
+                                        Extent min_extent = {8, 8});
 
   // Takes the viewport nearest to output * scale on each axis. Values beyond the range are clamped. Errors:
   // kInvalidArgument for a scale that is not a positive finite number; the viewport then stays as it was.
@@ -36,11 +36,11 @@ class QUINCUNX_API DynamicViewport {
   Vec2 target_ratio() const;  // render / target per axis: the part of the target in use
 
  private:
-  DynamicViewport(Extent output, Extent target, int step, Extent floor);
+  DynamicViewport(Extent output, Extent target, int step, Extent min_extent);
 
   Extent output_;
   Extent target_;
-  Extent floor_;
+  Extent min_extent_;
   Extent render_;
   int step_;
 };

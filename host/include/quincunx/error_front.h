@@ -53,24 +53,24 @@ struct FrontPoint {
   double scale = 1;  // per axis, in (0, 1]
   double flip = 0;   // mean FLIP, [0, 1]
   double flip_spread = 0;
-  double psnr_db = 0;  // at most kHighestPsnr, which stands for no error
+  double psnr_db = 0;  // at most kMaxPsnr, which stands for no error
   double psnr_spread = 0;
   double ms_per_megapixel = 0;  // time per megapixel of the output: all resolve passes but present, above 0
   double ms_spread = 0;
 
-  static constexpr double kHighestPsnr = 100;
+  static constexpr double kMaxPsnr = 100;
   friend bool operator==(const FrontPoint&, const FrontPoint&) = default;
 };
 
 // Where points come from.
 struct FrontSource {
-  std::string device;   // OpenCL platform and device: "Portable Computing Language pthread-..."
-  std::string driver;   // version of the driver
-  std::string scene;    // the one scene that it holds for; empty: points of classes, for any scene
-  std::string date;     // UTC, "2026-11-22 21:03 UTC"
-  std::string command;  // that measured it
-  std::string truth;    // what errors are against: "64 samples a pixel"
-  Extent output;        // whose resolves were timed
+  std::string device;    // OpenCL platform and device: "Portable Computing Language pthread-..."
+  std::string driver;    // version of the driver
+  std::string scene;     // the one scene that it holds for; empty: points of classes, for any scene
+  std::string date;      // UTC, "2026-11-22 21:03 UTC"
+  std::string command;   // that measured it
+  std::string truth;     // what errors are against: "64 samples a pixel"
+  Extent output_extent;  // whose resolves were timed
 
   friend bool operator==(const FrontSource&, const FrontSource&) = default;
 };

@@ -18,7 +18,7 @@ namespace quincunx {
 // which may have moved since the frame before. So a region that follows a thing sees that thing stand still.
 // The images of `frame` have the lifetime of those of the picture's frame.
 struct FocusInputs {
-  static constexpr int kMostRectangles = 4;
+  static constexpr int kMaxRectangles = 4;
   static constexpr float kDefaultFeather = 16;
 
   FrameInputs frame =
@@ -27,7 +27,7 @@ struct FocusInputs {
   int y = 0;
   // Where the focus shows, in output pixels, each within the region; those behind `rectangle_count` are not read. None:
   // the whole region.
-  std::array<Rectangle, kMostRectangles> rectangles = {};
+  std::array<Rectangle, kMaxRectangles> rectangles = {};
   int rectangle_count = 0;
   // Output pixels inside of a rectangle over which the focus sets in; 0: kDefaultFeather. At most a quarter of the
   // rectangle's shorter side is used. A side that is the picture's own has none.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,8 +17,6 @@
 #include "quincunx/status.h"
 
 namespace quincunx {
-
-struct ResolvePlan;
 
 // Where the camera was: for velocity from depth, and to know surfaces again. Column-major: (ndc.x, ndc.y, depth, 1)
 // of this frame, jitter excluded, becomes homogeneous clip coordinates of the previous frame, jitter excluded;
@@ -38,11 +37,11 @@ struct FrameInputs {
   ImageView depth = {};  // R32F, as InputConventions says: reversed infinite depth
   ImageView velocity =
       {};  // RG16F or RG32F, as InputConventions says: this position - previous position, in uv
-  ImageView reactive = {};  // R8, 0: trust history, 1: ignore it
-  Extent render = {};       // the viewport, within the images' extents (placed: just that); any size from 1x1
-  // The picture's size in this frame, from the plan's least_output to its output; {0, 0}: the plan's output. History
-  // of another size is resampled to it.
-  Extent output = {};
+  ImageView reactive = {};    // R8, 0: trust history, 1: ignore it
+  Extent render_extent = {};  // the viewport, within the images' (placed: just that); any size from 1x1
+  // The picture's size in this frame, from settings.min_output_extent to output_extent; {0, 0}: the latter. History of
+  // another size is resampled to it.
+  Extent output_extent = {};
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
   Vec2 jitter = {};
   Vec2 velocity_scale = {};  // multiplies velocity to give what InputConventions says; {0, 0}: {1, 1}
@@ -50,12 +49,12 @@ struct FrameInputs {
   float near_plane = 0;
   float far_plane = 0;
   CameraMotion camera = {};
-  // Where ResolveSettings::particle_target says so, particles that were drawn apart, with the frame's camera and
+  // Where ResolveSettings::particle_target_extent says so, particles that were drawn apart, with the frame's camera and
   // jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
-  ImageView particle_colour = {};    // as colour; alpha: coverage
-  ImageView particle_depth = {};     // R32F: the frame's depth resampled, of a surface that the pixel shows
-  ImageView particle_reactive = {};  // R8
-  Extent particle_render = {};       // the particles' viewport, as `render`; any size from 1x1
+  ImageView particle_colour = {};      // as colour; alpha: coverage
+  ImageView particle_depth = {};       // R32F: the frame's depth resampled, of a surface that the pixel shows
+  ImageView particle_reactive = {};    // R8
+  Extent particle_render_extent = {};  // the particles' viewport; any size from 1x1
   float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
   // R32F, 1x1, a buffer or an image: another factor of the exposure, which is made on the device and need never be
   // read on the host. One that is not positive and finite counts as 1.
@@ -65,28 +64,17 @@ struct FrameInputs {
   int parity = 0;
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
   // Where ResolveSettings::fades, another picture of this frame, as another method's service made it: format and
-  // extent of the resolved picture, a buffer, other memory. The finished picture has `fade_weight` of its own, in
+  // extent of FrameOutputs::linear, a buffer, other memory. The finished picture has `fade_weight` of its own, in
   // [0, 1], and the rest of this one.
   ImageView fading_from = {};
   float fade_weight = 1;
 };
 
-// Where the results go. At least one is needed; each has the plan's output extent. A frame of a smaller output writes
-// the top left part only of `resolved` and `blurred`.
+// Where the finished picture goes, in settings.output_extent. At least one is needed.
 struct FrameOutputs {
-  ImageView resolved = {};   // RGBA32F or RGBA16F as planned: linear, output extent; sharpened as planned
+  ImageView linear = {};     // RGBA32F or RGBA16F, as settings.linear says: linear light, in a buffer
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
-  ImageView blurred = {};    // as resolved, other memory; only where the plan blurs
-  // The finished picture in the plan's output extent, format as resolved, other memory; only where the output is
-  // dynamic (ResolvePlan::is_dual()).
-  ImageView displayed = {};
 };
-
-// Outputs for a caller who wants the finished picture: `linear` becomes the displayed picture where the output is
-// dynamic, else the blurred one where the plan blurs and the resolved one where it does not. An empty view leaves its
-// picture out.
-QUINCUNX_API FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear,
-                                      const ImageView& presented);
 
 struct PassReport {
   const char* kernel = "";  // static string: "resolve_quincunx"
@@ -98,17 +86,40 @@ struct PassReport {
 // "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
-struct FrameReport {
-  static constexpr int kMaxPasses = 72;  // the largest plan has 40 for the picture and 25 for its focus
+// The passes of a frame in the order in which they ran. A value that allocates nothing.
+class PassReports {
+ public:
+  static constexpr std::size_t max_size() { return kRoom; }
 
+  // Leaves out what exceeds max_size().
+  void push_back(const PassReport& pass) {
+    if (size_ < max_size()) passes_[size_++] = pass;
+  }
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  const PassReport& operator[](std::size_t i) const { return passes_[i]; }
+  PassReport& operator[](std::size_t i) { return passes_[i]; }
+  const PassReport* begin() const { return passes_.data(); }
+  const PassReport* end() const { return begin() + size_; }
+  PassReport* begin() { return passes_.data(); }
+  PassReport* end() { return begin() + size_; }
+
+ private:
+  static constexpr std::size_t kRoom = 72;  // the largest plan has 40 for the picture and 25 for its focus
+
+  std::size_t size_ = 0;
+  std::array<PassReport, kRoom> passes_;
+};
+
+struct FrameReport {
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
-  Extent render = {};
-  Extent output = {};
+  Extent render_extent = {};
+  Extent output_extent = {};
   Vec2 ratio = {};             // render / output, recomputed from the integer viewport
   bool used_previous = false;  // history contributed (false on the first frame and after reset)
-  int pass_count = 0;
-  std::array<PassReport, kMaxPasses> passes;
+  PassReports passes = {};
   bool focused = false;  // a focus was laid over the picture
   // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;

@@ -87,7 +87,7 @@ enum class TemporalView : std::uint8_t {
 
 // Source of the motion of samples that are infinitely far away and have a velocity of exactly 0, as many renderers
 // write it for the sky whatever the camera does.
-enum class FarMotion : std::uint8_t {
+enum class SkyMotion : std::uint8_t {
   kAsDrawn,  // nothing: they stand still in the picture
   kCamera,   // the camera's rotation, from FrameInputs::camera
   kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
@@ -147,7 +147,7 @@ QUINCUNX_API const char* name_of(TwoFrameForm form);      // "velocity"
 QUINCUNX_API const char* name_of(Sampling sampling);      // "point"
 QUINCUNX_API const char* name_of(TemporalPreset preset);  // "balanced"
 QUINCUNX_API const char* name_of(TemporalView view);      // "confidence"
-QUINCUNX_API const char* name_of(FarMotion motion);       // "camera"
+QUINCUNX_API const char* name_of(SkyMotion motion);       // "camera"
 QUINCUNX_API const char* name_of(DrawnVelocity drawn);    // "dilated"
 QUINCUNX_API const char* name_of(ToneMap tone_map);       // "aces"
 QUINCUNX_API const char* name_of(Shading shading);        // "checkerboard"

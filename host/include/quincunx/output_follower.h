@@ -15,12 +15,12 @@
 namespace quincunx {
 
 struct OutputSettings {
-  Extent display = {};        // the largest output; both sides in [1, 32768]
-  double min_scale = 0.5;     // smallest output as a fraction of the display, per axis; in (0, 1]
-  int steps = 8;              // at most so many for each axis, of equal size; at least 1
-  double most_filled = 0.64;  // see dual_output()
-  double hysteresis = 0.15;   // fraction of the render area that is lost before the output falls; in [0, 1)
-  int rest_frames = 30;       // at least, between two changes, until a viewport has more pixels; at least 0
+  Extent display = {};       // the largest output; both sides in [1, 32768]
+  double min_scale = 0.5;    // smallest output as a fraction of the display, per axis; in (0, 1]
+  int steps = 8;             // at most so many for each axis, of equal size; at least 1
+  double max_filled = 0.64;  // see dual_output()
+  double hysteresis = 0.15;  // fraction of the render area that is lost before the output falls; in [0, 1)
+  int rest_frames = 30;      // at least, between two changes, until a viewport has more pixels; at least 0
 };
 
 class QUINCUNX_API OutputFollower {
@@ -32,8 +32,8 @@ class QUINCUNX_API OutputFollower {
   // nothing. Returns output().
   Extent observe(Extent render);
 
-  Extent output() const { return output_; }     // the display's before the first frame
-  Extent least() const { return outputs_[0]; }  // the smallest there may be
+  Extent output() const { return output_; }          // the display's before the first frame
+  Extent min_output() const { return outputs_[0]; }  // the smallest there may be
 
  private:
   OutputFollower(const OutputSettings& settings, ResolutionLadder outputs);

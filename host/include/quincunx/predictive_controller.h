@@ -35,9 +35,9 @@ enum class CpuBound : std::uint8_t {
 // Motion blur hides detail: the longer its streaks, the lower the resolution may be. Off unless asked for.
 struct BlurAware {
   bool enabled = false;
-  double start_px = 4;         // mean streak, output pixels, from which it counts
-  double full_px = 24;         // from which lowest_scale is the limit; above start_px
-  double lowest_scale = 0.71;  // per axis, in (0, 1]; the seed's figure 10
+  double start_px = 4;      // mean streak, output pixels, from which it counts
+  double full_px = 24;      // from which min_scale is the limit; above start_px
+  double min_scale = 0.71;  // per axis, in (0, 1]; the seed's figure 10
 };
 
 struct PredictiveSettings {

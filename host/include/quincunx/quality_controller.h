@@ -11,9 +11,9 @@
 // in which both methods run. Right after a cut, where no history is worth anything, or in a fast pan it needs no fade.
 // docs/control.md has the rules, the figures and a recipe.
 //
-//   auto made = make_quality_controller({.pacing = {.ladder = {.output = {1920, 1080}}, .target_ms = 1000.0 / 60}});
-//   each frame:  QualityChoice choice = controller.choice();  draw at choice.render;  resolve with choice.method, and
-//                with choice.fading_from where there is one;
+//   auto made = make_quality_controller({.pacing = {.ladder = {.output_extent = {1920, 1080}}, .target_ms = 16.7}});
+//   each frame:  QualityChoice choice = controller.choice();  draw at choice.render_extent;
+//                resolve with choice.method, and with choice.fading_from where there is one;
 //                for every timer that has come back, oldest first: controller.observe(frame)
 //
 // As every controller it is pure: the same calls give the same choices everywhere. Not thread safe.
@@ -51,7 +51,7 @@ struct QualityFrame {
 
 // How to draw and resolve the next frame.
 struct QualityChoice {
-  Extent render;  // as ResolutionController::next()
+  Extent render_extent;  // as ResolutionController::next()
   MethodVariant method;
   // Resolve with this, too, and show `weight` of `method` and the rest of this.
   std::optional<MethodVariant> fading_from = {};

@@ -28,7 +28,7 @@ struct FrameTiming {
 
   std::uint64_t frame = 0;       // its number; rises from call to call, gaps are allowed
   std::uint64_t next_frame = 0;  // number of the frame that next() will be drawn as; 0: the one after `frame`
-  Extent render = {};            // the extent it was drawn at; both sides at least 1
+  Extent render_extent = {};     // the extent it was drawn at; both sides at least 1
   double gpu_ms = 0;           // busy time of its critical path, without bubbles and without waiting for the
                                // display; must be above 0
   double cpu_ms = 0;           // time the processor needed to prepare it
@@ -40,14 +40,14 @@ struct FrameTiming {
 
 class QUINCUNX_API ResolutionController {
  public:
-  static constexpr double kLongestMs = 60000;  // no time and no target is longer
+  static constexpr double kMaxMs = 60000;  // no time and no target is longer
 
   virtual ~ResolutionController() = default;
 
   virtual const char* name() const = 0;  // "predictive"
 
   // Learns from one frame and chooses next(). Errors: kInvalidArgument for a frame number that is not above
-  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kLongestMs], or
+  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kMaxMs], or
   // another field that is negative (queued: below -1), too long or not finite. After an error nothing has
   // changed, so a caller may ignore it.
   Status observe(const FrameTiming& timing);
@@ -57,7 +57,7 @@ class QUINCUNX_API ResolutionController {
   int rung() const { return rung_; }
 
   // The time that a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
-  // kInvalidArgument for one outside (0, kLongestMs]; the old target then stays.
+  // kInvalidArgument for one outside (0, kMaxMs]; the old target then stays.
   Status set_target_ms(double target_ms);
   double target_ms() const { return target_ms_; }
 

@@ -24,12 +24,12 @@ enum class AxisOrder : std::uint8_t {
 };
 
 struct LadderSettings {
-  Extent output = {};      // both sides in [1, 32768]
-  double min_scale = 0.5;  // per axis, of the output; above 0
-  double max_scale = 1;    // in [min_scale, 2]
+  Extent output_extent = {};  // both sides in [1, 32768]
+  double min_scale = 0.5;     // per axis, of the output; above 0
+  double max_scale = 1;       // in [min_scale, 2]
   AxisOrder order = AxisOrder::kHorizontalFirst;
-  int step = 2;           // pixels, at least 1
-  Extent floor = {8, 8};  // no side is smaller (or than the output, where that is smaller)
+  int step = 2;                // pixels, at least 1
+  Extent min_extent = {8, 8};  // no side is smaller (or than the output, where that is smaller)
 };
 
 class QUINCUNX_API ResolutionLadder {
@@ -48,9 +48,9 @@ class QUINCUNX_API ResolutionLadder {
   double area_fraction(int rung) const { return area_fraction((*this)[rung]); }
 
   // The largest rung of at most this area fraction; the lowest one where all are larger or it is NaN.
-  int highest_within(double area_fraction) const;
+  int max_rung_within(double area_fraction) const;
   // The same for a scale of both axes: area fraction = scale squared.
-  int highest_within_scale(double scale) const { return highest_within(scale * scale); }
+  int max_rung_within_scale(double scale) const { return max_rung_within(scale * scale); }
 
  private:
   ResolutionLadder(Extent output, std::vector<Extent> rungs);

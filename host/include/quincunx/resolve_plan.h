@@ -60,8 +60,9 @@ struct MotionBlurSettings {
 // FocusInputs.
 struct FocusSettings {
   Extent extent = {};  // size of the region in output pixels; 0x0: there is none
-  Extent target = {};  // the allocated size of its inputs, at least its largest viewport; 0x0: as extent
-  bool mask = false;   // FocusInputs::mask is given
+  Extent target_extent =
+      {};             // the allocated size of its inputs, at least its largest viewport; 0x0: as extent
+  bool mask = false;  // FocusInputs::mask is given
 
   friend bool operator==(const FocusSettings&, const FocusSettings&) = default;
 };
@@ -80,31 +81,31 @@ QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 
 struct ResolveSettings {
   Method method = Method::kQuincunx;
-  Extent output = {};  // the picture's size
-  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output may have any size from this one to
-  // `output`, in which its picture is then shown. {0, 0}: always `output`.
-  Extent least_output = {};
-  Extent target = {};  // the inputs' allocated size: at least the largest viewport
+  Extent output_extent = {};  // the picture's size
+  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output_extent may have any size from this one to
+  // `output_extent`, in which its picture is then shown. {0, 0}: always `output_extent`.
+  Extent min_output_extent = {};
+  Extent target_extent = {};  // the inputs' allocated size: at least the largest viewport
   // 0x0: the inputs' colour holds everything. Else particles are drawn apart, into a viewport of their own within
   // images of this size, at most the target's: see FrameInputs::particle_colour.
-  Extent particle_target = {};
-  PixelFormat colour = PixelFormat::kRGBA16F;    // the input's: RGBA8, RGBA16F or RGBA32F
-  PixelFormat velocity = PixelFormat::kRG16F;    // the input's: RG16F or RG32F
-  PixelFormat resolved = PixelFormat::kRGBA32F;  // the resolved picture's: RGBA16F or RGBA32F
-  InputConventions conventions = {};             // what the inputs mean
-  Storage storage = Storage::kBuffer;            // the inputs'; see ResolvePlan::presented_storage()
-  Targets targets = Targets::kViewport;          // the inputs' and the service's own images'
-  Shading shading = Shading::kFull;              // kCheckerboard: the other half is filled first
-  bool present = true;                           // run the present pass
-  bool clear = false;                            // ResolveService::clear() will be called
-  ToneMap tone_map = ToneMap::kAces;             // the present pass's; with RGBA8 colour the renderer's
-  bool dither = true;                            // the present pass's: +- half a code value, fixed pattern
+  Extent particle_target_extent = {};
+  PixelFormat colour = PixelFormat::kRGBA16F;  // the input's: RGBA8, RGBA16F or RGBA32F
+  PixelFormat velocity = PixelFormat::kRG16F;  // the input's: RG16F or RG32F
+  PixelFormat linear = PixelFormat::kRGBA32F;  // the linear picture's: RGBA16F or RGBA32F
+  InputConventions conventions = {};           // what the inputs mean
+  Storage storage = Storage::kBuffer;          // the inputs'; see ResolvePlan::presented_storage()
+  Targets targets = Targets::kViewport;        // the inputs' and the service's own images'
+  Shading shading = Shading::kFull;            // kCheckerboard: the other half is filled first
+  bool present = true;                         // run the present pass
+  bool clear = false;                          // ResolveService::clear() will be called
+  ToneMap tone_map = ToneMap::kAces;           // the present pass's; with RGBA8 colour the renderer's
+  bool dither = true;                          // the present pass's: +- half a code value, fixed pattern
   // Filters that ring (SeparableFilter::rings) stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
   bool noise_moves = true;                             // kNoise, kNoiseOffset: another pattern every frame
   DrawnVelocity drawn_velocity = DrawnVelocity::kOwn;  // where velocity is drawn
-  FarMotion far = FarMotion::kAsDrawn;                 // the same
+  SkyMotion sky_motion = SkyMotion::kAsDrawn;          // the same
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
@@ -178,9 +179,9 @@ struct QUINCUNX_API ResolvePlan {
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool has_focus() const;             // dispatch() takes FocusInputs
-  bool is_dual() const;               // the output is dynamic: settings.least_output
+  bool is_dual() const;               // the output is dynamic: settings.min_output_extent
   bool undilates_velocity() const;    // settings.drawn_velocity counts: velocity is drawn and read
-  bool moves_far() const;             // settings.far counts: velocity is drawn, and the camera moves
+  bool moves_sky() const;             // settings.sky_motion counts: velocity is drawn, and the camera moves
   bool reads_camera() const;          // FrameInputs::camera is needed
   // Returns the storage of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an
   // image of that size is not made again and so needs no such memory.
@@ -192,7 +193,7 @@ struct QUINCUNX_API ResolvePlan {
   std::uint64_t frame_bytes() const;
   // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
   // dense, from 1.56 a pixel on, that a frame alone is the better picture.
-  // `output`: the frame's; {0, 0}: settings.output.
+  // `output`: the frame's; {0, 0}: settings.output_extent.
   bool reads_history(Extent render, Extent output = {}) const;
   std::string explain() const;  // a page of plain text
 

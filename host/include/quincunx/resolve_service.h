@@ -50,6 +50,12 @@ struct FrameSync {
   cl_event* done = nullptr;
 };
 
+// Pictures on the way to the finished one.
+enum class PictureStage : std::uint8_t {
+  kResolved,  // sharpened as planned, without motion blur
+  kBlurred,   // with it
+};
+
 class QUINCUNX_API ResolveService {
  public:
   // Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with the build's options
@@ -65,9 +71,8 @@ class QUINCUNX_API ResolveService {
   // known yet.
   FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs, const FrameSync& sync = {});
 
-  // The same with a focus laid over the finished picture (FrameOutputs::blurred where the plan blurs, else resolved)
-  // and over what is presented of it. Nothing outside of its rectangles changes by one bit. A frame without a focus
-  // ends the focus's history.
+  // The same with a focus laid over the finished picture. Nothing outside of its rectangles changes by one bit. A frame
+  // without a focus ends the focus's history.
   FrameReport dispatch(const FrameInputs& inputs, const FocusInputs& focus, const FrameOutputs& outputs,
                        const FrameSync& sync = {});
 
@@ -84,6 +89,11 @@ class QUINCUNX_API ResolveService {
   // the partial clear.
   // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
   Status clear(const ImageView& image, Extent render, const float value[4]);
+
+  // Returns the last frame's picture at a stage, for inspection: as FrameOutputs::linear, in the top left part that is
+  // the frame's output extent. Empty where there was no such stage or it gave the finished picture, which the caller
+  // has. The service owns the memory; the next dispatch overwrites it.
+  ImageView picture(PictureStage stage) const;
 
   // Returns the last frame's kinds of tiles, for inspection: waits for that frame. Errors: kInvalidArgument where the
   // plan does not blur.

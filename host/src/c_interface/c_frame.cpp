@@ -76,7 +76,7 @@ Status read_images(const std::array<const char*, Count>& names, const Images& im
 }
 
 void read_numbers(const quincunx_inputs& from, FrameInputs& to) {
-  to.render = {from.render_width, from.render_height};
+  to.render_extent = {from.render_width, from.render_height};
   to.jitter = {from.jitter_x, from.jitter_y};
   to.velocity_scale = {from.velocity_scale_x, from.velocity_scale_y};
   const auto& matrix = from.clip_to_previous_clip;
@@ -105,10 +105,9 @@ Result<Frame> checked_frame(const ResolvePlan& plan, const quincunx_inputs* inpu
       {"colour", "depth", "velocity", "reactive"}, std::array{in.colour, in.depth, in.velocity, in.reactive},
       {storage, storage, storage, storage}, kInputImages, frame.inputs, frame.host_inputs);
   if (!status.ok()) return status;
-  status = read_images<3>({"resolved", "presented", "blurred"},
-                          std::array{out.resolved, out.presented, out.blurred},
-                          {Storage::kBuffer, plan.presented_storage(), Storage::kBuffer}, kOutputImages,
-                          frame.outputs, frame.host_outputs);
+  status = read_images<2>({"linear", "presented"}, std::array{out.linear, out.presented},
+                          {Storage::kBuffer, plan.presented_storage()}, kOutputImages, frame.outputs,
+                          frame.host_outputs);
   if (!status.ok()) return status;
   read_numbers(in, frame.inputs);
   status = validate(plan, frame.inputs, frame.outputs);
@@ -136,15 +135,15 @@ void write_report(const FrameReport& from, quincunx_report* to) {
   quincunx_report report = {};
   report.passes = to->passes;
   report.pass_capacity = to->pass_capacity;
-  report.pass_count = from.pass_count;
+  report.pass_count = static_cast<int>(from.passes.size());
   report.frame_index = from.frame_index;
   report.non_finite_pixels = from.non_finite_pixels;
-  report.render_width = from.render.width;
-  report.render_height = from.render.height;
+  report.render_width = from.render_extent.width;
+  report.render_height = from.render_extent.height;
   report.ratio_x = from.ratio.x;
   report.ratio_y = from.ratio.y;
   report.used_previous = from.used_previous;
-  const int count = to->passes != nullptr ? std::min(from.pass_count, to->pass_capacity) : 0;
+  const int count = to->passes != nullptr ? std::min(report.pass_count, to->pass_capacity) : 0;
   for (int i = 0; i < count; ++i) {
     const PassReport& pass = from.passes[static_cast<std::size_t>(i)];
     to->passes[i] = {pass.kernel, pass.ms, pass.bytes};
@@ -154,8 +153,8 @@ void write_report(const FrameReport& from, quincunx_report* to) {
 
 HostImages::HostImages(const Device& device, const ResolvePlan& plan)
     : device_(device),
-      target_(plan.settings.target),
-      output_(plan.settings.output),
+      target_(plan.settings.target_extent),
+      output_(plan.settings.output_extent),
       placed_(plan.settings.targets == Targets::kPlaced) {}
 
 Status HostImages::make(Image& image, Extent extent, const ImageView& like) const {
@@ -178,8 +177,8 @@ Status HostImages::input(Image& image, const HostMemory& host, Extent render, Im
 Status HostImages::bring(Frame& frame) {
   for (std::size_t i = 0; i < kInputImages.size(); ++i) {
     if (frame.host_inputs[i].texels == nullptr) continue;
-    const Status status =
-        input(inputs_[turn_][i], frame.host_inputs[i], frame.inputs.render, frame.inputs.*kInputImages[i]);
+    const Status status = input(inputs_[turn_][i], frame.host_inputs[i], frame.inputs.render_extent,
+                                frame.inputs.*kInputImages[i]);
     if (!status.ok()) return status;
   }
   for (std::size_t i = 0; i < kOutputImages.size(); ++i) {

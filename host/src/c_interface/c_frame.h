@@ -20,8 +20,7 @@ struct HostMemory {
 
 constexpr std::array kInputImages = {&FrameInputs::colour, &FrameInputs::depth, &FrameInputs::velocity,
                                      &FrameInputs::reactive};
-constexpr std::array kOutputImages = {&FrameOutputs::resolved, &FrameOutputs::presented,
-                                      &FrameOutputs::blurred};
+constexpr std::array kOutputImages = {&FrameOutputs::linear, &FrameOutputs::presented};
 
 struct Frame {
   FrameInputs inputs;

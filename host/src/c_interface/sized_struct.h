@@ -26,13 +26,13 @@ inline constexpr std::size_t kFirstSize<quincunx_image> = 48;
 template <>
 inline constexpr std::size_t kFirstSize<quincunx_inputs> = 152;
 template <>
-inline constexpr std::size_t kFirstSize<quincunx_outputs> = 32;
+inline constexpr std::size_t kFirstSize<quincunx_outputs> = 24;
 template <>
 inline constexpr std::size_t kFirstSize<quincunx_report> = 64;
 // Version 1; a field that is appended raises the left side alone.
 static_assert(sizeof(void*) != 8 || (sizeof(quincunx_settings) == 176 && sizeof(quincunx_needs) == 48 &&
                                      sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 160 &&
-                                     sizeof(quincunx_outputs) == 32 && sizeof(quincunx_report) == 64));
+                                     sizeof(quincunx_outputs) == 24 && sizeof(quincunx_report) == 64));
 
 template <typename Struct>
 Status check_size(const Struct* given, const char* name) {

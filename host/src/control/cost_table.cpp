@@ -48,13 +48,13 @@ const CostTable::Entry* CostTable::find(int bin) const {
 }
 
 Status CostTable::record(std::uint64_t frame, double area_fraction, double gpu_ms) {
-  if (!within(area_fraction, kLargestArea)) {
+  if (!within(area_fraction, kMaxArea)) {
     return Status::invalid(
-        fmt::format("area_fraction is {}; it must lie in (0, {}]", area_fraction, kLargestArea));
+        fmt::format("area_fraction is {}; it must lie in (0, {}]", area_fraction, kMaxArea));
   }
-  if (!within(gpu_ms, ResolutionController::kLongestMs)) {
+  if (!within(gpu_ms, ResolutionController::kMaxMs)) {
     return Status::invalid(
-        fmt::format("gpu_ms is {}; it must lie in (0, {}]", gpu_ms, ResolutionController::kLongestMs));
+        fmt::format("gpu_ms is {}; it must lie in (0, {}]", gpu_ms, ResolutionController::kMaxMs));
   }
   if (started_ && frame < frame_) {
     return Status::invalid(fmt::format("frame is {}, below the last one, {}", frame, frame_));
@@ -80,13 +80,13 @@ Status CostTable::record(std::uint64_t frame, double area_fraction, double gpu_m
 }
 
 double CostTable::confidence(double area_fraction) const {
-  if (!within(area_fraction, kLargestArea)) return 0;
+  if (!within(area_fraction, kMaxArea)) return 0;
   const Entry* entry = find(bin_of(area_fraction));
   return entry == nullptr ? 0 : decay(entry->age);
 }
 
 std::optional<double> CostTable::predict(double area_fraction, double fixed_part) const {
-  if (entries_.empty() || !within(area_fraction, kLargestArea)) return std::nullopt;
+  if (entries_.empty() || !within(area_fraction, kMaxArea)) return std::nullopt;
   const Entry* own = find(bin_of(area_fraction));
   const auto moved = [&](const Entry& entry) {
     return entry.gpu_ms * work(area_fraction, fixed_part) / work(entry.area, fixed_part);
@@ -155,9 +155,9 @@ Result<CostTable> CostTable::from_json(const std::string& text) {
                   .gpu_ms = item.at("gpu_ms").get<double>(),
                   .weight = item.at("weight").get<double>(),
                   .age = item.at("age_frames").get<double>()};
-      entry.bin = within(entry.area, kLargestArea) ? bin_of(entry.area) : -1;
+      entry.bin = within(entry.area, kMaxArea) ? bin_of(entry.area) : -1;
       const bool sorted = table->entries_.empty() || entry.bin > table->entries_.back().bin;
-      if (entry.bin < 0 || !sorted || !within(entry.gpu_ms, ResolutionController::kLongestMs) ||
+      if (entry.bin < 0 || !sorted || !within(entry.gpu_ms, ResolutionController::kMaxMs) ||
           !within(entry.weight, kMostWeight) || !(entry.age >= 0 && std::isfinite(entry.age))) {
         return Status::invalid("cost table: bad entry " + item.dump());
       }

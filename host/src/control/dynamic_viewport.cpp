@@ -19,10 +19,10 @@ int nearest_rung(int output, double scale, int step, int low, int high) {
 
 }  // namespace
 
-DynamicViewport::DynamicViewport(Extent output, Extent target, int step, Extent floor)
-    : output_(output), target_(target), floor_(floor), render_(output), step_(step) {}
+DynamicViewport::DynamicViewport(Extent output, Extent target, int step, Extent min_extent)
+    : output_(output), target_(target), min_extent_(min_extent), render_(output), step_(step) {}
 
-Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, int step, Extent floor) {
+Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, int step, Extent min_extent) {
   constexpr int kLargestSide = 32768;
   if (output.width < 1 || output.height < 1 || output.width > kLargestSide || output.height > kLargestSide) {
     return Status::invalid(fmt::format("output is {}x{}; both sides must lie in [1, {}]", output.width,
@@ -32,15 +32,16 @@ Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, 
     return Status::invalid(fmt::format("max_scale is {}; it must lie in [1, 2]", max_scale));
   }
   if (step < 1) return Status::invalid(fmt::format("step is {}; it must be at least 1 pixel", step));
-  if (floor.width < 1 || floor.height < 1) {
-    return Status::invalid(
-        fmt::format("floor is {}x{}; both sides must be at least 1", floor.width, floor.height));
+  if (min_extent.width < 1 || min_extent.height < 1) {
+    return Status::invalid(fmt::format("min_extent is {}x{}; both sides must be at least 1", min_extent.width,
+                                       min_extent.height));
   }
   const double scale = max_scale;
   const Extent target = {static_cast<int>(std::ceil(output.width * scale)),
                          static_cast<int>(std::ceil(output.height * scale))};
-  const Extent reachable_floor = {std::min(floor.width, output.width), std::min(floor.height, output.height)};
-  return DynamicViewport(output, target, step, reachable_floor);
+  const Extent reachable = {std::min(min_extent.width, output.width),
+                            std::min(min_extent.height, output.height)};
+  return DynamicViewport(output, target, step, reachable);
 }
 
 Status DynamicViewport::set_scale(float scale_x, float scale_y) {
@@ -52,8 +53,8 @@ Status DynamicViewport::set_scale(float scale_x, float scale_y) {
   // Beyond the ends only the direction matters; clamping first keeps the arithmetic in range.
   const double x = std::min(static_cast<double>(scale_x), 4.0);
   const double y = std::min(static_cast<double>(scale_y), 4.0);
-  render_ = {nearest_rung(output_.width, x, step_, floor_.width, target_.width),
-             nearest_rung(output_.height, y, step_, floor_.height, target_.height)};
+  render_ = {nearest_rung(output_.width, x, step_, min_extent_.width, target_.width),
+             nearest_rung(output_.height, y, step_, min_extent_.height, target_.height)};
   return {};
 }
 

@@ -41,17 +41,16 @@ Status check(const FrontPoint& point) {
     return Status::invalid(
         fmt::format("{}: {} is {}; it must lie in {}", text_of(point), field, value, range));
   };
-  constexpr double kLongestMs = 60000;
+  constexpr double kMaxMs = 60000;
   if (!(point.scale > 0 && point.scale <= 1)) return refuse("the scale", point.scale, "(0, 1]");
   if (!within(point.flip, 0, 1)) return refuse("flip", point.flip, "[0, 1]");
   if (!within(point.flip_spread, 0, 1)) return refuse("flip_spread", point.flip_spread, "[0, 1]");
-  if (!within(point.psnr_db, 0, FrontPoint::kHighestPsnr))
-    return refuse("psnr_db", point.psnr_db, "[0, 100]");
-  if (!within(point.psnr_spread, 0, FrontPoint::kHighestPsnr))
+  if (!within(point.psnr_db, 0, FrontPoint::kMaxPsnr)) return refuse("psnr_db", point.psnr_db, "[0, 100]");
+  if (!within(point.psnr_spread, 0, FrontPoint::kMaxPsnr))
     return refuse("psnr_spread", point.psnr_spread, "[0, 100]");
-  if (!(point.ms_per_megapixel > 0 && point.ms_per_megapixel <= kLongestMs))
+  if (!(point.ms_per_megapixel > 0 && point.ms_per_megapixel <= kMaxMs))
     return refuse("ms_per_megapixel", point.ms_per_megapixel, "(0, 60000]");
-  if (!within(point.ms_spread, 0, kLongestMs)) return refuse("ms_spread", point.ms_spread, "[0, 60000]");
+  if (!within(point.ms_spread, 0, kMaxMs)) return refuse("ms_spread", point.ms_spread, "[0, 60000]");
   return {};
 }
 

@@ -18,9 +18,9 @@ Result<DetailFollower> DetailFollower::create(const DetailSettings& settings) {
   if (!(settings.full_area > 0 && settings.full_area <= 4)) {
     return Status::invalid(fmt::format("full_area is {}; it must lie in (0, 4]", settings.full_area));
   }
-  if (!(settings.least_area > 0 && settings.least_area < settings.full_area)) {
-    return Status::invalid(fmt::format("least_area is {}; it must lie in (0, {}), below full_area",
-                                       settings.least_area, settings.full_area));
+  if (!(settings.min_area > 0 && settings.min_area < settings.full_area)) {
+    return Status::invalid(fmt::format("min_area is {}; it must lie in (0, {}), below full_area",
+                                       settings.min_area, settings.full_area));
   }
   if (!(settings.hysteresis >= 0 && settings.hysteresis <= 1)) {
     return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1]", settings.hysteresis));
@@ -39,7 +39,7 @@ int DetailFollower::observe(double area_fraction) {
   }
   // In levels: level k is meant for [k - 1/2, k + 1/2].
   const double wanted = (settings_.levels - 1) * (settings_.full_area - area_fraction) /
-                        (settings_.full_area - settings_.least_area);
+                        (settings_.full_area - settings_.min_area);
   const double margin = 0.5 + settings_.hysteresis;
   int next = level_;
   if (wanted > level_ + margin) ++next;
@@ -50,16 +50,16 @@ int DetailFollower::observe(double area_fraction) {
   return level_;
 }
 
-Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double most_filled) {
+Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double max_filled) {
   if (render.width < 1 || render.height < 1) {
     return Status::invalid(
         fmt::format("render is {}x{}; both sides must be at least 1", render.width, render.height));
   }
-  if (!(most_filled > 0 && most_filled <= 1)) {
-    return Status::invalid(fmt::format("most_filled is {}; it must lie in (0, 1]", most_filled));
+  if (!(max_filled > 0 && max_filled <= 1)) {
+    return Status::invalid(fmt::format("max_filled is {}; it must lie in (0, 1]", max_filled));
   }
-  const double needed = outputs.area_fraction(render) / most_filled;
-  const int below = outputs.highest_within(needed);
+  const double needed = outputs.area_fraction(render) / max_filled;
+  const int below = outputs.max_rung_within(needed);
   return outputs[std::min(outputs.top(),
                           outputs.area_fraction(below) < needed * (1 - 1e-12) ? below + 1 : below)];
 }
@@ -77,8 +77,8 @@ Status check(const OutputSettings& settings) {
     return Status::invalid(fmt::format("min_scale is {}; it must lie in (0, 1]", settings.min_scale));
   if (settings.steps < 1)
     return Status::invalid(fmt::format("steps is {}; it must be at least 1", settings.steps));
-  if (!(settings.most_filled > 0 && settings.most_filled <= 1))
-    return Status::invalid(fmt::format("most_filled is {}; it must lie in (0, 1]", settings.most_filled));
+  if (!(settings.max_filled > 0 && settings.max_filled <= 1))
+    return Status::invalid(fmt::format("max_filled is {}; it must lie in (0, 1]", settings.max_filled));
   if (!(settings.hysteresis >= 0 && settings.hysteresis < 1))
     return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1)", settings.hysteresis));
   if (settings.rest_frames < 0)
@@ -96,17 +96,17 @@ OutputFollower::OutputFollower(const OutputSettings& settings, ResolutionLadder 
 
 Result<OutputFollower> OutputFollower::create(const OutputSettings& settings) {
   if (Status status = check(settings); !status.ok()) return status;
-  auto outputs = ResolutionLadder::create({.output = settings.display,
+  auto outputs = ResolutionLadder::create({.output_extent = settings.display,
                                            .min_scale = settings.min_scale,
                                            .order = AxisOrder::kBoth,
                                            .step = step_of(settings),
-                                           .floor = {1, 1}});
+                                           .min_extent = {1, 1}});
   if (!outputs.ok()) return outputs.status();
   return OutputFollower(settings, std::move(outputs).value());
 }
 
 Extent OutputFollower::observe(Extent render) {
-  const Result<Extent> wanted = dual_output(outputs_, render, settings_.most_filled);
+  const Result<Extent> wanted = dual_output(outputs_, render, settings_.max_filled);
   if (!wanted.ok()) return output_;
   const bool is_outgrown = render.area() > output_.area();
   if (since_ < settings_.rest_frames && !is_outgrown) {
@@ -115,7 +115,7 @@ Extent OutputFollower::observe(Extent render) {
   }
   // An output falls to what a larger viewport would want.
   const Extent lower =
-      dual_output(outputs_, render, settings_.most_filled * (1 - settings_.hysteresis)).value();
+      dual_output(outputs_, render, settings_.max_filled * (1 - settings_.hysteresis)).value();
   Extent next = output_;
   if (wanted->area() > output_.area()) next = wanted.value();
   if (lower.area() < output_.area()) next = lower;

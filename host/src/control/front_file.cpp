@@ -74,7 +74,7 @@ FrontSource source_of(const nlohmann::json& root) {
           .date = text("date"),
           .command = text("command"),
           .truth = text("truth"),
-          .output = {root.at("output").at(0).get<int>(), root.at("output").at(1).get<int>()}};
+          .output_extent = {root.at("output").at(0).get<int>(), root.at("output").at(1).get<int>()}};
 }
 
 namespace fs = std::filesystem;
@@ -99,7 +99,7 @@ std::string ErrorFront::to_json() const {
       {kVersionKey, kFormat},     {"device", source_.device},
       {"driver", source_.driver}, {"scene", source_.scene},
       {"date", source_.date},     {"command", source_.command},
-      {"truth", source_.truth},   {"output", {source_.output.width, source_.output.height}},
+      {"truth", source_.truth},   {"output", {source_.output_extent.width, source_.output_extent.height}},
       {"columns", kColumns}};
   std::string text = "{\n";
   for (const auto& [key, value] : head.items())

@@ -23,9 +23,8 @@ Status check(const PredictiveSettings& settings) {
         fmt::format("blur_aware is {} to {} px; the first must be at least 0 and below the second",
                     blur.start_px, blur.full_px));
   }
-  if (!(blur.lowest_scale > 0 && blur.lowest_scale <= 1)) {
-    return Status::invalid(
-        fmt::format("blur_aware.lowest_scale is {}; it must lie in (0, 1]", blur.lowest_scale));
+  if (!(blur.min_scale > 0 && blur.min_scale <= 1)) {
+    return Status::invalid(fmt::format("blur_aware.min_scale is {}; it must lie in (0, 1]", blur.min_scale));
   }
   return {};
 }

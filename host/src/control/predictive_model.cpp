@@ -167,7 +167,7 @@ PredictiveModel::PredictiveModel(const ResolutionLadder& ladder, const Predictiv
 }
 
 void PredictiveModel::observe(const FrameTiming& timing, double apart_ms, double target_ms) {
-  const double area = ladder_->area_fraction(timing.render);
+  const double area = ladder_->area_fraction(timing.render_extent);
   target_ms_ = target_ms;
   backlog_.observe({.gpu_ms = timing.gpu_ms,
                     .cpu_ms = timing.cpu_ms,
@@ -223,13 +223,13 @@ double PredictiveModel::area_within(double ms, double apart_ms) const {
 
 int PredictiveModel::wanted_rung(int rung, double apart_ms, Bands bands) const {
   const double now = ladder_->area_fraction(rung);
-  const int highest = ladder_->highest_within(blur_limit());
+  const int highest = ladder_->max_rung_within(blur_limit());
   if (cpu_bound()) {
     if (follows_cpu()) return std::min(highest, move_to(area_within(steady_ms(), apart_ms), rung, bands));
     if (level_.level() * cost_.work(now) + apart_ms <= target_ms_) return std::min(highest, rung);
   }
   if (const auto least = area_to_survive(now, apart_ms)) {
-    return std::min({highest, rung, ladder_->highest_within(*least)});
+    return std::min({highest, rung, ladder_->max_rung_within(*least)});
   }
   if (has_outlier()) return std::min(highest, rung);
   const double aimed = aim();
@@ -247,7 +247,7 @@ double PredictiveModel::steady_ms() const {
 
 int PredictiveModel::steady_rung(double apart_ms) const {
   if (level_.mean_level() <= 0) return ladder_->top();
-  return ladder_->highest_within(std::min(blur_limit(), area_within(steady_ms(), apart_ms)));
+  return ladder_->max_rung_within(std::min(blur_limit(), area_within(steady_ms(), apart_ms)));
 }
 
 // After an outlier: the area at which the next frame would just be in time if the outlier was a step.
@@ -265,14 +265,14 @@ std::optional<double> PredictiveModel::area_to_survive(double now, double apart_
 }
 
 int PredictiveModel::move_to(double area, int rung, Bands bands) const {
-  if (bands == Bands::kNone) return ladder_->highest_within(area);
+  if (bands == Bands::kNone) return ladder_->max_rung_within(area);
   const double now = ladder_->area_fraction(rung);
   const double fade = std::exp(-since_change_ / kBandFade);
   const double noise = kBandSigmas * level_.sigma();
   const double down = has_slack() ? std::max({kLeastBandDown, noise, kBandDown * fade}) : kTightBandDown;
   const double up = std::max({kLeastBandUp, noise, kBandUp * fade});
-  if (area < now * (1 - down)) return std::min(rung, ladder_->highest_within(area));
-  if (area > now * (1 + up) && since_change_ >= kRestFrames) return ladder_->highest_within(area);
+  if (area < now * (1 - down)) return std::min(rung, ladder_->max_rung_within(area));
+  if (area > now * (1 + up) && since_change_ >= kRestFrames) return ladder_->max_rung_within(area);
   return rung;
 }
 
@@ -296,7 +296,7 @@ double PredictiveModel::blur_limit() const {
   const double top = ladder_->area_fraction(ladder_->top());
   if (!blur.enabled) return top;
   const double part = std::clamp((blur_px_ - blur.start_px) / (blur.full_px - blur.start_px), 0.0, 1.0);
-  const double scale = 1 + part * (blur.lowest_scale - 1);
+  const double scale = 1 + part * (blur.min_scale - 1);
   return top * scale * scale;
 }
 

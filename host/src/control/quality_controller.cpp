@@ -149,7 +149,7 @@ Status Quality::observe(const QualityFrame& frame) {
 }
 
 QualityChoice Quality::choice() const {
-  QualityChoice choice = {.render = next(), .method = pairs_[choice_.method()]};
+  QualityChoice choice = {.render_extent = next(), .method = pairs_[choice_.method()]};
   if (const auto from = choice_.fading_from()) choice.fading_from = pairs_[*from];
   choice.weight = choice_.weight();
   return choice;
@@ -157,7 +157,7 @@ QualityChoice Quality::choice() const {
 
 // Where passes are not timed, the whole tells: after a change, what drawing does not explain is the method's.
 void Quality::learn_untimed(const FrameTiming& timing, std::size_t method) {
-  const double scale = scale_of(timing.render);
+  const double scale = scale_of(timing.render_extent);
   const double expected = pairs_.passes_ms(method, scale);
   const double rest = timing.gpu_ms - model_.draw_ms(scale * scale);
   pairs_.learn(method, scale, std::clamp(rest, expected / kUntimedRange, expected * kUntimedRange));
@@ -165,7 +165,7 @@ void Quality::learn_untimed(const FrameTiming& timing, std::size_t method) {
 
 // Returns the part of a frame that was not drawing.
 double Quality::apart_ms(const FrameTiming& timing, const Methods& drawn) {
-  const double scale = scale_of(timing.render);
+  const double scale = scale_of(timing.render_extent);
   const bool changed = !(drawn == last_seen_);
   last_seen_ = drawn;
   if (resolve_ms_ > 0) {

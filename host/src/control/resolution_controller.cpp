@@ -14,8 +14,8 @@ ResolutionController::ResolutionController(ResolutionLadder ladder, double targe
     : ladder_(std::move(ladder)), target_ms_(target_ms), rung_(ladder_.top()) {}
 
 Status ResolutionController::check_target(double target_ms) {
-  if (target_ms > 0 && target_ms <= kLongestMs) return {};
-  return Status::invalid(fmt::format("target_ms is {}; it must lie in (0, {}]", target_ms, kLongestMs));
+  if (target_ms > 0 && target_ms <= kMaxMs) return {};
+  return Status::invalid(fmt::format("target_ms is {}; it must lie in (0, {}]", target_ms, kMaxMs));
 }
 
 Status ResolutionController::set_target_ms(double target_ms) {
@@ -33,20 +33,20 @@ Status ResolutionController::check(const FrameTiming& timing) const {
     return Status::invalid(
         fmt::format("next_frame is {}; it must be 0 or above frame, {}", timing.next_frame, timing.frame));
   }
-  if (timing.render.width < 1 || timing.render.height < 1) {
-    return Status::invalid(fmt::format("render is {}x{}; both sides must be at least 1", timing.render.width,
-                                       timing.render.height));
+  if (timing.render_extent.width < 1 || timing.render_extent.height < 1) {
+    return Status::invalid(fmt::format("render_extent is {}x{}; both sides must be at least 1",
+                                       timing.render_extent.width, timing.render_extent.height));
   }
-  if (!(timing.gpu_ms > 0 && timing.gpu_ms <= kLongestMs)) {
-    return Status::invalid(fmt::format("gpu_ms is {}; it must lie in (0, {}]", timing.gpu_ms, kLongestMs));
+  if (!(timing.gpu_ms > 0 && timing.gpu_ms <= kMaxMs)) {
+    return Status::invalid(fmt::format("gpu_ms is {}; it must lie in (0, {}]", timing.gpu_ms, kMaxMs));
   }
-  const auto unusable = [](double value) { return !(value >= 0 && value <= kLongestMs); };
+  const auto unusable = [](double value) { return !(value >= 0 && value <= kMaxMs); };
   if (unusable(timing.cpu_ms)) {
-    return Status::invalid(fmt::format("cpu_ms is {}; it must lie in [0, {}]", timing.cpu_ms, kLongestMs));
+    return Status::invalid(fmt::format("cpu_ms is {}; it must lie in [0, {}]", timing.cpu_ms, kMaxMs));
   }
   if (unusable(timing.interval_ms)) {
     return Status::invalid(
-        fmt::format("interval_ms is {}; it must lie in [0, {}]", timing.interval_ms, kLongestMs));
+        fmt::format("interval_ms is {}; it must lie in [0, {}]", timing.interval_ms, kMaxMs));
   }
   if (timing.queued < FrameTiming::kUnknownQueue) {
     return Status::invalid(
@@ -84,7 +84,7 @@ class ScaleController : public ResolutionController {
   // s <- s + gain * s * (1 - time / target)
   int follow(double gain, double time_ms, double target) {
     scale_ = std::clamp(scale_ + gain * scale_ * (target - time_ms) / target, min_scale_, max_scale_);
-    return ladder().highest_within_scale(scale_);
+    return ladder().max_rung_within_scale(scale_);
   }
 
  private:

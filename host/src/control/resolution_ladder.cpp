@@ -37,7 +37,7 @@ class Walk {
       : settings_(settings), width_(width), height_(height) {}
 
   std::vector<Extent> rungs() const {
-    const Extent output = settings_.output;
+    const Extent output = settings_.output_extent;
     const Extent start = {std::clamp(output.width, width_.low, width_.high),
                           std::clamp(output.height, height_.low, height_.high)};
     std::vector<Extent> list;
@@ -64,7 +64,7 @@ class Walk {
   }
   // Sides times the other axis' output are scales over a common denominator.
   bool width_shrinks_first(Extent at) const {
-    const Extent output = settings_.output;
+    const Extent output = settings_.output_extent;
     if (settings_.order == AxisOrder::kBoth) {
       return std::int64_t{at.width} * output.height >= std::int64_t{at.height} * output.width;
     }
@@ -72,7 +72,7 @@ class Walk {
            std::int64_t{3} * at.height * output.width;
   }
   bool width_grows_first(Extent at) const {
-    const Extent output = settings_.output;
+    const Extent output = settings_.output_extent;
     if (settings_.order == AxisOrder::kBoth) {
       return std::int64_t{at.width} * output.height <= std::int64_t{at.height} * output.width;
     }
@@ -86,9 +86,9 @@ class Walk {
 };
 
 Status check(const LadderSettings& settings) {
-  const Extent output = settings.output;
+  const Extent output = settings.output_extent;
   if (output.width < 1 || output.height < 1 || output.width > kLargestSide || output.height > kLargestSide) {
-    return Status::invalid(fmt::format("output is {}x{}; both sides must lie in [1, {}]", output.width,
+    return Status::invalid(fmt::format("output_extent is {}x{}; both sides must lie in [1, {}]", output.width,
                                        output.height, kLargestSide));
   }
   if (!(settings.min_scale > 0) || !std::isfinite(settings.min_scale)) {
@@ -103,9 +103,9 @@ Status check(const LadderSettings& settings) {
     return Status::invalid(
         fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestSide));
   }
-  if (settings.floor.width < 1 || settings.floor.height < 1) {
-    return Status::invalid(fmt::format("floor is {}x{}; both sides must be at least 1", settings.floor.width,
-                                       settings.floor.height));
+  if (settings.min_extent.width < 1 || settings.min_extent.height < 1) {
+    return Status::invalid(fmt::format("min_extent is {}x{}; both sides must be at least 1",
+                                       settings.min_extent.width, settings.min_extent.height));
   }
   return {};
 }
@@ -117,13 +117,13 @@ ResolutionLadder::ResolutionLadder(Extent output, std::vector<Extent> rungs)
 
 Result<ResolutionLadder> ResolutionLadder::create(const LadderSettings& settings) {
   if (Status status = check(settings); !status.ok()) return status;
-  const Extent output = settings.output;
-  const Range width =
-      axis_range(output.width, settings.min_scale, settings.max_scale, settings.step, settings.floor.width);
+  const Extent output = settings.output_extent;
+  const Range width = axis_range(output.width, settings.min_scale, settings.max_scale, settings.step,
+                                 settings.min_extent.width);
   const Range height = settings.order == AxisOrder::kHorizontalOnly
                            ? Range{output.height, output.height}
                            : axis_range(output.height, settings.min_scale, settings.max_scale, settings.step,
-                                        settings.floor.height);
+                                        settings.min_extent.height);
   return ResolutionLadder(output, Walk(settings, width, height).rungs());
 }
 
@@ -131,7 +131,7 @@ double ResolutionLadder::area_fraction(Extent extent) const {
   return static_cast<double>(extent.area()) / static_cast<double>(output_.area());
 }
 
-int ResolutionLadder::highest_within(double area_fraction) const {
+int ResolutionLadder::max_rung_within(double area_fraction) const {
   // The tolerance keeps a fraction computed from a rung on that rung.
   const double pixels = area_fraction * static_cast<double>(output_.area()) * (1 + 1e-12);
   const auto first_above = std::partition_point(rungs_.begin(), rungs_.end(), [pixels](Extent rung) {

@@ -10,8 +10,8 @@ namespace quincunx {
 
 FarPlaces far_places(const FrameInputs& frame, Extent output) {
   const double aspect = static_cast<double>(output.width) / output.height;
-  const double width = frame.render.width;
-  const double height = frame.render.height;
+  const double width = frame.render_extent.width;
+  const double height = frame.render_extent.height;
   return {.step_x = static_cast<float>(aspect / width),
           .step_y = static_cast<float>(1 / height),
           .start_x = static_cast<float>(((.5 + frame.jitter.x) / width - .5) * aspect),
@@ -19,8 +19,8 @@ FarPlaces far_places(const FrameInputs& frame, Extent output) {
 }
 
 CameraVelocity camera_params(const FrameInputs& frame) {
-  const double width = frame.render.width;
-  const double height = frame.render.height;
+  const double width = frame.render_extent.width;
+  const double height = frame.render_extent.height;
   CameraVelocity camera{};
   camera.step_x = static_cast<float>(2 / width);
   camera.step_y = static_cast<float>(-2 / height);
@@ -51,11 +51,11 @@ Axis axis_between(int from, double from_jitter, int to, double to_jitter) {
 }  // namespace
 
 PreviousPlaces previous_places(const FrameInputs& current, const FrameInputs& previous) {
-  const Axis x =
-      axis_between(current.render.width, current.jitter.x, previous.render.width, previous.jitter.x);
-  const Axis y =
-      axis_between(current.render.height, current.jitter.y, previous.render.height, previous.jitter.y);
-  const VelocityScale to_previous = velocity_scale_to(current, previous.render);
+  const Axis x = axis_between(current.render_extent.width, current.jitter.x, previous.render_extent.width,
+                              previous.jitter.x);
+  const Axis y = axis_between(current.render_extent.height, current.jitter.y, previous.render_extent.height,
+                              previous.jitter.y);
+  const VelocityScale to_previous = velocity_scale_to(current, previous.render_extent);
   return {.step_x = x.step,
           .step_y = y.step,
           .start_x = x.start,
@@ -72,8 +72,8 @@ int shaded_parity(const PlanFacts& facts, const FrameInputs& frame) {
 
 TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts) {
   const Extent output = frame.output;
-  const Extent now = frame.current.render;
-  const Extent before = frame.previous.render;
+  const Extent now = frame.current.render_extent;
+  const Extent before = frame.previous.render_extent;
   const Extent tiles = extent_of(Area::kTiles, frame.extents());
   const Ratio spacing = ratio_of(output, now);
   const Ratio motion = ratio_of(output, before);
@@ -120,7 +120,7 @@ struct SamplePlaces {
 };
 
 SamplePlaces places_of(const FrameInputs& frame, Extent output) {
-  const Ratio spacing = ratio_of(output, frame.render);
+  const Ratio spacing = ratio_of(output, frame.render_extent);
   return {spacing, {(.5f + frame.jitter.x) * spacing.x, (.5f + frame.jitter.y) * spacing.y}};
 }
 
@@ -128,8 +128,8 @@ SamplePlaces places_of(const FrameInputs& frame, Extent output) {
 
 LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent extent) {
   const FrameInputs& current = frame.current;
-  const Extent render = current.render;
-  const Extent before = frame.previous.render;
+  const Extent render = current.render_extent;
+  const Extent before = frame.previous.render_extent;
   const Extent tiles = extent_of(Area::kTiles, frame.extents());
   const SamplePlaces now = places_of(current, frame.output);
   const SamplePlaces previous = places_of(frame.previous, frame.output);
@@ -162,8 +162,8 @@ LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent 
 HistorySamples history_samples(const FrameInputs& frame, Extent output, TexelLayout depth) {
   const SamplePlaces places = places_of(frame, output);
   return {.depth = depth,
-          .width = frame.render.width,
-          .height = frame.render.height,
+          .width = frame.render_extent.width,
+          .height = frame.render_extent.height,
           .spacing_x = places.spacing.x,
           .spacing_y = places.spacing.y,
           .start_x = places.start.x,

@@ -61,10 +61,10 @@ std::optional<FrameReport> FrameRing::next_completed() {
     report.status = Status::device(
         fmt::format("frame {} failed on the device: {} ({})", report.frame_index, error_name(state), state));
   } else {
-    for (int i = 0; events_have_times_ && i < report.pass_count; ++i)
+    for (std::size_t i = 0; events_have_times_ && i < report.passes.size(); ++i)
       report.passes[i].ms = milliseconds(slot.passes[i]);
     report.non_finite_pixels = slot.non_finite;
-    if (slot.measures_content) report.content = statistics_of(slot.content, report.output);
+    if (slot.measures_content) report.content = statistics_of(slot.content, report.output_extent);
   }
   ++taken_;
   return report;

@@ -20,7 +20,7 @@ class FrameRing {
 
   struct Slot {
     FrameReport report;
-    std::array<cl::Event, FrameReport::kMaxPasses> passes;
+    std::array<cl::Event, PassReports::max_size()> passes;
     cl::Event done;                // last command of the frame
     std::uint32_t non_finite = 0;  // this and the next: written by non-blocking reads that `done` covers
     ContentSums content = {};

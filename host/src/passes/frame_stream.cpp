@@ -44,10 +44,10 @@ Status FocusStream::check_history(const FocusInputs& focus) const {
 }
 
 void FocusStream::run(const FocusInputs& focus, Counter counter, FrameReport& report, cl::Event* events) {
-  const FrameOutputs outputs = outputs_for(plan(), picture_.view(), {});
+  const FrameOutputs outputs{.linear = picture_.view()};
   chain().run(frames_.frame(focus.frame, outputs, counter), outputs, report, events);
-  for (int i = 0; i < report.pass_count; ++i)
-    report.passes[static_cast<std::size_t>(i)].in_focus = true;
+  for (PassReport& pass : report.passes)
+    pass.in_focus = true;
   report.focused = true;
   frames_.keep(focus.frame);
 }

@@ -25,7 +25,7 @@ class FrameStream {
   bool has_history(const FrameInputs& inputs) const { return leaves_history() && !inputs.reset; }
   // Whether the next frame can find a history.
   bool leaves_history() const {
-    return has_previous_ && plan_.reads_history(previous_.render, previous_.output);
+    return has_previous_ && plan_.reads_history(previous_.render_extent, previous_.output_extent);
   }
   // Returns the extent of the last frame's picture.
   Extent last_output() const { return chain_.output_of(previous_); }
@@ -56,7 +56,7 @@ class FocusStream {
   // `plan` is a plan's focus_plan().
   FocusStream(const Device& device, const ResolvePlan& plan)
       : frames_(device, plan),
-        picture_(allocate_image(device, plan.settings.output, plan.settings.resolved)) {}
+        picture_(allocate_image(device, plan.settings.output_extent, plan.settings.linear)) {}
 
   const ResolvePlan& plan() const { return frames_.plan(); }
   PassChain& chain() { return frames_.chain(); }

@@ -25,7 +25,7 @@ Pass::Pass(const PassSetup& setup, const PassSpec& spec)
 
 bool Pass::takes_part(const PassFrame& frame) const {
   const auto serves = [&] {
-    const bool dense = is_dense(frame.current.render, frame.output);
+    const bool dense = is_dense(frame.current.render_extent, frame.output);
     switch (spec_.frames) {
       case Frames::kAll:
         return true;
@@ -51,7 +51,8 @@ bool Pass::takes_part(const PassFrame& frame) const {
     return false;
   };
   if (spec_.viewports == Viewports::kAll) return serves();
-  return widens(frame.current.render, frame.output) == (spec_.viewports == Viewports::kWider) && serves();
+  return widens(frame.current.render_extent, frame.output) == (spec_.viewports == Viewports::kWider) &&
+         serves();
 }
 
 bool Pass::uses(Resource resource) const {
@@ -139,7 +140,7 @@ std::string colour_options(const ResolveSettings& settings) {
 }
 
 std::string scale_options(const ResolveSettings& settings) {
-  return fmt::format("{} -D OUTPUT_FORMAT={}", colour_options(settings), precision_of(settings.resolved));
+  return fmt::format("{} -D OUTPUT_FORMAT={}", colour_options(settings), precision_of(settings.linear));
 }
 
 std::string velocity_options(const ResolveSettings& settings) {

@@ -56,14 +56,19 @@ struct PassFrame {
   ImageView& operator[](Resource resource) { return views[index_of(resource)]; }
   const ImageView& operator[](Resource resource) const { return views[index_of(resource)]; }
   FrameExtents extents() const {
-    return {current.render,  previous.render, output,      current.particle_render,
-            previous_output, display,         focus_extent};
+    return {current.render_extent,
+            previous.render_extent,
+            output,
+            current.particle_render_extent,
+            previous_output,
+            display,
+            focus_extent};
   }
   // History has another size than the picture that it becomes.
   bool resizes_history() const { return has_history && previous_output != output; }
   // The tables of this frame's viewport, and of the previous one's.
-  TableKey key() const { return {output, current.render, current.jitter}; }
-  TableKey previous_key() const { return {output, previous.render, previous.jitter}; }
+  TableKey key() const { return {output, current.render_extent, current.jitter}; }
+  TableKey previous_key() const { return {output, previous.render_extent, previous.jitter}; }
 };
 
 // CLHPP takes no raw handle as an argument.

@@ -83,8 +83,8 @@ Image allocate_image(const Device& device, Extent extent, PixelFormat format, St
 PassChain::PassChain(const Device& device, const PlanFacts& facts)
     : device_(device),
       facts_(facts),
-      tables_(*device_.impl(),
-              {facts_.settings.target, facts_.settings.least_output, facts_.settings.output}) {
+      tables_(*device_.impl(), {facts_.settings.target_extent, facts_.settings.min_output_extent,
+                                facts_.settings.output_extent}) {
   const PassList list = list_passes(facts_);
   resources_ = resources_of(list.passes);
   const PassSetup setup{*device_.impl(), facts_, tables_};
@@ -159,7 +159,7 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
                   .focus_extent = facts_.settings.focus.extent,
                   .output = output_of(current),
                   .previous_output = output_of(previous != nullptr ? *previous : current),
-                  .display = facts_.settings.output,
+                  .display = facts_.settings.output_extent,
                   .counter = counter};
   if (facts_.velocity == VelocitySource::kCamera) {  // the service's own target, in uv
     frame.current.velocity_scale = {};
@@ -171,24 +171,16 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
     frame[owned.resource] = owned.images[paired ? next_ : 0].view();
     if (paired) frame[previous_of(owned.resource)] = owned.images[1 - next_].view();
     if (!facts_.places_targets()) continue;
-    place(frame[owned.resource], owned.area, frame.current.render);
-    if (paired) place(frame[previous_of(owned.resource)], owned.area, frame.previous.render);
+    place(frame[owned.resource], owned.area, frame.current.render_extent);
+    if (paired) place(frame[previous_of(owned.resource)], owned.area, frame.previous.render_extent);
   }
   frame[Resource::kFadingFrom] = current.fading_from;
-  if (outputs.resolved) frame[Resource::kResolved] = outputs.resolved;
-  if (outputs.blurred) frame[Resource::kBlurred] = outputs.blurred;
+  if (outputs.linear) frame[shown_of(facts_)] = outputs.linear;
   frame[Resource::kPresented] = outputs.presented;
-  if (facts_.is_dual()) show(frame, outputs);
+  // A picture that has the size in which it is shown is made where it is shown.
+  frame.scales_output = facts_.is_dual() && frame.output != frame.display;
+  if (!frame.scales_output) frame[finished_of(facts_)] = frame[shown_of(facts_)];
   return frame;
-}
-
-// A picture that has the size in which it is shown is made where it is shown, unless the caller wants both.
-void PassChain::show(PassFrame& frame, const FrameOutputs& outputs) const {
-  const Resource finished = finished_of(facts_);
-  if (outputs.displayed) frame[Resource::kDisplayed] = outputs.displayed;
-  const ImageView& wanted = finished == Resource::kBlurred ? outputs.blurred : outputs.resolved;
-  frame.scales_output = frame.output != frame.display || wanted;
-  if (!frame.scales_output) frame[finished] = frame[Resource::kDisplayed];
 }
 
 // Exchanges resampled resources with the history: this frame writes to the memory that the history had.
@@ -223,13 +215,10 @@ void PassChain::forget(const PassFrame& frame) {
 // Marks the passes whose results the outputs or the next frame need, from the last to the first.
 void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs) {
   std::array<bool, kResourceCount> wanted = kept_;
-  wanted[index_of(Resource::kResolved)] = true;
   wanted[index_of(Resource::kContentSums)] = true;
-  wanted[index_of(Resource::kBlurred)] = static_cast<bool>(outputs.blurred);
-  wanted[index_of(Resource::kDisplayed)] = static_cast<bool>(outputs.displayed);
+  wanted[index_of(shown_of(facts_))] = true;
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);
-  if (facts_.is_dual() && !frame.scales_output && (outputs.displayed || outputs.presented))
-    wanted[index_of(finished_of(facts_))] = true;
+  if (!frame.scales_output) wanted[index_of(finished_of(facts_))] = true;
   for (std::size_t i = passes_.size(); i-- > 0;) {
     const std::vector<Use>& uses = passes_[i]->spec().uses;
     needed_[i] = passes_[i]->takes_part(frame) && std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
@@ -247,7 +236,7 @@ void PassChain::enqueue(Pass& pass, const PassFrame& frame, cl::Event* event) {
 }
 
 void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events) {
-  if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render, frame.output))
+  if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render_extent, frame.output))
     forget(frame);
   mark_needed(frame, outputs);
   bool resizes = frame.resizes_history();
@@ -260,8 +249,8 @@ void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& r
       resizes = false;
     }
     enqueue(*passes_[i], frame, events != nullptr ? events++ : nullptr);
-    report.passes[report.pass_count++] = {
-        .kernel = spec.kernel, .ms = stopwatch.lap_ms(), .bytes = bytes_of(spec, frame.extents())};
+    report.passes.push_back(
+        {.kernel = spec.kernel, .ms = stopwatch.lap_ms(), .bytes = bytes_of(spec, frame.extents())});
   }
   next_ = 1 - next_;
 }
@@ -281,9 +270,9 @@ void PassChain::warm_up() {
                   .previous_output = kPixel,
                   .display = kPixel,
                   .counter = {counter(), 0}};
-  frame.current.render = kPixel;
-  frame.current.particle_render = kPixel;
-  frame.previous.render = kPixel;
+  frame.current.render_extent = kPixel;
+  frame.current.particle_render_extent = kPixel;
+  frame.previous.render_extent = kPixel;
   for (const auto& pass : passes_) {
     for (const Use& use : pass->spec().uses) {
       if (!frame[use.resource])

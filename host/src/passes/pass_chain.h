@@ -44,7 +44,7 @@ class PassChain {
 
   // Returns the extent of the frame's picture.
   Extent output_of(const FrameInputs& inputs) const {
-    return inputs.output == Extent{} ? facts_.settings.output : inputs.output;
+    return inputs.output_extent == Extent{} ? facts_.settings.output_extent : inputs.output_extent;
   }
 
   // Runs every pass once on a picture of one pixel, so that the device finishes compiling it. Blocks.
@@ -84,7 +84,6 @@ class PassChain {
 
   void allocate(const ResourceUse& use);
   bool is_resampled(Resource resource) const;
-  void show(PassFrame& frame, const FrameOutputs& outputs) const;
   void take_resampled(PassFrame& frame);
   void forget(const PassFrame& frame);
   void mark_needed(const PassFrame& frame, const FrameOutputs& outputs);

@@ -102,7 +102,7 @@ void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Exte
 
 void ClearRegionPass::enqueue(const PassFrame& frame, cl::Event* event) {
   const float zero[4] = {};
-  clear(frame, frame[spec().uses.front().resource], frame.current.render, zero, event);
+  clear(frame, frame[spec().uses.front().resource], frame.current.render_extent, zero, event);
 }
 
 PassSpec clear_region_spec(Storage storage, Resource resource, PixelFormat format) {

@@ -43,10 +43,10 @@ void plan_sharpen(const PlanFacts& facts, PassList& list) {
   }
   list.passes.push_back(
       {.kernel = "sharpen",
-       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.linear)),
        .reason = "sharpness is wanted: contrast between neighbours, within their range",
-       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.resolved},
-                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved}},
+       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.linear},
+                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.linear}},
        .make = make_pass<SharpenPass>});
 }
 
@@ -54,7 +54,7 @@ void plan_sharpen(const PlanFacts& facts, PassList& list) {
 
 namespace {
 
-static_assert(kMostFocusRectangles == FocusInputs::kMostRectangles);
+static_assert(kMostFocusRectangles == FocusInputs::kMaxRectangles);
 
 // Beyond any picture, so that no distance to such an edge is the least.
 constexpr float kFarAway = 1 << 20;
@@ -142,10 +142,10 @@ void plan_lay_focus(const PlanFacts& facts, PassList& list) {
   }
   PassSpec spec{.kernel = "lay_focus",
                 .options = fmt::format("-D MASK={0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}",
-                                       settings.focus.mask ? 1 : 0, precision_of(settings.resolved)),
+                                       settings.focus.mask ? 1 : 0, precision_of(settings.linear)),
                 .reason = "a part is in focus: its own picture is laid over",
-                .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.resolved},
-                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.resolved}},
+                .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.linear},
+                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.linear}},
                 .make = make_pass<LayFocusPass>,
                 .frames = Frames::kWithFocus};
   if (settings.focus.mask)
@@ -182,10 +182,10 @@ void plan_cross_fade(const PlanFacts& facts, PassList& list) {
   if (!settings.fades) return;
   list.passes.push_back(
       {.kernel = "cross_fade",
-       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.resolved)),
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.linear)),
        .reason = "a change of method is faded: the picture of the other one is mixed in",
-       .uses = {{Resource::kFadingFrom, Access::kRead, Area::kDisplay, settings.resolved},
-                {shown_of(facts), Access::kUpdate, Area::kDisplay, settings.resolved}},
+       .uses = {{Resource::kFadingFrom, Access::kRead, Area::kDisplay, settings.linear},
+                {shown_of(facts), Access::kUpdate, Area::kDisplay, settings.linear}},
        .make = make_pass<CrossFadePass>,
        .frames = Frames::kFading});
 }
@@ -263,9 +263,9 @@ void plan_present(const PlanFacts& facts, PassList& list) {
       {.kernel = "present",
        .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
                               curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
-                              precision_of(settings.resolved), storage_option(facts.presented_storage())),
+                              precision_of(settings.linear), storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
-       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.resolved},
+       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.linear},
                 {Resource::kPresented, Access::kWrite, Area::kDisplay, PixelFormat::kRGBA8}},
        .make = make_pass<PresentPass>});
 }

@@ -18,7 +18,7 @@ class LayerRecordsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const LayerParams params = layer_params(frame, shape(), render);
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kReprojection],
          frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
@@ -62,7 +62,7 @@ class TurnRecordsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent before = frame.previous.render;
+    const Extent before = frame.previous.render_extent;
     const LayerParams params = layer_params(frame, shape(), before);
     bind(params, frame[Resource::kPreviousRecordKeys], frame[Resource::kRecordKeys],
          frame[Resource::kRecords], frame[Resource::kPreviousRecords]);
@@ -96,7 +96,7 @@ class AdvectRecordsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent before = frame.previous.render;
+    const Extent before = frame.previous.render_extent;
     const LayerParams params = layer_params(frame, shape(), before);
     bind(params, frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
          frame[Resource::kRecordKeys]);
@@ -128,7 +128,7 @@ class LayerSplitPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const LayerParams params = layer_params(frame, shape(), render);
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kOpenTrust],
          frame[Resource::kPreviousRecordKeys], frame[Resource::kRecordKeys],
@@ -277,7 +277,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
                 {Resource::kHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kNearHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});
 }

@@ -28,7 +28,7 @@ class MeasureContentPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const Extent tiles = content_tiles(frame.output);
     const VelocityScale pixels = velocity_scale_to(frame.current, frame.output);
     const ContentParams params{.width = render.width,

@@ -28,7 +28,7 @@ class OverlayParticlesPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render, particles = frame.current.particle_render;
+    const Extent render = frame.current.render_extent, particles = frame.current.particle_render_extent;
     const Resource colour = colour_of(facts()), depth = depth_of(facts()), reactive = reactive_of(facts());
     const OverlayParams params{.width = render.width,
                                .height = render.height,

@@ -33,8 +33,8 @@ void set_motion_edge(ReprojectParams& params, const FrameInputs& current, Extent
 void set_speeds(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous,
                 float weight) {
   const double root = std::sqrt(static_cast<double>(weight));
-  const VelocityScale now = velocity_scale_to(current, current.render);
-  const VelocityScale before = velocity_scale_to(previous, previous.render);
+  const VelocityScale now = velocity_scale_to(current, current.render_extent);
+  const VelocityScale before = velocity_scale_to(previous, previous.render_extent);
   params.speed0_x = static_cast<float>(root * now.x);
   params.speed0_y = static_cast<float>(root * now.y);
   params.speed1_x = static_cast<float>(root * before.x);
@@ -62,17 +62,17 @@ class ReprojectPass : public Pass {
     const FrameInputs& current = frame.current;
     const FrameInputs& previous = frame.previous;
     ReprojectParams params{};
-    params.width = current.render.width;
-    params.height = current.render.height;
-    params.previous_width = previous.render.width;
-    params.previous_height = previous.render.height;
+    params.width = current.render_extent.width;
+    params.height = current.render_extent.height;
+    params.previous_width = previous.render_extent.width;
+    params.previous_height = previous.render_extent.height;
     params.velocity0 = layout_of(frame[Resource::kVelocity]);
     params.velocity1 = layout_if_used(frame, Resource::kPreviousVelocity);
     params.depth0 = layout_of(frame[Resource::kDepth]);
     params.depth1 = layout_of(frame[Resource::kPreviousDepth]);
     params.reprojection = layout_of(frame[Resource::kReprojection]);
     params.previous_reprojection = layout_if_used(frame, Resource::kPreviousReprojection);
-    params.columns_per_item = columns_per_item(shape(), current.render.width);
+    params.columns_per_item = columns_per_item(shape(), current.render_extent.width);
     params.reactive0 = layout_if_used(frame, Resource::kReactive);
     params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
     set_positions(params, current, previous);
@@ -85,7 +85,7 @@ class ReprojectPass : public Pass {
          view_or(frame, Resource::kPreviousReactive, Resource::kPreviousDepth),
          view_or(frame, Resource::kPreviousReprojection, Resource::kReprojection),
          frame[Resource::kReprojection], view_or(frame, Resource::kOpenTrust, Resource::kReprojection));
-    launch(frame, current.render, params.columns_per_item, event);
+    launch(frame, current.render_extent, params.columns_per_item, event);
   }
 };
 

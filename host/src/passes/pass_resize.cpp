@@ -165,7 +165,7 @@ class ResizeRecordsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent grid = frame.previous.render;
+    const Extent grid = frame.previous.render_extent;
     const Ratio ratio = ratio_of(frame.output, frame.previous_output);
     const int columns = columns_per_item(shape(), grid.width);
     bind(grid.width, grid.height, columns, cl_float2{{ratio.x, ratio.y}},

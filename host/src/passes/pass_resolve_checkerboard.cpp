@@ -25,14 +25,14 @@ class ResolveCheckerboardPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const PreviousPlaces places = previous_places(frame.current, frame.previous);
     const Resource velocity = velocity_target(facts()).filled;
     const CheckerboardParams params{
         .width = render.width,
         .height = render.height,
-        .previous_width = frame.previous.render.width,
-        .previous_height = frame.previous.render.height,
+        .previous_width = frame.previous.render_extent.width,
+        .previous_height = frame.previous.render_extent.height,
         .parity = frame.current.parity,
         .has_history = frame.has_history ? 1 : 0,
         .columns_per_item = columns_per_item(shape(), render.width, kCheckerboardBlock),

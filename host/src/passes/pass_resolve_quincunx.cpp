@@ -13,7 +13,7 @@ namespace {
 
 // From the velocity of one frame to sqrt(K) of its render pixels.
 Vec2 speed_scale(const FrameInputs& frame, float weight) {
-  const VelocityScale pixels = velocity_scale_to(frame, frame.render);
+  const VelocityScale pixels = velocity_scale_to(frame, frame.render_extent);
   const double root = std::sqrt(static_cast<double>(weight));
   return {static_cast<float>(root * pixels.x), static_cast<float>(root * pixels.y)};
 }
@@ -33,9 +33,10 @@ class ResolveQuincunxPass : public Pass {
     ResolveParams params{};
     params.output_width = frame.output.width;
     params.output_height = frame.output.height;
-    params.frame0 = {current.render.width, current.render.height, layout_of(frame[Resource::kColour]),
-                     layout_if_used(frame, Resource::kVelocity), layout_if_used(frame, Resource::kReactive)};
-    params.frame1 = {previous.render.width, previous.render.height,
+    params.frame0 = {current.render_extent.width, current.render_extent.height,
+                     layout_of(frame[Resource::kColour]), layout_if_used(frame, Resource::kVelocity),
+                     layout_if_used(frame, Resource::kReactive)};
+    params.frame1 = {previous.render_extent.width, previous.render_extent.height,
                      layout_of(frame[Resource::kPreviousColour]),
                      layout_if_used(frame, Resource::kPreviousVelocity),
                      layout_if_used(frame, Resource::kPreviousReactive)};
@@ -66,7 +67,7 @@ std::string options_of(const PlanFacts& facts) {
   return fmt::format("-D SAMPLING={} -D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}",
                      settings.quincunx.sampling == Sampling::kPoint ? "POINT" : "BILINEAR",
                      facts.weighs_velocity() ? 1 : 0, facts.reads_reactive() ? 1 : 0,
-                     colour_options(settings), format, precision_of(settings.resolved));
+                     colour_options(settings), format, precision_of(settings.linear));
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ void plan_resolve_quincunx(const PlanFacts& facts, PassList& list) {
                 .reason = "the method: this frame and the previous one",
                 .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                          {Resource::kPreviousColour, Access::kRead, Area::kPreviousViewport, settings.colour},
-                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
                 .make = make_pass<ResolveQuincunxPass>,
                 .frames = Frames::kWithHistory};
   if (facts.weighs_velocity()) read_both_frames(spec.uses, Resource::kVelocity, settings.velocity);

@@ -23,8 +23,8 @@ class ResolveReprojectedPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
-    const Extent now = frame.current.render;
-    const Extent before = frame.previous.render;
+    const Extent now = frame.current.render_extent;
+    const Extent before = frame.previous.render_extent;
     PositionTables& tables = frame.tables.positions();
     const ReprojectedParams params{
         .output_width = extent.width,
@@ -70,7 +70,7 @@ void plan_resolve_reprojected(const PlanFacts& facts, PassList& list) {
                 .reason = "the method: this frame and the previous one where it moved to",
                 .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                          {Resource::kPreviousColour, Access::kRead, Area::kPreviousViewport, settings.colour},
-                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
                 .make = make_pass<ResolveReprojectedPass>,
                 .frames = Frames::kWithHistory};
   if (facts.reprojects())

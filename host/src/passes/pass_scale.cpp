@@ -80,7 +80,7 @@ class ScalePass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const ImageView& colour = frame[Resource::kColour];
     const ImageView& output = frame[picture()];
     const ScaleParams params{.output_width = extent.width,
@@ -143,7 +143,7 @@ void plan_scale(const PlanFacts& facts, PassList& list) {
        .options = scale_options(settings),
        .reason = choice.reason,
        .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
        .make = make_pass<ScalePass>,
        .frames = choice.frames,
        // Bilinear widens above scale 1, which is scale_filter's work.
@@ -163,7 +163,7 @@ class ScaleFilterPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const FilterParams params = filter_params(filter_, shape(), {render, frame[Resource::kColour]},
                                               {extent, frame[picture()]}, frame.counter);
     bind(params, frame.tables.filter(filter_).get(frame.queue, frame.key()), frame[Resource::kColour],
@@ -191,7 +191,7 @@ void plan_scale_filter(const PlanFacts& facts, PassList& list) {
          .options = fmt::format("-D TAPS={} -D CLAMP={} {}", taps, clamps ? 1 : 0, scale_options(settings)),
          .reason = reason,
          .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                  {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                  {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
          .make = make_pass<ScaleFilterPass>,
          .frames = facts.accumulates()           ? Frames::kDense
                    : facts.resolves_two_frames() ? Frames::kWithoutHistory
@@ -248,10 +248,10 @@ void plan_scale_to_display(const PlanFacts& facts, PassList& list) {
       {.kernel = "scale_filter",
        .options = fmt::format(
            "-D TAPS=4 -D CLAMP=1 -D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}",
-           precision_of(settings.resolved)),
+           precision_of(settings.linear)),
        .reason = "the output is dynamic: its picture in the size in which it is shown",
-       .uses = {{finished_of(facts), Access::kRead, Area::kOutput, settings.resolved},
-                {Resource::kDisplayed, Access::kWrite, Area::kDisplay, settings.resolved}},
+       .uses = {{finished_of(facts), Access::kRead, Area::kOutput, settings.linear},
+                {Resource::kDisplayed, Access::kWrite, Area::kDisplay, settings.linear}},
        .make = make_pass<ScaleToDisplayPass>,
        .frames = Frames::kScaledOutput});
 }

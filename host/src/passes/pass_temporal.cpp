@@ -35,10 +35,10 @@ class TemporalTilesPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const FrameInputs& current = frame.current;
     const Extent output = frame.output;
-    const Extent render = current.render;
+    const Extent render = current.render_extent;
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
     const Ratio spacing = ratio_of(output, render);
-    const Ratio motion = ratio_of(output, frame.previous.render);
+    const Ratio motion = ratio_of(output, frame.previous.render_extent);
     const TemporalTileParams params{
         .frame = {render.width, render.height, layout_of(frame[Resource::kColour]), {}, {}},
         .output_width = output.width,
@@ -198,8 +198,7 @@ int taps_of(const PlanFacts& facts) {
 std::string options_of(const PlanFacts& facts, bool reactive) {
   const ResolveSettings& settings = facts.settings;
   std::string format;
-  if (!facts.displays_history())
-    format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.resolved));
+  if (!facts.displays_history()) format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.linear));
   return fmt::format(
       "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
       "-D HISTORY_FORMAT={}{}",
@@ -239,7 +238,7 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
   }
   if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   if (!facts.displays_history())
-    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.resolved});
+    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.linear});
   list.passes.push_back(std::move(spec));
 }
 
@@ -269,12 +268,12 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   PassSpec spec{
       .kernel = "temporal_display",
       .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0, precision_of(settings.resolved),
+                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0, precision_of(settings.linear),
                              precision_of(settings.temporal.history)),
       .reason = "the method: the history's picture",
       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
       .make = make_pass<TemporalDisplayPass>,
       .frames = Frames::kSparse};
   if (alpha)
@@ -313,11 +312,11 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(
       {.kernel = "temporal_refine",
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
-                              precision_of(settings.resolved), precision_of(settings.temporal.history)),
+                              precision_of(settings.linear), precision_of(settings.temporal.history)),
        .reason = "the preset: sharpened, and smoothed along edges where little is known",
-       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.resolved},
+       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.linear},
                 {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.resolved}},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});
 }

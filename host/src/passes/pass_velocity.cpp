@@ -21,7 +21,7 @@ class VelocityFromDepthPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const ImageView& depth = frame[Resource::kDepth];
     const ImageView& velocity = frame[Resource::kVelocity];
     const VelocityParams params{.width = render.width,
@@ -57,7 +57,7 @@ class UndilateVelocityPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const Resource own = drawn_velocity_of(facts());
     const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
     const bool has_camera =
@@ -106,7 +106,7 @@ class FarSurroundingsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
+    const Extent render = frame.current.render_extent;
     const Extent cells = extent_of(Area::kFarCells, frame.extents());
     const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
@@ -147,16 +147,16 @@ class FarMatchPass : public Pass {
     const FrameInputs& previous = frame.previous;
     const Extent cells = extent_of(Area::kFarCells, frame.extents());
     const auto step = [](int to, int from) { return static_cast<double>(to) / from; };
-    const double step_x = step(previous.render.width, current.render.width);
-    const double step_y = step(previous.render.height, current.render.height);
+    const double step_x = step(previous.render_extent.width, current.render_extent.width);
+    const double step_y = step(previous.render_extent.height, current.render_extent.height);
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
     // So that the sum over all cells fits into an int.
     constexpr double kMost = 1 << 30, kSamples = kFarCell * kFarCell / 4.;
     const FarMatchParams params{
-        .width = current.render.width,
-        .height = current.render.height,
-        .previous_width = previous.render.width,
-        .previous_height = previous.render.height,
+        .width = current.render_extent.width,
+        .height = current.render_extent.height,
+        .previous_width = previous.render_extent.width,
+        .previous_height = previous.render_extent.height,
         .cells_x = cells.width,
         .cells_y = cells.height,
         .depth0 = layout_of(frame[Resource::kDepth]),
@@ -169,8 +169,8 @@ class FarMatchPass : public Pass {
         .step_y = static_cast<float>(step_y),
         .start_x = static_cast<float>((.5 + current.jitter.x) * step_x - .5 - previous.jitter.x),
         .start_y = static_cast<float>((.5 + current.jitter.y) * step_y - .5 - previous.jitter.y),
-        .to_previous_x = static_cast<float>(previous.render.width / aspect),
-        .to_previous_y = static_cast<float>(previous.render.height),
+        .to_previous_x = static_cast<float>(previous.render_extent.width / aspect),
+        .to_previous_y = static_cast<float>(previous.render_extent.height),
         .units = static_cast<float>(std::min(1024., kMost / (kSamples * static_cast<double>(cells.area()))))};
     bind(params, frame[Resource::kDepth], frame[Resource::kPreviousDepth], frame[Resource::kDrawnVelocity],
          frame[Resource::kColour], frame[Resource::kPreviousColour], frame[Resource::kFarMotion],
@@ -182,7 +182,7 @@ class FarMatchPass : public Pass {
 }  // namespace
 
 void plan_far_motion(const PlanFacts& facts, PassList& list) {
-  if (!facts.fits_far()) return;
+  if (!facts.fits_sky()) return;
   const ResolveSettings& settings = facts.settings;
   const Use depth = {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F};
   const Use drawn = {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, settings.velocity};
@@ -228,8 +228,8 @@ class FarVelocityPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render;
-    const bool fitted = facts().fits_far();
+    const Extent render = frame.current.render_extent;
+    const bool fitted = facts().fits_sky();
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
     const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
     const FarVelocityParams params{.frame = {.width = render.width,
@@ -252,8 +252,8 @@ class FarVelocityPass : public Pass {
 }  // namespace
 
 void plan_far_velocity(const PlanFacts& facts, PassList& list) {
-  if (facts.settings.far == FarMotion::kAsDrawn) return;
-  if (!facts.moves_far()) {
+  if (facts.settings.sky_motion == SkyMotion::kAsDrawn) return;
+  if (!facts.moves_sky()) {
     const char* reason =
         !facts.reads_velocity()                     ? "no pass reads velocity"
         : !facts.needs.camera_motion                ? "the camera stands still, and so does what is far away"
@@ -264,14 +264,14 @@ void plan_far_velocity(const PlanFacts& facts, PassList& list) {
   }
   const PixelFormat velocity = facts.settings.velocity;
   PassSpec spec{.kernel = "far_velocity",
-                .options = fmt::format("-D FAR={} {}", facts.fits_far() ? "EVIDENCE" : "CAMERA",
+                .options = fmt::format("-D FAR={} {}", facts.fits_sky() ? "EVIDENCE" : "CAMERA",
                                        velocity_options(facts.settings)),
                 .reason = "what is infinitely far away moves with the camera",
                 .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
                          {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, velocity},
                          {Resource::kVelocity, Access::kWrite, Area::kViewport, velocity}},
                 .make = make_pass<FarVelocityPass>};
-  if (facts.fits_far()) {
+  if (facts.fits_sky()) {
     spec.uses.push_back({Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)});
     spec.uses.push_back({Resource::kFarMatch, Access::kRead, Area::kWhole, {}, sizeof(FarMatch)});
   }

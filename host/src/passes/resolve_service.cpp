@@ -114,7 +114,7 @@ Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs*
 void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* given,
                                    const FrameOutputs& given_outputs, FrameRing::Slot& slot) {
   const ResolveSettings& settings = picture.plan().settings;
-  const FrameOutputs outputs = native_outputs(settings, given_outputs, picture.chain().output_of(inputs));
+  const FrameOutputs outputs = native_outputs(settings, given_outputs);
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
   const Counter counted = {counter(), ring.index_of(slot)};
@@ -129,7 +129,7 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
   } else if (focus) {
     focus->forget();
   }
-  picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.pass_count);
+  picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.passes.size());
   // Where nothing moves there are no sums, and nothing is what there is to tell.
   slot.measures_content = settings.measures_content;
   if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
@@ -151,7 +151,7 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
   if (sync.done != nullptr) *sync.done = nullptr;
   FrameReport refused;
   refused.frame_index = inputs.frame_index;
-  refused.render = inputs.render;
+  refused.render_extent = inputs.render_extent;
   refused.status = check(inputs, given, outputs);
   if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
   if (!refused.ok()) return refused;
@@ -159,13 +159,13 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     wait_in_queue(device.impl()->queue, sync.wait_for);
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
-    slot.report.render = inputs.render;
+    slot.report.render_extent = inputs.render_extent;
     const Extent output = picture.chain().output_of(inputs);
-    slot.report.output = output;
-    slot.report.ratio = {static_cast<float>(inputs.render.width) / static_cast<float>(output.width),
-                         static_cast<float>(inputs.render.height) / static_cast<float>(output.height)};
+    slot.report.output_extent = output;
+    slot.report.ratio = {static_cast<float>(inputs.render_extent.width) / static_cast<float>(output.width),
+                         static_cast<float>(inputs.render_extent.height) / static_cast<float>(output.height)};
     slot.report.used_previous =
-        picture.has_history(inputs) && picture.plan().reads_history(inputs.render, output);
+        picture.has_history(inputs) && picture.plan().reads_history(inputs.render_extent, output);
     enqueue(inputs, given, outputs, slot);
     if (sync.done != nullptr) *sync.done = retained(slot.done);
     ring.commit();
@@ -270,6 +270,13 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
 
 Status ResolveService::finish() {
   return impl_->device.finish();
+}
+
+ImageView ResolveService::picture(PictureStage stage) const {
+  const bool is_scaled = plan().is_dual() && impl_->picture.last_output() != plan().settings.output_extent;
+  const bool is_resolved = stage == PictureStage::kResolved;
+  if (!(is_resolved && plan().blurs()) && !is_scaled) return {};
+  return impl_->picture.chain().newest(is_resolved ? Resource::kResolved : Resource::kBlurred);
 }
 
 Result<TileKinds> ResolveService::tile_kinds() const {

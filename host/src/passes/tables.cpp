@@ -261,9 +261,9 @@ std::size_t table_bytes(const Filter& filter, Extent render, Extent output) {
 // Returns the size of the largest table within the limits. A smaller output has fewer pixels with more taps each.
 std::size_t most_bytes(const Filter& filter, const TableLimits& limits) {
   std::size_t across = 0, down = 0;
-  for (int width = limits.least_output.width; width <= limits.output.width; ++width)
+  for (int width = limits.min_output_extent.width; width <= limits.output.width; ++width)
     across = std::max(across, weights_of(filter, limits.target.width, width, padded_columns({width, 1})));
-  for (int height = limits.least_output.height; height <= limits.output.height; ++height)
+  for (int height = limits.min_output_extent.height; height <= limits.output.height; ++height)
     down = std::max(down, weights_of(filter, limits.target.height, height, height));
   return spans_of(limits.output) * sizeof(FilterSpan) + (across + down) * sizeof(float);
 }

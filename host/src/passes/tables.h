@@ -154,7 +154,7 @@ void fill_filter(const Filter& filter, int render, int output, double jitter, Fi
 
 // The outputs of a plan's frames on each axis, and the largest viewport.
 struct TableLimits {
-  Extent target, least_output, output;
+  Extent target, min_output_extent, output;
 };
 
 // The tables of one filter on the device. Not thread-safe. Throws cl::Error.

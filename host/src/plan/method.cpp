@@ -248,13 +248,13 @@ const char* name_of(TemporalView view) {
   return "unknown";
 }
 
-const char* name_of(FarMotion motion) {
+const char* name_of(SkyMotion motion) {
   switch (motion) {
-    case FarMotion::kAsDrawn:
+    case SkyMotion::kAsDrawn:
       return "drawn";
-    case FarMotion::kCamera:
+    case SkyMotion::kCamera:
       return "camera";
-    case FarMotion::kEvidence:
+    case SkyMotion::kEvidence:
       return "evidence";
   }
   return "unknown";

@@ -20,7 +20,8 @@ Vec2 scale_to_uv(const InputConventions& given, const FrameInputs& frame) {
   double x = is_set ? static_cast<double>(frame.velocity_scale.x) : 1;
   double y = is_set ? static_cast<double>(frame.velocity_scale.y) : 1;
   if (given.velocity_unit == VelocityUnit::kNdc) x /= 2, y /= 2;
-  if (given.velocity_unit == VelocityUnit::kPixels) x /= frame.render.width, y /= frame.render.height;
+  if (given.velocity_unit == VelocityUnit::kPixels)
+    x /= frame.render_extent.width, y /= frame.render_extent.height;
   if (given.velocity_backward) x = -x, y = -y;
   if (given.velocity_up) y = -y;
   return {static_cast<float>(x), static_cast<float>(y)};
@@ -66,9 +67,9 @@ CameraMotion native_camera(const InputConventions& given, const FrameInputs& fra
 void turn(FrameInputs& frame, const ResolveSettings& settings) {
   for (const InputImage* input : kInputImages)
     turn(frame.*input->image, (frame.*input->viewport).height);
-  turn(frame.fading_from, settings.output.height);
+  turn(frame.fading_from, settings.output_extent.height);
   frame.jitter.y = -frame.jitter.y;
-  frame.parity = (frame.parity + frame.render.height - 1) % 2;
+  frame.parity = (frame.parity + frame.render_extent.height - 1) % 2;
 }
 
 }  // namespace
@@ -84,7 +85,7 @@ FrameInputs native_inputs(const ResolveSettings& settings, FrameInputs frame) {
 
 FocusInputs native_focus(const ResolveSettings& settings, FocusInputs focus) {
   if (settings.conventions.origin == Origin::kTop) return focus;
-  const int height = settings.output.height;
+  const int height = settings.output_extent.height;
   const Extent region = settings.focus.extent;
   focus.y = height - focus.y - region.height;
   for (Rectangle& rectangle : focus.rectangles)
@@ -93,12 +94,10 @@ FocusInputs native_focus(const ResolveSettings& settings, FocusInputs focus) {
   return focus;
 }
 
-FrameOutputs native_outputs(const ResolveSettings& settings, FrameOutputs outputs, Extent output) {
+FrameOutputs native_outputs(const ResolveSettings& settings, FrameOutputs outputs) {
   if (settings.conventions.origin == Origin::kTop) return outputs;
-  turn(outputs.resolved, output.height);
-  turn(outputs.blurred, output.height);
-  turn(outputs.displayed, settings.output.height);
-  turn(outputs.presented, settings.output.height);
+  turn(outputs.linear, settings.output_extent.height);
+  turn(outputs.presented, settings.output_extent.height);
   return outputs;
 }
 
@@ -106,8 +105,9 @@ Vec2 jitter_motion(const FrameInputs& frame, const FrameInputs& previous) {
   const auto between = [](float jitter, int size, float before, int size_before) {
     return static_cast<float>(static_cast<double>(before) / size_before - static_cast<double>(jitter) / size);
   };
-  return {between(frame.jitter.x, frame.render.width, previous.jitter.x, previous.render.width),
-          between(frame.jitter.y, frame.render.height, previous.jitter.y, previous.render.height)};
+  return {
+      between(frame.jitter.x, frame.render_extent.width, previous.jitter.x, previous.render_extent.width),
+      between(frame.jitter.y, frame.render_extent.height, previous.jitter.y, previous.render_extent.height)};
 }
 
 Conversion conversion_of(const InputImage& input, const ResolveSettings& settings) {

@@ -13,8 +13,7 @@ namespace quincunx {
 // turned is negative, in two's complement, and its offset that of the highest row: layout_of() and kernels take both.
 FrameInputs native_inputs(const ResolveSettings& settings, FrameInputs frame);
 FocusInputs native_focus(const ResolveSettings& settings, FocusInputs focus);
-// `output`: this frame's.
-FrameOutputs native_outputs(const ResolveSettings& settings, FrameOutputs outputs, Extent output);
+FrameOutputs native_outputs(const ResolveSettings& settings, FrameOutputs outputs);
 
 // Returns by how much of the viewport, +y down, the jitters alone have moved a still surface from the previous frame to
 // this one, both as native_inputs() gives them.

@@ -21,15 +21,15 @@ VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& s
 
 PlanFacts::PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings)
     : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {
-  if (settings.least_output == Extent{}) settings.least_output = settings.output;
+  if (settings.min_output_extent == Extent{}) settings.min_output_extent = settings.output_extent;
 }
 
 bool PlanFacts::may_widen() const {
-  return widens(settings.target, settings.least_output);
+  return widens(settings.target_extent, settings.min_output_extent);
 }
 
 bool PlanFacts::may_be_dense() const {
-  return is_dense(settings.target, settings.least_output);
+  return is_dense(settings.target_extent, settings.min_output_extent);
 }
 
 bool PlanFacts::reads_velocity() const {

@@ -18,7 +18,7 @@ struct PlanFacts {
   // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.
   bool is_display_referred() const { return settings.colour == PixelFormat::kRGBA8; }
   bool reads_velocity() const;  // some pass after those that complete the frame
-  bool overlays_particles() const { return settings.particle_target != Extent(); }
+  bool overlays_particles() const { return settings.particle_target_extent != Extent(); }
   bool fills() const { return settings.shading == Shading::kCheckerboard; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
@@ -35,12 +35,12 @@ struct PlanFacts {
     return settings.drawn_velocity == DrawnVelocity::kDilated && velocity == VelocitySource::kTarget &&
            reads_velocity();
   }
-  bool moves_far() const {  // the drawn velocity of what is infinitely far away is completed
-    const bool possible = settings.far != FarMotion::kEvidence || keeps_previous_frame();
-    return settings.far != FarMotion::kAsDrawn && velocity == VelocitySource::kTarget && reads_velocity() &&
-           needs.camera_motion && possible;
+  bool moves_sky() const {  // the drawn velocity of what is infinitely far away is completed
+    const bool possible = settings.sky_motion != SkyMotion::kEvidence || keeps_previous_frame();
+    return settings.sky_motion != SkyMotion::kAsDrawn && velocity == VelocitySource::kTarget &&
+           reads_velocity() && needs.camera_motion && possible;
   }
-  bool fits_far() const { return moves_far() && settings.far == FarMotion::kEvidence; }
+  bool fits_sky() const { return moves_sky() && settings.sky_motion == SkyMotion::kEvidence; }
   bool reads_reactive() const { return (keeps_previous_frame() || measures_content()) && needs.transparents; }
   bool measures_content() const { return settings.measures_content && has_velocity(); }
   bool shows_picture() const {  // and no debug view
@@ -66,7 +66,9 @@ struct PlanFacts {
   bool sharpens() const { return settings.sharpness > 0 && shows_picture(); }
   bool has_focus() const { return settings.focus.extent != Extent{} && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
-  bool is_dual() const { return settings.least_output != settings.output; }  // the output is dynamic
+  bool is_dual() const {
+    return settings.min_output_extent != settings.output_extent;
+  }  // the output is dynamic
   // Whether a viewport may be larger than an output on an axis, or dense.
   bool may_widen() const;
   bool may_be_dense() const;

@@ -35,14 +35,15 @@ void check_extent(Complaints& complaints, const char* field, Extent extent) {
                              extent.height, kLargestSide));
 }
 
-void check_least_output(Complaints& complaints, const ResolveSettings& settings) {
-  const Extent least = settings.least_output;
-  const Extent most = settings.output;
+void check_min_output_extent(Complaints& complaints, const ResolveSettings& settings) {
+  const Extent least = settings.min_output_extent;
+  const Extent most = settings.output_extent;
   if (least == Extent{} || !usable(most)) return;
   if (least.width >= 1 && least.height >= 1 && least.width <= most.width && least.height <= most.height)
     return;
-  complaints.add(fmt::format("settings.least_output is {}x{}; it must lie within 1x1 and the output's {}x{}",
-                             least.width, least.height, most.width, most.height));
+  complaints.add(
+      fmt::format("settings.min_output_extent is {}x{}; it must lie within 1x1 and the output's {}x{}",
+                  least.width, least.height, most.width, most.height));
 }
 
 void check_format(Complaints& complaints, const char* field, PixelFormat format, PixelFormat half,
@@ -55,33 +56,36 @@ void check_format(Complaints& complaints, const char* field, PixelFormat format,
 void check_focus(Complaints& complaints, const ResolveSettings& settings) {
   const FocusSettings& focus = settings.focus;
   if (focus.extent == Extent{}) return;
-  if (focus.extent.width < 1 || focus.extent.height < 1 || focus.extent.width > settings.output.width ||
-      focus.extent.height > settings.output.height) {
+  if (focus.extent.width < 1 || focus.extent.height < 1 ||
+      focus.extent.width > settings.output_extent.width ||
+      focus.extent.height > settings.output_extent.height) {
     complaints.add(
         fmt::format("settings.focus.extent is {}x{}; it must lie within 1x1 and the output's {}x{}, or be "
                     "0x0 for no focus",
-                    focus.extent.width, focus.extent.height, settings.output.width, settings.output.height));
+                    focus.extent.width, focus.extent.height, settings.output_extent.width,
+                    settings.output_extent.height));
   }
-  if (focus.target != Extent{}) check_extent(complaints, "focus.target", focus.target);
+  if (focus.target_extent != Extent{}) check_extent(complaints, "focus.target_extent", focus.target_extent);
 }
 
 Status check(const ResolveSettings& settings) {
   Complaints complaints;
-  check_extent(complaints, "output", settings.output);
-  check_extent(complaints, "target", settings.target);
-  check_least_output(complaints, settings);
+  check_extent(complaints, "output_extent", settings.output_extent);
+  check_extent(complaints, "target_extent", settings.target_extent);
+  check_min_output_extent(complaints, settings);
   if (settings.colour != PixelFormat::kRGBA8 && settings.colour != PixelFormat::kRGBA16F &&
       settings.colour != PixelFormat::kRGBA32F) {
     complaints.add(
         fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
   }
-  if (settings.particle_target != Extent()) {
-    const Extent particles = settings.particle_target;
-    if (particles.width < 1 || particles.height < 1 || particles.width > settings.target.width ||
-        particles.height > settings.target.height) {
+  if (settings.particle_target_extent != Extent()) {
+    const Extent particles = settings.particle_target_extent;
+    if (particles.width < 1 || particles.height < 1 || particles.width > settings.target_extent.width ||
+        particles.height > settings.target_extent.height) {
       complaints.add(fmt::format(
-          "settings.particle_target is {}x{}; it must lie within 1x1 and the target's {}x{}, or be 0x0",
-          particles.width, particles.height, settings.target.width, settings.target.height));
+          "settings.particle_target_extent is {}x{}; it must lie within 1x1 and the target's {}x{}, or be "
+          "0x0",
+          particles.width, particles.height, settings.target_extent.width, settings.target_extent.height));
     }
     if (settings.colour == PixelFormat::kRGBA8)
       complaints.add(
@@ -89,7 +93,7 @@ Status check(const ResolveSettings& settings) {
           "linear");
   }
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
-  check_format(complaints, "resolved", settings.resolved, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  check_format(complaints, "linear", settings.linear, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
                PixelFormat::kRGBA32F);
   const auto check_weight = [&](const char* field, float weight) {
@@ -195,7 +199,7 @@ bool ResolvePlan::is_dual() const {
 }
 
 bool ResolvePlan::reads_history(Extent render, Extent output) const {
-  if (accumulates()) return !is_dense(render, output == Extent{} ? settings.output : output);
+  if (accumulates()) return !is_dense(render, output == Extent{} ? settings.output_extent : output);
   return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
 }
 
@@ -206,13 +210,14 @@ bool ResolvePlan::has_focus() const {
 std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   if (!has_focus()) return std::nullopt;
   ResolveSettings region = settings;
-  region.output = settings.focus.extent;
-  region.least_output = {};
-  region.target = settings.focus.target != Extent{} ? settings.focus.target : settings.focus.extent;
+  region.output_extent = settings.focus.extent;
+  region.min_output_extent = {};
+  region.target_extent =
+      settings.focus.target_extent != Extent{} ? settings.focus.target_extent : settings.focus.extent;
   region.shading = Shading::kFull;
   region.present = false;
   region.clear = false;
-  region.particle_target = {};  // those of the region are drawn with the rest of it
+  region.particle_target_extent = {};  // those of the region are drawn with the rest of it
   region.focus = {};
   region.measures_content = region.fades = false;
   return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
@@ -222,12 +227,12 @@ bool ResolvePlan::undilates_velocity() const {
   return PlanFacts(needs, settings).undilates_velocity();
 }
 
-bool ResolvePlan::moves_far() const {
-  return PlanFacts(needs, settings).moves_far();
+bool ResolvePlan::moves_sky() const {
+  return PlanFacts(needs, settings).moves_sky();
 }
 
 bool ResolvePlan::reads_camera() const {
-  return velocity == VelocitySource::kCamera || (moves_far() && settings.far == FarMotion::kCamera);
+  return velocity == VelocitySource::kCamera || (moves_sky() && settings.sky_motion == SkyMotion::kCamera);
 }
 
 Storage ResolvePlan::presented_storage() const {
@@ -274,7 +279,7 @@ std::string size_text(std::uint64_t bytes) {
 }
 
 std::string targets_text(const ResolvePlan& plan) {
-  const Extent largest = plan.settings.target;
+  const Extent largest = plan.settings.target_extent;
   if (plan.settings.targets == Targets::kViewport) {
     return fmt::format("viewport: each frame is the top left part of images of {}x{}; {} a frame",
                        largest.width, largest.height, size_text(plan.frame_bytes()));
@@ -286,8 +291,8 @@ std::string targets_text(const ResolvePlan& plan) {
 }
 
 std::string output_text(const ResolvePlan& plan) {
-  const Extent least = plan.settings.least_output;
-  const Extent most = plan.settings.output;
+  const Extent least = plan.settings.min_output_extent;
+  const Extent most = plan.settings.output_extent;
   if (!plan.is_dual()) return fmt::format("always {}x{}", most.width, most.height);
   const char* history = plan.accumulates() ? "; history is resized where it changes" : "";
   return fmt::format("dynamic: {}x{} to {}x{}, shown in {}x{}{}", least.width, least.height, most.width,
@@ -399,9 +404,9 @@ std::string ResolvePlan::explain() const {
   if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
   fmt::format_to(
       out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, dither {}\n",
-      name_of(settings.method), form, settings.output.width, settings.output.height, settings.target.width,
-      settings.target.height, settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
-      yes(settings.dither));
+      name_of(settings.method), form, settings.output_extent.width, settings.output_extent.height,
+      settings.target_extent.width, settings.target_extent.height,
+      settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness, yes(settings.dither));
   fmt::format_to(out, "Colour         {}\n", colour_text(settings));
   if (settings.conventions != InputConventions{})
     fmt::format_to(out, "Conventions    {}\n", conventions_text(settings.conventions));
@@ -426,12 +431,6 @@ std::string ResolvePlan::explain() const {
     fmt::format_to(out, "  {:<40} {}\n", left.what, left.why);
   if (region) fmt::format_to(out, "\nThe focus's region\n{}", region->explain());
   return text;
-}
-
-FrameOutputs outputs_for(const ResolvePlan& plan, const ImageView& linear, const ImageView& presented) {
-  FrameOutputs outputs{.presented = presented};
-  (plan.is_dual() ? outputs.displayed : plan.blurs() ? outputs.blurred : outputs.resolved) = linear;
-  return outputs;
 }
 
 std::string name_of(const PassReport& pass) {

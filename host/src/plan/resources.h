@@ -98,7 +98,7 @@ struct InputImage {
   const char* field;  // "particle_colour"
   ImageView FrameInputs::*image;
   Resource given;  // it, where it has to be converted
-  Extent FrameInputs::*viewport = &FrameInputs::render;
+  Extent FrameInputs::*viewport = &FrameInputs::render_extent;
 };
 
 inline constexpr InputImage kColourInput = {"colour", &FrameInputs::colour, Resource::kGivenColour};
@@ -107,13 +107,13 @@ inline constexpr InputImage kDepthInput = {"depth", &FrameInputs::depth, Resourc
 inline constexpr InputImage kReactiveInput = {"reactive", &FrameInputs::reactive, Resource::kGivenReactive};
 inline constexpr InputImage kParticleColourInput = {"particle_colour", &FrameInputs::particle_colour,
                                                     Resource::kGivenParticleColour,
-                                                    &FrameInputs::particle_render};
+                                                    &FrameInputs::particle_render_extent};
 inline constexpr InputImage kParticleDepthInput = {"particle_depth", &FrameInputs::particle_depth,
                                                    Resource::kGivenParticleDepth,
-                                                   &FrameInputs::particle_render};
+                                                   &FrameInputs::particle_render_extent};
 inline constexpr InputImage kParticleReactiveInput = {"particle_reactive", &FrameInputs::particle_reactive,
                                                       Resource::kGivenParticleReactive,
-                                                      &FrameInputs::particle_render};
+                                                      &FrameInputs::particle_render_extent};
 
 inline constexpr const InputImage* kInputImages[] = {
     &kColourInput,         &kVelocityInput,      &kDepthInput,           &kReactiveInput,
@@ -221,7 +221,7 @@ Storage storage_of(Resource resource, const PlanFacts& facts);
 
 // The velocity that undilate_velocity writes, and that resolve_checkerboard does.
 inline Resource drawn_velocity_of(const PlanFacts& facts) {
-  return facts.moves_far() ? Resource::kDrawnVelocity : Resource::kVelocity;
+  return facts.moves_sky() ? Resource::kDrawnVelocity : Resource::kVelocity;
 }
 inline Resource filled_velocity_of(const PlanFacts& facts) {
   return facts.undilates_velocity() ? Resource::kDilatedVelocity : drawn_velocity_of(facts);

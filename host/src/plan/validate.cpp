@@ -117,15 +117,6 @@ void check_camera(FrameCheck& check, const CameraMotion& camera) {
   }
 }
 
-constexpr struct {
-  const char* name;
-  ImageView FrameOutputs::*image;
-  const char* absent;  // what a plan lacks that does not have it
-} kOutputs[] = {{"resolved", &FrameOutputs::resolved, ""},
-                {"blurred", &FrameOutputs::blurred, "motion blur; set settings.blur.shutter"},
-                {"displayed", &FrameOutputs::displayed, "dynamic output; set settings.least_output"},
-                {"presented", &FrameOutputs::presented, "present pass; set settings.present"}};
-
 const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
   const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(),
                                   [name](const PlannedBuffer& buffer) { return buffer.name == name; });
@@ -134,35 +125,26 @@ const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
 
 // At least one pixel must be shaded.
 void check_parity(FrameCheck& check, const FrameInputs& inputs) {
-  const bool has_both = inputs.render.width > 1 || inputs.render.height > 1;
+  const bool has_both = inputs.render_extent.width > 1 || inputs.render_extent.height > 1;
   if (inputs.parity == 0 || (inputs.parity == 1 && has_both)) return;
   check.complain(fmt::format("parity is {}; it must be {}", inputs.parity,
                              has_both ? "0 or 1" : "0 where the viewport is a single pixel"));
 }
 
 void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutputs& outputs) {
-  if (!outputs.resolved && !outputs.blurred && !outputs.displayed && !outputs.presented) {
-    check.complain("outputs are all missing; give resolved, blurred, displayed, presented or several");
+  const ResolveSettings& settings = plan.settings;
+  if (!outputs.linear && !outputs.presented)
+    check.complain("outputs are both missing; give linear, presented or both");
+  if (outputs.linear)
+    check.output("linear", outputs.linear, settings.linear, Storage::kBuffer, settings.output_extent,
+                 "output");
+  if (!outputs.presented) return;
+  if (settings.present) {
+    check.output("presented", outputs.presented, PixelFormat::kRGBA8, plan.presented_storage(),
+                 settings.output_extent, "output");
+  } else {
+    check.complain("presented is given, but the plan has no present pass; set settings.present");
   }
-  for (const auto& output : kOutputs) {
-    const ImageView& image = outputs.*output.image;
-    if (!image) continue;
-    const PlannedBuffer* buffer = find(plan, output.name);
-    if (buffer == nullptr) {
-      check.complain(fmt::format("{} is given, but the plan has no {}", output.name, output.absent));
-      continue;
-    }
-    check.output(output.name, image, buffer->format,
-                 buffer->owned ? Storage::kBuffer : plan.presented_storage(), plan.settings.output, "output");
-  }
-  const auto check_apart = [&](const char* name, const ImageView& image, const char* other_name,
-                               const ImageView& other) {
-    if (!image || image.memory != other.memory || image.offset != other.offset) return;
-    check.complain(fmt::format("{0} is the memory of {1}; give it other memory", name, other_name));
-  };
-  check_apart("blurred", outputs.blurred, "resolved", outputs.resolved);
-  check_apart("displayed", outputs.displayed, "resolved", outputs.resolved);
-  check_apart("displayed", outputs.displayed, "blurred", outputs.blurred);
 }
 
 void check_fade(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
@@ -171,30 +153,33 @@ void check_fade(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& i
     check.complain("fading_from is given, but the plan has no cross-fade; set settings.fades");
     return;
   }
-  check.output("fading_from", inputs.fading_from, plan.settings.resolved, Storage::kBuffer,
-               plan.settings.output, "output");
+  check.output("fading_from", inputs.fading_from, plan.settings.linear, Storage::kBuffer,
+               plan.settings.output_extent, "output");
   check.finite("fade_weight", inputs.fade_weight, 0, 1);
 }
 
 void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent output) {
-  const Extent most = plan.settings.output;
-  const Extent least = plan.is_dual() ? plan.settings.least_output : most;
+  const Extent most = plan.settings.output_extent;
+  const Extent least = plan.is_dual() ? plan.settings.min_output_extent : most;
   if (output == Extent{}) return;
   if (output.width >= least.width && output.height >= least.height && output.width <= most.width &&
       output.height <= most.height)
     return;
   if (plan.is_dual()) {
-    check.complain(fmt::format("output is {}x{}; it must lie within the plan's {}x{} and {}x{}", output.width,
-                               output.height, least.width, least.height, most.width, most.height));
+    check.complain(fmt::format("output_extent is {}x{}; it must lie within the plan's {}x{} and {}x{}",
+                               output.width, output.height, least.width, least.height, most.width,
+                               most.height));
   } else {
-    check.complain(fmt::format("output is {}x{}; the plan has always {}x{}; set settings.least_output",
-                               output.width, output.height, most.width, most.height));
+    check.complain(
+        fmt::format("output_extent is {}x{}; the plan has always {}x{}; set settings.min_output_extent",
+                    output.width, output.height, most.width, most.height));
   }
 }
 
 void check_planes(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   const DepthConvention depth = plan.settings.conventions.depth;
-  if (!needs_near_plane(depth) || (!plan.reads_depth && plan.settings.particle_target == Extent())) return;
+  if (!needs_near_plane(depth) || (!plan.reads_depth && plan.settings.particle_target_extent == Extent()))
+    return;
   constexpr float kLargest = std::numeric_limits<float>::max();
   if (!(inputs.near_plane > 0 && inputs.near_plane <= kLargest)) {
     check.complain(fmt::format("near_plane is {}; where depth is {} it must be above 0 and finite",
@@ -208,10 +193,11 @@ void check_planes(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
 
 void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   constexpr float kLargest = 1e6f;
-  check.viewport("render", inputs.render, plan.settings.target);
-  if (plan.settings.particle_target != Extent())
-    check.viewport("particle_render", inputs.particle_render, plan.settings.particle_target);
-  check_output_extent(check, plan, inputs.output);
+  check.viewport("render_extent", inputs.render_extent, plan.settings.target_extent);
+  if (plan.settings.particle_target_extent != Extent())
+    check.viewport("particle_render_extent", inputs.particle_render_extent,
+                   plan.settings.particle_target_extent);
+  check_output_extent(check, plan, inputs.output_extent);
   for (const ResourceInfo& info : kResources) {
     if (info.input == nullptr || is_previous(info.resource)) continue;
     const PlannedBuffer* buffer = find(plan, info.name);
@@ -244,9 +230,9 @@ bool lies_within(const Rectangle& inner, const Rectangle& outer) {
 }
 
 void check_rectangles(FrameCheck& check, const FocusInputs& focus, const Rectangle& region) {
-  if (focus.rectangle_count < 0 || focus.rectangle_count > FocusInputs::kMostRectangles) {
+  if (focus.rectangle_count < 0 || focus.rectangle_count > FocusInputs::kMaxRectangles) {
     check.complain(fmt::format("focus.rectangle_count is {}; it must lie in [0, {}]", focus.rectangle_count,
-                               FocusInputs::kMostRectangles));
+                               FocusInputs::kMaxRectangles));
     return;
   }
   for (int i = 0; i < focus.rectangle_count; ++i) {
@@ -260,7 +246,7 @@ void check_rectangles(FrameCheck& check, const FocusInputs& focus, const Rectang
 
 void check_place(FrameCheck& check, const ResolvePlan& plan, const FocusInputs& focus) {
   constexpr float kLongestFeather = 32768;
-  const Extent output = plan.settings.output;
+  const Extent output = plan.settings.output_extent;
   const Rectangle region = {focus.x, focus.y, plan.settings.focus.extent.width,
                             plan.settings.focus.extent.height};
   if (!lies_within(region, {0, 0, output.width, output.height})) {

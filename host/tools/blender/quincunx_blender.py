@@ -143,7 +143,7 @@ class Shot:
         number = re.sub("#+", lambda mark: f"%0{len(mark[0])}d", self.stem)
         words = [program, "frame.%04d.exr", "--out", os.path.join(os.pardir, number + ".exr"),
                  "--output", f"{self.full[0]}x{self.full[1]}", "--frames", f"{take[0]}-{take[1]}", "--warm-up", "0",
-                 "--method", self.choices.method, "--jitter", "halton", "--far", "evidence",
+                 "--method", self.choices.method, "--jitter", "halton", "--sky-motion", "evidence",
                  "--colour", f"{name}.Combined", "--velocity", f"{name}.Vector.X,{name}.Vector.Y",
                  "--velocity-convention", "blender", "--depth", f"{name}.Depth.Z"]
         if self.blur > 0:

@@ -66,7 +66,7 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .non_negative()
       .show_default()
       .type_name("K");
-  add_choice(app, "--far", settings.far, choices<FarMotion>(),
+  add_choice(app, "--sky-motion", settings.sky_motion, choices<SkyMotion>(),
              "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence "
              "(default: drawn)");
   add_choice(app, "--view", settings.temporal.view, choices<TemporalView>(),
@@ -101,7 +101,7 @@ std::string resolve_settings_text(const ResolveSettings& settings) {
       "{}, view {}, far {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness "
       "{}, blur {} of {} "
       "samples",
-      name_of(variant_of(settings)), name_of(settings.temporal.view), name_of(settings.far),
+      name_of(variant_of(settings)), name_of(settings.temporal.view), name_of(settings.sky_motion),
       name_of(settings.drawn_velocity), settings.quincunx.velocity_weight,
       settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
       settings.sharpness, settings.blur.shutter, settings.blur.samples);

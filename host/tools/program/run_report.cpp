@@ -174,11 +174,11 @@ void add_sentences(std::string& text, const std::string& heading, const std::vec
 }
 
 void add_report(FrameRow& row, const FrameReport& report) {
-  row.render = report.render;
+  row.render = report.render_extent;
   row.ratio = report.ratio;
   row.used_previous = report.used_previous;
   row.non_finite_pixels = report.non_finite_pixels;
-  const std::span passes(report.passes.data(), static_cast<std::size_t>(report.pass_count));
+  const PassReports& passes = report.passes;
   if (std::any_of(passes.begin(), passes.end(), [](const PassReport& pass) { return pass.ms < 0; })) return;
   row.device_ms = 0;
   for (const PassReport& pass : passes)
@@ -270,8 +270,7 @@ std::vector<PassStatistics> pass_statistics(std::span<const FrameReport> reports
   std::vector<std::string> order;
   std::map<std::string, Samples> samples;
   for (const FrameReport& report : reports) {
-    for (int i = 0; i < report.pass_count; ++i) {
-      const PassReport& pass = report.passes[i];
+    for (const PassReport& pass : report.passes) {
       const std::string name = name_of(pass);
       if (!samples.contains(name)) order.push_back(name);
       samples[name].ms.push_back(pass.ms);

@@ -2,7 +2,7 @@
 """Quincunx from Python: resolves frames that are NumPy arrays, by the shared library's C interface.
 
     import quincunx
-    resolver = quincunx.Resolver(output=(1920, 1080), method="temporal", transparents=False)
+    resolver = quincunx.Resolver(output_extent=(1920, 1080), method="temporal", transparents=False)
     for frame in frames:
         picture = resolver.resolve(frame.colour, depth=frame.depth, velocity=frame.velocity, jitter=frame.jitter)
 
@@ -16,12 +16,12 @@ from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int
 
 import numpy as np
 
-API_VERSION, MOST_PASSES = 1, 72
+API_VERSION, MAX_PASSES = 1, 72
 HOST = 2  # images lie in host memory
 METHODS = {}  # name: number, as the library has them
 CHOICES = {  # settings that are names here and numbers there
     "two_frame_form": ("mean", "velocity", "reprojected"), "sampling": ("point", "bilinear"),
-    "temporal_preset": ("fast", "balanced", "quality"), "far_motion": ("as-drawn", "camera", "evidence"),
+    "temporal_preset": ("fast", "balanced", "quality"), "sky_motion": ("as-drawn", "camera", "evidence"),
     "drawn_velocity": ("own", "dilated"),
     "depth_convention": ("reversed-infinite", "reversed", "infinite", "forward", "linear"),
     "clip_space": ("direct3d", "opengl", "vulkan"), "velocity_unit": ("uv", "pixels", "ndc"), "origin": ("top", "bottom"),
@@ -55,20 +55,20 @@ def sized(name, *fields):
 Settings = sized(
     "Settings", (
         "moving_objects camera_motion transparents background method output_width output_height target_width "
-        "target_height colour_format velocity_format resolved_format storage targets shading present clear tone_map "
-        "dither clamp_ringing noise_moves far_motion two_frame_form sampling temporal_preset temporal_view "
+        "target_height colour_format velocity_format linear_format storage targets shading present clear tone_map "
+        "dither clamp_ringing noise_moves sky_motion two_frame_form sampling temporal_preset temporal_view "
         "history_format blur_samples", c_int32),
     ("shutter sharpness grain velocity_weight residual_weight", c_float), (
         "drawn_velocity depth_convention clip_space velocity_unit velocity_backward velocity_up velocity_jittered origin "
         "conventions_padding", c_int32))
-Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame blurs "
-                        "presented_storage accumulates", c_int32), ("frame_bytes", c_uint64))
+Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame "
+                        "presented_storage accumulates padding", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))
 Inputs = sized("Inputs", ("colour depth velocity reactive", POINTER(Image)), ("render_width render_height", c_int32),
                ("jitter_x jitter_y velocity_scale_x velocity_scale_y", c_float),
                ("clip_to_previous_clip", c_float * 16), ("exposure", c_float), ("reset parity padding", c_int32),
                ("frame_index", c_uint64), ("near_plane far_plane", c_float))
-Outputs = sized("Outputs", ("resolved presented blurred", POINTER(Image)))
+Outputs = sized("Outputs", ("linear presented", POINTER(Image)))
 
 
 PassReport = type("PassReport", (Structure,), {
@@ -126,23 +126,23 @@ def pixels_of(name, array, channels, dtype):
 
 
 class Resolver:
-    """Makes pictures of one size from frames of any size up to `target`.
+    """Makes pictures of one size from frames of any size up to `target_extent`.
 
-    output    (width, height) of the pictures
-    target    (width, height) of the largest frame; None: that of the pictures
-    device    OpenCL device: "", "cpu", "gpu", a number or a part of a name
-    colour    type of the frames' colour: "float16" or "float32" (linear, premultiplied), or "uint8" (sRGB encoded)
-    settings  fields of quincunx_settings by name; methods and the keys of CHOICES take names. transparents=False where
-              the frames have no reactive values, moving_objects=False where motion follows from depth and the camera.
+    output_extent  (width, height) of the pictures
+    target_extent  (width, height) of the largest frame; None: that of the pictures
+    device         OpenCL device: "", "cpu", "gpu", a number or a part of a name
+    colour         type of the frames' colour: "float16" or "float32" (linear, premultiplied), or "uint8" (sRGB encoded)
+    settings       fields of quincunx_settings by name; methods and the keys of CHOICES take names. transparents=False
+                   where frames have no reactive values, moving_objects=False where only the camera moves.
     """
 
-    def __init__(self, output, target=None, device="", colour="float32", **settings):
+    def __init__(self, output_extent, target_extent=None, device="", colour="float32", **settings):
         self._device, self._plan, self._service = c_void_p(), c_void_p(), c_void_p()
-        self.output, self._colour = tuple(output), colour
+        self.output_extent, self._colour = tuple(output_extent), colour
         plan = Settings()
         call("quincunx_settings_init", byref(plan))
-        plan.output_width, plan.output_height = output
-        plan.target_width, plan.target_height = target or output
+        plan.output_width, plan.output_height = output_extent
+        plan.target_width, plan.target_height = target_extent or output_extent
         plan.colour_format, plan.velocity_format = FORMATS[4, colour], FORMATS[2, "float32"]
         for name, value in settings.items():
             if name not in dict(Settings._fields_):
@@ -178,16 +178,15 @@ class Resolver:
         frame = Inputs(jitter_x=jitter[0], jitter_y=jitter[1], render_width=width, render_height=height, **inputs)
         for name, array in kept.items():
             setattr(frame, name, ctypes.pointer(image_of(array)))
-        picture = np.empty((self.output[1], self.output[0], 4), "uint8" if presented else "float32")
-        name = "presented" if presented else "blurred" if self.needs.blurs else "resolved"
-        outputs = Outputs(**{name: ctypes.pointer(image_of(picture))})
+        picture = np.empty((self.output_extent[1], self.output_extent[0], 4), "uint8" if presented else "float32")
+        outputs = Outputs(**{"presented" if presented else "linear": ctypes.pointer(image_of(picture))})
         call("quincunx_dispatch", self._service, byref(frame), byref(outputs), None)
         return picture
 
     def reports(self):
         """Of the frames since the last call: {"frame", "render", "used_previous", "passes": [(name, ms, bytes)]}."""
-        found, passes = [], (PassReport * MOST_PASSES)()
-        report = Report(passes=passes, pass_capacity=MOST_PASSES)
+        found, passes = [], (PassReport * MAX_PASSES)()
+        report = Report(passes=passes, pass_capacity=MAX_PASSES)
         while call("quincunx_next_report", self._service, byref(report)) == 0:
             found.append({"frame": report.frame_index, "render": (report.render_width, report.render_height),
                           "used_previous": bool(report.used_previous),

@@ -150,7 +150,8 @@ MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
                              const ResolveSettings& settings) {
   const bool moves = format.motion != MotionSource::kNone;
   if (!moves) return {{.method = Method::kCatmullRom}, "no motion is known, so frames stay apart"};
-  const bool needs_depth = format.motion == MotionSource::kCamera || settings.far != FarMotion::kAsDrawn ||
+  const bool needs_depth = format.motion == MotionSource::kCamera ||
+                           settings.sky_motion != SkyMotion::kAsDrawn ||
                            settings.drawn_velocity == DrawnVelocity::kDilated;
   if (format.channels.has_depth() || needs_depth) {
     if (jitter == JitterKind::kNone)

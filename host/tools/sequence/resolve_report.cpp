@@ -67,7 +67,7 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
   report.version = QUINCUNX_VERSION;
   report.command_line = options.command_line;
   report.output = task.format.output;
-  report.target = task.plan.settings.target;
+  report.target = task.plan.settings.target_extent;
   report.method = name_of(variant_of(task.plan.settings));
   report.settings = {{"input", task.input.text()},
                      {"read as", summary_of(task.format)},

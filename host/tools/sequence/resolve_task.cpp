@@ -66,11 +66,11 @@ void settle_method(const ResolveOptions& options, ResolveTask& task) {
 
 ResolveSettings settings_for(const ResolveTask& task, Extent target, bool half_colour) {
   ResolveSettings settings = task.resolve;
-  settings.output = task.format.output;
-  settings.target = target;
+  settings.output_extent = task.format.output;
+  settings.target_extent = target;
   settings.colour = half_colour ? PixelFormat::kRGBA16F : PixelFormat::kRGBA32F;
   settings.velocity = PixelFormat::kRG32F;
-  settings.resolved = PixelFormat::kRGBA32F;
+  settings.linear = PixelFormat::kRGBA32F;
   settings.storage = Storage::kBuffer;
   settings.present = task.output && task.output->pattern.format() == FileFormat::kPng;
   settings.clear = false;

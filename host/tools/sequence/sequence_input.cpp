@@ -215,8 +215,9 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   if (plan.reads_depth && !channels.has_depth()) {
     const std::string reader = plan.blurs()                ? "motion blur"
                                : plan.undilates_velocity() ? "--drawn-velocity dilated"
-                               : plan.moves_far() ? fmt::format("--far {}", name_of(plan.settings.far))
-                                                  : fmt::format("method {}", name_of(plan.settings.method));
+                               : plan.moves_sky()
+                                   ? fmt::format("--sky-motion {}", name_of(plan.settings.sky_motion))
+                                   : fmt::format("method {}", name_of(plan.settings.method));
     return Status::io(fmt::format("{} reads depth here, but the frames have no channel '{}'; say --depth",
                                   reader, kDepthChannel));
   }

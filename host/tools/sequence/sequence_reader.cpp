@@ -211,7 +211,7 @@ std::string SequenceWatch::see_motion(const SequenceFrame& frame, bool reset) {
 std::string SequenceWatch::see_sky(const SequenceFrame& frame, bool reset) {
   constexpr float kLeastMotion = .25f;  // pixels
   constexpr int kLeastPart = 100;       // one pixel of so many
-  const bool asked = plan_.settings.far == FarMotion::kAsDrawn && !sky_is_known_ && !reset;
+  const bool asked = plan_.settings.sky_motion == SkyMotion::kAsDrawn && !sky_is_known_ && !reset;
   if (!asked || !frame.world_to_ndc || !last_world_to_ndc_ || frame.velocity.empty() || frame.depth.empty())
     return {};
   const auto camera = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, near_plane_);
@@ -222,7 +222,7 @@ std::string SequenceWatch::see_sky(const SequenceFrame& frame, bool reset) {
   if (resting * kLeastPart < frame.depth.size()) return {};
   sky_is_known_ = true;
   return fmt::format(
-      "the sky of frame {} has a motion of 0, although the camera turns: --far camera moves it",
+      "the sky of frame {} has a motion of 0, although the camera turns: --sky-motion camera moves it",
       frame.number);
 }
 

@@ -48,7 +48,7 @@ Status SequenceResolver::allocate() {
     if (made.ok()) image = std::move(made).value();
     return made.status();
   };
-  const Extent target = plan.settings.target;
+  const Extent target = plan.settings.target_extent;
   for (DeviceFrame& frame : ring_) {
     if (Status status = make(frame.colour, target, plan.settings.colour); !status.ok()) return status;
     if (plan.velocity == VelocitySource::kTarget) {
@@ -61,9 +61,9 @@ Status SequenceResolver::allocate() {
       if (Status status = make(frame.reactive, target, PixelFormat::kR8); !status.ok()) return status;
     }
   }
-  if (Status status = make(linear_, plan.settings.output, plan.settings.resolved); !status.ok())
+  if (Status status = make(linear_, plan.settings.output_extent, plan.settings.linear); !status.ok())
     return status;
-  return presents() ? make(presented_, plan.settings.output, PixelFormat::kRGBA8) : Status();
+  return presents() ? make(presented_, plan.settings.output_extent, PixelFormat::kRGBA8) : Status();
 }
 
 Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& to) const {
@@ -100,7 +100,7 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
   inputs.velocity = device_frame.velocity.view();
   inputs.depth = device_frame.depth.view();
   inputs.reactive = device_frame.reactive.view();
-  inputs.render = frame.render;
+  inputs.render_extent = frame.render;
   inputs.jitter = scanned.jitter;
   inputs.exposure = job_.exposure;
   // A frame that turned out bad while it was read may be missing here, too.
@@ -111,8 +111,7 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
     outcome_.warnings.push_back(std::move(warning));
   }
   if (Status status = camera_of(frame, inputs); !status.ok()) return status;
-  FrameReport report =
-      service_.dispatch(inputs, outputs_for(service_.plan(), linear_.view(), presented_.view()));
+  FrameReport report = service_.dispatch(inputs, {linear_.view(), presented_.view()});
   if (!report.ok()) return report.status;
   last_ = frame.number;
   last_world_to_ndc_ = frame.world_to_ndc;
@@ -121,7 +120,7 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
 }
 
 Status SequenceResolver::download(Picture& picture) const {
-  const Extent output = service_.plan().settings.output;
+  const Extent output = service_.plan().settings.output_extent;
   const auto texels = static_cast<std::size_t>(output.area()) * 4;
   if (!presents() || job_.scores != nullptr) {
     auto pixels = std::make_shared<std::vector<float>>(texels);

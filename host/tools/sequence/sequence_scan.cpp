@@ -60,7 +60,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   if (format.needs_camera && !attributes->world_to_ndc) {
     return Status::io(
         fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,
-                    format.motion == MotionSource::kCamera ? "--velocity camera" : "--far camera"));
+                    format.motion == MotionSource::kCamera ? "--velocity camera" : "--sky-motion camera"));
   }
   const auto jitter = format.jitter.at(path, frame.number, attributes.value(), format.ratio_of(frame.render));
   if (!jitter.ok()) return jitter.status();

@@ -39,7 +39,7 @@ FrontSource source_of(const BenchResult& result) {
           .date = result.date,
           .command = result.command,
           .truth = fmt::format("{} samples a pixel", samples * samples),
-          .output = result.conditions.output};
+          .output_extent = result.conditions.output};
 }
 
 }  // namespace

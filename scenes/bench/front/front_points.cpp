@@ -52,7 +52,7 @@ PointSamples samples_of(std::span<const BenchResult> results, std::span<const st
       if (row.method != like.method || row.scale != like.scale) continue;
       if (std::find(scenes.begin(), scenes.end(), row.scene) == scenes.end()) continue;
       samples.flip.push_back(row.quality.flip);
-      samples.psnr.push_back(std::min(row.quality.psnr, FrontPoint::kHighestPsnr));
+      samples.psnr.push_back(std::min(row.quality.psnr, FrontPoint::kMaxPsnr));
       samples.ms.push_back(row.speed.least_ms.value_or(row.speed.ms.median) / megapixels);
     }
   }

@@ -31,7 +31,7 @@ class RowRun {
     if (!feed.ok()) return feed.status();
     auto contender = Contender::create(scene.stage.device(), feed->plans().front());
     if (!contender.ok()) return contender.status();
-    auto resolved = scene.stage.device().allocate(scene.plan.conditions.output, resolve.resolved);
+    auto resolved = scene.stage.device().allocate(scene.plan.conditions.output, resolve.linear);
     if (!resolved.ok()) return resolved.status();
     return RowRun(scene, std::move(feed).value(), std::move(contender).value(), std::move(resolved).value());
   }
@@ -68,9 +68,9 @@ class RowRun {
   Status run_frame(int measured_frame) {
     auto inputs = feed_.next();
     if (!inputs.ok()) return inputs.status();
-    auto time = contender_.dispatch(inputs.value(), nullptr, {.resolved = resolved_.view()});
+    auto time = contender_.dispatch(inputs.value(), nullptr, {.linear = resolved_.view()});
     if (!time.ok()) return time.status();
-    render_ = inputs->render;
+    render_ = inputs->render_extent;
     const float exposure = inputs->exposure;
     feed_.release();
     if (measured_frame < 0) return {};

@@ -228,7 +228,7 @@ class Kind {
     if (Status status = feed_.bridge().present(); !status.ok()) return status;
     StepTime interop = feed_.interop_time();
     interop += clock.elapsed();
-    render_ = inputs->render;
+    render_ = inputs->render_extent;
     feed_.release();
     if (keep) add(interop, time->step);
     return {};

@@ -45,7 +45,7 @@ Result<std::unique_ptr<CaseRun>> CaseRun::create(const scenes::FrameSource& stag
 }
 
 Status CaseRun::open(const scenes::FrameSource& stage) {
-  auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.resolved);
+  auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.linear);
   if (!resolved.ok()) return resolved.status();
   resolved_ = std::move(resolved).value();
   auto copy = CopyKernel::create(device_, plan_.conditions.output);
@@ -115,7 +115,7 @@ void CaseRun::release(int frame) {
 
 Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
   auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
-                                       outputs_for(entry.contender.plan(), resolved_.view(), {}));
+                                       {.linear = resolved_.view()});
   if (!time.ok()) return time.status();
   const Extent output = plan_.conditions.output;
   std::vector<float> rgba(static_cast<std::size_t>(output.area()) * 4);
@@ -187,7 +187,7 @@ Status CaseRun::time_frame(int frame, bool keep) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
     auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
-                                         outputs_for(entry.contender.plan(), resolved_.view(), {}));
+                                         {.linear = resolved_.view()});
     if (!time.ok()) return time.status();
     if (keep) entry.contender.keep(time.value());
   }
@@ -215,7 +215,7 @@ Status CaseRun::time_whole_frame(bool keep) {
   if (Status status = feed.bridge().present(); !status.ok()) return status;
   StepTime interop = feed.interop_time();
   interop += clock.elapsed();
-  render_ = inputs_[presenter_feed_].render;
+  render_ = inputs_[presenter_feed_].render_extent;
   frame_.interop_bytes = feed.bytes_in() + feed.bridge().traffic().bytes_out;
   if (!keep) return {};
   StepTime whole = feed.draw_time();

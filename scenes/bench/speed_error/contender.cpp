@@ -74,8 +74,7 @@ Result<DispatchTime> Contender::dispatch(const FrameInputs& inputs, const FocusI
   time.step = clock.elapsed();
   const auto report = service_.next_completed();
   if (!report) return Status::device("a finished frame has no report");
-  for (int i = 0; i < report->pass_count; ++i) {
-    const PassReport& pass = report->passes[i];
+  for (const PassReport& pass : report->passes) {
     if (std::string_view(pass.kernel) == "present") continue;
     time.resolve_ms += pass.ms;
     time.bytes += pass.bytes;

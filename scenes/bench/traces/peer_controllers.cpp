@@ -59,7 +59,7 @@ class UnrealLike final : public PeerController {
   }
 
   int choose(const FrameTiming& timing) override {
-    history_.push_front({std::sqrt(ladder().area_fraction(timing.render)), timing.gpu_ms});
+    history_.push_front({std::sqrt(ladder().area_fraction(timing.render_extent)), timing.gpu_ms});
     if (history_.size() > kHistory) history_.pop_back();
     over_budget_ = timing.gpu_ms > target_ms() ? over_budget_ + 1 : 0;
     ++since_change_;
@@ -73,7 +73,7 @@ class UnrealLike final : public PeerController {
       const bool reaches_end = wanted == max_scale() || wanted == min_scale();
       if (std::abs(wanted / scale_ - 1) > kThreshold || (reaches_end && wanted != scale_)) change(wanted);
     }
-    return ladder().highest_within_scale(scale_);
+    return ladder().max_rung_within_scale(scale_);
   }
 
   void change(double scale) {
@@ -108,7 +108,7 @@ class ValveLike final : public PeerController {
     }
     before_ = used;
     const double scale = min_scale() + (max_scale() - min_scale()) * level_ / (kLevels - 1);
-    return ladder().highest_within_scale(scale);
+    return ladder().max_rung_within_scale(scale);
   }
 
   void change(int by) {
@@ -153,7 +153,7 @@ class UnityLike final : public PeerController {
         factor_ = std::clamp(factor_ + kDeltaThreshold * (0.25 + 0.75 * remapped), 0.0, 1.0);
       }
     }
-    return ladder().highest_within_scale(min_scale() + (max_scale() - min_scale()) * factor_);
+    return ladder().max_rung_within_scale(min_scale() + (max_scale() - min_scale()) * factor_);
   }
 
   double factor_ = 1;
@@ -184,7 +184,7 @@ class FilamentLike final : public PeerController {
     if (out > -0.01 && out < 0.05) out = 0;
     const double command = out < 0 ? 1 / (1 - out) : 1 + out;
     area_ = std::clamp(area_ * command, min_scale() * min_scale(), max_scale() * max_scale());
-    return ladder().highest_within(area_);
+    return ladder().max_rung_within(area_);
   }
 
   std::deque<double> times_;

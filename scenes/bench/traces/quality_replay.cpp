@@ -165,7 +165,7 @@ class QualityProgram final : public Program {
   }
   Extent next(std::size_t) override {
     const QualityChoice choice = controller_->choice();
-    return resolve(choice.render, {choice.method, choice.fading_from, choice.weight});
+    return resolve(choice.render_extent, {choice.method, choice.fading_from, choice.weight});
   }
 
  private:

@@ -11,7 +11,7 @@
 namespace quincunx::traces {
 
 struct QualityRunSettings {
-  LadderSettings ladder = {.output = {1920, 1080}};
+  LadderSettings ladder = {.output_extent = {1920, 1080}};
   Display display;
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<Split> splits = {Split::kDevelopment, Split::kHeldOut};

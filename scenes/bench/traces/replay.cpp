@@ -113,7 +113,7 @@ FrameTiming timing_of(const std::vector<ReplayedFrame>& frames, int index, int m
   const ReplayedFrame& frame = frames[static_cast<std::size_t>(index)];
   return {.frame = static_cast<std::uint64_t>(index),
           .next_frame = frames.size(),
-          .render = frame.render,
+          .render_extent = frame.render,
           .gpu_ms = frame.gpu_ms,
           .cpu_ms = frame.cpu_ms,
           .interval_ms = frame.interval_ms,

@@ -240,7 +240,7 @@ std::string text_of(const TraceRun& run) {
 
 std::string json_of(const TraceRun& run) {
   const LadderSettings& ladder = run.settings.ladder;
-  Json root = {{"output", {ladder.output.width, ladder.output.height}},
+  Json root = {{"output", {ladder.output_extent.width, ladder.output_extent.height}},
                {"min_scale", ladder.min_scale},
                {"max_scale", ladder.max_scale},
                {"seeds", run.settings.seeds},

@@ -27,7 +27,7 @@ struct NamedTraces {
 std::vector<NamedTraces> scripted_traces();
 
 struct TraceSettings {
-  LadderSettings ladder = {.output = {1920, 1080}};
+  LadderSettings ladder = {.output_extent = {1920, 1080}};
   std::vector<Display> displays = {Display{}};
   std::vector<std::uint64_t> seeds = {1, 2, 3};
   std::vector<NamedTraces> lists = scripted_traces();

@@ -53,10 +53,8 @@ Result<FrameFeed> open_feed(const scenes::FrameSource& stage, const TuneCase& wh
 // Milliseconds of each pass of a frame. Some run twice, for the picture and for its focus.
 std::map<std::string, double> pass_times(const FrameReport& report) {
   std::map<std::string, double> times;
-  for (int i = 0; i < report.pass_count; ++i) {
-    const PassReport& pass = report.passes[static_cast<std::size_t>(i)];
+  for (const PassReport& pass : report.passes)
     times[pass.kernel] += pass.ms;
-  }
   return times;
 }
 
@@ -99,7 +97,7 @@ class StoredCopies {
     for (ImageView* view : {&inputs.colour, &inputs.depth, &inputs.velocity, &inputs.reactive}) {
       Image& image = images[at++];
       if (!*view) continue;
-      if (Status status = copy(*view, inputs.render, image); !status.ok()) return status;
+      if (Status status = copy(*view, inputs.render_extent, image); !status.ok()) return status;
       *view = image.view();
     }
     return inputs;
@@ -223,14 +221,13 @@ Result<TuneStand> TuneStand::create(const scenes::FrameSource& stage, const Tune
 Status TuneStand::allocate() {
   const ResolveSettings& settings = plan_.settings;
   const auto make = [&](Image& image, PixelFormat format, Storage storage) -> Status {
-    auto made = device_.allocate(settings.output, format, storage);
+    auto made = device_.allocate(settings.output_extent, format, storage);
     if (!made.ok()) return made.status();
     image = std::move(made).value();
     return {};
   };
-  Status status = make(resolved_, settings.resolved, Storage::kBuffer);
-  if (status.ok() && plan_.blurs()) status = make(blurred_, settings.resolved, Storage::kBuffer);
-  if (status.ok() && settings.fades) status = make(other_, settings.resolved, Storage::kBuffer);
+  Status status = make(linear_, settings.linear, Storage::kBuffer);
+  if (status.ok() && settings.fades) status = make(other_, settings.linear, Storage::kBuffer);
   if (status.ok() && settings.present)
     status = make(presented_, PixelFormat::kRGBA8, plan_.presented_storage());
   return status;
@@ -245,8 +242,7 @@ Result<double> TuneStand::time_copy() {
 
 Status TuneStand::resolve(ResolveService& service, FrameInputs inputs, PassTimes* times) {
   if (plan_.settings.fades) inputs.fading_from = other_.view();
-  const FrameOutputs outputs{
-      .resolved = resolved_.view(), .presented = presented_.view(), .blurred = blurred_.view()};
+  const FrameOutputs outputs{.linear = linear_.view(), .presented = presented_.view()};
   const FocusInputs* focus = feed_.focus();
   const FrameReport accepted =
       focus != nullptr ? service.dispatch(inputs, *focus, outputs) : service.dispatch(inputs, outputs);
@@ -279,7 +275,7 @@ std::vector<TuneCase> tune_cases() {
   cases[6].resolve.conventions.velocity_jittered = true;  // it is not, but this costs the same
   cases[7].only_camera_moves = true;
   cases[8].resolve.temporal.preset = TemporalPreset::kQuality;
-  cases[8].resolve.far = FarMotion::kEvidence;
+  cases[8].resolve.sky_motion = SkyMotion::kEvidence;
   cases[8].resolve.drawn_velocity = DrawnVelocity::kDilated;  // nor is this; about the same
   cases[9].resolve.temporal.preset = TemporalPreset::kFast;
   cases[9].resolve.shading = Shading::kCheckerboard;

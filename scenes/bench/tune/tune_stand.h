@@ -55,7 +55,7 @@ class TuneStand {
   FrameFeed feed_;
   ResolvePlan plan_;
   CopyKernel copy_;
-  Image resolved_, blurred_, presented_;
+  Image linear_, presented_;
   Image other_;  // that is faded from
 };
 

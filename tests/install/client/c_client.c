@@ -32,13 +32,13 @@ static int resolve(quincunx_service* service, float* colour, float* picture) {
   quincunx_inputs inputs = {sizeof inputs};
   quincunx_outputs outputs = {sizeof outputs};
   quincunx_report report = {sizeof report};
-  quincunx_pass_report passes[20];
+  quincunx_pass_report passes[QUINCUNX_MAX_PASSES];
   int i;
   for (i = 0; i < kRender * kRender * 4; ++i)
     colour[i] = value[i % 4];
   inputs.colour = &in;
   inputs.render_width = inputs.render_height = kRender;
-  outputs.resolved = &out;
+  outputs.linear = &out;
   for (i = 0; i < 2; ++i) {
     inputs.frame_index = (uint64_t)i;
     if (quincunx_dispatch(service, &inputs, &outputs, NULL) != QUINCUNX_OK) return fail("dispatch");
@@ -50,7 +50,7 @@ static int resolve(quincunx_service* service, float* colour, float* picture) {
     }
   }
   report.passes = passes;
-  report.pass_capacity = 20;
+  report.pass_capacity = QUINCUNX_MAX_PASSES;
   if (quincunx_next_report(service, &report) != QUINCUNX_OK) return fail("next_report");
   printf("frame %d: %s, %g x %g\n", (int)report.frame_index, passes[0].kernel, (double)report.ratio_x,
          (double)report.ratio_y);

@@ -18,9 +18,11 @@ int main() {
   auto device = Device::open("cpu");
   if (!device.ok()) return fail(device.status());
   const SceneNeeds needs{.background = false};  // so the plan holds a clear
-  auto plan = plan_for(
-      needs,
-      {.method = Method::kBilinear, .output = output, .target = output, .present = false, .clear = true});
+  auto plan = plan_for(needs, {.method = Method::kBilinear,
+                               .output_extent = output,
+                               .target_extent = output,
+                               .present = false,
+                               .clear = true});
   if (!plan.ok()) return fail(plan.status());
   auto service = ResolveService::create(device.value(), plan.value());
   if (!service.ok()) return fail(service.status());
@@ -31,7 +33,7 @@ int main() {
   const float value[4] = {0.25f, 0.5f, 2.0f, 1.0f};
   if (auto status = service->clear(colour->view(), render, value); !status.ok()) return fail(status);
   const FrameReport report =
-      service->dispatch({.colour = colour->view(), .render = render}, {.resolved = resolved->view()});
+      service->dispatch({.colour = colour->view(), .render_extent = render}, {.linear = resolved->view()});
   if (!report.ok()) return fail(report.status);
   std::vector<float> pixels(output.area() * 4);
   if (auto status = device->download(resolved->view(), output, pixels.data()); !status.ok())
