@@ -81,8 +81,8 @@ Status check(const Context& context, const BridgeSettings& settings) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
   std::string faults;
-  check_extent("target", settings.target, limit, &faults);
-  check_extent("output", settings.output, limit, &faults);
+  check_extent("target_extent", settings.target_extent, limit, &faults);
+  check_extent("output_extent", settings.output_extent, limit, &faults);
   if (settings.slots < kMinSlots || settings.slots > kMaxSlots) {
     faults += fmt::format("{}slots is {} and must be {} to {}", faults.empty() ? "" : "; ", settings.slots,
                           kMinSlots, kMaxSlots);
@@ -151,8 +151,8 @@ const char* name_of(Interop interop) {
 }
 
 BridgeSettings bridge_settings(const ResolvePlan& plan) {
-  return {.target = plan.settings.target_extent,
-          .output = plan.settings.output_extent,
+  return {.target_extent = plan.settings.target_extent,
+          .output_extent = plan.settings.output_extent,
           .depth = plan.reads_depth,
           .velocity = plan.velocity == VelocitySource::kTarget,
           .reactive = plan.reads_reactive,
@@ -174,7 +174,7 @@ Status Bridge::check_present(bool begun, GLuint into) const {
   if (!begun) {
     return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
   }
-  return into == 0 ? Status() : check_picture_texture(into, settings_.picture, settings_.output);
+  return into == 0 ? Status() : check_picture_texture(into, settings_.picture, settings_.output_extent);
 }
 
 Result<SharedFrame> Bridge::import(const FrameTextures& textures, Extent render) {

@@ -69,7 +69,7 @@ std::vector<Plane> planes_of(const BridgeSettings& settings) {
 }
 
 TargetNeeds target_needs(const BridgeSettings& settings) {
-  return {.target = settings.target,
+  return {.target_extent = settings.target_extent,
           .velocity = settings.velocity,
           .reactive = settings.reactive,
           .checkerboard = settings.checkerboard,

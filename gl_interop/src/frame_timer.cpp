@@ -208,7 +208,7 @@ TimerMethod FrameTimer::method() const {
 bool FrameTimer::begin(std::uint64_t frame, Extent render) {
   if (impl_->open || impl_->count == impl_->slots.size()) return false;
   Impl::Slot& slot = impl_->slots[(impl_->first + impl_->count) % impl_->slots.size()];
-  slot.frame = {.frame = frame, .render = render, .gpu_ms = 0};
+  slot.frame = {.frame = frame, .render_extent = render, .gpu_ms = 0};
   slot.begun_ms = impl_->clock.milliseconds();
   if (impl_->method == TimerMethod::kQuery) glBeginQuery(GL_TIME_ELAPSED, slot.query.get());
   impl_->open = true;

@@ -250,22 +250,22 @@ GlSharing::GlSharing(const Device& device, const BridgeSettings& settings, std::
     : Bridge(settings, std::move(reason)),
       device_(device),
       planes_(planes_of(settings)),
-      ring_(settings.slots, settings.target),
+      ring_(settings.slots, settings.target_extent),
       presented_(Texture::create()),
       output_(device),
-      pixels_(static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(settings.picture)) {
+      pixels_(static_cast<std::size_t>(settings.output_extent.area()) * bytes_per_pixel(settings.picture)) {
   if (settings.depth) depth_copy_ = DepthCopy::create();
   slots_.reserve(static_cast<std::size_t>(settings.slots));
   for (int i = 0; i < settings.slots; ++i)
     slots_.push_back(make_slot());
 
-  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output);
+  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output_extent);
   texture_parameter(presented_.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST});
   output_image_ = output_.add(presented_.get(), settings.picture, CL_MEM_READ_WRITE);
   output_view_ = {.memory = output_image_,
                   .storage = Storage::kImage,
                   .format = settings.picture,
-                  .extent = settings.output};
+                  .extent = settings.output_extent};
   if (settings.picture == PixelFormat::kRGBA8) return;
   cl_int code = CL_SUCCESS;
   linear_ =
@@ -294,7 +294,7 @@ GlSharing::Slot GlSharing::make_slot() {
     Texture& own = slot.own.emplace_back();
     if (is_copied(plane)) {
       own = Texture::create();
-      texture_storage(own.get(), 1, gl_format(plane.format).internal, settings_.target);
+      texture_storage(own.get(), 1, gl_format(plane.format).internal, settings_.target_extent);
     } else if (plane.format == PixelFormat::kRGBA8) {
       // OpenCL 1.2 has no name for an encoded texture: it is given the codes. A view needs a name without a texture.
       GLuint name = 0;
@@ -307,7 +307,7 @@ GlSharing::Slot GlSharing::make_slot() {
     view_of(slot.views, plane.kind) = {.memory = slot.shared.add(texture, plane.format, CL_MEM_READ_ONLY),
                                        .storage = Storage::kImage,
                                        .format = plane.format,
-                                       .extent = settings_.target};
+                                       .extent = settings_.target_extent};
   }
   return slot;
 }
@@ -318,7 +318,8 @@ Bridge::Memory GlSharing::memory() const {
     if (slot.targets) memory.gl_bytes += slot.targets->bytes();
     for (const Plane& plane : planes_) {
       if (!is_copied(plane)) continue;
-      memory.gl_bytes += static_cast<std::uint64_t>(settings_.target.area()) * bytes_per_pixel(plane.format);
+      memory.gl_bytes +=
+          static_cast<std::uint64_t>(settings_.target_extent.area()) * bytes_per_pixel(plane.format);
     }
   }
   return memory;
@@ -399,8 +400,8 @@ Result<ImageView> GlSharing::begin_present() {
 
 void GlSharing::copy_linear() const {
   const std::array<std::size_t, 3> origin = {0, 0, 0};
-  const std::array<std::size_t, 3> region = {static_cast<std::size_t>(settings_.output.width),
-                                             static_cast<std::size_t>(settings_.output.height), 1};
+  const std::array<std::size_t, 3> region = {static_cast<std::size_t>(settings_.output_extent.width),
+                                             static_cast<std::size_t>(settings_.output_extent.height), 1};
   check_cl(clEnqueueCopyBufferToImage(device_.queue(), linear_.get(), output_image_, 0, origin.data(),
                                       region.data(), 0, nullptr, nullptr),
            "clEnqueueCopyBufferToImage");
@@ -413,7 +414,7 @@ Status GlSharing::present(GLuint into) {
     if (linear_) copy_linear();
     output_.release();
     output_.wait_for_release();
-    if (into != 0) copy_texels(presented_.get(), into, settings_.output);
+    if (into != 0) copy_texels(presented_.get(), into, settings_.output_extent);
   } catch (const std::exception& error) {
     return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
   }

@@ -15,7 +15,7 @@
 namespace quincunx::gl {
 
 TargetPool::TargetPool(const TargetNeeds& largest)
-    : needs_(largest), most_texels_(2 * largest.target.area()) {}
+    : needs_(largest), most_texels_(2 * largest.target_extent.area()) {}
 
 void TargetPool::make_room(Extent extent) {
   std::int64_t texels = extent.area();
@@ -35,7 +35,7 @@ const RenderTargets& TargetPool::at(Extent extent) {
   } else {
     make_room(extent);
     TargetNeeds needs = needs_;
-    needs.target = extent;
+    needs.target_extent = extent;
     kept_.push_back(std::make_unique<RenderTargets>(needs));
   }
   return *kept_.back();
@@ -104,7 +104,7 @@ void SlotImages::resize(Extent render) {
 // Viewport targets: memory of its own for each slot. Placed ones: all slots in one allocation.
 void HostCopy::make_slots(Transfer transfer) {
   const bool placed = settings_.targets == Targets::kPlaced;
-  const FrameLayout layout = lay_out(planes_, settings_.target, settings_.targets, form_.row_texels);
+  const FrameLayout layout = lay_out(planes_, settings_.target_extent, settings_.targets, form_.row_texels);
   const std::size_t bytes = PixelMemory::whole_pages(layout.bytes);
   const auto count = static_cast<std::size_t>(settings_.slots);
   const auto memory = placed ? std::make_shared<PixelMemory>(device_, count * bytes, transfer) : nullptr;
@@ -125,21 +125,22 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
       form_(settings.targets == Targets::kPlaced ? form : PlacedForm{}),
       pool_(target_needs(settings)),
       reader_(Framebuffer::create()),
-      ring_(settings.slots, settings.target),
-      output_(device, static_cast<std::size_t>(settings.output.area()) * bytes_per_pixel(settings.picture),
+      ring_(settings.slots, settings.target_extent),
+      output_(device,
+              static_cast<std::size_t>(settings.output_extent.area()) * bytes_per_pixel(settings.picture),
               transfer),
       presented_(Texture::create()) {
   make_slots(transfer);
 
   output_view_ = {.memory = output_.cl_buffer(),
                   .format = settings.picture,
-                  .extent = settings.output,
-                  .pitch = settings.output.width * bytes_per_pixel(settings.picture)};
-  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output);
-  if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target);
+                  .extent = settings.output_extent,
+                  .pitch = settings.output_extent.width * bytes_per_pixel(settings.picture)};
+  texture_storage(presented_.get(), 1, gl_format(settings.picture).internal, settings.output_extent);
+  if (settings.depth && !capabilities().reads_depth) depth_reader_ = DepthReader(settings.target_extent);
 
   if (settings.imports) return;
-  targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target);
+  targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target_extent);
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
   while (glGetError() != GL_NO_ERROR) {
   }
@@ -297,12 +298,12 @@ Status HostCopy::present(GLuint into) {
   const TransferScope restore;
   const GlFormat names = gl_format(settings_.picture);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
-  texture_write(into != 0 ? into : presented_.get(), 0, settings_.output, names.format, names.type,
+  texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,
                 output_.gl_pointer(0));
   uploaded_.set();
   presenting_ = false;
   traffic_.bytes_out =
-      static_cast<std::uint64_t>(settings_.output.area()) * bytes_per_pixel(settings_.picture);
+      static_cast<std::uint64_t>(settings_.output_extent.area()) * bytes_per_pixel(settings_.picture);
   traffic_.present_ms = watch.milliseconds();
   return {};
 }

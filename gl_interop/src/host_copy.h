@@ -31,7 +31,7 @@ namespace quincunx::gl {
 // more texels than two of the largest size: as many as a double-buffered allocation would have.
 class TargetPool {
  public:
-  // `largest.target` is the largest size that at() will be asked for. Makes nothing yet.
+  // `largest.target_extent` is the largest size that at() will be asked for. Makes nothing yet.
   explicit TargetPool(const TargetNeeds& largest);
 
   // Targets of this size, valid until the next call. Throws std::runtime_error where they cannot be made.

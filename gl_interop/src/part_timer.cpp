@@ -72,7 +72,7 @@ void PartTimer::begin(std::uint64_t frame, Extent extent) {
   const bool timed = impl_->parts++ % static_cast<std::uint64_t>(impl_->every) == 0;
   if (!timed || impl_->open || impl_->count == impl_->slots.size()) return;
   Impl::Slot& slot = impl_->next();
-  slot.part = {.frame = frame, .render = extent, .gpu_ms = 0};
+  slot.part = {.frame = frame, .render_extent = extent, .gpu_ms = 0};
   impl_->open = true;
   if (impl_->method == TimerMethod::kQuery) {
     glQueryCounter(slot.begun.get(), GL_TIMESTAMP);

@@ -74,7 +74,7 @@ std::vector<float> read_depth(const RenderTargets& targets, Extent render) {
 }  // namespace
 
 RenderTargets::RenderTargets(const TargetNeeds& needs)
-    : extent_(needs.target), colour_format_(needs.colour), has_checkerboard_(needs.checkerboard) {
+    : extent_(needs.target_extent), colour_format_(needs.colour), has_checkerboard_(needs.checkerboard) {
   check_extent(extent_);
   framebuffer_ = Framebuffer::create();
   const bool encoded = colour_format_ == PixelFormat::kRGBA8;
@@ -125,7 +125,7 @@ void RenderTargets::clear(Extent render) const {
 TargetPixels read_targets(const RenderTargets& targets, Extent render) {
   const TransferScope restore;
   TargetPixels pixels;
-  pixels.render = render;
+  pixels.render_extent = render;
   if (targets.colour_format() == PixelFormat::kRGBA8) {
     pixels.codes =
         read_plane<std::uint8_t>(targets, GL_COLOR_ATTACHMENT0, render, GL_RGBA, GL_UNSIGNED_BYTE, 4);

@@ -10,8 +10,8 @@ namespace {
 
 // Sets the pixels that nobody has drawn to zeros: their contents are no part of the frame.
 void blank_unshaded(gl::TargetPixels& pixels, int parity) {
-  const auto width = static_cast<std::size_t>(pixels.render.width);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.render.area()); ++i) {
+  const auto width = static_cast<std::size_t>(pixels.render_extent.width);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.render_extent.area()); ++i) {
     if ((i % width + i / width) % 2 == static_cast<std::size_t>(parity)) continue;
     const auto blank = [i](auto& values, std::size_t channels) {
       if (!values.empty())
@@ -94,16 +94,16 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   const SceneNeeds needs = needs_of(scene());
   gl::BridgeSettings bridging;
   bridging.interop = settings_.interop;
-  bridging.target = sequence_->target();
-  bridging.output = sequence_->output();
+  bridging.target_extent = sequence_->target();
+  bridging.output_extent = sequence_->output();
   bridging.targets = resolves.front().targets;
   bridging.colour = resolves.front().colour;
   display_ = {.exposure = exposure(), .tone_map = resolves.front().tone_map};
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
-    resolve.output_extent = bridging.output;
+    resolve.output_extent = bridging.output_extent;
     resolve.min_output_extent = outputs_ ? outputs_->min_output() : Extent();
-    resolve.target_extent = bridging.target;
+    resolve.target_extent = bridging.target_extent;
     resolve.particle_target_extent = particle_target();
     resolve.targets = bridging.targets;
     if (focus_) resolve.focus = focus_->settings();
@@ -149,8 +149,8 @@ Status FrameSource::open_parts(const gl::BridgeSettings& bridging) {
   parts_ = std::move(parts).value();
   if (!settings.particles) return {};
   gl::BridgeSettings own = bridging;
-  own.target = particle_target();
-  own.output = {1, 1};
+  own.target_extent = particle_target();
+  own.output_extent = {1, 1};
   own.depth = true;
   own.velocity = own.checkerboard = false;
   return open_feed(Feed::Kind::kParticles, own);
@@ -161,8 +161,8 @@ Status FrameSource::open_focus_feed(const gl::BridgeSettings& bridging,
                                     const std::vector<ResolvePlan>& plans) {
   if (!focus_) return {};
   gl::BridgeSettings own = bridging;
-  own.target = focus_->settings().target_extent;
-  own.output = focus_->settings().extent;
+  own.target_extent = focus_->settings().target_extent;
+  own.output_extent = focus_->settings().extent;
   own.checkerboard = own.depth = own.velocity = own.reactive = false;
   for (const ResolvePlan& plan : plans) {
     const std::optional<ResolvePlan> region = plan.focus_plan();

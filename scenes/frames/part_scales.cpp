@@ -91,7 +91,7 @@ void PartScales::Controlled::note(float scale) {
 
 void PartScales::Controlled::learn() {
   while (const auto part = timer.poll())
-    controller.learn(part->frame, part->render, part->gpu_ms);
+    controller.learn(part->frame, part->render_extent, part->gpu_ms);
 }
 
 std::string PartScales::Controlled::range() const {

@@ -83,7 +83,7 @@ std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels) {
 std::vector<Vec2> backward_motion(const TargetFile& file) {
   std::vector<Vec2> motion = velocity_of(file.pixels);
   for (Vec2& vector : motion)
-    vector = tools::backward_from_velocity(vector, file.pixels.render);
+    vector = tools::backward_from_velocity(vector, file.pixels.render_extent);
   return motion;
 }
 
@@ -97,7 +97,7 @@ std::vector<float> reactive_mask(const TargetFile& file) {
 
 void dilate_velocity(gl::TargetPixels& pixels) {
   const std::vector<std::uint16_t> own = pixels.velocity;
-  const int width = pixels.render.width, height = pixels.render.height;
+  const int width = pixels.render_extent.width, height = pixels.render_extent.height;
   const auto index = [width](int x, int y) { return static_cast<std::size_t>(y) * width + x; };
   for (int y = 0; y < height && !own.empty(); ++y) {
     for (int x = 0; x < width; ++x) {
@@ -138,7 +138,7 @@ Status write_targets(const std::string& path, const TargetFile& file) {
   if (!mask.empty()) {
     channels.push_back({.name = "reactive.mask", .type = ChannelType::kFloat, .data = mask.data()});
   }
-  return tools::write_exr(path, file.pixels.render, channels, attributes_of(file));
+  return tools::write_exr(path, file.pixels.render_extent, channels, attributes_of(file));
 }
 
 Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba) {

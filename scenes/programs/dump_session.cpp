@@ -242,7 +242,7 @@ Status DumpSession::collect_targets() {
                            .fps = options_.fps};
   const Extent render = current_->view.render;
   planes_[Stage::kColour] = colour_planes(render, colour_of(current_->targets), tools::ChannelType::kHalf);
-  if (const Extent region = current_->focus.render; region.area() > 0) {
+  if (const Extent region = current_->focus.render_extent; region.area() > 0) {
     planes_[Stage::kFocus] = colour_planes(region, colour_of(current_->focus), tools::ChannelType::kHalf);
   } else if (std::erase(options_.stages, Stage::kFocus) > 0) {
     spdlog::warn("there is no stage 'focus': --focus {} is not in the picture", options_.focus);

@@ -44,7 +44,7 @@ Result<std::vector<Vec2>> FrameScores::motion_of(Renderer& renderer, FrameView v
   view.render = options_.output;
   view.jitter = {};
   view.parity.reset();
-  const gl::RenderTargets targets({.target = options_.output, .reactive = false});
+  const gl::RenderTargets targets({.target_extent = options_.output, .reactive = false});
   if (Status status = renderer.draw(targets, view); !status.ok()) return status;
   return velocity_of(gl::read_targets(targets, options_.output));
 }

@@ -166,7 +166,7 @@ TEST(Geometry, TheSkyMovesAsTheCameraTurnsWhateverTheSceneSays) {
   honest.sky.has_velocity = true;
   auto renderer = scenes::Renderer::create(honest);
   ASSERT_TRUE(renderer.ok()) << renderer.status().message();
-  const gl::RenderTargets targets({.target = kOutput, .velocity = true, .reactive = false});
+  const gl::RenderTargets targets({.target_extent = kOutput, .velocity = true, .reactive = false});
   const auto drawn = geometry_at(stage->renderer(), targets, 1.0 / 60, 0);
   scenes::FrameView view;
   view.render = kOutput;

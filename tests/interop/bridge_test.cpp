@@ -28,36 +28,39 @@ bool contains(const std::string& text, const std::string& part) {
 }
 
 TEST_F(BridgeSettingsTest, EveryBadFieldIsNamed) {
-  const Status status = refusal({.target = {0, 16}, .output = {16, -2}, .slots = 1});
+  const Status status = refusal({.target_extent = {0, 16}, .output_extent = {16, -2}, .slots = 1});
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_TRUE(contains(status.message(), "target is 0x16")) << status.message();
-  EXPECT_TRUE(contains(status.message(), "output is 16x-2")) << status.message();
+  EXPECT_TRUE(contains(status.message(), "target_extent is 0x16")) << status.message();
+  EXPECT_TRUE(contains(status.message(), "output_extent is 16x-2")) << status.message();
   EXPECT_TRUE(contains(status.message(), "slots is 1")) << status.message();
   EXPECT_EQ(std::count(status.message().begin(), status.message().end(), '\n'), 0);
 }
 
 TEST_F(BridgeSettingsTest, EachBadFieldAloneIsRefused) {
-  EXPECT_FALSE(contains(refusal({.target = {1 << 20, 16}, .output = {16, 16}}).message(), "output"));
-  EXPECT_FALSE(contains(refusal({.target = {16, 16}, .output = {16, 1 << 20}}).message(), "target"));
-  EXPECT_TRUE(
-      contains(refusal({.target = {16, 16}, .output = {16, 16}, .slots = 17}).message(), "slots is 17"));
-  EXPECT_TRUE(
-      contains(refusal({.target = {16, 16}, .output = {16, 16}, .colour = PixelFormat::kRGBA32F}).message(),
-               "colour is RGBA32F and must be RGBA8 or RGBA16F"));
+  EXPECT_FALSE(
+      contains(refusal({.target_extent = {1 << 20, 16}, .output_extent = {16, 16}}).message(), "output"));
+  EXPECT_FALSE(
+      contains(refusal({.target_extent = {16, 16}, .output_extent = {16, 1 << 20}}).message(), "target"));
+  EXPECT_TRUE(contains(refusal({.target_extent = {16, 16}, .output_extent = {16, 16}, .slots = 17}).message(),
+                       "slots is 17"));
+  EXPECT_TRUE(contains(
+      refusal({.target_extent = {16, 16}, .output_extent = {16, 16}, .colour = PixelFormat::kRGBA32F})
+          .message(),
+      "colour is RGBA32F and must be RGBA8 or RGBA16F"));
 }
 
 TEST_F(BridgeSettingsTest, AContextThatIsNotCurrentIsRefused) {
   ASSERT_EQ(eglMakeCurrent(context_->display(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT),
             EGLBoolean{EGL_TRUE});
-  const Status status = refusal({.target = {16, 16}, .output = {16, 16}});
+  const Status status = refusal({.target_extent = {16, 16}, .output_extent = {16, 16}});
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_TRUE(contains(status.message(), "make_current()")) << status.message();
   ASSERT_TRUE(context_->make_current().ok());
 }
 
 TEST_F(BridgeSettingsTest, CopyIsTakenWhereItIsAskedFor) {
-  auto bridge = Bridge::create(*context_, *device_,
-                               {.interop = Interop::kCopy, .target = {16, 16}, .output = {16, 16}});
+  auto bridge = Bridge::create(
+      *context_, *device_, {.interop = Interop::kCopy, .target_extent = {16, 16}, .output_extent = {16, 16}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
   EXPECT_EQ(bridge.value()->kind(), Interop::kCopy);
   EXPECT_EQ(bridge.value()->storage(), Storage::kBuffer);
@@ -66,7 +69,8 @@ TEST_F(BridgeSettingsTest, CopyIsTakenWhereItIsAskedFor) {
 
 TEST_F(BridgeSettingsTest, GlIsRefusedWhereTheDeviceDoesNotShare) {
   if (device_->info().gl_sharing) QUINCUNX_SKIP("this device shares with OpenGL");
-  const Status status = refusal({.interop = Interop::kGl, .target = {16, 16}, .output = {16, 16}});
+  const Status status =
+      refusal({.interop = Interop::kGl, .target_extent = {16, 16}, .output_extent = {16, 16}});
   EXPECT_EQ(status.code(), StatusCode::kUnsupported);
   EXPECT_TRUE(contains(status.message(), device_->info().name)) << status.message();
   EXPECT_TRUE(contains(status.message(), "cl_khr_gl_sharing")) << status.message();
@@ -75,7 +79,7 @@ TEST_F(BridgeSettingsTest, GlIsRefusedWhereTheDeviceDoesNotShare) {
 
 TEST_F(BridgeSettingsTest, AutoFallsBackAndSaysWhy) {
   if (device_->info().gl_sharing) QUINCUNX_SKIP("this device shares with OpenGL");
-  auto bridge = Bridge::create(*context_, *device_, {.target = {16, 16}, .output = {16, 16}});
+  auto bridge = Bridge::create(*context_, *device_, {.target_extent = {16, 16}, .output_extent = {16, 16}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
   EXPECT_EQ(bridge.value()->kind(), Interop::kCopy);
   EXPECT_TRUE(contains(bridge.value()->reason(), "cl_khr_gl_sharing")) << bridge.value()->reason();
@@ -118,7 +122,7 @@ Bytes read_texture(GLuint texture, Extent extent) {
 }
 
 void PresentTest::expect_exact(Extent output, Transfer transfer) {
-  HostCopy bridge(*device_, {.target = {8, 8}, .output = output}, "test", transfer);
+  HostCopy bridge(*device_, {.target_extent = {8, 8}, .output_extent = output}, "test", transfer);
   ImageView first;
   for (std::uint32_t seed = 1; seed <= 3; ++seed) {
     auto view = bridge.begin_present();
@@ -159,7 +163,7 @@ TEST_F(PresentTest, CopiedFromTheDevice) {
 }
 
 TEST_F(PresentTest, WithoutABeginningIsRefused) {
-  auto bridge = Bridge::create(*context_, *device_, {.target = {8, 8}, .output = {8, 8}});
+  auto bridge = Bridge::create(*context_, *device_, {.target_extent = {8, 8}, .output_extent = {8, 8}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
   const Status status = bridge.value()->present();
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);

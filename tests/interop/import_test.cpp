@@ -157,7 +157,7 @@ TEST_P(ImportTest, EveryFormatArrivesAndHistoryStays) {
 
 TEST_P(ImportTest, EveryFormatOfDepthArrives) {
   constexpr Extent kSize = {17, 9};
-  BridgeSettings settings = {.target = kSize, .output = kOutput, .depth = true};
+  BridgeSettings settings = {.target_extent = kSize, .output_extent = kOutput, .depth = true};
   const auto bridge = make(settings);
   ASSERT_NE(bridge, nullptr);
   const Texture colour = make_texture(PixelFormat::kRGBA16F, kSize, 1);
@@ -253,7 +253,8 @@ TEST_P(ImportTest, ABridgeWithTargetsOfItsOwnImportsNothing) {
 }
 
 TEST_P(ImportTest, SettingsThatDoNotGoWithItAreNamed) {
-  BridgeSettings settings = {.target = kTarget, .output = kOutput, .checkerboard = true, .imports = true};
+  BridgeSettings settings = {
+      .target_extent = kTarget, .output_extent = kOutput, .checkerboard = true, .imports = true};
   settings.colour = PixelFormat::kR8;
   settings.velocity_format = PixelFormat::kRGBA16F;
   settings.picture = PixelFormat::kR8;
@@ -286,7 +287,7 @@ TEST_P(ImportTest, ThePictureComesBackInTheCallersTexture) {
                                          {kRGBA8, GL_SRGB8_ALPHA8},
                                          {kRGBA16F, GL_RGBA16F},
                                          {kRGBA32F, GL_RGBA32F}}) {
-    BridgeSettings settings = {.target = kTarget, .output = kOutput};
+    BridgeSettings settings = {.target_extent = kTarget, .output_extent = kOutput};
     settings.picture = format;
     const auto bridge = make(settings);
     ASSERT_NE(bridge, nullptr);
@@ -339,8 +340,8 @@ TEST(BridgeSettingsOfAPlan, HandOverWhatItsFramesNeed) {
                                    .colour = PixelFormat::kRGBA32F,
                                    .velocity = PixelFormat::kRG32F};
   const BridgeSettings all = bridge_settings(plan_for({}, resolve).value());
-  EXPECT_EQ(all.target, kTarget);
-  EXPECT_EQ(all.output, kOutput);
+  EXPECT_EQ(all.target_extent, kTarget);
+  EXPECT_EQ(all.output_extent, kOutput);
   EXPECT_TRUE(all.depth && all.velocity && all.reactive);
   EXPECT_EQ(all.colour, PixelFormat::kRGBA32F);
   EXPECT_EQ(all.velocity_format, PixelFormat::kRG32F);

@@ -115,8 +115,8 @@ inline Bytes read_plane(const RenderTargets& targets, const Plane& plane) {
 }
 
 inline BridgeSettings all_planes(Extent target, Extent output, PixelFormat colour = PixelFormat::kRGBA16F) {
-  return {.target = target,
-          .output = output,
+  return {.target_extent = target,
+          .output_extent = output,
           .depth = true,
           .velocity = true,
           .reactive = true,

@@ -253,7 +253,7 @@ TEST_F(PlacedTargetsTest, NewSizesAllocateNoOpenClMemory) {
 }
 
 TEST_F(PlacedTargetsTest, TheOldestTargetsGoFirst) {
-  TargetPool pool({.target = {10, 10}});
+  TargetPool pool({.target_extent = {10, 10}});
   const RenderTargets* const wide = &pool.at({10, 5});
   pool.at({5, 10});
   const RenderTargets* const half = &pool.at({10, 6});

@@ -92,7 +92,7 @@ TEST_F(RoundTripTest, EncodedColour) {
 }
 
 TEST_F(RoundTripTest, PlanesThatWereNotAskedForAreEmpty) {
-  auto bridge = Bridge::create(*context_, *device_, {.target = {16, 16}, .output = {16, 16}});
+  auto bridge = Bridge::create(*context_, *device_, {.target_extent = {16, 16}, .output_extent = {16, 16}});
   ASSERT_TRUE(bridge.ok()) << bridge.status().message();
   auto targets = bridge.value()->begin_draw(0, {16, 16});
   ASSERT_TRUE(targets.ok());

@@ -69,7 +69,7 @@ TEST_P(FrameTimerTest, FramesComeBackInOrderWithTheirExtent) {
     const std::optional<TimedFrame> timed = timer_->poll();
     ASSERT_TRUE(timed.has_value()) << frame;
     EXPECT_EQ(timed->frame, frame);
-    EXPECT_EQ(timed->render, (Extent{64 + static_cast<int>(frame), 32}));
+    EXPECT_EQ(timed->render_extent, (Extent{64 + static_cast<int>(frame), 32}));
     EXPECT_GT(timed->gpu_ms, 0);
   }
   EXPECT_FALSE(timer_->poll().has_value());
@@ -145,7 +145,7 @@ TEST_P(PartTimerTest, PartsComeBackInOrderWithTheirExtentInsideATimedFrame) {
     const std::optional<TimedFrame> timed = part.poll();
     ASSERT_TRUE(timed.has_value()) << frame;
     EXPECT_EQ(timed->frame, frame);
-    EXPECT_EQ(timed->render, (Extent{64 + static_cast<int>(frame), 32}));
+    EXPECT_EQ(timed->render_extent, (Extent{64 + static_cast<int>(frame), 32}));
     EXPECT_GT(timed->gpu_ms, 0);
     ASSERT_TRUE(whole->poll().has_value()) << frame;
   }

@@ -64,8 +64,8 @@ TEST_F(RenderTest, EncodedTargetsHoldTheLightOfTheScreen) {
   scene.instances.erase(scene.instances.begin() + 1);
   scene.particles = nullptr;
   Renderer renderer = renderer_of(scene);
-  const gl::RenderTargets linear({.target = kSize});
-  const gl::RenderTargets encoded({.target = kSize, .colour = PixelFormat::kRGBA8});
+  const gl::RenderTargets linear({.target_extent = kSize});
+  const gl::RenderTargets encoded({.target_extent = kSize, .colour = PixelFormat::kRGBA8});
   FrameView view = view_of_size(kSize);
   view.display.exposure = 1.5f;
   for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
@@ -95,7 +95,7 @@ TEST_F(RenderTest, ACheckerboardDrawsHalfOfThePixels) {
   Renderer renderer = renderer_of(rich_scene());
   FrameView view = view_of_size(kSize, {0.25f, 0.25f}, 0.4, 0.3);
   const Picture whole = draw(renderer, view, kSize);
-  const gl::RenderTargets targets({.target = kSize, .checkerboard = true});
+  const gl::RenderTargets targets({.target_extent = kSize, .checkerboard = true});
   for (const int parity : {0, 1}) {
     targets.clear(kSize);
     view.parity = parity;
@@ -115,7 +115,7 @@ TEST_F(RenderTest, ACheckerboardDrawsHalfOfThePixels) {
   view.parity = 2;
   EXPECT_EQ(renderer.draw(targets, view).message(), "FrameView::parity is 2; it must be 0 or 1");
   view.parity = 0;
-  const gl::RenderTargets plain({.target = kSize});
+  const gl::RenderTargets plain({.target_extent = kSize});
   EXPECT_EQ(renderer.draw(plain, view).message(),
             "FrameView::parity is given, but the targets have no checkerboard");
 }

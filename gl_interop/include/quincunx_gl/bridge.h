@@ -33,8 +33,8 @@ QUINCUNX_API const char* name_of(Interop interop);  // "gl", "copy", "auto"
 
 struct BridgeSettings {
   Interop interop = Interop::kAuto;  // kGl and kCopy insist: create() fails where the backend cannot work
-  Extent target = {};                // size of the inputs
-  Extent output = {};                // size of the presented picture
+  Extent target_extent = {};         // size of the inputs
+  Extent output_extent = {};         // size of the presented picture
   bool depth = false;                // hand depth over
   bool velocity = false;             // draw and hand over velocity
   bool reactive = false;             // draw and hand over reactive values

@@ -22,7 +22,7 @@ enum class TimerMethod : std::uint8_t { kQuery, kFence };
 
 struct TimedFrame {
   std::uint64_t frame = 0;
-  Extent render = {};
+  Extent render_extent = {};
   double gpu_ms = 0;  // above 0
 };
 

@@ -13,7 +13,7 @@
 namespace quincunx::gl {
 
 struct TargetNeeds {
-  Extent target = {};         // allocated size, at least the largest viewport
+  Extent target_extent = {};  // allocated size, at least the largest viewport
   bool velocity = true;       // RG16F, uv per frame
   bool reactive = true;       // R8
   bool checkerboard = false;  // a stencil whose lowest bit is (x + y) % 2 of each pixel

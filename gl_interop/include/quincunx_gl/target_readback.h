@@ -11,9 +11,9 @@
 
 namespace quincunx::gl {
 
-// The top left `render` of each target, tightly packed, top row first; empty for targets that do not exist.
+// The top left `render_extent` of each target, tightly packed, top row first; empty for targets that do not exist.
 struct TargetPixels {
-  Extent render;
+  Extent render_extent;
   std::vector<std::uint16_t> colour;    // RGBA, half; empty where the targets encode it
   std::vector<std::uint8_t> codes;      // RGBA8, sRGB encoded; empty where they do not
   std::vector<float> depth;             // reversed infinite

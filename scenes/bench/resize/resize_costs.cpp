@@ -133,8 +133,8 @@ class BridgeWay {
   BridgeWay(const scenes::FrameSource& stage, Extent largest, Targets targets) {
     auto bridge = gl::Bridge::create(stage.context(), stage.device(),
                                      {.interop = gl::Interop::kCopy,
-                                      .target = largest,
-                                      .output = {16, 16},
+                                      .target_extent = largest,
+                                      .output_extent = {16, 16},
                                       .depth = true,
                                       .velocity = true,
                                       .reactive = true,
@@ -178,7 +178,7 @@ class AnewWay {
   Way way() {
     return {.resize_us =
                 [this](Extent size) {
-                  return timed_us([&] { targets_.emplace(gl::TargetNeeds{.target = size}); });
+                  return timed_us([&] { targets_.emplace(gl::TargetNeeds{.target_extent = size}); });
                 },
             .clear = [this](Extent size) { targets_->clear(size); }};
   }

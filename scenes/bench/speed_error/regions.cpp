@@ -266,7 +266,7 @@ std::vector<Region> regions_of(const Geometry& geometry, std::span<const float> 
 Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, const scenes::Scene& scene,
                                                 const Conditions& conditions) {
   constexpr int kBack = 2;
-  const gl::RenderTargets targets({.target = conditions.output, .velocity = true, .reactive = false});
+  const gl::RenderTargets targets({.target_extent = conditions.output, .velocity = true, .reactive = false});
   const auto focus = focus_of(scene, conditions);
   if (!focus.ok()) return focus.status();
   std::vector<FrameMasks> masks;
