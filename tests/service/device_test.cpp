@@ -384,10 +384,16 @@ class ProgramCache : public ::testing::Test {
     return found;
   }
 
-  // Returns the counts of one build: {compiled, loaded}.
+  // Returns the counts of one build on a device that has no programs yet: {compiled, loaded}.
   CacheCounts build(const std::string& options = kOptions) const {
+    Device::Impl anew = impl_;
+    anew.built = std::make_shared<BuiltPrograms>();
+    return build_on(anew, options);
+  }
+
+  static CacheCounts build_on(const Device::Impl& impl, const std::string& options = kOptions) {
     const CacheCounts before = cache_counts();
-    EXPECT_NE(build_kernel(impl_, kKernel, options)(), nullptr);
+    EXPECT_NE(build_kernel(impl, kKernel, options)(), nullptr);
     const CacheCounts after = cache_counts();
     return {after.compiled - before.compiled, after.loaded - before.loaded};
   }
@@ -413,6 +419,17 @@ TEST_F(ProgramCache, CompilesOnceThenLoads) {
   const CacheCounts second = build();
   EXPECT_EQ(second.compiled, 0);
   EXPECT_EQ(second.loaded, 1);
+}
+
+TEST_F(ProgramCache, ADeviceBuildsAProgramOnce) {
+  cache_.use("");
+  EXPECT_EQ(build_on(impl_).compiled, 1);
+  const CacheCounts again = build_on(impl_);
+  EXPECT_EQ(again.compiled + again.loaded, 0);
+  EXPECT_EQ(build_on(*device_.with_profile(device_.profile()).impl()).compiled, 0)
+      << "its context is the same";
+  EXPECT_NE(build_kernel(impl_, kKernel, kOptions)(), build_kernel(impl_, kKernel, kOptions)())
+      << "own arguments";
 }
 
 TEST_F(ProgramCache, OtherOptionsAreAnotherEntry) {

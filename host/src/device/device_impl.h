@@ -1,12 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
 #include "device/opencl.h"
 #include "quincunx/device.h"
 #include "quincunx/device_profile.h"
 #include "quincunx/pass_timer.h"
 
 namespace quincunx {
+
+// The programs that were built in a context, by kernel and options. A driver that keeps its programs still preprocesses
+// their source whenever it is handed it, which takes PoCL longer than all else that a service needs to be made.
+struct BuiltPrograms {
+  std::mutex mutex;
+  std::unordered_map<std::string, cl::Program> programs;
+};
 
 struct Device::Impl {
   DeviceInfo info;
@@ -17,6 +29,7 @@ struct Device::Impl {
   DeviceProfile profile;
   // The driver itself keeps what it compiles from one run to the next, so the program cache leaves kernels to it.
   bool keeps_programs = false;
+  std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();
 };
 
 }  // namespace quincunx

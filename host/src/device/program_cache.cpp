@@ -124,14 +124,15 @@ void expand(std::string_view name, std::set<std::string>& seen, std::string& out
   }
 }
 
-std::optional<cl::Kernel> load(const Device::Impl& device, const fs::path& path, const std::string& name,
-                               const std::string& options) {
+std::optional<cl::Program> load(const Device::Impl& device, const fs::path& path, const std::string& name,
+                                const std::string& options) {
   std::optional<std::vector<unsigned char>> binary = read_cache_entry(path);
   if (!binary) return std::nullopt;
   try {
     cl::Program program(device.context, {device.device}, cl::Program::Binaries{std::move(*binary)});
     program.build(device.device, options.c_str());
-    return cl::Kernel(program, name.c_str());
+    cl::Kernel(program, name.c_str());  // which a damaged program may lack
+    return program;
   } catch (const cl::Error& error) {
     spdlog::debug("program cache: {} rejected ({}); rebuilding", path.string(), error_name(error.err()));
     return std::nullopt;
@@ -149,6 +150,27 @@ cl::Program compile(const Device::Impl& device, const std::string& name, const s
   throw BuildError(name, options, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.device));
 }
 
+// Takes the program from disk, or compiles it.
+cl::Program make_program(const Device::Impl& device, const std::string& name, const std::string& options) {
+  const std::string source = kernel_source(name);
+  const std::optional<fs::path> folder = device.keeps_programs ? std::nullopt : cache_folder();
+  const fs::path path =
+      folder ? *folder / fmt::format("{}-{}.bin", name, cache_key(device, source, options)) : fs::path();
+  if (folder) {
+    if (std::optional<cl::Program> program = load(device, path, name, options)) {
+      ++g_loaded;
+      return *program;
+    }
+  }
+  const cl::Program program = compile(device, name, source, options);
+  ++g_compiled;
+  if (folder) {
+    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
+    if (!binaries.empty() && !binaries.front().empty()) write_cache_entry(path, binaries.front());
+  }
+  return program;
+}
+
 }  // namespace
 
 BuildError::BuildError(const std::string& kernel, const std::string& options, const std::string& log)
@@ -163,24 +185,19 @@ std::string kernel_source(const std::string& name) {
 }
 
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options) {
-  const std::string source = kernel_source(name);
   const std::string all_options = fmt::format("{} {}", kCommonBuildOptions, options);
-  const std::optional<fs::path> folder = device.keeps_programs ? std::nullopt : cache_folder();
-  const fs::path path =
-      folder ? *folder / fmt::format("{}-{}.bin", name, cache_key(device, source, all_options)) : fs::path();
-  if (folder) {
-    if (std::optional<cl::Kernel> kernel = load(device, path, name, all_options)) {
-      ++g_loaded;
-      return *kernel;
-    }
+  const std::string key = fmt::format("{} {}", name, all_options);
+  BuiltPrograms& built = *device.built;
+  {
+    const std::lock_guard lock(built.mutex);
+    if (const auto found = built.programs.find(key); found != built.programs.end())
+      return cl::Kernel(found->second, name.c_str());
   }
-  const cl::Program program = compile(device, name, source, all_options);
-  ++g_compiled;
-  if (folder) {
-    const auto binaries = program.getInfo<CL_PROGRAM_BINARIES>();
-    if (!binaries.empty() && !binaries.front().empty()) write_cache_entry(path, binaries.front());
-  }
-  return cl::Kernel(program, name.c_str());
+  const cl::Program program = make_program(device, name, all_options);
+  cl::Kernel kernel(program, name.c_str());
+  const std::lock_guard lock(built.mutex);
+  built.programs.emplace(key, program);
+  return kernel;
 }
 
 CacheCounts cache_counts() {

@@ -3,7 +3,8 @@
 //
 // Binaries lie in cache_folder(), keyed by source with all its includes, options, device and driver; an
 // unusable or damaged entry is rebuilt and replaced, a folder that cannot be written only costs time. Without
-// a folder every kernel is compiled each time. A driver that keeps its programs itself is handed the source each time.
+// a folder every kernel is compiled by each process. A driver that keeps its programs itself is handed the source.
+// Within a process each is built once for a device: services on it share the programs.
 #pragma once
 
 #include <filesystem>
@@ -28,14 +29,16 @@ class BuildError : public std::runtime_error {
 };
 
 // Builds or loads the kernel `name` of the embedded source `name`.cl, with `options` ("-D WEIGHT=1 -D ...") and the
-// options common to all kernels. Throws cl::Error; a build failure throws BuildError.
+// options common to all kernels. The kernel object is the caller's own. Thread-safe. Throws cl::Error; a build failure
+// throws BuildError.
 cl::Kernel build_kernel(const Device::Impl& device, const std::string& name, const std::string& options);
 
 // Returns the whole source of kernel `name` with its includes expanded, each once, as build_kernel compiles it. Throws
 // std::out_of_range for a name that is not embedded.
 std::string kernel_source(const std::string& name);
 
-// Counts since the process started, for tests and reports. Thread-safe.
+// Counts since the process started, for tests and reports; a program that the device has already is in neither.
+// Thread-safe.
 struct CacheCounts {
   int compiled = 0;  // built from source
   int loaded = 0;    // taken from disk
