@@ -100,7 +100,8 @@ TEST_F(Slurm, ASignalEndsATaskAndARequeueFinishesIt) {
 
   const auto requeued = node_->run("scontrol requeue " + job_);
   ASSERT_EQ(requeued.exit_code, 0) << requeued.err;
-  node_->run("scontrol update JobId=" + job_ + " StartTime=now");  // a farm waits a while
+  // A farm waits a while. In the second in which a job has ended its node refuses to launch it ("already killed").
+  node_->run("scontrol update JobId=" + job_ + " StartTime=now+3");
   ASSERT_TRUE(testing::wait_until([&] { return has_state("COMPLETED"); }, seconds(240))) << node_->log();
   EXPECT_EQ(count_made(), kLast - kFirst + 1);
   EXPECT_EQ(std::filesystem::last_write_time(made(kFirst)), written);
