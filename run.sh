@@ -17,7 +17,7 @@ fi
 
 say "Rendering 240 frames of the default scene into out/ (about a minute on two cores)."
 started=$SECONDS
-build/release/bin/quincunx-render --frames 240 --fps 30 --output 1280x720 --scale-path sweep --method quincunx --jitter quincunx \
+build/release/bin/quincunx-render --frames 240 --fps 30 --output 1280x720 --scale-path sweep \
   --out "out/frame.%04d.png" --contact-sheet out/contact_sheet.png --exr-frame 120 --report out/report
 say
 say "Done in $((SECONDS - started)) s. Look at:"

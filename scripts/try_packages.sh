@@ -61,7 +61,7 @@ try_packages() {
   enter_system
   mkdir "$root/tmp/packages" "$root/tmp/work"
   cp "$packages"/*.deb "$root/tmp/packages"
-  cp -r tests/install/client "$root/tmp/client"
+  cp -r tests/install/client docs/examples "$root/tmp/"
   stage "programs" "apt-get update -q=2; cd /tmp/packages; $install ./quincunx-tools_*.deb ./libquincunx*1_*.deb >/dev/null
     $install libgl1-mesa-dri libegl1 >/dev/null  # a driver, as on a machine with a display
     cd /tmp/work
@@ -73,13 +73,13 @@ try_packages() {
     ls frame.0002.exr up.0003.exr bench/bench.html"
   stage "clients by CMake" "cd /tmp/packages
     $install ./libquincunx-dev_*.deb ./libquincunx*1_*.deb g++ cmake make pkg-config >/dev/null
-    cmake -S /tmp/client -B /tmp/work/client -D GL_INTEROP=ON >/dev/null; cd /tmp/work/client; make 2>&1 >/dev/null
-    ./client; ./c_client; ./gl_client"
+    cmake -S /tmp/client -B /tmp/work/client -D EXAMPLES=/tmp/examples -D GL_INTEROP=ON >/dev/null; cd /tmp/work/client; make 2>&1 >/dev/null
+    ./minimal; ./minimal_c; ./gl_client"
   stage "clients by pkg-config" "mkdir /tmp/work/by_pkg_config; cd /tmp/work/by_pkg_config
-    cc -std=c99 /tmp/client/c_client.c -o c_client \$(pkg-config --cflags --libs quincunx) -lm
-    c++ -std=c++20 /tmp/client/client.cpp -o client \$(pkg-config --cflags --libs quincunx)
+    cc -std=c99 /tmp/examples/minimal.c -o minimal_c \$(pkg-config --cflags --libs quincunx) -lm
+    c++ -std=c++20 /tmp/examples/minimal.cpp -o minimal \$(pkg-config --cflags --libs quincunx)
     c++ -std=c++20 /tmp/client/gl_client.cpp -o gl_client \$(pkg-config --cflags --libs quincunx-gl)
-    ./c_client; ./client; ./gl_client"
+    ./minimal_c; ./minimal; ./gl_client"
   stage "Python, manual pages, completion, texts" "cd /tmp/packages
     $install ./python3-quincunx_*.deb ./quincunx-doc_*.deb man-db zsh fish >/dev/null; cd /tmp/work
     python3 -c 'import numpy, quincunx

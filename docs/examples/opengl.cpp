@@ -10,7 +10,6 @@
 #include <quincunx/resolve_service.h>
 #include <quincunx_gl/bridge.h>
 
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -72,29 +71,6 @@ T get(Result<T> result) {
   return std::move(result).value();
 }
 
-float scale_of(Extent render) {
-  return static_cast<float>(render.width) / static_cast<float>(kOutput.width);
-}
-
-// The jitter of docs/inputs.md.
-Vec2 halton(long frame, Extent render) {
-  const auto inverse = [](int base, int place) {
-    float value = 0;
-    for (float digit = 1.0f / static_cast<float>(base); place > 0;
-         place /= base, digit /= static_cast<float>(base))
-      value += digit * static_cast<float>(place % base);
-    return value;
-  };
-  const int count = static_cast<int>(std::ceil(8 / (scale_of(render) * scale_of(render))));
-  const int here = static_cast<int>(frame % count) + 1;
-  Vec2 mean;
-  for (int place = 1; place <= count; ++place) {
-    mean.x += inverse(2, place) / static_cast<float>(count);
-    mean.y += inverse(3, place) / static_cast<float>(count);
-  }
-  return {inverse(2, here) - mean.x, inverse(3, here) - mean.y};
-}
-
 GLuint make_program() {
   const GLuint program = glCreateProgram();
   for (const auto& [stage, source] :
@@ -154,7 +130,6 @@ int main(int argc, char** argv) {
   const auto context = get(gl::Context::create(gl::Platform::kCurrent));
   const auto device = get(gl::open_device(context, "", gl::Interop::kAuto));
   ResolveSettings settings;
-  settings.method = Method::kTemporal;
   settings.output_extent = kOutput;
   settings.target_extent = kTarget;
   if (fixed && argv[4] == std::string("bilinear")) settings.method = Method::kBilinear;
@@ -195,7 +170,9 @@ int main(int argc, char** argv) {
     const double begun = glfwGetTime();
     const Extent render = controller->next();
     // Filters of one frame need no jitter.
-    const Vec2 jitter = uses_earlier_frames(settings.method) ? halton(n, render) : Vec2();
+    const Vec2 jitter = uses_earlier_frames(settings.method)
+                            ? quincunx::jitter(static_cast<std::uint64_t>(n), render, kOutput)
+                            : Vec2();
     const float time = kStep * static_cast<float>(n);
     const float sky[] = {0.02f, 0.03f, 0.06f, 1}, zero[] = {0, 0, 0, 0};
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffers[0]);
@@ -205,7 +182,7 @@ int main(int argc, char** argv) {
     glClearBufferfv(GL_DEPTH, 0, zero);
     glUniform2f(0, time, time - kStep);
     glUniform2f(1, jitter.x / static_cast<float>(render.width), jitter.y / static_cast<float>(render.height));
-    glTextureParameterf(pattern, GL_TEXTURE_LOD_BIAS, std::log2(scale_of(render)) - 1);
+    glTextureParameterf(pattern, GL_TEXTURE_LOD_BIAS, texture_lod_bias(render, kOutput));
     glDrawArraysInstanced(GL_TRIANGLES, 0, 36, 35);
 
     const gl::SharedFrame inputs = get(bridge->import(textures, render));  // the targets are free again

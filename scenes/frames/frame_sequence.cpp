@@ -59,10 +59,6 @@ std::int64_t jitter_index(const SequenceSettings& settings, std::int64_t index) 
   return pairs ? index / 2 : index;
 }
 
-float lod_bias_of(const TextureDetail& detail, Vec2 scale) {
-  return detail.lod_bias + detail.follows_scale * 0.5f * std::log2(scale.x * scale.y);
-}
-
 }  // namespace
 
 Result<ScalePath> ScalePath::fixed(Vec2 scale) {
@@ -197,12 +193,13 @@ FrameView FrameSequence::at(std::int64_t index, Extent render) {
   static_cast<void>(viewport_.set_render(render));  // one that does not fit leaves the last one
   FrameView view;
   view.render = viewport_.render();
-  view.jitter = jitter_of(settings_.jitter, jitter_index(settings_, index), viewport_.ratio());
+  view.jitter = jitter_of(settings_.jitter, jitter_index(settings_, index), view.render, settings_.output);
   if (settings_.shading == Shading::kCheckerboard) view.parity = static_cast<int>(index & 1);
   view.seconds = settings_.start_seconds + static_cast<double>(index) / settings_.fps;
   view.previous_seconds = settings_.start_seconds + static_cast<double>(index - 1) / settings_.fps;
   view.aspect = static_cast<float>(settings_.output.width) / static_cast<float>(settings_.output.height);
-  view.lod_bias = lod_bias_of(settings_.detail, viewport_.ratio());
+  view.lod_bias = settings_.detail.lod_bias +
+                  settings_.detail.follows_scale * texture_lod_bias(view.render, settings_.output);
   return view;
 }
 

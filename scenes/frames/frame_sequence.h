@@ -72,7 +72,7 @@ using tools::jitter_of;
 // How much sharper textures are sampled than a pixel of one frame alone would bear.
 struct TextureDetail {
   float lod_bias = 0;       // levels
-  float follows_scale = 0;  // this times log2 of the frame's scale is added; from 0 to 1 while a method fades
+  float follows_scale = 0;  // this times texture_lod_bias() is added; from 0 to 1 while a method fades
 
   friend auto operator<=>(const TextureDetail&, const TextureDetail&) = default;
 };

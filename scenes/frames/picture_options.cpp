@@ -147,7 +147,8 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
   tools::add_choice(app, "--targets", options.resolve.targets, tools::choices<Targets>(),
                     "viewport (default): a part of large targets; placed: targets of just that size");
   tools::add_choice(app, "--jitter", options.jitter, kJitters,
-                    "none, quincunx, quincunx-half or halton (default: quincunx for that method, else none)");
+                    "none, quincunx, quincunx-half or halton (default: halton for temporal, quincunx for "
+                    "quincunx, else none)");
   static const std::map<std::string, PixelFormat> kColours = {{"rgba16f", PixelFormat::kRGBA16F},
                                                               {"rgba8", PixelFormat::kRGBA8}};
   tools::add_choice(app, "--colour", options.resolve.colour, kColours,
@@ -215,11 +216,11 @@ Jitter jitter_for(Method method) {
 }
 
 // Two frames double the samples a pixel, so textures may be half a level sharper (Binks 2012). All frames together hold
-// what the output's own pixels can show, and a level more that their sum filters (AMD FSR 2: log2(scale) - 1).
+// what the output's own pixels can show: texture_lod_bias().
 TextureDetail texture_detail_for(Method method, Jitter jitter) {
   const bool several = method == Method::kQuincunx || method == Method::kTemporal;
   if (!several || jitter == Jitter::kNone) return {};
-  if (jitter == Jitter::kHalton) return {.lod_bias = -1, .follows_scale = 1};
+  if (jitter == Jitter::kHalton) return {.follows_scale = 1};
   return {.lod_bias = -0.5f};
 }
 

@@ -51,7 +51,7 @@ TEST(Plan, TakesEverythingWhereNothingIsChosen) {
 }
 
 TEST(Plan, AMethodMayHaveEightBitColour) {
-  const auto plan = plan_from(parsed({"--methods", "quincunx,quincunx@rgba8"}));
+  const auto plan = plan_from(parsed({"--methods", "temporal,temporal@rgba8"}));
   ASSERT_TRUE(plan.ok()) << plan.status().message();
   EXPECT_EQ(plan->methods[1].name, plan->methods[0].name + "@rgba8");
   EXPECT_EQ(plan->methods[0].resolve.colour, PixelFormat::kRGBA16F);

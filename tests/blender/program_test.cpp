@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "quincunx/frame.h"
 #include "sequence/sequence_fixture.h"
-#include "tools/program/jitter.h"
 
 namespace quincunx {
 namespace {
@@ -76,12 +76,10 @@ TEST_F(BlenderAddOn, JitterIsThatOfTheProgram) {
         python(fmt::format("for frame in range({}):\n"
                            "    print(*addon.jitter_of(frame, ({}, {}), ({}, {})))\n",
                            kShown, small.width, small.height, full.width, full.height)));
-    const Vec2 ratio = {static_cast<float>(small.width) / static_cast<float>(full.width),
-                        static_cast<float>(small.height) / static_cast<float>(full.height)};
     for (int frame = 0; frame < kShown; ++frame) {
       double x = 0, y = 0;
       ASSERT_TRUE(values >> x >> y);
-      const Vec2 expected = tools::jitter_of(tools::Jitter::kHalton, frame, ratio);
+      const Vec2 expected = jitter(static_cast<std::uint64_t>(frame), small, full);
       EXPECT_NEAR(x, expected.x, kRounding) << frame << " of " << small.width << "x" << small.height;
       EXPECT_NEAR(y, expected.y, kRounding) << frame << " of " << small.width << "x" << small.height;
     }

@@ -11,10 +11,11 @@ file(REMOVE_RECURSE ${WORK})
 step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step("configure" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
-     -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_C_FLAGS=${FLAGS} -D GL_INTEROP=${GL_INTEROP})
+     -D EXAMPLES=${EXAMPLES} -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_C_FLAGS=${FLAGS} -D GL_INTEROP=${GL_INTEROP})
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
-step("run" ${WORK}/build/client)
-step("run in C" ${WORK}/build/c_client)
+step("run" ${WORK}/build/minimal ${WORK}/minimal.ppm)
+step("run in C" ${WORK}/build/minimal_c ${WORK}/minimal_c.ppm)
+step("compare both pictures" ${CMAKE_COMMAND} -E compare_files ${WORK}/minimal.ppm ${WORK}/minimal_c.ppm)
 
 # The same by pkg-config.
 find_program(PKG_CONFIG pkg-config REQUIRED)
@@ -24,8 +25,9 @@ set(ENV{PKG_CONFIG_PATH} ${pc_folder})
 execute_process(COMMAND ${PKG_CONFIG} --cflags --libs quincunx OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE
                 COMMAND_ERROR_IS_FATAL ANY)
 separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")
-step("build by pkg-config" ${C_COMPILER} -std=c99 ${SOURCE}/c_client.c -o ${WORK}/by_pkg_config ${flags} -lm)
-step("run what pkg-config built" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/.. ${WORK}/by_pkg_config)
+step("build by pkg-config" ${C_COMPILER} -std=c99 ${EXAMPLES}/minimal.c -o ${WORK}/by_pkg_config ${flags} -lm)
+step("run what pkg-config built" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/.. ${WORK}/by_pkg_config
+     ${WORK}/by_pkg_config.ppm)
 if(GL_INTEROP)
   step("run with OpenGL" ${WORK}/build/gl_client)
 endif()

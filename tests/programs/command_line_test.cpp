@@ -51,7 +51,7 @@ TEST_F(CommandLine, VersionAndLists) {
 }
 
 TEST_F(CommandLine, ExplainPlansWithoutRendering) {
-  const ProgramResult moving = run("--explain --scene wheel");
+  const ProgramResult moving = run("--explain --scene wheel --method quincunx");
   EXPECT_EQ(moving.exit_code, 0) << moving.err;
   EXPECT_NE(moving.out.find("WEIGHT=1"), std::string::npos) << moving.out;
   EXPECT_NE(moving.out.find("Profile        "), std::string::npos) << moving.out;
@@ -62,7 +62,7 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
   const ProgramResult camera = run("--explain --scene pan");
   EXPECT_NE(camera.out.find("velocity_from_depth"), std::string::npos) << camera.out;
   EXPECT_NE(camera.out.find("velocity target"), std::string::npos);
-  const ProgramResult still = run("--explain --scene chart");
+  const ProgramResult still = run("--explain --scene chart --method quincunx");
   EXPECT_NE(still.out.find("WEIGHT=0"), std::string::npos) << still.out;
   const ProgramResult mean = run("--explain --scene wheel --method quincunx:mean");
   EXPECT_NE(mean.out.find("WEIGHT=0"), std::string::npos) << mean.out;

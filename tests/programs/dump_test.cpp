@@ -225,7 +225,7 @@ TEST_F(Dump, ASequenceHoldsEveryFrameItsTruthAndWhatIsConstant) {
   const auto json = nlohmann::json::parse(read_file(folder_.file("s/sequence.json")));
   EXPECT_EQ(json["frames"], 3);
   EXPECT_EQ(json["output_size"], nlohmann::json({64, 36}));
-  EXPECT_EQ(json["jitter_kind"], "quincunx");
+  EXPECT_EQ(json["jitter_kind"], "halton");
 }
 
 TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {

@@ -39,7 +39,7 @@ class EndToEnd : public ::testing::Test {
 };
 
 TEST_F(EndToEnd, AStillSceneIsBitStableFromFrameThree) {
-  render("--scene chart --scale 0.71 --frames 7 --out '{}/f.%04d.exr'");
+  render("--scene chart --scale 0.71 --frames 7 --method quincunx --out '{}/f.%04d.exr'");
   const auto third = image("f.0002.exr").pixels;
   for (int index = 3; index < 7; ++index) {
     EXPECT_EQ(image("f.000" + std::to_string(index) + ".exr").pixels, third) << "frame " << index;
@@ -150,7 +150,7 @@ TEST_F(EndToEnd, TheOutputMayBeDynamic) {
 }
 
 TEST_F(EndToEnd, TheTargetFileHoldsEveryChannel) {
-  render("--scene occluders --scale 0.5 --frames 2 --exr-frame 1 --out '{}/f.%04d.png'");
+  render("--scene occluders --scale 0.5 --frames 2 --method quincunx --exr-frame 1 --out '{}/f.%04d.png'");
   const auto targets = image("frame_0001_targets.exr");
   EXPECT_EQ(targets.extent, (Extent{80, 44}));  // the ladder has 90 - 2k, and 45 lies between two rungs
   for (const char* name : {"R", "G", "B", "A", "Z", "backward.u", "backward.v"}) {
@@ -187,7 +187,7 @@ TEST_F(EndToEnd, QuincunxIsCloserToTruthThanBilinear) {
 }
 
 TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
-  render("--scene wheel --scale-path ramp:0.4,1.2 --frames 9 --report '{}/report'");
+  render("--scene wheel --scale-path ramp:0.4,1.2 --frames 9 --method quincunx --report '{}/report'");
   const std::string text = read_file(path("report.txt"));
   for (const char* part : {"resolve_quincunx", "present", "llvmpipe", "copy", "wheel", "ramp:0.4,1.2"}) {
     if (std::string(part) == "llvmpipe") continue;  // another renderer is as good

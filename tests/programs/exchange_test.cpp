@@ -82,7 +82,7 @@ TEST_F(Exchange, FloatsComeBackBitForBit) {
 
 TEST_F(Exchange, EveryFrameOfTheRendererComesBack) {
   run(QUINCUNX_PROGRAM, fmt::format("{} --frames {} --out '{{}}/f.%04d.exr'", kScene, kFrames));
-  dump_and_resolve(kScene, "--method quincunx", "--out '{}/r/f.%04d.exr'");
+  dump_and_resolve(kScene, "", "--out '{}/r/f.%04d.exr'");
   for (int index = 0; index < kFrames; ++index) {
     const auto drawn = image(fmt::format("f.{:04}.exr", index));
     const auto resolved = image(fmt::format("r/f.{:04}.exr", index));
@@ -98,7 +98,7 @@ TEST_F(Exchange, PresentedAndBlurredFramesComeBack) {
   for (const char* ending : {"png", "exr"}) {
     run(QUINCUNX_PROGRAM,
         fmt::format("{} {} --frames {} --out '{{}}/f.%04d.{}'", scene, blur, kFrames, ending));
-    dump_and_resolve(scene, "--method quincunx " + blur, fmt::format("--out '{{}}/r/f.%04d.{}'", ending));
+    dump_and_resolve(scene, blur, fmt::format("--out '{{}}/r/f.%04d.{}'", ending));
     for (int index = 0; index < kFrames; ++index) {
       const auto drawn = image(fmt::format("f.{:04}.{}", index, ending));
       const auto resolved = image(fmt::format("r/f.{:04}.{}", index, ending));
@@ -107,7 +107,7 @@ TEST_F(Exchange, PresentedAndBlurredFramesComeBack) {
     }
   }
   // And the blur was there.
-  run(QUINCUNX_RESOLVE, "'{}/s/f.%04d.exr' --out '{}/sharp.%04d.exr' --method quincunx");
+  run(QUINCUNX_RESOLVE, "'{}/s/f.%04d.exr' --out '{}/sharp.%04d.exr'");
   EXPECT_NE(channel(image("sharp.0004.exr"), "G"), channel(image("r/f.0004.exr"), "G"));
 }
 

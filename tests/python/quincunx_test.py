@@ -5,6 +5,7 @@ import os
 import re
 import tempfile
 import unittest
+import unittest.mock
 
 import numpy as np
 
@@ -25,15 +26,6 @@ def fields_of_c(struct, text):
     body = re.sub(r"/\*.*?\*/", "", body, flags=re.S)
     return [re.search(r"(\w+)(?:\[\d+\])?$", name.strip()).group(1)
             for line in body.split(";") if line.strip() for name in line.split(",")]
-
-
-def halton(index, base):
-    value, part = 0.0, 1.0
-    while index > 0:
-        part /= base
-        value += part * (index % base)
-        index //= base
-    return value
 
 
 def waves(u, v):
@@ -131,25 +123,21 @@ class Pictures(unittest.TestCase):
 
 
 class Example(unittest.TestCase):
-    """The example of docs/integrate.md, with smaller pictures."""
+    """docs/examples/sequence.py, with smaller pictures."""
 
     def test_it_resolves_a_sequence(self):
-        code = re.search(r"```python\n(.*?)```", read(ROOT, "docs", "integrate.md"), re.S).group(1)
+        code = read(ROOT, "docs", "examples", "sequence.py")
         self.assertIn("(1280, 720)", code)
-        self.assertLessEqual(len([line for line in code.splitlines() if line.strip()]), 10)
-        size, count, back = (128, 72), 24, os.getcwd()
+        size, count = (128, 72), 24
         with tempfile.TemporaryDirectory() as folder:
-            os.chdir(folder)
-            try:
-                os.mkdir("frames")
-                for i in range(count):
-                    jitter = (halton(i + 1, 2) - 0.5, halton(i + 1, 3) - 0.5)
-                    np.savez("frames/%04d.npz" % i, colour=sampled(64, 36, jitter), depth=np.full((36, 64), 0.5),
-                             velocity=np.zeros((36, 64, 2)), jitter=jitter)
+            names = [os.path.join(folder, "%04d.npz" % i) for i in range(count)]
+            for i, name in enumerate(names):
+                jitter = quincunx.jitter(i, (64, 36), size)
+                np.savez(name, colour=sampled(64, 36, jitter), depth=np.full((36, 64), 0.5),
+                         velocity=np.zeros((36, 64, 2)), jitter=jitter)
+            with unittest.mock.patch("sys.argv", ["sequence.py", folder, *names]):
                 exec(code.replace("(1280, 720)", str(size)), {})  # pylint: disable=exec-used
-                pictures = [np.load("picture.%04d.npy" % i) for i in range(count)]
-            finally:
-                os.chdir(back)
+            pictures = [np.load(os.path.join(folder, "picture.%04d.npy" % i)) for i in range(count)]
         truth = sampled(*size)
         self.assertLess(rms(pictures[-1], truth), rms(bilinear(sampled(64, 36), *size), truth) / 4)
         self.assertLess(rms(pictures[-1], truth), rms(pictures[0], truth) / 2)

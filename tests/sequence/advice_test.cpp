@@ -15,7 +15,7 @@ using tools::JitterKind;
 std::vector<Vec2> pattern(tools::Jitter jitter, int count) {
   std::vector<Vec2> places;
   for (int i = 0; i < count; ++i)
-    places.push_back(tools::jitter_of(jitter, i, {.5f, .5f}));
+    places.push_back(tools::jitter_of(jitter, i, {1, 1}, {2, 2}));
   return places;
 }
 
@@ -47,7 +47,7 @@ class Advice : public testing::SequenceTest {
       testing::FrameFile file = frame(number);
       file.velocity = has != Has::kNothing;
       file.depth = has == Has::kMotionAndDepth;
-      file.attributes[0] = {"quincunx:jitter", tools::jitter_of(jitter, number, {.5f, .5f})};
+      file.attributes[0] = {"quincunx:jitter", tools::jitter_of(jitter, number, {1, 1}, {2, 2})};
       write_frame(input(number), file);
     }
   }

@@ -167,7 +167,7 @@ class Jitters : public testing::SequenceTest {
     auto source = JitterSource::parse(text);
     if (!source.ok()) return source.status();
     source->settle(attributes);
-    return source->at("f.exr", number, attributes, {0.5f, 0.5f});
+    return source->at("f.exr", number, attributes, {1, 1}, {2, 2});
   }
 };
 
@@ -175,7 +175,7 @@ TEST_F(Jitters, PatternsCountByFrameIndexOrNumber) {
   EXPECT_EQ(at("none", 3).value(), (Vec2{0, 0}));
   EXPECT_EQ(at("quincunx", 3).value(), (Vec2{0.25f, 0.25f}));
   EXPECT_EQ(at("quincunx-half", 4).value(), (Vec2{0, 0}));
-  EXPECT_EQ(at("halton", 9).value(), jitter_of(Jitter::kHalton, 9, {0.5f, 0.5f}));
+  EXPECT_EQ(at("halton", 9).value(), jitter_of(Jitter::kHalton, 9, {1, 1}, {2, 2}));
   FrameAttributes shifted;
   shifted.index = 4;
   EXPECT_EQ(at("quincunx", 3, shifted).value(), (Vec2{-0.25f, -0.25f}));
@@ -189,7 +189,7 @@ TEST_F(Jitters, WithoutWordsTheAttributeCountsWhereThereIsOne) {
   EXPECT_EQ(at("none", 3, attributes).value(), (Vec2{0, 0}));
   auto source = JitterSource::parse("").value();
   source.settle(attributes);
-  const Status missing = source.at("f.exr", 4, {}, {1, 1}).status();
+  const Status missing = source.at("f.exr", 4, {}, {1, 1}, {1, 1}).status();
   EXPECT_NE(missing.message().find("'f.exr' has no attribute 'quincunx:jitter'"), std::string::npos);
 }
 

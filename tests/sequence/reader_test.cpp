@@ -236,7 +236,7 @@ TEST(Watch, AStillPictureWithJitterIsNot) {
   SequenceWatch watch(plan(), 1);
   for (int i = 0; i < 64; ++i)
     EXPECT_TRUE(
-        watch.see(square(i, {15.6f, 16.3f}, jitter_of(Jitter::kHalton, i, {.5f, .5f})), i == 0).empty())
+        watch.see(square(i, {15.6f, 16.3f}, jitter_of(Jitter::kHalton, i, {1, 1}, {2, 2})), i == 0).empty())
         << i;
 }
 

@@ -74,6 +74,7 @@ TEST_F(Run, TheProgramGivesWhatTheServiceGives) {
 
   const Device device = Device::open().value();
   ResolveSettings settings;
+  settings.method = Method::kQuincunx;
   settings.output_extent = kOutput;
   settings.target_extent = {27, 14};
   settings.velocity = PixelFormat::kRG32F;

@@ -21,6 +21,7 @@ ImageView view(PixelFormat format, Extent extent = {1280, 720}) {
 class Validate : public ::testing::Test {
  protected:
   Validate() {
+    settings_.method = Method::kQuincunx;
     settings_.output_extent = {1280, 720};
     settings_.target_extent = {1280, 720};
     inputs_.colour = view(PixelFormat::kRGBA16F);

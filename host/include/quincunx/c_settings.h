@@ -21,7 +21,7 @@ enum {
   QUINCUNX_NOISE = 7,
   QUINCUNX_NOISE_OFFSET = 8,
   QUINCUNX_TWO_FRAMES = 9, /* "quincunx": this frame and the previous one */
-  QUINCUNX_TEMPORAL = 10   /* all frames so far; needs a jitter of many places */
+  QUINCUNX_TEMPORAL = 10   /* all frames so far; needs quincunx_jitter() */
 };
 /* two_frame_form: how the previous frame counts */
 enum { QUINCUNX_MEAN = 0, QUINCUNX_BY_VELOCITY = 1, QUINCUNX_REPROJECTED = 2 };
@@ -74,7 +74,7 @@ typedef struct quincunx_settings {
   int32_t transparents;   /* drawn without velocity, with reactive values; default 1 */
   int32_t background;     /* something covers every pixel; default 1 */
 
-  int32_t method; /* default QUINCUNX_TWO_FRAMES */
+  int32_t method; /* default QUINCUNX_TEMPORAL */
   /* Pixels. */
   int32_t output_width, output_height; /* of the picture; no default */
   int32_t target_width, target_height; /* of the inputs: at least the largest viewport; no default */

@@ -26,6 +26,18 @@ struct CameraMotion {
   std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
+// Returns the jitter of a frame for Method::kTemporal, in render pixels, +x right, +y down, within half a pixel: one of
+// jitter_phases() places, in turns (Halton in bases 2 and 3, about the mean of the places). A frame is drawn with it
+// where clip coordinates, +y up, are shifted by (-2 x / render.width, 2 y / render.height) times w, and is told it by
+// FrameInputs::jitter. Without jitter, or with the same in all frames, several frames see no more than one: a still
+// picture stays coarse, and its edges crawl when it moves. Pure; {0, 0} where an extent is empty.
+[[nodiscard]] QUINCUNX_API Vec2 jitter(std::uint64_t frame_index, Extent render, Extent output);
+// Returns ceil(8 output.area() / render.area()), at most 512: each output pixel then gets eight samples.
+[[nodiscard]] QUINCUNX_API int jitter_phases(Extent render, Extent output);
+// Returns what to add to textures' level of detail where frames have that jitter: log2 of the scale, the mean of both
+// axes, - 1 (as AMD FidelityFX Super Resolution 2). Without it they stay as soft as the render extent makes them.
+[[nodiscard]] QUINCUNX_API float texture_lod_bias(Extent render, Extent output);
+
 // One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
 // done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done:
 // the service reads the previous frame where the caller left it and copies nothing. So give frames n and n - 1
@@ -112,7 +124,7 @@ class PassReports {
   std::array<PassReport, kRoom> passes_;
 };
 
-struct FrameReport {
+struct [[nodiscard]] FrameReport {
   Status status;  // kInvalidArgument: nothing was enqueued; kDeviceFailure: outputs are not to be used
   std::uint64_t frame_index = 0;
   Extent render_extent = {};

@@ -30,7 +30,7 @@ enum class Method {
   kNoise,        // nearest sample with film grain, the more the lower the scale (Binks 2012)
   kNoiseOffset,  // one of bilinear's four samples, at random by their weights (Binks 2012)
   kQuincunx,     // this frame and the previous one on the five-of-a-die pattern
-  kTemporal,  // all frames so far, accumulated where the surfaces are: needs a jitter of many places (Halton)
+  kTemporal,     // all frames so far, accumulated where the surfaces are: needs jitter() of frame.h
 };
 
 // A filter that is applied to rows and columns in turn.

@@ -57,6 +57,16 @@ QUINCUNX_API const char* quincunx_last_error(void);
 /* Sets every field to its default but struct_size, which it reads. Errors: QUINCUNX_INVALID_ARGUMENT. */
 QUINCUNX_API quincunx_status quincunx_settings_init(quincunx_settings* settings);
 
+/* As quincunx::jitter(), jitter_phases() and texture_lod_bias() of frame.h, for QUINCUNX_TEMPORAL: where the samples of
+ * a frame lie (to jitter[0] and [1], render pixels, +x right, +y down), how many places there are, and what to add to
+ * textures' level of detail. Without jitter several frames see no more than one. */
+QUINCUNX_API void quincunx_jitter(uint64_t frame_index, int32_t render_width, int32_t render_height,
+                                  int32_t output_width, int32_t output_height, float jitter[2]);
+QUINCUNX_API int32_t quincunx_jitter_phases(int32_t render_width, int32_t render_height, int32_t output_width,
+                                            int32_t output_height);
+QUINCUNX_API float quincunx_texture_lod_bias(int32_t render_width, int32_t render_height,
+                                             int32_t output_width, int32_t output_height);
+
 /* The methods' names, in the order of their numbers: 0 is "point". NULL for a number that is none. Static. */
 QUINCUNX_API const char* quincunx_method_name(int32_t method);
 

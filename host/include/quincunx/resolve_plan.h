@@ -80,7 +80,7 @@ enum class Targets : std::uint8_t {
 QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 
 struct ResolveSettings {
-  Method method = Method::kQuincunx;
+  Method method = Method::kTemporal;
   Extent output_extent = {};  // the picture's size
   // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output_extent may have any size from this one to
   // `output_extent`, in which its picture is then shown. {0, 0}: always `output_extent`.

@@ -6,6 +6,8 @@
 // its own copy.
 #pragma once
 
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <variant>
@@ -39,7 +41,8 @@ class [[nodiscard]] Status {
   std::string message_;
 };
 
-// Either a value or the Status that says why there is none. value() may be called only when ok().
+// Either a value or the Status that says why there is none. To ask for the value where there is none ends the process,
+// with that sentence on stderr: a program that cannot go on without it may do just that.
 template <typename T>
 class [[nodiscard]] Result {
  public:
@@ -47,14 +50,31 @@ class [[nodiscard]] Result {
   Result(Status status) : state_(std::move(status)) {}
 
   bool ok() const { return std::holds_alternative<T>(state_); }
+  explicit operator bool() const { return ok(); }
   Status status() const { return ok() ? Status() : std::get<Status>(state_); }
-  T& value() & { return std::get<T>(state_); }
-  const T& value() const& { return std::get<T>(state_); }
-  T&& value() && { return std::get<T>(std::move(state_)); }
+  // Returns why there is no value, as one sentence; empty when ok.
+  std::string error() const { return status().message(); }
+
+  T& value() & { return *checked(this); }
+  const T& value() const& { return *checked(this); }
+  T&& value() && { return std::move(*checked(this)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
 
  private:
+  template <typename Self>
+  static auto* checked(Self* self) {
+    auto* const value = std::get_if<T>(&self->state_);
+    if (value == nullptr) {
+      std::fprintf(stderr, "quincunx: a result without a value is used: %s\n", self->error().c_str());
+      std::abort();
+    }
+    return value;
+  }
+
   std::variant<T, Status> state_;
 };
 

@@ -135,6 +135,25 @@ quincunx_status quincunx_settings_init(quincunx_settings* settings) {
   });
 }
 
+void quincunx_jitter(uint64_t frame_index, int32_t render_width, int32_t render_height, int32_t output_width,
+                     int32_t output_height, float jitter[2]) {
+  if (jitter == nullptr) return;
+  const quincunx::Vec2 at =
+      quincunx::jitter(frame_index, {render_width, render_height}, {output_width, output_height});
+  jitter[0] = at.x;
+  jitter[1] = at.y;
+}
+
+int32_t quincunx_jitter_phases(int32_t render_width, int32_t render_height, int32_t output_width,
+                               int32_t output_height) {
+  return quincunx::jitter_phases({render_width, render_height}, {output_width, output_height});
+}
+
+float quincunx_texture_lod_bias(int32_t render_width, int32_t render_height, int32_t output_width,
+                                int32_t output_height) {
+  return quincunx::texture_lod_bias({render_width, render_height}, {output_width, output_height});
+}
+
 const char* quincunx_method_name(int32_t method) {
   const auto methods = quincunx::methods();
   if (method < 0 || method >= static_cast<int32_t>(methods.size())) return nullptr;

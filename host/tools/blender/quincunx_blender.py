@@ -9,12 +9,10 @@ Both take the steps of a Job: check() finds what stands in the way, SmallRender 
 SmallRender puts every setting back, whether frames were rendered or not, and Resolving runs quincunx-resolve.
 """
 import contextlib
-import math
 import os
 import re
 import shlex
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -50,11 +48,6 @@ class Failure(Exception):
 # ---- The jitter. Pure.
 
 
-def single(value):
-    """As a number of single precision."""
-    return struct.unpack("f", struct.pack("f", value))[0]
-
-
 def radical_inverse(index, base):
     result, weight = 0.0, 1 / base
     while index > 0:
@@ -68,8 +61,7 @@ def jitter_of(frame, small, full):
 
     It is --jitter halton of quincunx-resolve: Halton (2, 3) about its mean, as many places as the scale needs.
     """
-    scale = single(small[0] / full[0]) * single(small[1] / full[1])
-    places = math.ceil(8 / max(scale, 1 / 64))
+    places = min(-(-8 * full[0] * full[1] // (small[0] * small[1])), 512)
     mean = [sum(radical_inverse(i, base) / places for i in range(1, places + 1)) for base in (2, 3)]
     place = frame % places + 1
     return radical_inverse(place, 2) - mean[0], radical_inverse(place, 3) - mean[1]

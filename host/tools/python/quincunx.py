@@ -87,6 +87,8 @@ def load():
     for name in ("quincunx_plan_text", "quincunx_device_name", "quincunx_plan_destroy", "quincunx_device_destroy",
                  "quincunx_service_destroy"):
         getattr(library, name).argtypes = [c_void_p]
+    library.quincunx_jitter.argtypes = [c_uint64, c_int32, c_int32, c_int32, c_int32, POINTER(c_float)]
+    library.quincunx_texture_lod_bias.restype = c_float
     if library.quincunx_api_version() < API_VERSION:
         raise Error(2, f"this library has version {library.quincunx_api_version()} of the interface; "
                        f"quincunx.py needs {API_VERSION} at least")
@@ -104,6 +106,26 @@ def call(name, *arguments):
     if code not in (0, 5):
         raise Error(code, LIBRARY.quincunx_last_error().decode())
     return code
+
+
+def jitter(frame_index, render, output):
+    """Where the samples of a frame lie, for the method "temporal": (x, y) in pixels of the frame, +x right, +y down.
+
+    Several frames see more than one only if their samples lie elsewhere in each: move the camera's projection by it.
+    """
+    place = (c_float * 2)()
+    LIBRARY.quincunx_jitter(frame_index, *render, *output, place)
+    return place[0], place[1]
+
+
+def jitter_phases(render, output):
+    """After so many frames jitter() begins again."""
+    return LIBRARY.quincunx_jitter_phases(*render, *output)
+
+
+def texture_lod_bias(render, output):
+    """What to add to the textures' level of detail where frames have that jitter."""
+    return LIBRARY.quincunx_texture_lod_bias(*render, *output)
 
 
 def image_of(array):

@@ -140,7 +140,7 @@ std::vector<Vec2> jitters_about(const FramePattern& pattern, const SequenceForma
     const auto attributes = frame_attributes(path, reader->header());
     if (!attributes.ok()) continue;
     const Extent render = reader->header().parts.front().display.extent;
-    const auto jitter = format.jitter.at(path, n, attributes.value(), format.ratio_of(render));
+    const auto jitter = format.jitter.at(path, n, attributes.value(), render, format.output);
     if (jitter.ok()) jitters.push_back(jitter.value());
   }
   return jitters;

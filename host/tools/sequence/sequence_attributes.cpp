@@ -206,9 +206,9 @@ void JitterSource::settle(const FrameAttributes& first) {
 }
 
 Result<Vec2> JitterSource::at(const std::string& path, std::int64_t number, const FrameAttributes& attributes,
-                              Vec2 ratio) const {
+                              Extent render, Extent output) const {
   if (const auto* pattern = std::get_if<Jitter>(&source_))
-    return jitter_of(*pattern, std::max<std::int64_t>(attributes.index.value_or(number), 0), ratio);
+    return jitter_of(*pattern, std::max<std::int64_t>(attributes.index.value_or(number), 0), render, output);
   Vec2 jitter;
   if (const auto* table = std::get_if<std::shared_ptr<const Table>>(&source_)) {
     const auto found = (*table)->find(number);

@@ -44,11 +44,11 @@ class JitterSource {
   // Decides what an empty text left open, by the attributes of the first frame.
   void settle(const FrameAttributes& first);
 
-  // `number`: the file's. Patterns count by the attribute frameIndex where there is one. `ratio`: render / output.
+  // `number`: the file's. Patterns count by the attribute frameIndex where there is one.
   // Errors: kIoFailure where neither attribute nor file knows the frame, or what they say lies beyond [-1, 1]; the
   // message names `path`.
   Result<Vec2> at(const std::string& path, std::int64_t number, const FrameAttributes& attributes,
-                  Vec2 ratio) const;
+                  Extent render, Extent output) const;
 
   const std::string& text() const { return text_; }
 

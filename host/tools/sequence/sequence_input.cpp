@@ -196,11 +196,6 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
   return format;
 }
 
-Vec2 SequenceFormat::ratio_of(Extent render) const {
-  return {static_cast<float>(render.width) / static_cast<float>(output.width),
-          static_cast<float>(render.height) / static_cast<float>(output.height)};
-}
-
 SceneNeeds needs_of(const SequenceFormat& format) {
   SceneNeeds needs;
   needs.moving_objects = format.motion == MotionSource::kChannels;

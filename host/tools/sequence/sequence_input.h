@@ -97,8 +97,6 @@ struct SequenceFormat {
   float near_plane = kUnknownNear;
   JitterSource jitter;
   Extent output;
-
-  Vec2 ratio_of(Extent render) const;  // render / output
 };
 
 // Errors: kInvalidArgument where the command line says too little (the message names the option), kIoFailure

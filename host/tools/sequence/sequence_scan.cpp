@@ -62,7 +62,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
         fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,
                     format.motion == MotionSource::kCamera ? "--velocity camera" : "--sky-motion camera"));
   }
-  const auto jitter = format.jitter.at(path, frame.number, attributes.value(), format.ratio_of(frame.render));
+  const auto jitter = format.jitter.at(path, frame.number, attributes.value(), frame.render, format.output);
   if (!jitter.ok()) return jitter.status();
   frame.jitter = jitter.value();
   return {};

@@ -67,7 +67,7 @@ function makeMethodsTable() {
   return makeTable([
     textColumn("method", (row) => row.name), textColumn("what it does", (row) => row.summary, true),
     textColumn("jitter of its frames", (row) => row.jitter),
-    numberColumn("bias of texture detail (halton: beside log2 of the scale)", (row) => row.lod_bias,
+    numberColumn("bias of texture detail at scale 1", (row) => row.lod_bias,
       (row) => String(row.lod_bias)),
   ], result.methods);
 }

@@ -138,7 +138,7 @@ struct MethodRow {
   std::string name;
   std::string summary;
   std::string jitter;
-  double lod_bias = 0;  // beside log2(scale), with a jitter of many places
+  double lod_bias = 0;  // at scale 1
 
   friend bool operator==(const MethodRow&, const MethodRow&) = default;
 };

@@ -110,7 +110,8 @@ Result<BenchRun> run_bench(const BenchPlan& plan, const BenchOptions& options) {
   result.conditions = plan.conditions;
   for (const BenchMethod& method : plan.methods) {
     result.methods.push_back(
-        {method.name, method.summary, tools::name_of(method.jitter), method.detail.lod_bias});
+        {method.name, method.summary, tools::name_of(method.jitter),
+         method.detail.lod_bias + method.detail.follows_scale * texture_lod_bias({1, 1}, {1, 1})});
   }
   result.machine.load_before = load_of_last_minute();
   if (Status status = runner.run(); !status.ok()) return status;
