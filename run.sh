@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # On a fresh Debian: installs what is missing, builds, and renders the default scene into out/.
 #
-#   ./run.sh                     240 frames at 1280x720, the render scale sweeping 0.5, 1, 0.71
+#   ./run.sh                     240 frames at 1280x720, the render scale sweeping 0.5, 1, 0.71; methods beside truth
 #   ./run.sh --list-scenes       anything else is handed to quincunx-render instead of that
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -19,8 +19,11 @@ say "Rendering 240 frames of the default scene into out/ (about a minute on two 
 started=$SECONDS
 build/release/bin/quincunx-render --frames 240 --fps 30 --output 1280x720 --scale-path sweep \
   --out "out/frame.%04d.png" --contact-sheet out/contact_sheet.png --exr-frame 120 --report out/report
+say "Drawing once more by three methods, and truth: out/why.png (half a minute)."
+build/release/bin/quincunx-render -q --why out/why.png
 say
 say "Done in $((SECONDS - started)) s. Look at:"
+say "  out/why.png             why: half the resolution by three methods, beside truth; what each takes and errs here"
 say "  out/contact_sheet.png   the whole run at a glance"
 say "  out/report.txt          what each pass cost, and which devices did the work (report.json: every frame)"
 say "  out/frame.0000.png ...  the frames; one more as .exr with colour, depth and velocity"

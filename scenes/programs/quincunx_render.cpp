@@ -14,6 +14,7 @@
 #include "session/calibration.h"
 #include "session/render_options.h"
 #include "session/render_session.h"
+#include "session/why_picture.h"
 #include "tools/image/image_io.h"
 #include "tools/page/report_page.h"
 #include "tools/program/program.h"
@@ -136,6 +137,10 @@ int render(const RenderOptions& options) {
   }
   if (!options.pacing.calibrate.empty()) {
     const Status status = run_calibration(options);
+    return status.ok() ? tools::kDone : tools::fail(status);
+  }
+  if (!options.why.empty()) {
+    const Status status = draw_why(options);
     return status.ok() ? tools::kDone : tools::fail(status);
   }
   if (options.window) {

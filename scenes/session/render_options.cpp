@@ -207,6 +207,21 @@ void add_run_options(tools::CommandLine& app, RenderOptions& options) {
   app.add_flag("--json", options.json, "Print the report as JSON on standard output");
 }
 
+// After all options that it excludes.
+void add_why_option(tools::CommandLine& app, RenderOptions& options) {
+  const auto why =
+      app.add_option("--why", options.why,
+                     "One PNG instead: three places of the scene by bilinear, quincunx and temporal, at "
+                     "half the size or --scale, beside truth")
+          .type_name("FILE");
+  for (const char* other : {"--method",    "--jitter", "--view",   "--frames",  "--scale-path",
+                            "--dual",      "--focus",  "--colour", "--shading", "--target-fps",
+                            "--calibrate", "--truth",  "--score",  "--out",     "--contact-sheet",
+                            "--exr-frame", "--report", "--json",   "--window",  "--explain"}) {
+    why.excludes(app.option(other));
+  }
+}
+
 void add_window_options(tools::CommandLine& app, RenderOptions& options) {
   const auto window = app.add_flag("--window", options.window,
                                    "Show the frames in a window, until it is closed or --frames are shown");
@@ -268,6 +283,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   add_pacing_options(app, options.pacing);
   add_run_options(app, options);
   add_window_options(app, options);
+  add_why_option(app, options);
   add_machine_options(app, options);
   options.command_line = tools::command_line_text("quincunx-render", argc, argv);
   if (const std::optional<int> code = app.parse(argc, argv)) return code;
@@ -275,6 +291,7 @@ std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& opti
   if (options.pacing.on() && !app.has("--fps")) options.fps = options.pacing.target_fps;
   // The targets hold whatever a controller may choose.
   if (options.pacing.has_ladder()) options.scale = fmt::format("{}", options.pacing.max_scale);
+  if (!options.why.empty() && !app.has("--scale")) options.scale = "0.5";
   if (options.window && !app.has("--frames")) options.frames = 0;
   return std::nullopt;
 }

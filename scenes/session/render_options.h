@@ -53,6 +53,8 @@ struct RenderOptions : PictureOptions {
 
   int score = 0;  // 0: off; N: frames are measured against N x N samples a pixel
 
+  std::string why;  // file of a picture of what methods make of the scene, instead of a run; empty: none
+
   std::string out;              // pattern; empty: no frames are written
   std::string contact_sheet;    // empty: none
   std::int64_t exr_frame = -1;  // this frame's targets are written beside `out`; -1: none
