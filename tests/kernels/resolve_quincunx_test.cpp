@@ -39,8 +39,11 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
  protected:
   Resolve() {
     const Variant& v = GetParam();
-    settings_ = {
-        .colour = v.colour, .velocity = v.velocity_format, .linear = v.resolved, .storage = v.storage};
+    settings_ = {.method = Method::kQuincunx,
+                 .colour = v.colour,
+                 .velocity = v.velocity_format,
+                 .linear = v.resolved,
+                 .storage = v.storage};
     settings_.quincunx.sampling = v.sampling;
     const bool moves = v.velocity == VelocitySource::kTarget;
     const SceneNeeds needs{.moving_objects = moves, .camera_motion = moves, .transparents = v.reactive};
@@ -270,7 +273,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, Resolve, ::testing::ValuesIn(variants()),
 // v is counted in pixels of its frame's viewport, whatever the output: at the same uv velocity a larger
 // viewport trusts the previous frame less.
 TEST(ResolveWeight, CountsRenderPixels) {
-  ResolveSettings settings;
+  ResolveSettings settings = {.method = Method::kQuincunx};
   settings.quincunx.velocity_weight = 2;
   PassRig pass({.transparents = false}, settings, "resolve_quincunx");
   const testing::FrameFormats formats{.with_velocity = true};

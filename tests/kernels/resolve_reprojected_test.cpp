@@ -58,7 +58,11 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
  protected:
   Reprojected() {
     const Variant& v = GetParam();
-    settings_ = {.colour = v.colour, .velocity = v.velocity, .linear = v.resolved, .storage = v.storage};
+    settings_ = {.method = Method::kQuincunx,
+                 .colour = v.colour,
+                 .velocity = v.velocity,
+                 .linear = v.resolved,
+                 .storage = v.storage};
     settings_.present = false;
     settings_.quincunx.form = TwoFrameForm::kReprojected;
     settings_.quincunx.residual_weight = v.residual ? .5f : 0;

@@ -81,10 +81,12 @@ using PlanChange = std::function<void(PlanInputs&)>;
 
 using PlanAxis = std::vector<PlanChange>;
 
-// The defaults, with sizes.
+// The defaults, with sizes; two frames, from whose plans single changes lead to every variant.
 PlanInputs first_plan(Extent output = {64, 64}) {
   return {.needs = {},
-          .settings = {.output_extent = output, .target_extent = {2 * output.width, 2 * output.height}}};
+          .settings = {.method = Method::kQuincunx,
+                       .output_extent = output,
+                       .target_extent = {2 * output.width, 2 * output.height}}};
 }
 
 // Returns all values of all fields. Not each combination is accepted by plan_for().
