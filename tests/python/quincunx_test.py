@@ -62,11 +62,15 @@ def rms(a, b):
 FLOAT_BOUND = 8 * 2.0 ** -24
 
 
+STRUCTS = ("Settings", "Needs", "Image", "Particles", "Rectangle", "Focus", "Fade", "Sync", "Inputs", "Outputs", "Content",
+           "Report", "PassReport")
+
+
 class Structs(unittest.TestCase):
     def test_fields_are_those_of_the_headers(self):
         text = read(HEADERS, "c_settings.h") + read(HEADERS, "c_frame.h")
-        for name in ("Settings", "Needs", "Image", "Inputs", "Outputs", "Report", "PassReport"):
-            struct = "quincunx_pass_report" if name == "PassReport" else "quincunx_" + name.lower()
+        for name in STRUCTS:
+            struct = "quincunx" + re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)
             fields = [field for field, _ in getattr(quincunx, name)._fields_]
             self.assertEqual(fields, fields_of_c(struct, text), name)
 
@@ -120,6 +124,73 @@ class Pictures(unittest.TestCase):
         self.assertEqual([(r["frame"], r["render"]) for r in reports], [(i, (30, 20)) for i in range(3)])
         self.assertEqual([p[0] for p in reports[0]["passes"]], ["scale_bilinear"])
         self.assertEqual(resolver.reports(), [])
+
+
+class Extras(unittest.TestCase):
+    """Inputs besides a frame's own: each shows where it should and nowhere else."""
+
+    def frame(self, value, size=(20, 30)):
+        return {"colour": np.full((*size, 4), [value, value, value, 1], np.float32), "depth": np.full(size, 0.5),
+                "velocity": np.zeros((*size, 2)), "reactive": np.zeros(size, np.uint8)}
+
+    def test_particles_lie_over_the_frame(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, particle_target=(16, 12))
+        dust = {"colour": np.zeros((12, 16, 4)), "depth": np.full((12, 16), 0.5)}
+        dust["colour"][:, 8:] = [0, 1, 0, 1]
+        picture = resolver.resolve(**self.frame(0.25, (30, 40)), particles={**dust, "reactive": np.zeros((12, 16))})
+        np.testing.assert_allclose(picture[:, :15], np.broadcast_to([0.25, 0.25, 0.25, 1], (30, 15, 4)), atol=1e-6)
+        np.testing.assert_allclose(picture[:, 25:], np.broadcast_to([0, 1, 0, 1], (30, 15, 4)), atol=1e-6)
+
+    def test_a_focus_shows_in_its_rectangle(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, focus=(20, 16))
+        self.assertIn("20x16", resolver.focus_plan())
+        focus = {**self.frame(1, (16, 20)), "x": 10, "y": 4, "rectangles": [(12, 6, 16, 12)], "feather": 1}
+        picture = resolver.resolve(**self.frame(0, (30, 40)), focus=focus)
+        inside = np.zeros((30, 40), bool)
+        inside[6:18, 12:28] = True
+        self.assertEqual(picture[~inside][:, :3].max(), 0)
+        self.assertEqual(picture[8:16, 14:26, :3].min(), 1)
+        report, = resolver.reports()
+        self.assertTrue(report["focused"])
+        self.assertEqual({name.startswith("focus: ") for name, _, _ in report["passes"]}, {True, False})
+
+    def test_a_fade_mixes_both_pictures(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, fades=1)
+        old = np.full((30, 40, 4), [1, 0, 0, 1], np.float32)
+        picture = resolver.resolve(**self.frame(0.5), fading_from=old, fade_weight=0.25)
+        np.testing.assert_allclose(picture, np.broadcast_to([0.875, 0.125, 0.125, 1], (30, 40, 4)), atol=1e-6)
+
+    def test_a_smaller_output_is_shown_in_the_pictures_size(self):
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, min_output=(20, 15))
+        picture = resolver.resolve(**self.frame(0.5), output=(24, 18))
+        np.testing.assert_allclose(picture[:, :, 0], 0.5, atol=1e-6)
+        self.assertEqual(resolver.reports()[0]["output"], (24, 18))
+
+    def test_exposure_of_an_image_counts_as_the_number_does(self):
+        def shown(**exposure):
+            resolver = quincunx.Resolver((40, 30), method="bilinear", tone_map="clamp", dither=0)
+            return resolver.resolve(**self.frame(0.125), presented=True, **exposure)
+
+        np.testing.assert_array_equal(shown(exposure_image=np.full((1, 1), 4.0)), shown(exposure=4))
+        self.assertGreater(shown(exposure=4)[0, 0, 0], shown()[0, 0, 0])
+
+    def test_content_is_measured(self):
+        resolver = quincunx.Resolver((64, 64), (64, 64), measures_content=1)
+        self.assertEqual(set(resolver.device()), {"name", "profile", "pass_timer"})
+        moving = self.frame(0.5, (64, 64))
+        moving["velocity"][:, :, 0] = 4 / 64
+        for _ in range(3):
+            resolver.resolve(**moving)
+        content = resolver.reports()[-1]["content"]
+        self.assertGreater(content["moving"], 0.9)
+        self.assertAlmostEqual(content["speed_px"], 4, 1)
+
+    def test_variants_are_methods(self):
+        names = quincunx.variants()
+        self.assertIn("temporal:fast", names)
+        self.assertIn("fast", str(quincunx.Resolver((40, 30), method="temporal:fast")).lower())
+        with self.assertRaisesRegex(quincunx.Error, "temporal:quality"):
+            quincunx.Resolver((40, 30), method="temporal:best")
 
 
 class Example(unittest.TestCase):

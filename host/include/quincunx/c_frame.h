@@ -20,6 +20,55 @@ typedef struct quincunx_image {
   void* memory; /* a cl_mem, or the address of the first texel in host memory */
 } quincunx_image;
 
+struct quincunx_inputs;
+
+/* Particles that were drawn apart, in a viewport of their own; where settings.particle_target_* are set. */
+typedef struct quincunx_particles {
+  size_t struct_size;             /* sizeof(quincunx_particles) */
+  const quincunx_image* colour;   /* as inputs.colour, over transparent black; alpha: coverage */
+  const quincunx_image* depth;    /* R32F: the frame's depth resampled, of a surface that the pixel shows */
+  const quincunx_image* reactive; /* R8 */
+  int32_t render_width;           /* pixels of their viewport */
+  int32_t render_height;
+} quincunx_particles;
+
+/* Whole pixels of the picture. */
+typedef struct quincunx_rectangle {
+  int32_t x, y, width, height;
+} quincunx_rectangle;
+
+/* A part of the picture that is drawn a second time, at a larger scale, as focus.h has it; where settings.focus_* are
+ * set. */
+typedef struct quincunx_focus {
+  size_t struct_size; /* sizeof(quincunx_focus) */
+  const struct quincunx_inputs*
+      frame;    /* the region as a camera sees it that looks at just that; no focus in it */
+  int32_t x, y; /* the output pixel at the region's upper left corner */
+  const quincunx_rectangle* rectangles; /* where it shows, at most four; NULL: in the whole region */
+  int32_t rectangle_count;
+  float feather;              /* output pixels over which it sets in; 0: 16 */
+  const quincunx_image* mask; /* R8, the region's extent; where settings.focus_mask is set */
+} quincunx_focus;
+
+/* A cross-fade from another method's picture of this frame; where settings.fades is set. */
+typedef struct quincunx_fade {
+  size_t struct_size;         /* sizeof(quincunx_fade) */
+  const quincunx_image* from; /* as outputs.linear, in other memory */
+  float weight;               /* of this frame's own picture, in [0, 1]; the rest is that of `from` */
+  int32_t padding;            /* 0 */
+} quincunx_fade;
+
+/* What a frame's work has to do with that of other queues of the device's context. */
+typedef struct quincunx_sync {
+  size_t struct_size;    /* sizeof(quincunx_sync) */
+  void* const* wait_for; /* cl_event: the frame's work begins when all are complete */
+  int32_t wait_count;
+  int32_t padding; /* 0 */
+  /* Where not NULL, gets a cl_event that is complete when the frame's work is, which the caller releases; NULL where
+   * the frame was refused or failed. */
+  void** done;
+} quincunx_sync;
+
 /* Memory objects stay unchanged until the frame's work is done and, where quincunx_needs has keeps_previous_frame,
  * until that of the next frame is: the service copies nothing. So give frames n and n - 1 different ones. Host memory
  * is copied and free for reuse when the call returns. */
@@ -47,6 +96,15 @@ typedef struct quincunx_inputs {
   uint64_t frame_index; /* the caller's number, echoed in the report */
   float near_plane;     /* distances of depth's planes, where settings.depth_convention needs them */
   float far_plane;
+  int32_t
+      output_width; /* the picture's size in this frame, from settings.min_output_* on; both 0: the output's */
+  int32_t output_height;
+  /* R32F, 1x1: another factor of the exposure, which need never be read on the host; NULL: none */
+  const quincunx_image* exposure_image;
+  const quincunx_particles* particles; /* NULL: none, as of what follows */
+  const quincunx_focus* focus;
+  const quincunx_fade* fade;
+  const quincunx_sync* sync;
 } quincunx_inputs;
 
 /* The finished picture. At least one, of the output's size; NULL leaves it out. Host memory beyond a row's texels stays
@@ -66,6 +124,19 @@ typedef struct quincunx_pass_report {
   uint64_t bytes;     /* read and written, each texel counted once */
 } quincunx_pass_report;
 
+/* What a frame shows, as shares of the picture's area in [0, 1]: content_statistics.h. */
+typedef struct quincunx_content {
+  size_t struct_size; /* sizeof(quincunx_content) */
+  double moving;      /* that moves by a quarter of an output pixel or more */
+  double speed_px;    /* mean speed of that share, output pixels a frame */
+  double apart;       /* in which surfaces move apart from each other */
+  double thin;        /* in which things thinner than four pixels move before something else */
+  double light;       /* whose colour changes and has no velocity */
+  double zoom;        /* that moves and grows or shrinks */
+  int32_t cut;        /* 1: the first frame of a shot */
+  int32_t padding;    /* 0 */
+} quincunx_content;
+
 typedef struct quincunx_report {
   size_t struct_size;           /* sizeof(quincunx_report) */
   quincunx_pass_report* passes; /* in: room for pass_capacity of them, or NULL */
@@ -80,6 +151,13 @@ typedef struct quincunx_report {
   float ratio_y;
   int32_t used_previous; /* 1: history contributed */
   int32_t padding;
+  int32_t output_width; /* pixels of the picture in this frame */
+  int32_t output_height;
+  int32_t focused;       /* 1: a focus was laid over the picture */
+  int32_t content_known; /* 1: `content` was written; 0: settings.measures_content is 0, or not known yet */
+  quincunx_content* content; /* in: where to write it, with its struct_size, or NULL */
+  int32_t*
+      in_focus; /* in: room for pass_capacity numbers, or NULL; out: 1 for a pass of the focus's region */
 } quincunx_report;
 
 #endif

@@ -112,6 +112,16 @@ typedef struct quincunx_settings {
   int32_t velocity_jittered;   /* the jitter is in it; default 0 */
   int32_t origin;              /* first row of all images; default QUINCUNX_TOP */
   int32_t conventions_padding; /* 0 */
+  /* Pixels; both 0, the default: none. */
+  int32_t min_output_width, min_output_height; /* a dynamic output: the smallest one of a frame */
+  int32_t particle_target_width,
+      particle_target_height;                      /* of inputs.particles, whose viewport is their own */
+  int32_t focus_width, focus_height;               /* the focus's region, in output pixels */
+  int32_t focus_target_width, focus_target_height; /* of its inputs; both 0: as the region */
+  int32_t focus_mask;                              /* focus.mask is given; default 0 */
+  int32_t measures_content;                        /* report.content is wanted; default 0 */
+  int32_t fades;                                   /* inputs.fade may be given; default 0 */
+  int32_t extents_padding;                         /* 0 */
 } quincunx_settings;
 
 /* What follows from a plan for those who bring the images: 0 no, 1 yes. */

@@ -17,6 +17,8 @@
  * wrong, where, and what would be right. After an error nothing has changed unless the function says otherwise.
  * Pointers to what a function makes are then NULL. No exception leaves the library.
  *
+ * c_control.h chooses each frame's resolution and method, for those who want that.
+ *
  * Threads: a device with its services belongs to one thread at a time. Plans may be read by several. */
 #ifndef QUINCUNX_QUINCUNX_H
 #define QUINCUNX_QUINCUNX_H
@@ -31,7 +33,7 @@
 extern "C" {
 #endif
 
-#define QUINCUNX_API_VERSION 1
+#define QUINCUNX_API_VERSION 2
 
 typedef int32_t quincunx_status;
 enum {
@@ -69,6 +71,12 @@ QUINCUNX_API float quincunx_texture_lod_bias(int32_t render_width, int32_t rende
 
 /* The methods' names, in the order of their numbers: 0 is "point". NULL for a number that is none. Static. */
 QUINCUNX_API const char* quincunx_method_name(int32_t method);
+/* Names of methods with the settings that change their picture and cost, "temporal:fast", in the order of growing
+ * effort. NULL for a number that is none. Static. */
+QUINCUNX_API const char* quincunx_variant_name(int32_t variant);
+/* Sets the method and what goes with it to what such a name says; a method's name stands for its defaults. Errors:
+ * QUINCUNX_INVALID_ARGUMENT; the sentence lists the names. */
+QUINCUNX_API quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name);
 
 /* The passes and images that follow from the settings. Pure: needs no device. Errors: QUINCUNX_INVALID_ARGUMENT; the
  * sentence names every bad field. */
@@ -78,6 +86,13 @@ QUINCUNX_API void quincunx_plan_destroy(quincunx_plan* plan);
 QUINCUNX_API quincunx_status quincunx_plan_needs(const quincunx_plan* plan, quincunx_needs* needs);
 /* A page of plain text: passes, images, bytes, and why. Lives as long as the plan; NULL for no plan. */
 QUINCUNX_API const char* quincunx_plan_text(const quincunx_plan* plan);
+/* The plan of the focus's region, of which inputs.focus->frame is a frame. Errors: QUINCUNX_INVALID_ARGUMENT where there
+ * is none. */
+QUINCUNX_API quincunx_status quincunx_plan_focus(const quincunx_plan* plan, quincunx_plan** region);
+/* Whether a frame of this viewport and output (0, 0: the settings') reads earlier frames where there are any. */
+QUINCUNX_API int32_t quincunx_plan_reads_history(const quincunx_plan* plan, int32_t render_width,
+                                                 int32_t render_height, int32_t output_width,
+                                                 int32_t output_height);
 
 /* Opens an OpenCL device. `selector`: "" or NULL for the first one, GPUs before CPUs; "cpu" or "gpu"; a number; or a
  * part of "platform name". Errors: QUINCUNX_INVALID_ARGUMENT where nothing matches (the sentence lists what there is),
@@ -90,6 +105,9 @@ QUINCUNX_API quincunx_status quincunx_device_borrow(void* context, void* id, voi
 QUINCUNX_API void quincunx_device_destroy(quincunx_device* device);
 QUINCUNX_API const char* quincunx_device_name(
     const quincunx_device* device); /* lives as long as the device */
+/* How the work is cut for it, "tuned 2026-11-22 21:05 UTC", and what times its passes, "OpenCL event"; as above. */
+QUINCUNX_API const char* quincunx_device_profile(const quincunx_device* device);
+QUINCUNX_API const char* quincunx_device_pass_timer(const quincunx_device* device);
 /* Its cl_context, cl_device_id and cl_command_queue, to make memory objects with. Not retained; NULL for no device. */
 QUINCUNX_API void* quincunx_device_context(const quincunx_device* device);
 QUINCUNX_API void* quincunx_device_id(const quincunx_device* device);
@@ -117,6 +135,10 @@ QUINCUNX_API quincunx_status quincunx_dispatch(quincunx_service* service, const 
 /* The oldest finished frame whose report was not taken yet, with its times. Never waits. QUINCUNX_NOT_READY where none
  * has finished; reports of the last 64 frames are kept. */
 QUINCUNX_API quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report* report);
+
+/* Where pass_timer is "host clock", lets quincunx_dispatch() wait for each pass, which is then timed; off at first.
+ * Errors: QUINCUNX_INVALID_ARGUMENT. */
+QUINCUNX_API quincunx_status quincunx_allow_timing_waits(quincunx_service* service, int32_t allow);
 
 /* Fills the top left part of a memory object with one value, where settings.clear announced it. Enqueued like a frame.
  * Errors: QUINCUNX_INVALID_ARGUMENT, QUINCUNX_DEVICE_FAILURE. */

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "c_interface/sized_struct.h"
+#include "plan/resources.h"
 #include "quincunx/c_settings.h"
 
 namespace quincunx::c {
@@ -61,22 +62,44 @@ Result<GivenImage> read_image(const char* name, const quincunx_image* given, Sto
   return status.ok() ? Result<GivenImage>(made) : status;
 }
 
-template <std::size_t Count, typename Images, typename Views>
-Status read_images(const std::array<const char*, Count>& names, const Images& images,
-                   const std::array<Storage, Count>& storages,
-                   const std::array<ImageView Views::*, Count>& members, Views& views,
-                   std::array<HostMemory, Count>& host) {
-  for (std::size_t i = 0; i < Count; ++i) {
-    auto image = read_image(names[i], images[i], storages[i]);
-    if (!image.ok()) return image.status();
-    views.*members[i] = image->view;
-    host[i] = image->host;
+Status read_into(const char* name, const quincunx_image* given, Storage storage, ImageView& view,
+                 HostMemory& host) {
+  auto image = read_image(name, given, storage);
+  if (!image.ok()) return image.status();
+  view = image->view;
+  host = image->host;
+  return {};
+}
+
+// Whether the plan reads such an image; of what it does not read nothing is checked and nothing copied.
+bool reads(const ResolvePlan& plan, const InputSlot& slot) {
+  if (slot.image == &FrameInputs::exposure_image || slot.image == &FrameInputs::fading_from) return true;
+  return std::any_of(std::begin(kResources), std::end(kResources), [&](const ResourceInfo& info) {
+    return info.input != nullptr && !is_previous(info.resource) && info.input->image == slot.image &&
+           std::any_of(plan.buffers.begin(), plan.buffers.end(), [&](const PlannedBuffer& buffer) {
+             return buffer.name == info.name && !buffer.owned;
+           });
+  });
+}
+
+Status read_images(const ResolvePlan& plan,
+                   const std::array<const quincunx_image*, kInputSlots.size()>& images, FrameInputs& to,
+                   HostInputs& host) {
+  for (std::size_t i = 0; i < kInputSlots.size(); ++i) {
+    const InputSlot& slot = kInputSlots[i];
+    if (!reads(plan, slot)) continue;
+    const bool is_buffer =
+        slot.image == &FrameInputs::exposure_image || slot.image == &FrameInputs::fading_from;
+    const Storage storage = is_buffer ? Storage::kBuffer : plan.settings.storage;
+    if (Status status = read_into(slot.name, images[i], storage, to.*slot.image, host[i]); !status.ok())
+      return status;
   }
   return {};
 }
 
 void read_numbers(const quincunx_inputs& from, FrameInputs& to) {
   to.render_extent = {from.render_width, from.render_height};
+  to.output_extent = {from.output_width, from.output_height};
   to.jitter = {from.jitter_x, from.jitter_y};
   to.velocity_scale = {from.velocity_scale_x, from.velocity_scale_y};
   const auto& matrix = from.clip_to_previous_clip;
@@ -91,26 +114,111 @@ void read_numbers(const quincunx_inputs& from, FrameInputs& to) {
   to.frame_index = from.frame_index;
 }
 
+Status read_sync(const quincunx_sync* given, FrameSync& to) {
+  if (given == nullptr) return {};
+  quincunx_sync sync = {};
+  if (Status status = read_sized(given, "sync", sync); !status.ok()) return status;
+  to.done = reinterpret_cast<cl_event*>(sync.done);
+  if (to.done != nullptr) *to.done = nullptr;
+  if (sync.wait_count < 0)
+    return Status::invalid(fmt::format("sync.wait_count is {}; it must be at least 0", sync.wait_count));
+  if (sync.wait_count > 0 && sync.wait_for == nullptr) {
+    return Status::invalid(fmt::format("sync.wait_for is NULL; it must point to {} events", sync.wait_count));
+  }
+  to.wait_for = {reinterpret_cast<const cl_event*>(sync.wait_for), static_cast<std::size_t>(sync.wait_count)};
+  return {};
+}
+
+// All of a frame but its focus.
+Status read_inputs(const ResolvePlan& plan, const quincunx_inputs& in, FrameInputs& to, HostInputs& host) {
+  quincunx_particles particles = {};
+  quincunx_fade fade = {};
+  fade.weight = 1;
+  if (in.particles != nullptr) {
+    if (Status status = read_sized(in.particles, "particles", particles); !status.ok()) return status;
+  }
+  if (in.fade != nullptr) {
+    if (Status status = read_sized(in.fade, "fade", fade); !status.ok()) return status;
+    if (fade.from == nullptr) return Status::invalid("fade.from is NULL; it must point to an image");
+  }
+  const Status status = read_images(plan,
+                                    {in.colour, in.depth, in.velocity, in.reactive, particles.colour,
+                                     particles.depth, particles.reactive, in.exposure_image, fade.from},
+                                    to, host);
+  if (!status.ok()) return status;
+  read_numbers(in, to);
+  to.particle_render_extent = {particles.render_width, particles.render_height};
+  to.fade_weight = fade.weight;
+  return {};
+}
+
+Status read_rectangles(const quincunx_focus& from, FocusInputs& to) {
+  to.rectangle_count = from.rectangle_count;
+  if (from.rectangle_count <= 0 || from.rectangle_count > FocusInputs::kMaxRectangles) return {};
+  if (from.rectangles == nullptr) {
+    return Status::invalid(
+        fmt::format("focus.rectangles is NULL; it must point to {} of them", from.rectangle_count));
+  }
+  for (int i = 0; i < from.rectangle_count; ++i) {
+    const quincunx_rectangle& where = from.rectangles[i];
+    to.rectangles[static_cast<std::size_t>(i)] = {where.x, where.y, where.width, where.height};
+  }
+  return {};
+}
+
+Status read_focus(const ResolvePlan& plan, const quincunx_focus* given, Frame& frame) {
+  if (given == nullptr) return {};
+  const std::optional<ResolvePlan> region = plan.focus_plan();
+  if (!region)
+    return Status::invalid(
+        "focus is given, but the plan has none; set settings.focus_width and focus_height");
+  quincunx_focus focus = {};
+  quincunx_inputs inputs = {};
+  if (Status status = read_sized(given, "focus", focus); !status.ok()) return status;
+  if (Status status = read_sized(focus.frame, "focus.frame", inputs); !status.ok()) return status;
+  if (inputs.focus != nullptr)
+    return Status::invalid("focus.frame.focus is given; a focus has none of its own");
+  if (inputs.sync != nullptr)
+    return Status::invalid("focus.frame.sync is given; it belongs to the picture's frame");
+  FocusInputs to;
+  if (Status status = read_inputs(*region, inputs, to.frame, frame.host_focus); !status.ok())
+    return Status::invalid("of focus.frame: " + status.message());
+  to.x = focus.x;
+  to.y = focus.y;
+  to.feather = focus.feather;
+  if (Status status = read_rectangles(focus, to); !status.ok()) return status;
+  if (plan.settings.focus.mask) {
+    const Status status = read_into("focus.mask", focus.mask, Storage::kBuffer, to.mask, frame.host_mask);
+    if (!status.ok()) return status;
+  }
+  frame.focus = to;
+  return {};
+}
+
+Status read_outputs(const ResolvePlan& plan, const quincunx_outputs& out, Frame& frame) {
+  if (Status status =
+          read_into("linear", out.linear, Storage::kBuffer, frame.outputs.linear, frame.host_outputs[0]);
+      !status.ok())
+    return status;
+  return read_into("presented", out.presented, plan.presented_storage(), frame.outputs.presented,
+                   frame.host_outputs[1]);
+}
+
 }  // namespace
 
 Result<Frame> checked_frame(const ResolvePlan& plan, const quincunx_inputs* inputs,
                             const quincunx_outputs* outputs) {
   quincunx_inputs in = {};
   quincunx_outputs out = {};
-  if (Status status = read_sized(inputs, "inputs", in); !status.ok()) return status;
-  if (Status status = read_sized(outputs, "outputs", out); !status.ok()) return status;
   Frame frame;
-  const Storage storage = plan.settings.storage;
-  Status status = read_images<4>(
-      {"colour", "depth", "velocity", "reactive"}, std::array{in.colour, in.depth, in.velocity, in.reactive},
-      {storage, storage, storage, storage}, kInputImages, frame.inputs, frame.host_inputs);
-  if (!status.ok()) return status;
-  status = read_images<2>({"linear", "presented"}, std::array{out.linear, out.presented},
-                          {Storage::kBuffer, plan.presented_storage()}, kOutputImages, frame.outputs,
-                          frame.host_outputs);
-  if (!status.ok()) return status;
-  read_numbers(in, frame.inputs);
-  status = validate(plan, frame.inputs, frame.outputs);
+  if (Status status = read_sized(inputs, "inputs", in); !status.ok()) return status;
+  if (Status status = read_sync(in.sync, frame.sync); !status.ok()) return status;
+  if (Status status = read_sized(outputs, "outputs", out); !status.ok()) return status;
+  if (Status status = read_inputs(plan, in, frame.inputs, frame.host_inputs); !status.ok()) return status;
+  if (Status status = read_focus(plan, in.focus, frame); !status.ok()) return status;
+  if (Status status = read_outputs(plan, out, frame); !status.ok()) return status;
+  Status status = frame.focus ? validate(plan, frame.inputs, *frame.focus, frame.outputs)
+                              : validate(plan, frame.inputs, frame.outputs);
   return status.ok() ? Result<Frame>(frame) : status;
 }
 
@@ -122,19 +230,21 @@ Result<ImageView> memory_object(const char* name, const quincunx_image* image) {
   return read->view;
 }
 
-Status check_report(const quincunx_report* report) {
+Result<quincunx_report> read_report(const quincunx_report* report) {
   if (Status status = check_size(report, "report"); !status.ok()) return status;
-  if (report->passes != nullptr && report->pass_capacity < 0) {
+  quincunx_report own = {};
+  std::memcpy(&own, report, std::min(report->struct_size, sizeof(own)));
+  if ((own.passes != nullptr || own.in_focus != nullptr) && own.pass_capacity < 0) {
     return Status::invalid(
-        fmt::format("report.pass_capacity is {}; it must be at least 0", report->pass_capacity));
+        fmt::format("report.pass_capacity is {}; it must be at least 0", own.pass_capacity));
   }
-  return {};
+  if (own.content != nullptr) {
+    if (Status status = check_size(own.content, "report.content"); !status.ok()) return status;
+  }
+  return own;
 }
 
-void write_report(const FrameReport& from, quincunx_report* to) {
-  quincunx_report report = {};
-  report.passes = to->passes;
-  report.pass_capacity = to->pass_capacity;
+void write_report(const FrameReport& from, quincunx_report report, quincunx_report* to) {
   report.pass_count = static_cast<int>(from.passes.size());
   report.frame_index = from.frame_index;
   report.non_finite_pixels = from.non_finite_pixels;
@@ -143,55 +253,108 @@ void write_report(const FrameReport& from, quincunx_report* to) {
   report.ratio_x = from.ratio.x;
   report.ratio_y = from.ratio.y;
   report.used_previous = from.used_previous;
-  const int count = to->passes != nullptr ? std::min(report.pass_count, to->pass_capacity) : 0;
-  for (int i = 0; i < count; ++i) {
+  report.output_width = from.output_extent.width;
+  report.output_height = from.output_extent.height;
+  report.focused = from.focused;
+  report.content_known = from.content.has_value();
+  for (int i = 0; i < std::min(report.pass_count, report.pass_capacity); ++i) {
     const PassReport& pass = from.passes[static_cast<std::size_t>(i)];
-    to->passes[i] = {pass.kernel, pass.ms, pass.bytes};
+    if (report.passes != nullptr) report.passes[i] = {pass.kernel, pass.ms, pass.bytes};
+    if (report.in_focus != nullptr) report.in_focus[i] = pass.in_focus;
   }
+  if (report.content != nullptr && from.content) write_sized(content_to_c(*from.content), report.content);
   write_sized(report, to);
 }
 
-HostImages::HostImages(const Device& device, const ResolvePlan& plan)
-    : device_(device),
-      target_(plan.settings.target_extent),
-      output_(plan.settings.output_extent),
-      placed_(plan.settings.targets == Targets::kPlaced) {}
+quincunx_content content_to_c(const ContentStatistics& content) {
+  quincunx_content to = {};
+  to.moving = content.moving;
+  to.speed_px = content.speed_px;
+  to.apart = content.apart;
+  to.thin = content.thin;
+  to.light = content.light;
+  to.zoom = content.zoom;
+  to.cut = content.cut;
+  return to;
+}
 
-Status HostImages::make(Image& image, Extent extent, const ImageView& like) const {
+Result<ContentStatistics> content_of(const quincunx_content* given) {
+  quincunx_content content = {};
+  if (Status status = read_sized(given, "content", content); !status.ok()) return status;
+  const ContentStatistics to = {.moving = content.moving,
+                                .speed_px = content.speed_px,
+                                .apart = content.apart,
+                                .thin = content.thin,
+                                .light = content.light,
+                                .zoom = content.zoom,
+                                .cut = content.cut != 0};
+  Status status = check(to);
+  return status.ok() ? Result<ContentStatistics>(to) : status;
+}
+
+namespace {
+
+Status make(const Device& device, Image& image, Extent extent, const ImageView& like) {
   if (image) return {};
-  auto made = device_.allocate(extent, like.format, like.storage);
+  auto made = device.allocate(extent, like.format, like.storage);
   if (made.ok()) image = std::move(made).value();
   return made.status();
 }
 
-Status HostImages::input(Image& image, const HostMemory& host, Extent render, ImageView& view) const {
-  if (Status status = make(image, target_, view); !status.ok()) return status;
-  view = image.view();
-  if (placed_) {
-    view.extent = render;
-    view.pitch = 0;
+}  // namespace
+
+Status HostStream::bring(FrameInputs& inputs, const HostInputs& host) {
+  for (std::size_t i = 0; i < kInputSlots.size(); ++i) {
+    if (host[i].texels == nullptr) continue;
+    const InputSlot& slot = kInputSlots[i];
+    ImageView& view = inputs.*slot.image;
+    Image& image = images_[slot.kept ? turn_ : 0][i];
+    const Extent size = slot.size != nullptr ? settings_.*slot.size : Extent{1, 1};
+    const Extent used = slot.viewport != nullptr ? inputs.*slot.viewport : size;
+    if (Status status = make(device_, image, size, view); !status.ok()) return status;
+    view = image.view();
+    if (slot.viewport != nullptr && settings_.targets == Targets::kPlaced) {
+      view.extent = used;
+      view.pitch = 0;
+    }
+    if (Status status = device_.upload(view, used, host[i].texels, host[i].row_bytes); !status.ok())
+      return status;
   }
-  return device_.upload(view, render, host.texels, host.row_bytes);
+  return {};
+}
+
+HostImages::HostImages(const Device& device, const ResolvePlan& plan)
+    : device_(device),
+      output_(plan.settings.output_extent),
+      picture_(device, plan),
+      region_(plan.settings.focus.extent) {
+  if (const auto region = plan.focus_plan()) focus_.emplace(device, *region);
 }
 
 Status HostImages::bring(Frame& frame) {
-  for (std::size_t i = 0; i < kInputImages.size(); ++i) {
-    if (frame.host_inputs[i].texels == nullptr) continue;
-    const Status status = input(inputs_[turn_][i], frame.host_inputs[i], frame.inputs.render_extent,
-                                frame.inputs.*kInputImages[i]);
-    if (!status.ok()) return status;
+  if (Status status = picture_.bring(frame.inputs, frame.host_inputs); !status.ok()) return status;
+  if (frame.focus) {
+    if (Status status = focus_->bring(frame.focus->frame, frame.host_focus); !status.ok()) return status;
+    if (frame.host_mask.texels != nullptr) {
+      ImageView& mask = frame.focus->mask;
+      if (Status status = make(device_, mask_, region_, mask); !status.ok()) return status;
+      mask = mask_.view();
+      const Status status = device_.upload(mask, region_, frame.host_mask.texels, frame.host_mask.row_bytes);
+      if (!status.ok()) return status;
+    }
   }
   for (std::size_t i = 0; i < kOutputImages.size(); ++i) {
     if (frame.host_outputs[i].texels == nullptr) continue;
     ImageView& view = frame.outputs.*kOutputImages[i];
-    if (Status status = make(outputs_[i], output_, view); !status.ok()) return status;
+    if (Status status = make(device_, outputs_[i], output_, view); !status.ok()) return status;
     view = outputs_[i].view();
   }
   return {};
 }
 
 Status HostImages::fetch(const Frame& frame) {
-  turn_ = 1 - turn_;
+  picture_.advance();
+  if (focus_) focus_->advance();
   for (std::size_t i = 0; i < kOutputImages.size(); ++i) {
     const HostMemory& host = frame.host_outputs[i];
     if (host.texels == nullptr) continue;

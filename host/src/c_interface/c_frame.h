@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "quincunx/c_frame.h"
 #include "quincunx/device.h"
@@ -18,35 +19,87 @@ struct HostMemory {
   std::size_t row_bytes = 0;  // from one row to the next; 0: tightly packed
 };
 
-constexpr std::array kInputImages = {&FrameInputs::colour, &FrameInputs::depth, &FrameInputs::velocity,
-                                     &FrameInputs::reactive};
+// An image that a frame brings.
+struct InputSlot {
+  const char* name;
+  ImageView FrameInputs::*image;
+  Extent FrameInputs::*viewport;  // null: the whole image
+  Extent ResolveSettings::*size;  // of what is allocated; null: 1x1
+  bool kept;                      // the next frame may read it
+};
+constexpr std::array<InputSlot, 9> kInputSlots = {{
+    {"colour", &FrameInputs::colour, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
+    {"depth", &FrameInputs::depth, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
+    {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
+    {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
+    {"particles.colour", &FrameInputs::particle_colour, &FrameInputs::particle_render_extent,
+     &ResolveSettings::particle_target_extent, false},
+    {"particles.depth", &FrameInputs::particle_depth, &FrameInputs::particle_render_extent,
+     &ResolveSettings::particle_target_extent, false},
+    {"particles.reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render_extent,
+     &ResolveSettings::particle_target_extent, false},
+    {"exposure_image", &FrameInputs::exposure_image, nullptr, nullptr, false},
+    {"fade.from", &FrameInputs::fading_from, nullptr, &ResolveSettings::output_extent, false},
+}};
 constexpr std::array kOutputImages = {&FrameOutputs::linear, &FrameOutputs::presented};
+
+using HostInputs = std::array<HostMemory, kInputSlots.size()>;
 
 struct Frame {
   FrameInputs inputs;
+  std::optional<FocusInputs> focus;
   FrameOutputs outputs;
-  std::array<HostMemory, kInputImages.size()> host_inputs;
+  FrameSync sync;
+  HostInputs host_inputs;
+  HostInputs host_focus;
+  HostMemory host_mask;
   std::array<HostMemory, kOutputImages.size()> host_outputs;
 };
 
-// Returns a frame that has passed validate(). Errors: kInvalidArgument; the message names the field.
+// Returns a frame that has passed validate(); it refers to the events of `inputs`. Sets the event that is asked for to
+// NULL, whatever else is wrong. Errors: kInvalidArgument; the message names the field.
 Result<Frame> checked_frame(const ResolvePlan& plan, const quincunx_inputs* inputs,
                             const quincunx_outputs* outputs);
 
 // Reads a view of a memory object. Errors: kInvalidArgument.
 Result<ImageView> memory_object(const char* name, const quincunx_image* image);
 
-Status check_report(const quincunx_report* report);
-void write_report(const FrameReport& from, quincunx_report* to);  // that check_report() likes
+// Returns the fields that the caller has. Errors: kInvalidArgument.
+Result<quincunx_report> read_report(const quincunx_report* report);
+// Writes to `to`, of which read_report() has made `report`.
+void write_report(const FrameReport& from, quincunx_report report, quincunx_report* to);
 
-// Lets a service read and write host memory, by images of its own on the device. They are made when host memory is
-// first given in their place, and kept: two for each input, since the frame before is still read, and one for each
-// output. As thread safe as its Device.
+quincunx_content content_to_c(const ContentStatistics& content);  // struct_size is 0
+// Errors: kInvalidArgument; the message names the field.
+Result<ContentStatistics> content_of(const quincunx_content* given);
+
+// Images on the device that stand for the inputs of a plan's frames where those are host memory. They are made when host
+// memory is first given in their place, and kept: two for each input that the next frame reads. As thread safe as its
+// Device.
+class HostStream {
+ public:
+  HostStream(const Device& device, const ResolvePlan& plan) : device_(device), settings_(plan.settings) {}
+
+  // Copies inputs of host memory to the device and makes the frame's views name the copies. Errors: of the device.
+  Status bring(FrameInputs& inputs, const HostInputs& host);
+
+  void advance() { turn_ = 1 - turn_; }  // the frame was taken
+
+ private:
+  using Images = std::array<Image, kInputSlots.size()>;
+
+  Device device_;
+  ResolveSettings settings_;
+  std::array<Images, 2> images_;  // this frame's and those of the one before, in turns
+  std::size_t turn_ = 0;
+};
+
+// Lets a service read and write host memory.
 class HostImages {
  public:
   HostImages(const Device& device, const ResolvePlan& plan);
 
-  // Copies inputs of host memory to the device and makes the frame's views name the copies. Errors: of the device.
+  // As HostStream::bring(), and as well for outputs, whose copies are fetched later.
   Status bring(Frame& frame);
 
   // After a frame was dispatched: waits for it where its outputs are host memory, and copies them there. Errors: of the
@@ -54,17 +107,12 @@ class HostImages {
   Status fetch(const Frame& frame);
 
  private:
-  using Inputs = std::array<Image, kInputImages.size()>;
-
-  Status input(Image& image, const HostMemory& host, Extent render, ImageView& view) const;
-  Status make(Image& image, Extent extent, const ImageView& like) const;
-
   Device device_;
-  Extent target_;
   Extent output_;
-  bool placed_;
-  std::array<Inputs, 2> inputs_;  // this frame's and those of the one before, in turns
-  std::size_t turn_ = 0;
+  HostStream picture_;
+  std::optional<HostStream> focus_;
+  Extent region_;  // the focus's
+  Image mask_;
   std::array<Image, kOutputImages.size()> outputs_;
 };
 

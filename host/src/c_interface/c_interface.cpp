@@ -9,12 +9,15 @@
 
 #include "c_interface/c_frame.h"
 #include "c_interface/c_settings.h"
+#include "c_interface/calls.h"
 #include "c_interface/sized_struct.h"
+#include "quincunx/device_profile.h"
 #include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 
 struct quincunx_device {
   quincunx::Device device;
+  std::string profile;
 };
 
 struct quincunx_plan {
@@ -30,6 +33,12 @@ struct quincunx_service {
 using quincunx::Status;
 using quincunx::StatusCode;
 
+using quincunx::c::create;
+using quincunx::c::guarded;
+using quincunx::c::Made;
+using quincunx::c::null;
+
+namespace quincunx::c {
 namespace {
 
 thread_local std::string message;  // text of quincunx_last_error()
@@ -50,12 +59,6 @@ quincunx_status code_of(StatusCode code) {
   return QUINCUNX_INTERNAL;
 }
 
-// Keeps the message for this thread, and returns the code for the caller.
-quincunx_status report(const Status& status) {
-  if (!status.ok()) message = status.message();
-  return code_of(status.code());
-}
-
 quincunx_status report(quincunx_status code, const char* text) noexcept {
   try {
     message = text;
@@ -65,7 +68,13 @@ quincunx_status report(quincunx_status code, const char* text) noexcept {
   return code;
 }
 
-// Within a catch.
+}  // namespace
+
+quincunx_status report(const Status& status) {
+  if (!status.ok()) message = status.message();
+  return code_of(status.code());
+}
+
 quincunx_status report_exception() noexcept {
   try {
     throw;
@@ -78,39 +87,19 @@ quincunx_status report_exception() noexcept {
   }
 }
 
-// Runs what gives a Status, and lets no exception out.
-template <typename Call>
-quincunx_status guarded(const Call& call) noexcept {
-  try {
-    return report(call());
-  } catch (...) {
-    return report_exception();
-  }
-}
+}  // namespace quincunx::c
 
-Status null(const char* what) {
-  return Status::invalid(std::string(what) + " is NULL; it must point to one");
-}
-
-// Hands out the object of a *_create: NULL unless `make` gives one.
-template <typename Object, typename Make>
-quincunx_status create(const char* name, Object** to, const Make& make) noexcept {
-  if (to != nullptr) *to = nullptr;
-  return guarded([&]() -> Status {
-    if (to == nullptr) return null(name);
-    auto made = make();
-    if (!made.ok()) return made.status();
-    *to = std::move(made).value().release();
-    return {};
-  });
-}
-
-template <typename Object>
-using Made = quincunx::Result<std::unique_ptr<Object>>;
+namespace {
 
 Made<quincunx_device> device_of(quincunx::Result<quincunx::Device> opened) {
   if (!opened.ok()) return opened.status();
-  return std::make_unique<quincunx_device>(quincunx_device{std::move(opened).value()});
+  std::string profile = opened->profile().describe();
+  return std::make_unique<quincunx_device>(quincunx_device{std::move(opened).value(), std::move(profile)});
+}
+
+Made<quincunx_plan> plan_of(quincunx::ResolvePlan plan) {
+  std::string text = plan.explain();
+  return std::make_unique<quincunx_plan>(quincunx_plan{std::move(plan), std::move(text)});
 }
 
 }  // namespace
@@ -124,7 +113,7 @@ const char* quincunx_version(void) {
 }
 
 const char* quincunx_last_error(void) {
-  return message.c_str();
+  return quincunx::c::message.c_str();
 }
 
 quincunx_status quincunx_settings_init(quincunx_settings* settings) {
@@ -160,15 +149,48 @@ const char* quincunx_method_name(int32_t method) {
   return methods[static_cast<std::size_t>(method)].name;
 }
 
+const char* quincunx_variant_name(int32_t variant) {
+  const auto variants = quincunx::all_variants();
+  if (variant < 0 || variant >= static_cast<int32_t>(variants.size())) return nullptr;
+  return variants[static_cast<std::size_t>(variant)].name.c_str();
+}
+
+quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name) {
+  return guarded([&]() -> Status {
+    if (name == nullptr) return null("name");
+    auto scene = quincunx::c::from_c(settings);
+    if (!scene.ok()) return scene.status();
+    const auto variant = quincunx::parse_variant(name);
+    if (!variant.ok()) return variant.status();
+    quincunx::apply(*variant, scene->resolve);
+    quincunx::c::write_sized(quincunx::c::to_c(*scene), settings);
+    return {};
+  });
+}
+
 quincunx_status quincunx_plan_create(const quincunx_settings* settings, quincunx_plan** plan) {
   return create("plan", plan, [&]() -> Made<quincunx_plan> {
     const auto scene = quincunx::c::from_c(settings);
     if (!scene.ok()) return scene.status();
     auto made = quincunx::plan_for(scene->needs, scene->resolve);
     if (!made.ok()) return made.status();
-    std::string text = made->explain();
-    return std::make_unique<quincunx_plan>(quincunx_plan{std::move(made).value(), std::move(text)});
+    return plan_of(std::move(made).value());
   });
+}
+
+quincunx_status quincunx_plan_focus(const quincunx_plan* plan, quincunx_plan** region) {
+  return create("region", region, [&]() -> Made<quincunx_plan> {
+    if (plan == nullptr) return null("plan");
+    auto focus = plan->plan.focus_plan();
+    if (!focus) return Status::invalid("the plan has no focus; set settings.focus_width and focus_height");
+    return plan_of(std::move(*focus));
+  });
+}
+
+int32_t quincunx_plan_reads_history(const quincunx_plan* plan, int32_t render_width, int32_t render_height,
+                                    int32_t output_width, int32_t output_height) {
+  if (plan == nullptr || render_width < 1 || render_height < 1) return 0;
+  return plan->plan.reads_history({render_width, render_height}, {output_width, output_height});
 }
 
 void quincunx_plan_destroy(quincunx_plan* plan) {
@@ -206,6 +228,14 @@ void quincunx_device_destroy(quincunx_device* device) {
 
 const char* quincunx_device_name(const quincunx_device* device) {
   return device != nullptr ? device->device.info().name.c_str() : nullptr;
+}
+
+const char* quincunx_device_profile(const quincunx_device* device) {
+  return device != nullptr ? device->profile.c_str() : nullptr;
+}
+
+const char* quincunx_device_pass_timer(const quincunx_device* device) {
+  return device != nullptr ? name_of(quincunx::pass_timer(device->device)) : nullptr;
 }
 
 void* quincunx_device_context(const quincunx_device* device) {
@@ -248,15 +278,20 @@ quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inpu
                                   const quincunx_outputs* outputs, quincunx_report* report) {
   return guarded([&]() -> Status {
     if (service == nullptr) return null("service");
+    quincunx_report own = {};
     if (report != nullptr) {
-      if (Status status = quincunx::c::check_report(report); !status.ok()) return status;
+      const auto read = quincunx::c::read_report(report);
+      if (!read.ok()) return read.status();
+      own = *read;
     }
     auto frame = quincunx::c::checked_frame(service->service.plan(), inputs, outputs);
     if (!frame.ok()) return frame.status();
     if (Status status = service->host.bring(frame.value()); !status.ok()) return status;
-    const quincunx::FrameReport made = service->service.dispatch(frame->inputs, frame->outputs);
+    const quincunx::FrameReport made =
+        frame->focus ? service->service.dispatch(frame->inputs, *frame->focus, frame->outputs, frame->sync)
+                     : service->service.dispatch(frame->inputs, frame->outputs, frame->sync);
     if (!made.ok()) return made.status;
-    if (report != nullptr) quincunx::c::write_report(made, report);
+    if (report != nullptr) quincunx::c::write_report(made, own, report);
     return service->host.fetch(frame.value());
   });
 }
@@ -265,13 +300,22 @@ quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report*
   bool ready = true;
   const quincunx_status status = guarded([&]() -> Status {
     if (service == nullptr) return null("service");
-    if (Status good = quincunx::c::check_report(report); !good.ok()) return good;
+    const auto own = quincunx::c::read_report(report);
+    if (!own.ok()) return own.status();
     const auto completed = service->service.next_completed();
     ready = completed.has_value();
-    if (ready) quincunx::c::write_report(*completed, report);
+    if (ready) quincunx::c::write_report(*completed, *own, report);
     return {};
   });
   return ready ? status : QUINCUNX_NOT_READY;
+}
+
+quincunx_status quincunx_allow_timing_waits(quincunx_service* service, int32_t allow) {
+  return guarded([&]() -> Status {
+    if (service == nullptr) return null("service");
+    service->service.allow_timing_waits(allow != 0);
+    return {};
+  });
 }
 
 quincunx_status quincunx_clear(quincunx_service* service, const quincunx_image* image, int32_t width,

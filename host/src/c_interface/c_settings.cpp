@@ -14,27 +14,9 @@ static_assert(static_cast<int>(TemporalView::kFar) == QUINCUNX_VIEW_FAR);
 static_assert(static_cast<int>(PixelFormat::kRGBA32F) == QUINCUNX_RGBA32F);
 static_assert(static_cast<int>(ToneMap::kAces) == QUINCUNX_ACES);
 
-// Reads numbers that name values; keeps what is wrong with the first that is none.
-class Reader {
- public:
-  template <typename Value>
-  void value(const char* field, std::int32_t number, Value last, Value& to, int first = 0) {
-    const int highest = static_cast<int>(last);
-    if (number >= first && number <= highest) {
-      to = static_cast<Value>(number);
-    } else if (status_.ok()) {
-      status_ = Status::invalid(
-          fmt::format("settings.{} is {}; it must lie in [{}, {}]", field, number, first, highest));
-    }
-  }
-  void format(const char* field, std::int32_t number, PixelFormat& to) {
-    value(field, number, PixelFormat::kRGBA32F, to, QUINCUNX_R8);
-  }
-  const Status& status() const { return status_; }
-
- private:
-  Status status_;
-};
+void read_format(Reader& read, const char* field, std::int32_t number, PixelFormat& to) {
+  read.value(field, number, PixelFormat::kRGBA32F, to, QUINCUNX_R8);
+}
 
 }  // namespace
 
@@ -83,6 +65,17 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.grain = resolve.grain;
   to.velocity_weight = resolve.quincunx.velocity_weight;
   to.residual_weight = resolve.quincunx.residual_weight;
+  to.min_output_width = resolve.min_output_extent.width;
+  to.min_output_height = resolve.min_output_extent.height;
+  to.particle_target_width = resolve.particle_target_extent.width;
+  to.particle_target_height = resolve.particle_target_extent.height;
+  to.focus_width = resolve.focus.extent.width;
+  to.focus_height = resolve.focus.extent.height;
+  to.focus_target_width = resolve.focus.target_extent.width;
+  to.focus_target_height = resolve.focus.target_extent.height;
+  to.focus_mask = resolve.focus.mask;
+  to.measures_content = resolve.measures_content;
+  to.fades = resolve.fades;
   return to;
 }
 
@@ -95,13 +88,13 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
               .transparents = from.transparents != 0,
               .background = from.background != 0};
   ResolveSettings& resolve = to.resolve;
-  Reader read;
+  Reader read("settings");
   read.value("method", from.method, Method::kTemporal, resolve.method);
   resolve.output_extent = {from.output_width, from.output_height};
   resolve.target_extent = {from.target_width, from.target_height};
-  read.format("colour_format", from.colour_format, resolve.colour);
-  read.format("velocity_format", from.velocity_format, resolve.velocity);
-  read.format("linear_format", from.linear_format, resolve.linear);
+  read_format(read, "colour_format", from.colour_format, resolve.colour);
+  read_format(read, "velocity_format", from.velocity_format, resolve.velocity);
+  read_format(read, "linear_format", from.linear_format, resolve.linear);
   read.value("storage", from.storage, Storage::kImage, resolve.storage);
   read.value("targets", from.targets, Targets::kPlaced, resolve.targets);
   read.value("shading", from.shading, Shading::kCheckerboard, resolve.shading);
@@ -125,12 +118,19 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
   read.value("sampling", from.sampling, Sampling::kBilinear, resolve.quincunx.sampling);
   read.value("temporal_preset", from.temporal_preset, TemporalPreset::kQuality, resolve.temporal.preset);
   read.value("temporal_view", from.temporal_view, TemporalView::kFar, resolve.temporal.view);
-  read.format("history_format", from.history_format, resolve.temporal.history);
+  read_format(read, "history_format", from.history_format, resolve.temporal.history);
   resolve.blur = {.shutter = from.shutter, .samples = from.blur_samples};
   resolve.sharpness = from.sharpness;
   resolve.grain = from.grain;
   resolve.quincunx.velocity_weight = from.velocity_weight;
   resolve.quincunx.residual_weight = from.residual_weight;
+  resolve.min_output_extent = {from.min_output_width, from.min_output_height};
+  resolve.particle_target_extent = {from.particle_target_width, from.particle_target_height};
+  resolve.focus = {.extent = {from.focus_width, from.focus_height},
+                   .target_extent = {from.focus_target_width, from.focus_target_height},
+                   .mask = from.focus_mask != 0};
+  resolve.measures_content = from.measures_content != 0;
+  resolve.fades = from.fades != 0;
   if (!read.status().ok()) return read.status();
   return to;
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 #include "quincunx/c_frame.h"
@@ -29,10 +30,23 @@ template <>
 inline constexpr std::size_t kFirstSize<quincunx_outputs> = 24;
 template <>
 inline constexpr std::size_t kFirstSize<quincunx_report> = 64;
-// Version 1; a field that is appended raises the left side alone.
-static_assert(sizeof(void*) != 8 || (sizeof(quincunx_settings) == 176 && sizeof(quincunx_needs) == 48 &&
-                                     sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 160 &&
-                                     sizeof(quincunx_outputs) == 24 && sizeof(quincunx_report) == 64));
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_particles> = 40;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_focus> = 48;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_fade> = 24;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_sync> = 32;
+template <>
+inline constexpr std::size_t kFirstSize<quincunx_content> = 64;
+// Version 2; a field that is appended raises the left side alone.
+static_assert(sizeof(void*) != 8 ||
+              (sizeof(quincunx_settings) == 224 && sizeof(quincunx_needs) == 48 &&
+               sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 208 &&
+               sizeof(quincunx_outputs) == 24 && sizeof(quincunx_report) == 96 &&
+               sizeof(quincunx_particles) == 40 && sizeof(quincunx_focus) == 48 &&
+               sizeof(quincunx_fade) == 24 && sizeof(quincunx_sync) == 32 && sizeof(quincunx_content) == 64));
 
 template <typename Struct>
 Status check_size(const Struct* given, const char* name) {
@@ -60,6 +74,28 @@ Status read_sized(const Struct* given, const char* name, Struct& own) {
   std::memcpy(&own, given, std::min(given->struct_size, sizeof(Struct)));
   return {};
 }
+
+// Reads numbers that name values; keeps what is wrong with the first that is none.
+class Reader {
+ public:
+  explicit Reader(const char* name) : name_(name) {}
+
+  template <typename Value>
+  void value(const char* field, std::int32_t number, Value last, Value& to, int first = 0) {
+    const int highest = static_cast<int>(last);
+    if (number >= first && number <= highest) {
+      to = static_cast<Value>(number);
+    } else if (status_.ok()) {
+      status_ = Status::invalid(
+          fmt::format("{}.{} is {}; it must lie in [{}, {}]", name_, field, number, first, highest));
+    }
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  const char* name_;
+  Status status_;
+};
 
 // Writes the fields that the caller has; its size stays.
 template <typename Struct>

@@ -16,7 +16,7 @@ from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int
 
 import numpy as np
 
-API_VERSION, MAX_PASSES = 1, 72
+API_VERSION, MAX_PASSES = 2, 72
 HOST = 2  # images lie in host memory
 METHODS = {}  # name: number, as the library has them
 CHOICES = {  # settings that are names here and numbers there
@@ -60,38 +60,52 @@ Settings = sized(
         "history_format blur_samples", c_int32),
     ("shutter sharpness grain velocity_weight residual_weight", c_float), (
         "drawn_velocity depth_convention clip_space velocity_unit velocity_backward velocity_up velocity_jittered origin "
-        "conventions_padding", c_int32))
+        "conventions_padding min_output_width min_output_height particle_target_width particle_target_height "
+        "focus_width focus_height focus_target_width focus_target_height focus_mask measures_content fades "
+        "extents_padding", c_int32))
 Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame "
                         "presented_storage accumulates padding", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))
+Particles = sized("Particles", ("colour depth reactive", POINTER(Image)), ("render_width render_height", c_int32))
+Rectangle = type("Rectangle", (Structure,), {"_fields_": [(name, c_int32) for name in ("x", "y", "width", "height")]})
+Focus = sized("Focus", ("frame", c_void_p), ("x y", c_int32), ("rectangles", POINTER(Rectangle)),
+              ("rectangle_count", c_int32), ("feather", c_float), ("mask", POINTER(Image)))
+Fade = sized("Fade", ("from", POINTER(Image)), ("weight", c_float), ("padding", c_int32))
+Sync = sized("Sync", ("wait_for", POINTER(c_void_p)), ("wait_count padding", c_int32), ("done", POINTER(c_void_p)))
 Inputs = sized("Inputs", ("colour depth velocity reactive", POINTER(Image)), ("render_width render_height", c_int32),
                ("jitter_x jitter_y velocity_scale_x velocity_scale_y", c_float),
                ("clip_to_previous_clip", c_float * 16), ("exposure", c_float), ("reset parity padding", c_int32),
-               ("frame_index", c_uint64), ("near_plane far_plane", c_float))
+               ("frame_index", c_uint64), ("near_plane far_plane", c_float), ("output_width output_height", c_int32),
+               ("exposure_image", POINTER(Image)), ("particles", POINTER(Particles)), ("focus", POINTER(Focus)),
+               ("fade", POINTER(Fade)), ("sync", POINTER(Sync)))
 Outputs = sized("Outputs", ("linear presented", POINTER(Image)))
-
-
 PassReport = type("PassReport", (Structure,), {
     "_fields_": [("kernel", c_char_p), ("ms", c_double), ("bytes", c_uint64)]})
+Content = sized("Content", ("moving speed_px apart thin light zoom", c_double), ("cut padding", c_int32))
 Report = sized("Report", ("passes", POINTER(PassReport)), ("pass_capacity pass_count", c_int32),
                ("frame_index", c_uint64), ("non_finite_pixels", c_int64), ("render_width render_height", c_int32),
-               ("ratio_x ratio_y", c_float), ("used_previous padding", c_int32))
+               ("ratio_x ratio_y", c_float), ("used_previous padding output_width output_height focused content_known",
+                                              c_int32), ("content", POINTER(Content)), ("in_focus", POINTER(c_int32)))
+
+
+EXTENTS = ("min_output", "particle_target", "focus", "focus_target")  # settings of a width and a height
+NUMBERS = ("velocity_scale_x", "velocity_scale_y", "clip_to_previous_clip", "exposure", "reset", "parity", "frame_index",
+           "near_plane", "far_plane")
+CONTENT = ("moving", "speed_px", "apart", "thin", "light", "zoom", "cut")
+TEXTS = ("quincunx_version", "quincunx_last_error", "quincunx_method_name", "quincunx_variant_name",
+         "quincunx_plan_text", "quincunx_device_name", "quincunx_device_profile", "quincunx_device_pass_timer")
 
 
 def load():
     """The library, with its functions' types; raises OSError where it is not found."""
     library = ctypes.CDLL(os.environ.get("QUINCUNX_LIBRARY", "libquincunx.so.1"))
-    for name in ("quincunx_version", "quincunx_last_error", "quincunx_method_name", "quincunx_plan_text",
-                 "quincunx_device_name"):
-        getattr(library, name).restype = c_char_p
-    for name in ("quincunx_plan_text", "quincunx_device_name", "quincunx_plan_destroy", "quincunx_device_destroy",
-                 "quincunx_service_destroy"):
-        getattr(library, name).argtypes = [c_void_p]
-    library.quincunx_jitter.argtypes = [c_uint64, c_int32, c_int32, c_int32, c_int32, POINTER(c_float)]
-    library.quincunx_texture_lod_bias.restype = c_float
     if library.quincunx_api_version() < API_VERSION:
         raise Error(2, f"this library has version {library.quincunx_api_version()} of the interface; "
                        f"quincunx.py needs {API_VERSION} at least")
+    for name in TEXTS:
+        getattr(library, name).restype = c_char_p
+    library.quincunx_jitter.argtypes = [c_uint64, c_int32, c_int32, c_int32, c_int32, POINTER(c_float)]
+    library.quincunx_texture_lod_bias.restype = c_float
     while (name := library.quincunx_method_name(len(METHODS))) is not None:
         METHODS[name.decode()] = len(METHODS)
     return library
@@ -147,6 +161,33 @@ def pixels_of(name, array, channels, dtype):
     return array if rows_are_whole and array.strides[0] >= array[0].nbytes else np.ascontiguousarray(array)
 
 
+def variants():
+    """The names of methods with the settings that matter to them, by growing effort: "temporal:fast"."""
+    names = []
+    while (name := LIBRARY.quincunx_variant_name(len(names))) is not None:
+        names.append(name.decode())
+    return names
+
+
+class Kept:
+    """Arrays and structs that a call refers to."""
+
+    def __init__(self):
+        self.things = []
+
+    def image(self, name, array, channels, dtype):
+        """A pointer to an Image over the array, or None for None."""
+        if array is None:
+            return None
+        pixels = pixels_of(name, array, channels, dtype)
+        self.things.append(pixels)
+        return self.pointer(image_of(pixels))
+
+    def pointer(self, thing):
+        self.things.append(thing)
+        return ctypes.pointer(thing)
+
+
 class Resolver:
     """Makes pictures of one size from frames of any size up to `target_extent`.
 
@@ -154,8 +195,10 @@ class Resolver:
     target_extent  (width, height) of the largest frame; None: that of the pictures
     device         OpenCL device: "", "cpu", "gpu", a number or a part of a name
     colour         type of the frames' colour: "float16" or "float32" (linear, premultiplied), or "uint8" (sRGB encoded)
-    settings       fields of quincunx_settings by name; methods and the keys of CHOICES take names. transparents=False
-                   where frames have no reactive values, moving_objects=False where only the camera moves.
+    settings       fields of quincunx_settings by name; methods and the keys of CHOICES take names, and extents take
+                   (width, height): min_output, particle_target, focus, focus_target. transparents=False where frames
+                   have no reactive values, moving_objects=False where only the camera moves. A name of variants() as
+                   method sets its preset or form, too.
     """
 
     def __init__(self, output_extent, target_extent=None, device="", colour="float32", **settings):
@@ -166,6 +209,11 @@ class Resolver:
         plan.output_width, plan.output_height = output_extent
         plan.target_width, plan.target_height = target_extent or output_extent
         plan.colour_format, plan.velocity_format = FORMATS[4, colour], FORMATS[2, "float32"]
+        if ":" in str(settings.get("method")):
+            call("quincunx_settings_set_method", byref(plan), settings.pop("method").encode())
+        for name in [name for name in EXTENTS if name in settings]:
+            width, height = settings.pop(name)
+            settings.update({name + "_width": width, name + "_height": height})
         for name, value in settings.items():
             if name not in dict(Settings._fields_):
                 raise TypeError(f"'{name}' is no setting; there are: {', '.join(dict(Settings._fields_))}")
@@ -184,35 +232,108 @@ class Resolver:
         """The plan: passes, images, bytes, and why."""
         return LIBRARY.quincunx_plan_text(self._plan).decode()
 
-    def resolve(self, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), presented=False, **inputs):
+    def device(self):
+        """{"name", "profile": how work is cut for it, "pass_timer": what times its passes}."""
+        return {name: getattr(LIBRARY, "quincunx_device_" + name)(self._device).decode()
+                for name in ("name", "profile", "pass_timer")}
+
+    def allow_timing_waits(self, allow=True):
+        """Lets frames wait for each pass where the pass timer is "host clock", so that passes have times."""
+        call("quincunx_allow_timing_waits", self._service, int(allow))
+
+    def reads_history(self, render, output=(0, 0)):
+        """Whether a frame of this size reads earlier ones where there are any."""
+        return bool(LIBRARY.quincunx_plan_reads_history(self._plan, *render, *output))
+
+    def focus_plan(self):
+        """The plan of the focus's region, as text. Raises Error where there is none."""
+        region = c_void_p()
+        call("quincunx_plan_focus", self._plan, byref(region))
+        text = LIBRARY.quincunx_plan_text(region).decode()
+        LIBRARY.quincunx_plan_destroy(region)
+        return text
+
+    def resolve(self, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), presented=False, output=None,
+                particles=None, focus=None, fading_from=None, fade_weight=1, exposure_image=None, **inputs):
         """The picture of one frame, as an array of (height, width, 4).
 
         Arrays of the frame's size: colour (h, w, 3 or 4), depth (h, w), velocity (h, w, 2), reactive (h, w, uint8).
         jitter is in pixels of the frame; `inputs` are further fields of quincunx_inputs by name, for example reset or
         clip_to_previous_clip. Gives linear float32, or with presented=True sRGB encoded uint8.
+
+        output          (width, height) of this frame's picture, from the setting min_output to the pictures' size;
+                        it is then shown in theirs
+        particles       where the setting particle_target is made: {"colour": (h, w, 4), "depth": (h, w), "reactive":
+                        (h, w)}, drawn apart at a size of their own
+        focus           where the setting focus is made: {"colour", "depth", ... and other inputs of the region's frame,
+                        "x", "y": its upper left output pixel, "rectangles": [(x, y, width, height)], at most four,
+                        "feather": output pixels, "mask": (height, width, uint8) of the region}
+        fading_from     where the setting fades is made: another method's linear picture of this frame, of which it
+                        keeps 1 - fade_weight; fade_weight in [0, 1]
+        exposure_image  (1, 1) float32: another factor of the exposure
         """
-        kinds = {"colour": (colour, 4, self._colour), "depth": (depth, 1, "float32"),
-                 "velocity": (velocity, 2, "float32"), "reactive": (reactive, 1, "uint8")}
-        kept = {name: pixels_of(name, *kind) for name, kind in kinds.items() if kind[0] is not None}
-        if "clip_to_previous_clip" in inputs:
-            inputs["clip_to_previous_clip"] = (c_float * 16)(*np.ravel(inputs["clip_to_previous_clip"]))
-        height, width = kept["colour"].shape[:2]
-        frame = Inputs(jitter_x=jitter[0], jitter_y=jitter[1], render_width=width, render_height=height, **inputs)
-        for name, array in kept.items():
-            setattr(frame, name, ctypes.pointer(image_of(array)))
+        kept = Kept()
+        frame = self._frame(kept, colour, depth, velocity, reactive, jitter, inputs)
+        frame.output_width, frame.output_height = output or (0, 0)
+        frame.exposure_image = kept.image("exposure_image", exposure_image, 1, "float32")
+        if particles is not None:
+            frame.particles = kept.pointer(self._particles(kept, **particles))
+        if focus is not None:
+            frame.focus = kept.pointer(self._focus(kept, **focus))
+        if fading_from is not None:
+            fade = Fade(weight=fade_weight)
+            setattr(fade, "from", kept.image("fading_from", fading_from, 4, "float32"))
+            frame.fade = kept.pointer(fade)
         picture = np.empty((self.output_extent[1], self.output_extent[0], 4), "uint8" if presented else "float32")
         outputs = Outputs(**{"presented" if presented else "linear": ctypes.pointer(image_of(picture))})
         call("quincunx_dispatch", self._service, byref(frame), byref(outputs), None)
         return picture
 
+    def _frame(self, kept, colour, depth, velocity, reactive, jitter, inputs):
+        if "clip_to_previous_clip" in inputs:
+            inputs = {**inputs, "clip_to_previous_clip": (c_float * 16)(*np.ravel(inputs["clip_to_previous_clip"]))}
+        for name in inputs:
+            if name not in NUMBERS:
+                raise TypeError(f"'{name}' is no input; there are: {', '.join(NUMBERS)}")
+        image = kept.image("colour", colour, 4, self._colour)
+        return Inputs(jitter_x=jitter[0], jitter_y=jitter[1], render_width=image.contents.width,
+                      render_height=image.contents.height, colour=image,
+                      depth=kept.image("depth", depth, 1, "float32"),
+                      velocity=kept.image("velocity", velocity, 2, "float32"),
+                      reactive=kept.image("reactive", reactive, 1, "uint8"), **inputs)
+
+    def _particles(self, kept, colour, depth, reactive=None):
+        image = kept.image("particles' colour", colour, 4, self._colour)
+        return Particles(colour=image, depth=kept.image("particles' depth", depth, 1, "float32"),
+                         reactive=kept.image("particles' reactive", reactive, 1, "uint8"),
+                         render_width=image.contents.width, render_height=image.contents.height)
+
+    def _focus(self, kept, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), x=0, y=0, rectangles=(),
+               feather=0, mask=None, **inputs):
+        frame = kept.pointer(self._frame(kept, colour, depth, velocity, reactive, jitter, inputs))
+        places = (Rectangle * len(rectangles))(*(Rectangle(*place) for place in rectangles))
+        kept.things.append(places)
+        return Focus(frame=ctypes.cast(frame, c_void_p), x=x, y=y, rectangles=places, rectangle_count=len(rectangles),
+                     feather=feather, mask=kept.image("focus's mask", mask, 1, "uint8"))
+
     def reports(self):
-        """Of the frames since the last call: {"frame", "render", "used_previous", "passes": [(name, ms, bytes)]}."""
-        found, passes = [], (PassReport * MAX_PASSES)()
-        report = Report(passes=passes, pass_capacity=MAX_PASSES)
+        """Of the frames since the last call, each a dictionary:
+
+        frame, render, output, used_previous, focused, non_finite_pixels, passes: [(name, ms, bytes)], where those of a
+        focus begin with "focus: ", and content: with the setting measures_content the shares of ContentStatistics by
+        name, else None.
+        """
+        found, passes, in_focus = [], (PassReport * MAX_PASSES)(), (c_int32 * MAX_PASSES)()
+        content = Content()
+        report = Report(passes=passes, pass_capacity=MAX_PASSES, in_focus=in_focus, content=ctypes.pointer(content))
         while call("quincunx_next_report", self._service, byref(report)) == 0:
+            known = {name: getattr(content, name) for name in CONTENT} if report.content_known else None
             found.append({"frame": report.frame_index, "render": (report.render_width, report.render_height),
-                          "used_previous": bool(report.used_previous),
-                          "passes": [(p.kernel.decode(), p.ms, p.bytes) for p in passes[:report.pass_count]]})
+                          "output": (report.output_width, report.output_height),
+                          "used_previous": bool(report.used_previous), "focused": bool(report.focused),
+                          "non_finite_pixels": report.non_finite_pixels, "content": known,
+                          "passes": [("focus: " * bool(in_focus[i]) + passes[i].kernel.decode(), passes[i].ms,
+                                      passes[i].bytes) for i in range(report.pass_count)]})
         return found
 
 

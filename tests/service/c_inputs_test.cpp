@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+// What a frame may bring besides its images, over the C interface: particles, focus, fade, exposure, a dynamic output,
+// events. The pictures are those of the C++ interface.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "c_fixture.h"
+#include "service_fixture.h"
+
+namespace quincunx {
+namespace {
+
+using testing::c_plan;
+using testing::COwner;
+using testing::HostFrame;
+using testing::HostPicture;
+using testing::Pixel;
+using testing::random_frame;
+
+constexpr Extent kOutput{48, 36};
+constexpr Extent kTarget{64, 48};
+constexpr Extent kParticles{40, 30};
+constexpr Extent kRegion{24, 18};
+constexpr Extent kRegionTarget{32, 24};
+
+// One picture in host memory, and on the device for the C++ interface: two of these, in turns.
+struct Plane {
+  PixelFormat format;
+  Extent size;
+  HostPicture host{size, format};
+  Image images[2] = {};
+
+  ImageView upload(const Device& device, Extent part, std::size_t turn) {
+    if (!images[turn]) images[turn] = device.allocate(size, format).value();
+    const quincunx_image& from = *host.image();
+    EXPECT_TRUE(device.upload(images[turn].view(), part, from.memory, from.pitch).ok());
+    return images[turn].view();
+  }
+};
+
+// Colour, depth, velocity and reactive values of frames up to a size.
+struct Planes {
+  explicit Planes(Extent size)
+      : colour{PixelFormat::kRGBA32F, size},
+        depth{PixelFormat::kR32F, size},
+        velocity{PixelFormat::kRG32F, size},
+        reactive{PixelFormat::kR8, size} {}
+
+  void fill(const HostFrame& frame) {
+    colour.host.fill<Pixel>(frame.render, frame.colour);
+    depth.host.fill<float>(frame.render, frame.depth);
+    velocity.host.fill<Vec2>(frame.render, frame.velocity);
+    reactive.host.fill<std::uint8_t>(frame.render, frame.reactive);
+  }
+
+  Plane colour, depth, velocity, reactive;
+};
+
+struct Extras {
+  const char* name;
+  ResolveSettings settings;
+  bool particles = false, focus = false, fade = false;
+};
+
+class CExtras : public ::testing::TestWithParam<Extras> {};
+
+TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
+  const Extras& with = GetParam();
+  ResolveSettings settings = with.settings;
+  settings.output_extent = kOutput;
+  settings.target_extent = kTarget;
+  settings.colour = PixelFormat::kRGBA32F;
+  settings.velocity = PixelFormat::kRG32F;
+  const Device device = Device::open().value();
+  const ResolvePlan expected_plan = plan_for({}, settings).value();
+  ResolveService expected = ResolveService::create(device, expected_plan).value();
+  const Image linear = device.allocate(kOutput, PixelFormat::kRGBA32F).value();
+  const Image presented = device.allocate(kOutput, PixelFormat::kRGBA8).value();
+
+  const auto plan = c_plan({}, settings);
+  quincunx_device* opened = nullptr;
+  ASSERT_EQ(quincunx_device_open("", &opened), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> c_device(opened);
+  quincunx_service* made = nullptr;
+  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service(made);
+  HostPicture c_linear(kOutput, PixelFormat::kRGBA32F), c_presented(kOutput, PixelFormat::kRGBA8);
+  const quincunx_outputs outputs = {sizeof(outputs), c_linear.image(), c_presented.image()};
+
+  Planes scene(kTarget), particles(kParticles), region(kRegionTarget);
+  Plane mask{PixelFormat::kR8, kRegion}, exposure{PixelFormat::kR32F, {1, 1}},
+      other{PixelFormat::kRGBA32F, kOutput};
+  std::mt19937 random(21);
+  int focused = 0, known = 0;
+  for (std::size_t n = 0; n < 16; ++n) {
+    const std::size_t turn = n % 2;
+    const HostFrame frame = random_frame(random, kTarget), dust = random_frame(random, kParticles);
+    HostFrame close = random_frame(random, kRegionTarget), old = random_frame(random, kOutput);
+    close.reset = false;
+    old.render = kOutput;
+    const float brightness = 0.25f * static_cast<float>(1 + n % 5);
+    scene.fill(frame);
+    exposure.host.fill<float>({1, 1}, [=](int, int) { return brightness; });
+
+    FrameInputs own = {.colour = scene.colour.upload(device, frame.render, turn),
+                       .depth = scene.depth.upload(device, frame.render, turn),
+                       .velocity = scene.velocity.upload(device, frame.render, turn),
+                       .reactive = scene.reactive.upload(device, frame.render, turn),
+                       .render_extent = frame.render,
+                       .jitter = frame.jitter,
+                       .exposure_image = exposure.upload(device, {1, 1}, turn),
+                       .reset = frame.reset,
+                       .frame_index = n};
+    quincunx_inputs inputs = {};
+    inputs.struct_size = sizeof(inputs);
+    inputs.colour = scene.colour.host.image();
+    inputs.depth = scene.depth.host.image();
+    inputs.velocity = scene.velocity.host.image();
+    inputs.reactive = scene.reactive.host.image();
+    inputs.render_width = frame.render.width;
+    inputs.render_height = frame.render.height;
+    inputs.jitter_x = frame.jitter.x;
+    inputs.jitter_y = frame.jitter.y;
+    inputs.exposure_image = exposure.host.image();
+    inputs.reset = frame.reset;
+    inputs.frame_index = n;
+    if (settings.min_output_extent != Extent{}) {
+      own.output_extent = {24 + static_cast<int>(random() % 25), 18 + static_cast<int>(random() % 19)};
+      inputs.output_width = own.output_extent.width;
+      inputs.output_height = own.output_extent.height;
+    }
+    quincunx_particles c_particles = {};
+    if (with.particles) {
+      particles.fill(dust);
+      own.particle_colour = particles.colour.upload(device, dust.render, turn);
+      own.particle_depth = particles.depth.upload(device, dust.render, turn);
+      own.particle_reactive = particles.reactive.upload(device, dust.render, turn);
+      own.particle_render_extent = dust.render;
+      c_particles = {sizeof(c_particles),
+                     particles.colour.host.image(),
+                     particles.depth.host.image(),
+                     particles.reactive.host.image(),
+                     dust.render.width,
+                     dust.render.height};
+      inputs.particles = &c_particles;
+    }
+    quincunx_fade fade = {};
+    if (with.fade && n % 3 != 0) {
+      other.host.fill<Pixel>(kOutput, old.colour);
+      own.fading_from = other.upload(device, kOutput, turn);
+      own.fade_weight = 0.25f;
+      fade = {sizeof(fade), other.host.image(), 0.25f, 0};
+      inputs.fade = &fade;
+    }
+    FocusInputs own_focus;
+    quincunx_focus focus = {};
+    quincunx_inputs close_inputs = {};
+    const quincunx_rectangle rectangle = {5, 4, 20, 12};
+    const bool is_focused = with.focus && n % 5 != 4;
+    if (is_focused) {
+      region.fill(close);
+      mask.host.fill<std::uint8_t>(kRegion,
+                                   [](int x, int y) { return static_cast<std::uint8_t>(7 * x + y); });
+      own_focus = {.frame = {.colour = region.colour.upload(device, close.render, turn),
+                             .depth = region.depth.upload(device, close.render, turn),
+                             .velocity = region.velocity.upload(device, close.render, turn),
+                             .reactive = region.reactive.upload(device, close.render, turn),
+                             .render_extent = close.render,
+                             .jitter = close.jitter},
+                   .x = 3,
+                   .y = 2,
+                   .rectangles = {{{5, 4, 20, 12}}},
+                   .rectangle_count = 1,
+                   .feather = 4,
+                   .mask = mask.upload(device, kRegion, turn)};
+      close_inputs.struct_size = sizeof(close_inputs);
+      close_inputs.colour = region.colour.host.image();
+      close_inputs.depth = region.depth.host.image();
+      close_inputs.velocity = region.velocity.host.image();
+      close_inputs.reactive = region.reactive.host.image();
+      close_inputs.render_width = close.render.width;
+      close_inputs.render_height = close.render.height;
+      close_inputs.jitter_x = close.jitter.x;
+      close_inputs.jitter_y = close.jitter.y;
+      focus = {sizeof(focus), &close_inputs, 3, 2, &rectangle, 1, 4, mask.host.image()};
+      inputs.focus = &focus;
+    }
+
+    const FrameOutputs to = {linear.view(), presented.view()};
+    const FrameReport report =
+        is_focused ? expected.dispatch(own, own_focus, to) : expected.dispatch(own, to);
+    ASSERT_TRUE(report.ok()) << report.status.message();
+    quincunx_report c_report = {};
+    int in_focus[QUINCUNX_MAX_PASSES] = {};
+    quincunx_content content = {};
+    content.struct_size = sizeof(content);
+    c_report.struct_size = sizeof(c_report);
+    c_report.pass_capacity = QUINCUNX_MAX_PASSES;
+    c_report.in_focus = in_focus;
+    c_report.content = &content;
+    ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, &c_report), QUINCUNX_OK) << quincunx_last_error();
+    EXPECT_EQ(c_report.focused, report.focused);
+    focused += c_report.focused;
+    EXPECT_EQ((Extent{c_report.output_width, c_report.output_height}), report.output_extent);
+    ASSERT_EQ(c_report.pass_count, static_cast<int>(report.passes.size()));
+    for (std::size_t i = 0; i < report.passes.size(); ++i)
+      EXPECT_EQ(in_focus[i], report.passes[i].in_focus) << report.passes[i].kernel;
+
+    std::vector<unsigned char> texels(static_cast<std::size_t>(kOutput.area()) * sizeof(Pixel));
+    ASSERT_TRUE(device.download(linear.view(), kOutput, texels.data()).ok());
+    ASSERT_EQ(c_linear.texels(), texels) << "frame " << n;
+    texels.resize(static_cast<std::size_t>(kOutput.area()) * 4);
+    ASSERT_TRUE(device.download(presented.view(), kOutput, texels.data()).ok());
+    ASSERT_EQ(c_presented.texels(), texels) << "frame " << n;
+
+    const auto done = expected.next_completed();
+    ASSERT_TRUE(done.has_value());
+    ASSERT_EQ(quincunx_next_report(made, &c_report), QUINCUNX_OK) << quincunx_last_error();
+    ASSERT_EQ(c_report.content_known, done->content.has_value());
+    known += c_report.content_known;
+    if (!done->content) continue;
+    EXPECT_EQ(content.moving, done->content->moving);
+    EXPECT_EQ(content.speed_px, done->content->speed_px);
+    EXPECT_EQ(content.light, done->content->light);
+    EXPECT_EQ(content.struct_size, sizeof(content));
+  }
+  EXPECT_EQ(focused > 0, with.focus);
+  EXPECT_EQ(known > 0, settings.measures_content);
+}
+
+const Extras kExtras[] = {
+    {.name = "particles", .settings = {.particle_target_extent = kParticles}, .particles = true},
+    {.name = "fade",
+     .settings = {.min_output_extent = {24, 18}, .measures_content = true, .fades = true},
+     .fade = true},
+    {.name = "focus",
+     .settings = {.focus = {.extent = kRegion, .target_extent = kRegionTarget, .mask = true}},
+     .focus = true},
+    {.name = "all",
+     .settings = {.min_output_extent = {24, 18},
+                  .particle_target_extent = kParticles,
+                  .blur = {.shutter = 0.5f},
+                  .focus = {.extent = kRegion, .target_extent = kRegionTarget, .mask = true},
+                  .measures_content = true,
+                  .fades = true},
+     .particles = true,
+     .focus = true,
+     .fade = true},
+};
+INSTANTIATE_TEST_SUITE_P(Inputs, CExtras, ::testing::ValuesIn(kExtras),
+                         [](const auto& instance) { return instance.param.name; });
+
+// A frame's work waits for the caller's events, and its end is one.
+TEST(CSync, EventsInAndOut) {
+  const Device device = Device::open().value();
+  quincunx_device* borrowed = nullptr;
+  ASSERT_EQ(quincunx_device_borrow(device.context(), device.id(), device.queue(), &borrowed), QUINCUNX_OK);
+  const COwner<quincunx_device> owner(borrowed);
+  const auto plan = c_plan({}, {.method = Method::kBilinear,
+                                .output_extent = kOutput,
+                                .target_extent = kOutput,
+                                .colour = PixelFormat::kRGBA32F,
+                                .present = false});
+  quincunx_service* made = nullptr;
+  ASSERT_EQ(quincunx_service_create(borrowed, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service(made);
+  const Image colour = device.allocate(kOutput, PixelFormat::kRGBA32F).value();
+  const Image picture = device.allocate(kOutput, PixelFormat::kRGBA32F).value();
+  const auto image = [](const Image& of) {
+    return quincunx_image{
+        sizeof(quincunx_image), QUINCUNX_BUFFER, QUINCUNX_RGBA32F, kOutput.width, kOutput.height, 0, 0,
+        of.view().memory};
+  };
+  const quincunx_image in = image(colour), out = image(picture);
+  quincunx_inputs inputs = {};
+  inputs.struct_size = sizeof(inputs);
+  inputs.colour = &in;
+  inputs.render_width = kOutput.width;
+  inputs.render_height = kOutput.height;
+  const quincunx_outputs outputs = {sizeof(outputs), &out, nullptr};
+
+  cl_event gate = clCreateUserEvent(device.context(), nullptr);
+  void* waits[] = {gate};
+  void* done = nullptr;
+  quincunx_sync sync = {sizeof(sync), waits, 1, 0, &done};
+  inputs.sync = &sync;
+  ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+  auto* end = static_cast<cl_event>(done);
+  ASSERT_NE(end, nullptr);
+  cl_int state = CL_COMPLETE;
+  clGetEventInfo(end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof(state), &state, nullptr);
+  EXPECT_NE(state, CL_COMPLETE);
+  clSetUserEventStatus(gate, CL_COMPLETE);
+  EXPECT_EQ(clWaitForEvents(1, &end), CL_SUCCESS);
+  clReleaseEvent(end);
+  clReleaseEvent(gate);
+
+  const auto refuses = [&](const char* words) {
+    done = &sync;  // anything but NULL
+    return quincunx_dispatch(made, &inputs, &outputs, nullptr) == QUINCUNX_INVALID_ARGUMENT &&
+           done == nullptr && std::string(quincunx_last_error()).find(words) != std::string::npos;
+  };
+  waits[0] = nullptr;
+  EXPECT_TRUE(refuses("wait_for[0] is null; leave it out")) << quincunx_last_error();
+  sync.wait_for = nullptr;
+  EXPECT_TRUE(refuses("sync.wait_for is NULL; it must point to 1 events")) << quincunx_last_error();
+  sync.wait_count = -1;
+  EXPECT_TRUE(refuses("sync.wait_count is -1; it must be at least 0")) << quincunx_last_error();
+}
+
+}  // namespace
+}  // namespace quincunx
