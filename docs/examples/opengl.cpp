@@ -6,7 +6,7 @@
 #include <epoxy/gl.h>
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <quincunx/predictive_controller.h>
+#include <quincunx/control/predictive_controller.h>
 #include <quincunx/resolve_service.h>
 #include <quincunx_gl/bridge.h>
 

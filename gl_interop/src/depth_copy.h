@@ -4,7 +4,7 @@
 
 #include <epoxy/gl.h>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx_gl/handle.h"
 
 namespace quincunx::gl {

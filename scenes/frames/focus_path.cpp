@@ -9,7 +9,7 @@
 #include <cmath>
 #include <set>
 
-#include "quincunx/focus.h"
+#include "quincunx/advanced/focus.h"
 #include "render/view_math.h"
 
 namespace quincunx::scenes {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "frames/frame_sequence.h"
-#include "quincunx/extent.h"
-#include "quincunx/focus.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/advanced/focus.h"
 #include "quincunx/status.h"
 #include "render/renderer.h"
 #include "scene.h"

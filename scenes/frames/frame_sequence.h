@@ -8,9 +8,9 @@
 #include <random>
 #include <string>
 
-#include "quincunx/dynamic_viewport.h"
-#include "quincunx/extent.h"
-#include "quincunx/output_follower.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/control/dynamic_viewport.h"
+#include "quincunx/control/output_follower.h"
 #include "quincunx/status.h"
 #include "render/renderer.h"
 #include "tools/program/jitter.h"

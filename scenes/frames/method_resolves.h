@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "frames/frame_source.h"
-#include "quincunx/quality_controller.h"
+#include "quincunx/control/quality_controller.h"
 #include "quincunx/resolve_service.h"
 #include "tools/program/jitter.h"
 

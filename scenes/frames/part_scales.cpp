@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 #include "render/view_math.h"
 
 namespace quincunx::scenes {

@@ -12,8 +12,8 @@
 #include <optional>
 #include <string>
 
-#include "quincunx/detail_follower.h"
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/detail_follower.h"
+#include "quincunx/control/resolution_controller.h"
 #include "render/renderer.h"
 
 namespace quincunx::scenes {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 #include "tools/image/image_io.h"
 #include "tools/image/text_painter.h"

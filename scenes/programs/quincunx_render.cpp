@@ -8,7 +8,7 @@
 #include "catalog/scene_catalog.h"
 #include "frames/method_resolves.h"
 #include "frames/target_file.h"
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 #include "quincunx/status.h"
 #include "render/truth.h"
 #include "session/calibration.h"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
 #include "quincunx_gl/render_targets.h"

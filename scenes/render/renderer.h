@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
+#include "quincunx/advanced/method.h"
 #include "quincunx/frame.h"
-#include "quincunx/method.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/part_timer.h"
 #include "quincunx_gl/render_targets.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "session/paced_loop.h"
 #include "tools/page/scored_frames.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "frames/frame_source.h"
-#include "quincunx/error_front.h"
+#include "quincunx/control/error_front.h"
 #include "quincunx/status.h"
 #include "session/render_options.h"
 #include "tools/image/image_metrics.h"

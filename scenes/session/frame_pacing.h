@@ -21,8 +21,8 @@
 #include <optional>
 #include <string>
 
+#include "quincunx/control/quality_controller.h"
 #include "quincunx/frame.h"
-#include "quincunx/quality_controller.h"
 #include "quincunx/status.h"
 #include "tools/program/pacing_report.h"
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "frames/picture_options.h"
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 #include "render/truth.h"
 #include "session/calibration.h"
 #include "session/paced_loop.h"

@@ -16,8 +16,8 @@
 #include <optional>
 #include <string>
 
+#include "quincunx/advanced/pass_timer.h"
 #include "quincunx/frame.h"
-#include "quincunx/pass_timer.h"
 #include "quincunx_gl/frame_timer.h"
 #include "session/frame_pacing.h"
 #include "tools/program/clock.h"

@@ -13,7 +13,7 @@
 #include "frames/frame_source.h"
 #include "frames/method_resolves.h"
 #include "frames/part_scales.h"
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "session/paced_loop.h"
 #include "session/render_options.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 #include "session/render_options.h"
 

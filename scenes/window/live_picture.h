@@ -13,7 +13,7 @@
 #include "frames/method_resolves.h"
 #include "frames/picture_options.h"
 #include "frames/target_file.h"
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx_gl/frame_timer.h"
 #include "quincunx_gl/handle.h"

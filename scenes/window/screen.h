@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
 #include "window/window_settings.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/capabilities.h"
 

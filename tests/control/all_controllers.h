@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "quincunx/predictive_controller.h"
-#include "quincunx/quality_controller.h"
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/predictive_controller.h"
+#include "quincunx/control/quality_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx::testing {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/cost_table.h"
+#include "quincunx/control/cost_table.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The error front: its values, its file, and the scene mix that it is asked with.
-#include "quincunx/error_front.h"
+#include "quincunx/control/error_front.h"
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@
 
 #include "../tools/own_cache.h"
 #include "../tools/temporary_folder.h"
-#include "quincunx/cache_folder.h"
-#include "quincunx/content_statistics.h"
-#include "quincunx/front_file.h"
+#include "quincunx/advanced/cache_folder.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/control/front_file.h"
 
 namespace quincunx {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "quincunx/detail_follower.h"
-#include "quincunx/output_follower.h"
+#include "quincunx/control/detail_follower.h"
+#include "quincunx/control/output_follower.h"
 
 namespace quincunx {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "quincunx/method.h"
+#include "quincunx/advanced/method.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {

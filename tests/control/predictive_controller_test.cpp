@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The parts of the predictive controller against values computed by hand, and the whole on loads that are played.
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 
 #include <gtest/gtest.h>
 

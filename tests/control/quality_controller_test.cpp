@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The choice of the method; and the quality controller against a front and a machine that are written down here.
-#include "quincunx/quality_controller.h"
+#include "quincunx/control/quality_controller.h"
 
 #include <gtest/gtest.h>
 

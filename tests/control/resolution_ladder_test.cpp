@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/resolution_ladder.h"
+#include "quincunx/control/resolution_ladder.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "quincunx/dynamic_viewport.h"
+#include "quincunx/control/dynamic_viewport.h"
 
 namespace quincunx {
 namespace {

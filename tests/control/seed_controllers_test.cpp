@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx {
 namespace {

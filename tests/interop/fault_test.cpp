@@ -15,7 +15,7 @@
 #include "cl_faults.h"
 #include "host_copy.h"
 #include "interop_fixture.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
 

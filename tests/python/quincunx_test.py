@@ -68,14 +68,14 @@ STRUCTS = ("Settings", "Needs", "Image", "Particles", "Rectangle", "Focus", "Fad
 
 class Structs(unittest.TestCase):
     def test_fields_are_those_of_the_headers(self):
-        text = read(HEADERS, "c_settings.h") + read(HEADERS, "c_frame.h")
+        text = read(HEADERS, "c", "settings.h") + read(HEADERS, "c", "frame.h")
         for name in STRUCTS:
             struct = "quincunx" + re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)
             fields = [field for field, _ in getattr(quincunx, name)._fields_]
             self.assertEqual(fields, fields_of_c(struct, text), name)
 
     def test_names_are_numbers_of_the_header(self):
-        text = read(HEADERS, "c_settings.h")
+        text = read(HEADERS, "c", "settings.h")
         for name, number in {"QUINCUNX_TEMPORAL": quincunx.METHODS["temporal"], "QUINCUNX_HOST": quincunx.HOST,
                              "QUINCUNX_REPROJECTED": quincunx.number_of("two_frame_form", "reprojected"),
                              "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],

@@ -16,8 +16,8 @@
 #include "device/program_cache.h"
 #include "embedded_files.h"
 #include "passes/pass.h"
+#include "quincunx/advanced/device_profile.h"
 #include "quincunx/device.h"
-#include "quincunx/device_profile.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "device/timer_validation.h"
-#include "quincunx/pass_timer.h"
+#include "quincunx/advanced/pass_timer.h"
 #include "service_fixture.h"
 
 namespace {

@@ -19,8 +19,8 @@
 #include <memory>
 #include <string>
 
+#include "quincunx/advanced/export.h"
 #include "quincunx/device.h"
-#include "quincunx/export.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx_gl/context.h"
 #include "quincunx_gl/render_targets.h"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 
 namespace quincunx::gl {
 

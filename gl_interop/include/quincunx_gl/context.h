@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/capabilities.h"
 

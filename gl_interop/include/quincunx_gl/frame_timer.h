@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 

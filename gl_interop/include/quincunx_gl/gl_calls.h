@@ -8,8 +8,8 @@
 
 #include <initializer_list>
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::gl {
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <optional>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx_gl/frame_timer.h"
 
 namespace quincunx::gl {

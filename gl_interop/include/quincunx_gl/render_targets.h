@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/image.h"
 #include "quincunx_gl/handle.h"
 

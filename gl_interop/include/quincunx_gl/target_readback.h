@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx_gl/render_targets.h"
 
 namespace quincunx::gl {

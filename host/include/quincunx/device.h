@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
-#include "quincunx/content_statistics.h"
-#include "quincunx/export.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 

@@ -11,8 +11,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx {
 

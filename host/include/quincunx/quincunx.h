@@ -25,9 +25,9 @@
 
 #include <stdint.h>
 
-#include "quincunx/c_frame.h"
-#include "quincunx/c_settings.h"
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/c/frame.h"
+#include "quincunx/c/settings.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -125,7 +125,7 @@ QUINCUNX_API quincunx_status quincunx_validate(const quincunx_plan* plan, const 
                                                const quincunx_outputs* outputs);
 
 /* Resolves one frame. `report` may be NULL; its times are not known yet. Memory objects: the passes are enqueued, and
- * nothing is waited for; c_frame.h says how long inputs must stay. Host memory: inputs have been read when it returns,
+ * nothing is waited for; c/frame.h says how long inputs must stay. Host memory: inputs have been read when it returns,
  * and where an output is one, the frame has been waited for and the picture lies there. A bad frame is refused whole:
  * no output is touched, and the history is as it was. Errors: QUINCUNX_INVALID_ARGUMENT; QUINCUNX_DEVICE_FAILURE, after
  * which the frame may have been resolved, and the next one should set reset. */

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/conventions.h"
-#include "quincunx/export.h"
+#include "quincunx/advanced/conventions.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/method.h"
 #include "quincunx/image.h"
-#include "quincunx/method.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/focus.h"
+#include "quincunx/advanced/pass_timer.h"
 #include "quincunx/device.h"
-#include "quincunx/export.h"
-#include "quincunx/focus.h"
 #include "quincunx/frame.h"
-#include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 

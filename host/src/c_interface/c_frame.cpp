@@ -7,7 +7,7 @@
 
 #include "c_interface/sized_struct.h"
 #include "plan/resources.h"
-#include "quincunx/c_settings.h"
+#include "quincunx/c/settings.h"
 
 namespace quincunx::c {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "quincunx/c_frame.h"
+#include "quincunx/c/frame.h"
 #include "quincunx/device.h"
 #include "quincunx/resolve_service.h"
 

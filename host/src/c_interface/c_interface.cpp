@@ -11,7 +11,7 @@
 #include "c_interface/c_settings.h"
 #include "c_interface/calls.h"
 #include "c_interface/sized_struct.h"
-#include "quincunx/device_profile.h"
+#include "quincunx/advanced/device_profile.h"
 #include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 

@@ -2,7 +2,7 @@
 // Settings of the C interface as the library's own, and back.
 #pragma once
 
-#include "quincunx/c_settings.h"
+#include "quincunx/c/settings.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx::c {

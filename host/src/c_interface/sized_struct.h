@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "quincunx/c_frame.h"
-#include "quincunx/c_settings.h"
+#include "quincunx/c/frame.h"
+#include "quincunx/c/settings.h"
 #include "quincunx/status.h"
 
 namespace quincunx::c {

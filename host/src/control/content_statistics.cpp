@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/content_statistics.h"
+#include "quincunx/advanced/content_statistics.h"
 
 #include <fmt/format.h>
 

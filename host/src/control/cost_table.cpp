@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/cost_table.h"
+#include "quincunx/control/cost_table.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/dynamic_viewport.h"
+#include "quincunx/control/dynamic_viewport.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/error_front.h"
+#include "quincunx/control/error_front.h"
 
 #include <fmt/format.h>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "quincunx/detail_follower.h"
-#include "quincunx/output_follower.h"
+#include "quincunx/control/detail_follower.h"
+#include "quincunx/control/output_follower.h"
 
 namespace quincunx {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // ErrorFront as JSON text; the one that is built in, and the file of the cache.
-#include "quincunx/front_file.h"
+#include "quincunx/control/front_file.h"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -12,9 +12,9 @@
 #include <stdexcept>
 
 #include "embedded_files.h"
-#include "quincunx/cache_folder.h"
+#include "quincunx/advanced/cache_folder.h"
+#include "quincunx/control/error_front.h"
 #include "quincunx/device.h"
-#include "quincunx/error_front.h"
 
 namespace quincunx {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "control/predictive_model.h"
-#include "quincunx/error_front.h"
-#include "quincunx/quality_controller.h"
+#include "quincunx/control/error_front.h"
+#include "quincunx/control/quality_controller.h"
 
 namespace quincunx {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 
 #include <fmt/format.h>
 

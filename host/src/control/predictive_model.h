@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 
 namespace quincunx {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/quality_controller.h"
+#include "quincunx/control/quality_controller.h"
 
 #include <fmt/format.h>
 

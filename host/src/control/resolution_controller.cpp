@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/resolution_ladder.h"
+#include "quincunx/control/resolution_ladder.h"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,9 @@
 #include <unordered_map>
 
 #include "device/opencl.h"
+#include "quincunx/advanced/device_profile.h"
+#include "quincunx/advanced/pass_timer.h"
 #include "quincunx/device.h"
-#include "quincunx/device_profile.h"
-#include "quincunx/pass_timer.h"
 
 namespace quincunx {
 

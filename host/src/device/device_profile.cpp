@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/device_profile.h"
+#include "quincunx/advanced/device_profile.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "quincunx/advanced/device_profile.h"
 #include "quincunx/device.h"
-#include "quincunx/device_profile.h"
 
 namespace quincunx {
 

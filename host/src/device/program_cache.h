@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "device/device_impl.h"
-#include "quincunx/cache_folder.h"
+#include "quincunx/advanced/cache_folder.h"
 
 namespace quincunx {
 

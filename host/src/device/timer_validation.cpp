@@ -10,7 +10,7 @@
 #include <string>
 
 #include "device/program_cache.h"
-#include "quincunx/cache_folder.h"
+#include "quincunx/advanced/cache_folder.h"
 
 namespace quincunx {
 namespace {

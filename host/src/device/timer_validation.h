@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The choice of the clock that times the passes of a device; see quincunx/pass_timer.h.
+// The choice of the clock that times the passes of a device; see quincunx/advanced/pass_timer.h.
 #pragma once
 
 #include <cstdint>

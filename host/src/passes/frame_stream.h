@@ -6,7 +6,7 @@
 #pragma once
 
 #include "passes/pass_chain.h"
-#include "quincunx/focus.h"
+#include "quincunx/advanced/focus.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
 

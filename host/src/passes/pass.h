@@ -16,7 +16,7 @@
 #include "params.h"
 #include "passes/tables.h"
 #include "plan/pass_spec.h"
-#include "quincunx/focus.h"
+#include "quincunx/advanced/focus.h"
 #include "quincunx/frame.h"
 #include "quincunx/image.h"
 #include "quincunx/resolve_plan.h"

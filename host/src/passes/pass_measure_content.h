@@ -3,8 +3,8 @@
 #pragma once
 
 #include "picture_params.h"
-#include "quincunx/content_statistics.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx {
 

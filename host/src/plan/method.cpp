@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "quincunx/method.h"
+#include "quincunx/advanced/method.h"
 
 #include <fmt/format.h>
 

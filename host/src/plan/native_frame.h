@@ -4,7 +4,7 @@
 #pragma once
 
 #include "plan/resources.h"
-#include "quincunx/focus.h"
+#include "quincunx/advanced/focus.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {

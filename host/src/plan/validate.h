@@ -2,7 +2,7 @@
 // validate_focus(): validate() of a focus alone, for a caller who keeps the plan of its region.
 #pragma once
 
-#include "quincunx/focus.h"
+#include "quincunx/advanced/focus.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 

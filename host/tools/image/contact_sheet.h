@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {

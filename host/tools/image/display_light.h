@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "quincunx/method.h"
+#include "quincunx/advanced/method.h"
 
 namespace quincunx::tools {
 

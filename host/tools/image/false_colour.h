@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "tools/image/text_painter.h"
 
 namespace quincunx::tools {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::tools {
 

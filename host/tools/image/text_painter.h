@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::tools {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::tools {
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/content_statistics.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::tools {
 

@@ -11,8 +11,8 @@
 #include <ctime>
 #include <exception>
 
+#include "quincunx/advanced/device_profile.h"
 #include "quincunx/device.h"
-#include "quincunx/device_profile.h"
 
 namespace quincunx::tools {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "quincunx/advanced/extent.h"
 #include "quincunx/device.h"
-#include "quincunx/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::tools {

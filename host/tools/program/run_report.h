@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/advanced/pass_timer.h"
 #include "quincunx/frame.h"
-#include "quincunx/pass_timer.h"
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "tools/program/pacing_report.h"

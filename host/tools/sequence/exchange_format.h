@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/frame.h"
 #include "quincunx/status.h"
 #include "tools/image/image_io.h"

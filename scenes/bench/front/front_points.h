@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/speed_error/bench_result.h"
-#include "quincunx/error_front.h"
+#include "quincunx/control/error_front.h"
 
 namespace quincunx::bench {
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
-#include "quincunx/pass_timer.h"
+#include "quincunx/advanced/pass_timer.h"
 
 namespace quincunx::bench {
 

@@ -6,8 +6,8 @@
 
 namespace quincunx::bench {
 
-// Whether a benchmark may measure this device by its OpenCL events (see quincunx/pass_timer.h). Errors: kUnsupported,
-// naming the device.
+// Whether a benchmark may measure this device by its OpenCL events (see quincunx/advanced/pass_timer.h). Errors:
+// kUnsupported, naming the device.
 Status check_event_times(const Device& device);
 
 // Processor time of this process so far, all threads, ms.

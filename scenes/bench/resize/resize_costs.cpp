@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "bench/speed_error/contender.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
 

@@ -13,7 +13,7 @@
 #include "bench/traces/trace_command.h"
 #include "bench/tune/tune_command.h"
 #include "frames/picture_options.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::bench {
 

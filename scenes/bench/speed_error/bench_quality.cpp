@@ -11,7 +11,7 @@
 
 #include "bench/speed_error/bench_plan.h"
 #include "frames/target_file.h"
-#include "quincunx/cache_folder.h"
+#include "quincunx/advanced/cache_folder.h"
 #include "render/embedded_shaders.h"
 #include "render/truth.h"
 #include "tools/image/image_io.h"

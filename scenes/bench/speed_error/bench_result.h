@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx::bench {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/speed_error/bench_result.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx_gl/render_targets.h"
 #include "render/renderer.h"
 

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx::traces {
 

@@ -10,8 +10,8 @@
 
 #include "bench/traces/load_trace.h"
 #include "bench/traces/replay.h"
-#include "quincunx/content_statistics.h"
-#include "quincunx/quality_controller.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/control/quality_controller.h"
 
 namespace quincunx::traces {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 
 namespace quincunx::traces {
 namespace {

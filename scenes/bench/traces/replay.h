@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bench/traces/load_trace.h"
-#include "quincunx/resolution_controller.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx::traces {
 

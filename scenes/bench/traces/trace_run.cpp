@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bench/traces/peer_controllers.h"
-#include "quincunx/predictive_controller.h"
+#include "quincunx/control/predictive_controller.h"
 
 namespace quincunx::traces {
 namespace {

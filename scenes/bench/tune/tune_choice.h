@@ -8,7 +8,7 @@
 
 #include "bench/speed_error/bench_result.h"
 #include "bench/speed_error/bench_statistics.h"
-#include "quincunx/device_profile.h"
+#include "quincunx/advanced/device_profile.h"
 
 namespace quincunx::bench {
 

@@ -9,8 +9,8 @@
 
 #include <cstdint>
 
+#include "quincunx/advanced/export.h"
 #include "quincunx/device.h"
-#include "quincunx/export.h"
 
 namespace quincunx {
 

@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "quincunx/extent.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/frame.h"
 #include "quincunx/image.h"
 

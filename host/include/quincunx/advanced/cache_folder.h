@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 
 namespace quincunx {
 

@@ -21,9 +21,9 @@
 #include <memory>
 #include <optional>
 
-#include "quincunx/cost_table.h"
-#include "quincunx/export.h"
-#include "quincunx/resolution_controller.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/control/cost_table.h"
+#include "quincunx/control/resolution_controller.h"
 
 namespace quincunx {
 

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 
 namespace quincunx {
 

@@ -8,9 +8,9 @@
 // resolution scaling).
 #pragma once
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
-#include "quincunx/resolution_ladder.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/control/resolution_ladder.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

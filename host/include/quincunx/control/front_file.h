@@ -9,8 +9,8 @@
 #include <optional>
 #include <string>
 
-#include "quincunx/error_front.h"
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/control/error_front.h"
 
 namespace quincunx {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

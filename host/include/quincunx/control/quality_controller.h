@@ -24,10 +24,10 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/content_statistics.h"
-#include "quincunx/error_front.h"
-#include "quincunx/export.h"
-#include "quincunx/predictive_controller.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/control/error_front.h"
+#include "quincunx/control/predictive_controller.h"
 
 namespace quincunx {
 

@@ -15,9 +15,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
-#include "quincunx/resolution_ladder.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/control/resolution_ladder.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -6,8 +6,8 @@
 // viewport, never the one asked for.
 #pragma once
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

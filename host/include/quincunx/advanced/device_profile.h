@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
-#include "quincunx/method.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/advanced/method.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -7,9 +7,9 @@
 // Pure values; not thread safe. Source: "Dynamic Resolution Scaling Implementation Best Practice", section 10.
 #pragma once
 
-#include "quincunx/export.h"
-#include "quincunx/extent.h"
-#include "quincunx/resolution_ladder.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/advanced/extent.h"
+#include "quincunx/control/resolution_ladder.h"
 #include "quincunx/status.h"
 
 namespace quincunx {

@@ -5,8 +5,8 @@
 // what the program knows of its camera. A share that nobody counts is 0. Values; any thread may use its own.
 #pragma once
 
-#include "quincunx/error_front.h"
-#include "quincunx/export.h"
+#include "quincunx/advanced/export.h"
+#include "quincunx/control/error_front.h"
 #include "quincunx/status.h"
 
 namespace quincunx {
