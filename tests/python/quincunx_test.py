@@ -63,19 +63,19 @@ FLOAT_BOUND = 8 * 2.0 ** -24
 
 
 STRUCTS = ("Settings", "Needs", "Image", "Particles", "Rectangle", "Focus", "Fade", "Sync", "Inputs", "Outputs", "Content",
-           "Report", "PassReport")
+           "Report", "PassReport", "ControllerSettings", "Timing", "Choice", "OutputSettings", "DetailSettings")
 
 
 class Structs(unittest.TestCase):
     def test_fields_are_those_of_the_headers(self):
-        text = read(HEADERS, "c", "settings.h") + read(HEADERS, "c", "frame.h")
+        text = "".join(read(HEADERS, "c", name) for name in ("settings.h", "frame.h", "control.h"))
         for name in STRUCTS:
             struct = "quincunx" + re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), name)
             fields = [field for field, _ in getattr(quincunx, name)._fields_]
             self.assertEqual(fields, fields_of_c(struct, text), name)
 
     def test_names_are_numbers_of_the_header(self):
-        text = read(HEADERS, "c", "settings.h")
+        text = read(HEADERS, "c", "settings.h") + read(HEADERS, "c", "control.h")
         for name, number in {"QUINCUNX_TEMPORAL": quincunx.METHODS["temporal"], "QUINCUNX_HOST": quincunx.HOST,
                              "QUINCUNX_REPROJECTED": quincunx.number_of("two_frame_form", "reprojected"),
                              "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],
@@ -84,6 +84,10 @@ class Structs(unittest.TestCase):
                              "QUINCUNX_LINEAR": quincunx.number_of("depth_convention", "linear"),
                              "QUINCUNX_BOTTOM": quincunx.number_of("origin", "bottom"),
                              "QUINCUNX_QUALITY": quincunx.number_of("temporal_preset", "quality"),
+                             "QUINCUNX_CONTROL_QUALITY": quincunx.QualityController.KIND,
+                             "QUINCUNX_CONTROL_MINIMUM_OF_N": quincunx.MinimumOfNController.KIND,
+                             "QUINCUNX_BOTH_AXES": quincunx.number_of("order", "both-axes"),
+                             "QUINCUNX_FOLLOW": quincunx.number_of("cpu_bound", "follow"),
                              "QUINCUNX_ACES": quincunx.number_of("tone_map", "aces")}.items():
             self.assertRegex(text, r"\b%s = %d\b" % (name, number))
 
@@ -191,6 +195,74 @@ class Extras(unittest.TestCase):
         self.assertIn("fast", str(quincunx.Resolver((40, 30), method="temporal:fast")).lower())
         with self.assertRaisesRegex(quincunx.Error, "temporal:quality"):
             quincunx.Resolver((40, 30), method="temporal:best")
+
+
+class Controllers(unittest.TestCase):
+    KINDS = (quincunx.ProportionalController, quincunx.MinimumOfNController, quincunx.PredictiveController,
+             quincunx.QualityController)
+
+    def test_each_holds_its_target(self):
+        for kind in self.KINDS:
+            controller = kind(output=(1920, 1080), target_ms=16, min_scale=0.4, order="both-axes")
+            self.assertEqual(controller.next(), (1920, 1080))
+            for number in range(1, 400):
+                width, height = controller.next()
+                gpu_ms = 2 + 22 * width * height / (1920 * 1080)
+                controller.observe(number, (width, height), gpu_ms, interval_ms=max(gpu_ms, 16), resolve_ms=1)
+            self.assertLess(gpu_ms, 17, controller.name)
+            self.assertGreater(gpu_ms, 11, controller.name)
+            self.assertIn(controller.next(), controller.ladder())
+            controller.target_ms = 40
+            self.assertEqual(controller.target_ms, 40)
+
+    def test_quality_chooses_a_method_and_says_why(self):
+        controller = quincunx.QualityController(output=(1280, 720), target_ms=20, methods=["bilinear", "temporal:fast"])
+        controller.observe(1, (1280, 720), 25, resolve_ms=2, content={"moving": 1, "speed_px": 3})
+        choice = controller.choice()
+        self.assertIn(choice["method"], ("bilinear", "temporal:fast"))
+        self.assertEqual(choice["weight"], 1)
+        self.assertIn("ms", controller.explain())
+
+    def test_costs_and_fronts_go_through_text(self):
+        costs = quincunx.CostTable()
+        self.assertIsNone(costs.predict(0.5))
+        for number in range(20):
+            costs.record(number, 0.3 + 0.03 * number, 4 + 10 * (0.3 + 0.03 * number))
+        self.assertAlmostEqual(quincunx.CostTable(json=str(costs)).predict(0.6), 10, 1)
+        self.assertAlmostEqual(costs.fixed_part(), 4 / 14, 2)
+        self.assertGreater(costs.confidence(0.87), 0.9)
+        front, mix = quincunx.ErrorFront(), quincunx.mix_of(moving=0.5)
+        self.assertEqual(mix, (0.5, 0.5, 0, 0, 0, 0))
+        again = quincunx.ErrorFront(str(front))
+        self.assertEqual(front.flip(mix, "temporal", 0.5), again.flip(mix, "temporal", 0.5))
+        self.assertLess(front.flip(mix, "temporal", 0.5), front.flip(mix, "bilinear", 0.5))
+        self.assertGreater(front.resolve_ms("temporal", 0.5, 2), front.resolve_ms("bilinear", 0.5, 2))
+        self.assertEqual(front.summary(), quincunx.ErrorFront(resolver=quincunx.Resolver((8, 8))).summary())
+        controller = quincunx.QualityController(output=(640, 360), front=again, calibration=costs)
+        self.assertEqual(controller.name, "quality")
+
+    def test_followers_follow(self):
+        outputs, details = quincunx.OutputFollower(display=(1920, 1080)), quincunx.DetailFollower(levels=3, rest_frames=0)
+        self.assertEqual(outputs.observe((1920, 1080)), (1920, 1080))
+        for _ in range(100):
+            output = outputs.observe((640, 360))
+        self.assertEqual(output, outputs.min_output())
+        self.assertLess(output[0], 1920)
+        self.assertEqual([details.observe(area) for area in (1, 0.1, 0.1, 0.1)], [0, 1, 2, 2])
+
+    def test_what_cannot_be_is_refused_in_words(self):
+        with self.assertRaisesRegex(quincunx.Error, "buffers is 1"):
+            quincunx.PredictiveController(output=(64, 64), buffers=1)
+        with self.assertRaisesRegex(TypeError, "'bufers' is no setting; there are: output, min, .*buffers"):
+            quincunx.PredictiveController(output=(64, 64), bufers=3)
+        with self.assertRaisesRegex(ValueError, "order is 'sideways'; it must be one of horizontal-first"):
+            quincunx.PredictiveController(output=(64, 64), order="sideways")
+        with self.assertRaisesRegex(quincunx.Error, "gpu_ms"):
+            quincunx.ProportionalController(output=(64, 64)).observe(1, (64, 64), float("nan"))
+        with self.assertRaisesRegex(quincunx.Error, r"settings.methods\[0\].*temporal:fast"):
+            quincunx.QualityController(output=(64, 64), methods=["best"])
+        with self.assertRaisesRegex(TypeError, "'jiter_x' is no input; there are: velocity_scale_x"):
+            quincunx.Resolver((8, 8)).resolve(np.zeros((8, 8, 4)), jiter_x=1)
 
 
 class Example(unittest.TestCase):

@@ -297,7 +297,7 @@ TEST(CErrors, EachThreadHasItsOwnSentence) {
 
 // Settings pass through the C interface whole, and programs and libraries of different age understand each other.
 
-// Does not compile once a struct has a field more: c_settings.h then wants it at its end, too, and here.
+// Does not compile once a struct has a field more: c/settings.h then wants it at its end, too, and here.
 SceneNeeds other_needs() {
   SceneNeeds needs;
   auto& [moving_objects, camera_motion, transparents, background] = needs;

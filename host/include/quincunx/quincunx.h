@@ -17,7 +17,7 @@
  * wrong, where, and what would be right. After an error nothing has changed unless the function says otherwise.
  * Pointers to what a function makes are then NULL. No exception leaves the library.
  *
- * c_control.h chooses each frame's resolution and method, for those who want that.
+ * c/control.h chooses each frame's resolution and method, for those who want that.
  *
  * Threads: a device with its services belongs to one thread at a time. Plans may be read by several. */
 #ifndef QUINCUNX_QUINCUNX_H
@@ -86,8 +86,8 @@ QUINCUNX_API void quincunx_plan_destroy(quincunx_plan* plan);
 QUINCUNX_API quincunx_status quincunx_plan_needs(const quincunx_plan* plan, quincunx_needs* needs);
 /* A page of plain text: passes, images, bytes, and why. Lives as long as the plan; NULL for no plan. */
 QUINCUNX_API const char* quincunx_plan_text(const quincunx_plan* plan);
-/* The plan of the focus's region, of which inputs.focus->frame is a frame. Errors: QUINCUNX_INVALID_ARGUMENT where there
- * is none. */
+/* The plan of the focus's region, of which inputs.focus->frame is a frame. Errors: QUINCUNX_INVALID_ARGUMENT where
+ * there is none. */
 QUINCUNX_API quincunx_status quincunx_plan_focus(const quincunx_plan* plan, quincunx_plan** region);
 /* Whether a frame of this viewport and output (0, 0: the settings') reads earlier frames where there are any. */
 QUINCUNX_API int32_t quincunx_plan_reads_history(const quincunx_plan* plan, int32_t render_width,

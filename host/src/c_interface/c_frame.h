@@ -73,9 +73,9 @@ quincunx_content content_to_c(const ContentStatistics& content);  // struct_size
 // Errors: kInvalidArgument; the message names the field.
 Result<ContentStatistics> content_of(const quincunx_content* given);
 
-// Images on the device that stand for the inputs of a plan's frames where those are host memory. They are made when host
-// memory is first given in their place, and kept: two for each input that the next frame reads. As thread safe as its
-// Device.
+// Images on the device that stand for the inputs of a plan's frames where those are host memory. They are made when
+// host memory is first given in their place, and kept: two for each input that the next frame reads. As thread safe as
+// its Device.
 class HostStream {
  public:
   HostStream(const Device& device, const ResolvePlan& plan) : device_(device), settings_(plan.settings) {}

@@ -15,11 +15,6 @@
 #include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 
-struct quincunx_device {
-  quincunx::Device device;
-  std::string profile;
-};
-
 struct quincunx_plan {
   quincunx::ResolvePlan plan;
   std::string text;

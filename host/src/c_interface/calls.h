@@ -6,8 +6,14 @@
 #include <string>
 #include <utility>
 
+#include "quincunx/device.h"
 #include "quincunx/quincunx.h"
 #include "quincunx/status.h"
+
+struct quincunx_device {
+  quincunx::Device device;
+  std::string profile;
+};
 
 namespace quincunx::c {
 

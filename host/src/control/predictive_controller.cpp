@@ -19,9 +19,9 @@ Status check(const PredictiveSettings& settings) {
   }
   const BlurAware& blur = settings.blur_aware;
   if (!(blur.start_px >= 0 && blur.full_px > blur.start_px && std::isfinite(blur.full_px))) {
-    return Status::invalid(
-        fmt::format("blur_aware is {} to {} px; the first must be at least 0 and below the second",
-                    blur.start_px, blur.full_px));
+    return Status::invalid(fmt::format(
+        "blur_aware.start_px is {} and full_px {}; the first must be at least 0 and below the second",
+        blur.start_px, blur.full_px));
   }
   if (!(blur.min_scale > 0 && blur.min_scale <= 1)) {
     return Status::invalid(fmt::format("blur_aware.min_scale is {}; it must lie in (0, 1]", blur.min_scale));

@@ -25,7 +25,8 @@ CHOICES = {  # settings that are names here and numbers there
     "drawn_velocity": ("own", "dilated"),
     "depth_convention": ("reversed-infinite", "reversed", "infinite", "forward", "linear"),
     "clip_space": ("direct3d", "opengl", "vulkan"), "velocity_unit": ("uv", "pixels", "ndc"), "origin": ("top", "bottom"),
-    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard")}
+    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard"),
+    "order": ("horizontal-first", "horizontal-only", "both-axes"), "cpu_bound": ("hold", "follow")}
 # Channels and type of an array's pixels, and the number of their format.
 FORMATS = {(1, "uint8"): 1, (1, "float32"): 2, (2, "float16"): 3, (2, "float32"): 4, (4, "uint8"): 5,
            (4, "float16"): 6, (4, "float32"): 7}
@@ -93,7 +94,25 @@ NUMBERS = ("velocity_scale_x", "velocity_scale_y", "clip_to_previous_clip", "exp
            "near_plane", "far_plane")
 CONTENT = ("moving", "speed_px", "apart", "thin", "light", "zoom", "cut")
 TEXTS = ("quincunx_version", "quincunx_last_error", "quincunx_method_name", "quincunx_variant_name",
-         "quincunx_plan_text", "quincunx_device_name", "quincunx_device_profile", "quincunx_device_pass_timer")
+         "quincunx_plan_text", "quincunx_device_name", "quincunx_device_profile", "quincunx_device_pass_timer",
+         "quincunx_controller_name", "quincunx_controller_text", "quincunx_costs_text", "quincunx_front_text",
+         "quincunx_front_summary")
+
+
+ControllerSettings = sized(
+    "ControllerSettings", ("kind output_width output_height order step min_width min_height buffers", c_int32),
+    ("min_scale max_scale target_ms rate spike_ratio factor margin", c_double), ("count cpu_bound", c_int32),
+    ("fixed_part", c_double), ("calibration", c_void_p), ("blur_start_px blur_full_px blur_min_scale", c_double),
+    ("blur_aware fade_frames", c_int32), ("front", c_void_p), ("methods", POINTER(c_char_p)),
+    ("method_count padding", c_int32), ("hysteresis rest_seconds", c_double))
+Timing = sized("Timing", ("frame next_frame", c_uint64), ("render_width render_height", c_int32),
+               ("gpu_ms cpu_ms interval_ms", c_double), ("queued missed_vsyncs", c_int32),
+               ("blur_px resolve_ms", c_double), ("content", POINTER(Content)))
+Choice = sized("Choice", ("render_width render_height rung padding", c_int32), ("method fading_from", c_char_p),
+               ("weight", c_double))
+OutputSettings = sized("OutputSettings", ("display_width display_height steps rest_frames", c_int32),
+                       ("min_scale max_filled hysteresis", c_double))
+DetailSettings = sized("DetailSettings", ("levels rest_frames", c_int32), ("full_area min_area hysteresis", c_double))
 
 
 def load():
@@ -106,6 +125,16 @@ def load():
         getattr(library, name).restype = c_char_p
     library.quincunx_jitter.argtypes = [c_uint64, c_int32, c_int32, c_int32, c_int32, POINTER(c_float)]
     library.quincunx_texture_lod_bias.restype = c_float
+    for name in ("quincunx_controller_target_ms", "quincunx_costs_confidence"):
+        getattr(library, name).restype = c_double
+    library.quincunx_controller_set_target_ms.argtypes = [c_void_p, c_double]
+    library.quincunx_costs_create.argtypes = [c_double, c_void_p]
+    library.quincunx_costs_record.argtypes = [c_void_p, c_uint64, c_double, c_double]
+    library.quincunx_costs_confidence.argtypes = [c_void_p, c_double]
+    library.quincunx_costs_predict.argtypes = [c_void_p, c_double, c_double, c_void_p]
+    library.quincunx_front_flip.argtypes = [c_void_p, c_void_p, c_char_p, c_double, c_void_p]
+    library.quincunx_front_resolve_ms.argtypes = [c_void_p, c_char_p, c_double, c_double, c_void_p]
+    library.quincunx_detail_follower_observe.argtypes = [c_void_p, c_double, c_void_p]
     while (name := library.quincunx_method_name(len(METHODS))) is not None:
         METHODS[name.decode()] = len(METHODS)
     return library
@@ -335,6 +364,275 @@ class Resolver:
                           "passes": [("focus: " * bool(in_focus[i]) + passes[i].kernel.decode(), passes[i].ms,
                                       passes[i].bytes) for i in range(report.pass_count)]})
         return found
+
+
+class Handle:
+    """An object of the library's, which lives as long as this."""
+
+    OBJECT, handle = None, None  # the name of its functions; what they take
+
+    def __init__(self, how, *arguments):
+        self.handle = c_void_p()
+        call(f"quincunx_{self.OBJECT}_{how}", *arguments, byref(self.handle))
+
+    def __del__(self):
+        getattr(LIBRARY, f"quincunx_{self.OBJECT}_destroy")(self.handle)
+
+    def _text(self, what):
+        return getattr(LIBRARY, f"quincunx_{self.OBJECT}_{what}")(self.handle).decode()
+
+
+def settings_of(struct, init, pairs, fields):
+    """A struct of settings: its defaults, and fields by name, of which `pairs` are a width and a height."""
+    settings = struct()
+    call(init, byref(settings))
+    known = dict(struct._fields_)
+    for name, value in fields.items():
+        if name in pairs:
+            width, height = value
+            setattr(settings, name + "_width", width)
+            setattr(settings, name + "_height", height)
+        elif name not in known or name in ("kind", "methods", "method_count", "front", "calibration"):
+            raise TypeError(f"'{name}' is no setting; there are: {', '.join((*pairs, *known))}")
+        else:
+            setattr(settings, name, number_of(name, value))
+    return settings
+
+
+class Controller(Handle):
+    """Chooses each frame's size from the times of frames past; the base of those below.
+
+    Every one takes output=(width, height), each in [1, 32768], target_ms in (0, 60000], and the ladder of sizes:
+    min_scale above 0, max_scale up to 2, order ("horizontal-first", "horizontal-only", "both-axes"), step (pixels),
+    min=(width, height). Settings outside their ranges raise Error. Pure: the same calls give the same sizes.
+
+        controller = quincunx.PredictiveController(output=(1920, 1080), target_ms=16.7)
+        each frame: width, height = controller.next(); then controller.observe(number, (width, height), gpu_ms)
+    """
+
+    OBJECT, KIND = "controller", None
+
+    def __init__(self, calibration=None, front=None, methods=(), **settings):
+        made = settings_of(ControllerSettings, "quincunx_controller_settings_init", ("output", "min"), settings)
+        made.kind = self.KIND
+        names = (c_char_p * len(methods))(*(name.encode() for name in methods))
+        made.methods, made.method_count = names, len(methods)
+        made.calibration = calibration.handle if calibration is not None else None
+        made.front = front.handle if front is not None else None
+        super().__init__("create", byref(made))
+
+    @property
+    def name(self):
+        """ "predictive" """
+        return self._text("name")
+
+    @property
+    def target_ms(self):
+        """The time that a frame may take; may be set, in (0, 60000]."""
+        return LIBRARY.quincunx_controller_target_ms(self.handle)
+
+    @target_ms.setter
+    def target_ms(self, value):
+        call("quincunx_controller_set_target_ms", self.handle, value)
+
+    def ladder(self):
+        """The sizes to choose from, (width, height) in pixels, from the smallest."""
+        extent, rungs = (c_int32 * 2)(), []
+        for rung in range(LIBRARY.quincunx_controller_rung_count(self.handle)):
+            call("quincunx_controller_rung", self.handle, rung, extent)
+            rungs.append(tuple(extent))
+        return rungs
+
+    def observe(self, frame, render, gpu_ms, content=None, **times):
+        """Learns from one past frame, oldest first.
+
+        frame      its number, which rises; gaps are allowed
+        render     (width, height) that it was drawn at
+        gpu_ms     busy time of its critical path, resolve included, in (0, 60000]
+        times      cpu_ms, interval_ms, blur_px, resolve_ms, queued, missed_vsyncs, next_frame; 0: not known
+        content    of QualityController: shares as Resolver.reports() has them; None: as the frame before
+        Raises Error for what cannot be; nothing has changed then.
+        """
+        timing = Timing(frame=frame, render_width=render[0], render_height=render[1], gpu_ms=gpu_ms, **times)
+        if content is not None:
+            timing.content = ctypes.pointer(Content(**content))
+        call("quincunx_controller_observe", self.handle, byref(timing))
+
+    def choice(self):
+        """{"render": (width, height), "rung", "method", "fading_from", "weight"}.
+
+        method and fading_from are names of variants(), None where none is chosen. With fading_from, resolve with that
+        as well and give its picture to resolve(fading_from=..., fade_weight=weight).
+        """
+        choice = Choice()
+        call("quincunx_controller_choice", self.handle, byref(choice))
+        return {"render": (choice.render_width, choice.render_height), "rung": choice.rung,
+                "method": choice.method and choice.method.decode(),
+                "fading_from": choice.fading_from and choice.fading_from.decode(), "weight": choice.weight}
+
+    def next(self):
+        """(width, height) to draw the next frame at; at first the largest."""
+        return self.choice()["render"]
+
+
+class ProportionalController(Controller):
+    """Binks's controller. Besides: rate in (0, 1], spike_ratio at least 1."""
+
+    KIND = 0
+
+
+class MinimumOfNController(Controller):
+    """The shortest of the last times decides. Besides: count in [1, 1000], factor and margin in (0, 1]."""
+
+    KIND = 1
+
+
+class PredictiveController(Controller):
+    """Predicts the next frame's time and spends what the display's queue allows.
+
+    Besides: buffers in [2, 8], fixed_part in [0, 0.9], cpu_bound ("hold", "follow"), calibration (a CostTable), and
+    blur_aware=True with blur_start_px, blur_full_px, blur_min_scale.
+    """
+
+    KIND = 2
+
+
+class QualityController(Controller):
+    """Chooses method and size whose expected error is the least that fits.
+
+    Besides those of PredictiveController: front (an ErrorFront), methods (names of variants()), hysteresis in [0, 1),
+    rest_seconds and fade_frames in [0, 60].
+    """
+
+    KIND = 3
+
+    def explain(self):
+        """Why the last choice was made, in a few lines."""
+        return self._text("text")
+
+
+class CostTable(Handle):
+    """Measured frame times by resolution, whose confidence halves in half_life_frames, in [1, 1e9].
+
+    `json` is the str() of a table. Errors raise Error.
+    """
+
+    OBJECT = "costs"
+
+    def __init__(self, half_life_frames=3600, json=None):
+        if json is None:
+            super().__init__("create", half_life_frames)
+        else:
+            super().__init__("parse", json.encode())
+
+    def __str__(self):
+        return self._text("text")
+
+    def record(self, frame, area_fraction, gpu_ms):
+        """One frame of this part of the output's pixels, in (0, 4], took gpu_ms, in (0, 60000]."""
+        call("quincunx_costs_record", self.handle, frame, area_fraction, gpu_ms)
+
+    def confidence(self, area_fraction):
+        """In [0, 1]; 0 where nothing was recorded."""
+        return LIBRARY.quincunx_costs_confidence(self.handle, area_fraction)
+
+    def predict(self, area_fraction, fixed_part=0.25):
+        """The expected time in ms, if fixed_part of it does not scale; None where nothing is known."""
+        return self._known("quincunx_costs_predict", area_fraction, fixed_part)
+
+    def fixed_part(self):
+        """The part of the cost that does not scale, by what was recorded; None where that is too little."""
+        return self._known("quincunx_costs_fixed_part")
+
+    def _known(self, name, *arguments):
+        number = c_double()
+        return number.value if call(name, self.handle, *arguments, byref(number)) == 0 else None
+
+
+class ErrorFront(Handle):
+    """How wrong each method's picture is at each scale, and what it costs.
+
+    `json` is the str() of a front; None: the one that is built in. `resolver`: that of its device, for a scene's name.
+    """
+
+    OBJECT = "front"
+
+    def __init__(self, json=None, resolver=None, scene=""):
+        if resolver is None:
+            super().__init__("parse", json if json is None else json.encode())
+        else:
+            super().__init__("find", resolver._device, scene.encode())
+
+    def __str__(self):
+        return self._text("text")
+
+    def summary(self):
+        """Where its figures come from."""
+        return self._text("summary")
+
+    def flip(self, mix, method, scale):
+        """The expected mean FLIP of a mix (as mix_of() gives it) at a scale per axis, above 0."""
+        flip = c_double()
+        call("quincunx_front_flip", self.handle, (c_double * 6)(*mix), method.encode(), scale, byref(flip))
+        return flip.value
+
+    def resolve_ms(self, method, scale, output_megapixels):
+        """Milliseconds of the method's passes for an output of so many megapixels, above 0."""
+        milliseconds = c_double()
+        call("quincunx_front_resolve_ms", self.handle, method.encode(), scale, output_megapixels, byref(milliseconds))
+        return milliseconds.value
+
+
+def mix_of(**content):
+    """Shares of (still, pan, objects, thin, light, zoom), 1 together, of content: moving=, speed_px=, apart=, ..."""
+    share = (c_double * 6)()
+    call("quincunx_mix_of", byref(Content(**content)), share)
+    return tuple(share)
+
+
+class OutputFollower(Handle):
+    """An output that goes along with the size of frames, for resolve(output=...).
+
+    display=(width, height), min_scale in (0, 1], steps at least 1, max_filled in (0, 1], hysteresis in [0, 1),
+    rest_frames at least 0.
+    """
+
+    OBJECT = "output_follower"
+
+    def __init__(self, **settings):
+        made = settings_of(OutputSettings, "quincunx_output_settings_init", ("display",), settings)
+        super().__init__("create", byref(made))
+
+    def observe(self, render):
+        """Called once per frame with the (width, height) it is drawn at. Returns the output's (width, height)."""
+        output = (c_int32 * 2)()
+        call("quincunx_output_follower_observe", self.handle, *render, output)
+        return tuple(output)
+
+    def min_output(self):
+        """The smallest there may be, for the setting min_output."""
+        output = (c_int32 * 2)()
+        call("quincunx_output_follower_min_output", self.handle, output)
+        return tuple(output)
+
+
+class DetailFollower(Handle):
+    """Levels of detail that go along with the resolution.
+
+    levels in [2, 64], full_area, min_area in (0, full_area), hysteresis in [0, 1], rest_frames at least 0.
+    """
+
+    OBJECT = "detail_follower"
+
+    def __init__(self, **settings):
+        made = settings_of(DetailSettings, "quincunx_detail_settings_init", (), settings)
+        super().__init__("create", byref(made))
+
+    def observe(self, area_fraction):
+        """Called once per frame with its pixels over the output's. Returns the level; 0 is the full detail."""
+        level = c_int32()
+        call("quincunx_detail_follower_observe", self.handle, area_fraction, byref(level))
+        return level.value
 
 
 def number_of(name, value):
