@@ -35,13 +35,13 @@ class BoundTo {
   GLint before_ = 0;
 };
 
-// Returns the target that a texture was made for. OpenGL ES has no call for that: a wrong one is an error there, which
-// is taken back.
+// Returns the target that a texture was made for. OpenGL ES has no call for that, and Mesa's refuses in compatibility
+// profiles: a wrong target is then an error, which is taken back.
 GLenum target_of(GLuint texture) {
   if (capabilities().api == Api::kGl45) {
     GLint target = GL_NONE;
     glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
-    return static_cast<GLenum>(target);
+    if (target != GL_NONE) return static_cast<GLenum>(target);
   }
   while (glGetError() != GL_NO_ERROR) {
   }

@@ -104,6 +104,33 @@ TEST_F(GlxTest, TexturesAreShared) {
   EXPECT_EQ(acquired_textures(), static_cast<int>(planes_of(settings).size()));
 }
 
+// Where older engines draw. Mesa does not tell there what a texture was made for.
+TEST_F(GlxTest, TexturesAreImportedInACompatibilityProfile) {
+  GLint profile = 0;
+  glGetIntegerv(GL_CONTEXT_PROFILE_MASK, &profile);
+  ASSERT_TRUE(profile & GL_CONTEXT_COMPATIBILITY_PROFILE_BIT);
+  auto context = Context::create(Platform::kCurrent).value();
+  auto device = open_device(context, "", Interop::kCopy).value();
+  auto bridge =
+      Bridge::create(context, device, {.target_extent = kTarget, .output_extent = kOutput, .imports = true});
+  ASSERT_TRUE(bridge.ok()) << bridge.status().message();
+  const Bytes texels = finite_texels(PixelFormat::kRGBA16F, kTarget, 3);
+  GLuint colour = 0, cube = 0;
+  glGenTextures(1, &colour);
+  glBindTexture(GL_TEXTURE_2D, colour);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16F, kTarget.width, kTarget.height, 0, GL_RGBA, GL_HALF_FLOAT,
+               texels.data());
+  glGenTextures(1, &cube);
+  glBindTexture(GL_TEXTURE_CUBE_MAP, cube);
+  const auto frame = bridge.value()->import({.colour = colour}, kRender);
+  ASSERT_TRUE(frame.ok()) << frame.status().message();
+  Bytes seen(static_cast<std::size_t>(kRender.area()) * 8);
+  ASSERT_TRUE(device.download(frame->colour, kRender, seen.data()).ok());
+  EXPECT_TRUE(seen == crop(texels, kTarget, kRender, 8));
+  EXPECT_EQ(bridge.value()->import({.colour = cube}, kRender).status().message(),
+            "FrameTextures: colour is no GL_TEXTURE_2D");
+}
+
 TEST_F(GlxTest, AContextThatIsNotCurrentIsRefusedInWords) {
   auto context = Context::create(Platform::kCurrent);
   ASSERT_TRUE(context.ok()) << context.status().message();
