@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Textures of the caller's: they arrive in OpenCL as they are, by each backend; what cannot be taken is refused in
 // words; the picture comes back in a texture of the caller's.
+#include <algorithm>
 #include <cstring>
 
 #include "cl_interposer.h"
 #include "interop_fixture.h"
+#include "quincunx/resolve_service.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -323,6 +325,83 @@ TEST_P(ImportTest, ThePictureComesBackInTheCallersTexture) {
     EXPECT_TRUE(texels_of(bridge->presented_texture(), format, kOutput) == picture);
     const std::uint8_t* pixels = bridge->presented_pixels();
     EXPECT_TRUE(Bytes(pixels, pixels + picture.size()) == picture);
+  }
+}
+
+// A texture whose lowest `rows` rows are turned about, as textures are where row 0 is the lowest.
+Texture from_bottom(GLenum internal, GLenum format, GLenum type, Extent extent, int rows, Bytes texels) {
+  const auto pitch = static_cast<std::ptrdiff_t>(texels.size() / static_cast<std::size_t>(extent.height));
+  for (int y = 0; y < rows / 2; ++y) {
+    const auto low = texels.begin() + y * pitch;
+    std::swap_ranges(low, low + pitch, texels.begin() + (rows - 1 - y) * pitch);
+  }
+  return make_texture(internal, format, type, extent, texels.data());
+}
+
+// The pictures of three frames, each of another viewport of the same texels, whose rows begin where `origin` says.
+std::vector<Bytes> pictures_from(Bridge& bridge, const Device& device, const ResolveSettings& resolve) {
+  using enum PixelFormat;
+  ResolveSettings settings = resolve;
+  settings.storage = bridge.storage();
+  auto service = ResolveService::create(device, plan_for({}, settings).value()).value();
+  std::vector<Bytes> pictures;
+  for (int frame = 0; frame < 3; ++frame) {
+    const Extent render = {kTarget.width - 7 * frame, 25 + 6 * frame};
+    const bool bottom = settings.conventions.origin == Origin::kBottom;
+    const int rows = bottom ? render.height : 0;
+    const auto seed = static_cast<std::uint32_t>(10 * frame + 1);
+    const auto plane = [&](PixelFormat format, std::uint32_t number) {
+      const GlFormat names = gl_format(format);
+      return from_bottom(names.internal, names.format, names.type, kTarget, rows,
+                         finite_texels(format, kTarget, seed + number));
+    };
+    const std::vector<float> z = depths(kTarget, seed);
+    Bytes depth_bytes(z.size() * sizeof(float));
+    std::memcpy(depth_bytes.data(), z.data(), depth_bytes.size());
+    const Texture colour = plane(kRGBA8, 0), velocity = plane(kRG16F, 1), reactive = plane(kR8, 2);
+    const Texture depth = from_bottom(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, kTarget, rows,
+                                      std::move(depth_bytes));
+    const auto inputs =
+        bridge.import({colour.get(), depth.get(), velocity.get(), reactive.get()}, render).value();
+    const FrameReport report = service.dispatch({.colour = inputs.colour,
+                                                 .depth = inputs.depth,
+                                                 .velocity = inputs.velocity,
+                                                 .reactive = inputs.reactive,
+                                                 .render_extent = render,
+                                                 .jitter = {0.25f, bottom ? -0.125f : 0.125f},
+                                                 .velocity_scale = {0x1p-20f, 0x1p-20f}},
+                                                {.presented = bridge.begin_present().value()});
+    EXPECT_TRUE(report.ok()) << report.status.message();
+    EXPECT_EQ(report.used_previous, frame > 0);
+    EXPECT_TRUE(bridge.present().ok());
+    const std::uint8_t* pixels = bridge.presented_pixels();
+    pictures.emplace_back(pixels, pixels + static_cast<std::size_t>(kOutput.area()) * 4);
+  }
+  return pictures;
+}
+
+// The bridge carries rows as they lie, and the service knows which one is the first: textures and picture of OpenGL's
+// own order need no flip.
+TEST_P(ImportTest, RowsFromTheBottomGiveThePictureFromTheBottom) {
+  BridgeSettings settings = all_planes(kTarget, kOutput, PixelFormat::kRGBA8);
+  const auto bridge = make(settings);
+  ASSERT_NE(bridge, nullptr);
+  ResolveSettings resolve = {.output_extent = kOutput,
+                             .target_extent = kTarget,
+                             .colour = PixelFormat::kRGBA8,
+                             .dither = false};  // its pattern belongs to places
+  const std::vector<Bytes> from_top = pictures_from(*bridge, *device_, resolve);
+  resolve.conventions.origin = Origin::kBottom;
+  const std::vector<Bytes> from_low = pictures_from(*bridge, *device_, resolve);
+  const std::size_t pitch = static_cast<std::size_t>(kOutput.width) * 4;
+  for (std::size_t frame = 0; frame < from_top.size(); ++frame) {
+    Bytes turned;
+    for (int y = kOutput.height - 1; y >= 0; --y) {
+      const auto row = from_low[frame].begin() + static_cast<std::ptrdiff_t>(y * pitch);
+      turned.insert(turned.end(), row, row + static_cast<std::ptrdiff_t>(pitch));
+    }
+    EXPECT_TRUE(turned == from_top[frame]) << frame;
+    EXPECT_FALSE(turned == from_low[frame]) << frame;
   }
 }
 

@@ -52,7 +52,7 @@ struct BridgeSettings {
 QUINCUNX_API BridgeSettings bridge_settings(const ResolvePlan& plan);
 
 // Textures of the caller's: GL_TEXTURE_2D, not multisampled, at least as large as the viewport, which is their part
-// from texel (0, 0). Planes that the settings do not ask for are not looked at.
+// from texel (0, 0): rows are carried as they lie (Origin). Planes that the settings do not ask for are not looked at.
 struct FrameTextures {
   GLuint colour = 0;    // of the settings' format; for RGBA8 also SRGB8_ALPHA8, whose codes are taken
   GLuint depth = 0;     // any depth format, or R32F
@@ -115,7 +115,7 @@ class QUINCUNX_API Bridge {
   // caller. `into`: a texture of the caller's that gets it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and
   // at least its size; 0: presented_texture(). Errors: kInvalidArgument where that texture is wrong.
   virtual Status present(GLuint into = 0) = 0;
-  virtual GLuint presented_texture() const = 0;        // row 0 on top
+  virtual GLuint presented_texture() const = 0;        // row 0 on top, or as Origin says
   virtual const std::uint8_t* presented_pixels() = 0;  // tightly packed; valid until begin_present()
 
   // Returns what is allocated now for the frames, without the presented picture.
