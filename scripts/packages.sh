@@ -24,6 +24,7 @@ test_packages=(clang clang-format python3 python3-numpy chromium
 optional_test_packages=(
   oclgrind                               # memory checks of kernels; Debian 13 has it no more
   slurm-wlm munge                        # a render farm of one node
+  libopenscenegraph-dev                  # an engine, for docs/examples/openscenegraph.cpp
 )
 
 say() { printf '%s\n' "$*"; }

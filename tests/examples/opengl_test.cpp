@@ -23,7 +23,7 @@ class OpenglExample : public ::testing::Test {
   ProgramResult run(const std::string& arguments) {
     return run_program(
         folder_, arguments,
-        ("env -u WAYLAND_DISPLAY DISPLAY=" + server_->name() + " " + QUINCUNX_PROGRAM).c_str());
+        ("env -u WAYLAND_DISPLAY DISPLAY=" + server_->name() + " " + QUINCUNX_OPENGL_EXAMPLE).c_str());
   }
 
   // The texels of the last of 30 frames at a scale.
