@@ -73,8 +73,8 @@ def program(place, code, headers):
 def main():
     root, cxx = sys.argv[1:]
     include = os.path.join(root, "host", "include")
-    headers = sorted(name for name in os.listdir(os.path.join(include, "quincunx"))
-                     if not name.startswith("c_") and name != "quincunx.h")
+    headers = sorted(name for name in glob.glob("**/*.h", root_dir=os.path.join(include, "quincunx"), recursive=True)
+                     if not name.startswith("c/") and name != "quincunx.h")
     changed, quoted = changed_quotes(root)
     for line in changed:
         print(line)
