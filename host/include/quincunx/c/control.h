@@ -121,8 +121,8 @@ QUINCUNX_API quincunx_status quincunx_controller_create(const quincunx_controlle
 QUINCUNX_API void quincunx_controller_destroy(quincunx_controller* controller);
 QUINCUNX_API const char* quincunx_controller_name(
     const quincunx_controller* controller); /* "predictive"; static */
-/* Learns from one frame and chooses for the next. Errors: QUINCUNX_INVALID_ARGUMENT for a frame number that is not above
- * the last accepted one, and a field that cannot be; nothing has changed then, so a caller may ignore it. */
+/* Learns from one frame and chooses for the next. Errors: QUINCUNX_INVALID_ARGUMENT for a frame number that is not
+ * above the last accepted one, and a field that cannot be; nothing has changed then, so a caller may ignore it. */
 QUINCUNX_API quincunx_status quincunx_controller_observe(quincunx_controller* controller,
                                                          const quincunx_timing* timing);
 /* Before the first frame it is the highest rung. Errors: QUINCUNX_INVALID_ARGUMENT. */

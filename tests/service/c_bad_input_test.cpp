@@ -1,0 +1,401 @@
+// SPDX-License-Identifier: MIT
+// Bad input over C: each wrong field is named in one sentence, and no combination of them crashes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "c_fixture.h"
+
+namespace quincunx {
+namespace {
+
+using testing::COwner;
+using testing::HostPicture;
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr Extent kOutput{24, 18};
+constexpr Extent kRegion{12, 8};
+
+quincunx_settings good_settings() {
+  quincunx_settings settings = {};
+  settings.struct_size = sizeof(settings);
+  EXPECT_EQ(quincunx_settings_init(&settings), QUINCUNX_OK);
+  settings.output_width = settings.target_width = kOutput.width;
+  settings.output_height = settings.target_height = kOutput.height;
+  settings.colour_format = QUINCUNX_RGBA32F;
+  settings.velocity_format = QUINCUNX_RG32F;
+  return settings;
+}
+
+// All that a frame can bring, in host memory, for a plan that reads all of it.
+struct Everything {
+  static quincunx_settings settings() {
+    quincunx_settings all = good_settings();
+    all.min_output_width = all.min_output_height = 8;
+    all.particle_target_width = kOutput.width;
+    all.particle_target_height = kOutput.height;
+    all.focus_width = all.focus_target_width = kRegion.width;
+    all.focus_height = all.focus_target_height = kRegion.height;
+    all.focus_mask = all.measures_content = all.fades = 1;
+    all.sky_motion = QUINCUNX_BY_CAMERA;
+    all.depth_convention = QUINCUNX_REVERSED;
+    return all;
+  }
+
+  Everything() {
+    frame.struct_size = sizeof(frame);
+    frame.colour = colour.image();
+    frame.depth = depth.image();
+    frame.velocity = velocity.image();
+    frame.reactive = reactive.image();
+    frame.exposure_image = exposure.image();
+    frame.render_width = frame.output_width = kOutput.width;
+    frame.render_height = frame.output_height = kOutput.height;
+    frame.near_plane = 1;
+    frame.far_plane = 100;
+    frame.particles = &particles;
+    frame.focus = &focus;
+    frame.fade = &fade;
+    frame.sync = &sync;
+    region = frame;
+    region.exposure_image = nullptr;
+    region.particles = nullptr;
+    region.focus = nullptr;
+    region.fade = nullptr;
+    region.sync = nullptr;
+    region.render_width = region.output_width = kRegion.width;
+    region.render_height = region.output_height = kRegion.height;
+  }
+  Everything(const Everything&) = delete;
+  Everything& operator=(const Everything&) = delete;
+
+  HostPicture colour{kOutput, PixelFormat::kRGBA32F}, depth{kOutput, PixelFormat::kR32F},
+      velocity{kOutput, PixelFormat::kRG32F}, reactive{kOutput, PixelFormat::kR8},
+      exposure{{1, 1}, PixelFormat::kR32F}, other{kOutput, PixelFormat::kRGBA32F},
+      mask{kRegion, PixelFormat::kR8}, linear{kOutput, PixelFormat::kRGBA32F},
+      presented{kOutput, PixelFormat::kRGBA8};
+  quincunx_particles particles = {sizeof(particles), colour.image(), depth.image(),
+                                  reactive.image(),  kOutput.width,  kOutput.height};
+  quincunx_rectangle rectangles[4] = {{4, 4, 6, 4}, {5, 5, 3, 2}, {4, 4, 1, 1}, {6, 4, 2, 2}};
+  quincunx_inputs frame = {};
+  quincunx_inputs region = {};
+  quincunx_focus focus = {sizeof(focus), &region, 3, 2, rectangles, 2, 2, mask.image()};
+  quincunx_fade fade = {sizeof(fade), other.image(), 0.5f, 0};
+  void* done = nullptr;
+  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, nullptr};
+  quincunx_outputs outputs = {sizeof(outputs), linear.image(), presented.image()};
+};
+
+COwner<quincunx_plan> plan_of(const quincunx_settings& settings) {
+  quincunx_plan* plan = nullptr;
+  EXPECT_EQ(quincunx_plan_create(&settings, &plan), QUINCUNX_OK) << quincunx_last_error();
+  return COwner<quincunx_plan>(plan);
+}
+
+bool names(const char* word) {
+  return std::string(quincunx_last_error()).find(word) != std::string::npos;
+}
+
+template <typename Struct>
+struct Wrong {
+  const char* word;  // that the sentence has
+  std::function<void(Struct&)> set;
+};
+
+TEST(CBadInput, EachWrongSettingIsNamed) {
+  using S = quincunx_settings;
+  const Wrong<S> table[] = {
+      {"settings.struct_size is 143", [](S& s) { s.struct_size = 143; }},
+      {"settings.method is 11", [](S& s) { s.method = 11; }},
+      {"output_extent is -1x18", [](S& s) { s.output_width = -1; }},
+      {"output_extent is 24x2147483647", [](S& s) { s.output_height = 2147483647; }},
+      {"target_extent is 0x18", [](S& s) { s.target_width = 0; }},
+      {"target_extent is 24x-5", [](S& s) { s.target_height = -5; }},
+      {"settings.colour_format is 8", [](S& s) { s.colour_format = 8; }},
+      {"settings.colour is R8", [](S& s) { s.colour_format = QUINCUNX_R8; }},
+      {"settings.velocity is RGBA8", [](S& s) { s.velocity_format = QUINCUNX_RGBA8; }},
+      {"settings.linear is R32F", [](S& s) { s.linear_format = QUINCUNX_R32F; }},
+      {"settings.storage is 2", [](S& s) { s.storage = QUINCUNX_HOST; }},
+      {"settings.targets is -1", [](S& s) { s.targets = -1; }},
+      {"settings.shading is 2", [](S& s) { s.shading = 2; }},
+      {"settings.tone_map is 3", [](S& s) { s.tone_map = 3; }},
+      {"settings.sky_motion is 3", [](S& s) { s.sky_motion = 3; }},
+      {"settings.two_frame_form is 3", [](S& s) { s.two_frame_form = 3; }},
+      {"settings.sampling is 2", [](S& s) { s.sampling = 2; }},
+      {"settings.temporal_preset is 3", [](S& s) { s.temporal_preset = 3; }},
+      {"settings.temporal_view is 8", [](S& s) { s.temporal_view = 8; }},
+      {"history", [](S& s) { s.history_format = QUINCUNX_RG16F; }},
+      {"samples is 7", [](S& s) { s.blur_samples = 7; }},
+      {"shutter is nan", [](S& s) { s.shutter = kNaN; }},
+      {"sharpness is 2", [](S& s) { s.sharpness = 2; }},
+      {"grain is -1", [](S& s) { s.grain = -1; }},
+      {"velocity_weight is inf", [](S& s) { s.velocity_weight = HUGE_VALF; }},
+      {"residual_weight is nan", [](S& s) { s.residual_weight = kNaN; }},
+      {"settings.drawn_velocity is 2", [](S& s) { s.drawn_velocity = 2; }},
+      {"settings.depth_convention is 5", [](S& s) { s.depth_convention = 5; }},
+      {"settings.clip_space is 3", [](S& s) { s.clip_space = 3; }},
+      {"settings.velocity_unit is 3", [](S& s) { s.velocity_unit = 3; }},
+      {"settings.origin is -7", [](S& s) { s.origin = -7; }},
+      {"min_output_extent is 30x1", [](S& s) { s.min_output_width = 30, s.min_output_height = 1; }},
+      {"particle_target_extent is 99x9",
+       [](S& s) { s.particle_target_width = 99, s.particle_target_height = 9; }},
+      {"focus.extent is 25x2", [](S& s) { s.focus_width = 25, s.focus_height = 2; }},
+      {"focus.target_extent is -1x4",
+       [](S& s) {
+         s.focus_width = s.focus_height = 8;
+         s.focus_target_width = -1, s.focus_target_height = 4;
+       }},
+  };
+  for (const Wrong<S>& wrong : table) {
+    S settings = good_settings();
+    wrong.set(settings);
+    auto* plan = reinterpret_cast<quincunx_plan*>(&settings);
+    EXPECT_EQ(quincunx_plan_create(&settings, &plan), QUINCUNX_INVALID_ARGUMENT) << wrong.word;
+    EXPECT_EQ(plan, nullptr) << wrong.word;
+    EXPECT_TRUE(names(wrong.word)) << wrong.word << ": " << quincunx_last_error();
+  }
+}
+
+TEST(CBadInput, EachWrongInputIsNamed) {
+  using E = Everything;
+  const Wrong<E> table[] = {
+      {"inputs.struct_size is 151", [](E& e) { e.frame.struct_size = 151; }},
+      {"inputs.struct_size is 170", [](E& e) { e.frame.struct_size = 170; }},
+      {"outputs.struct_size is 0", [](E& e) { e.outputs.struct_size = 0; }},
+      {"colour.struct_size is 4", [](E& e) { e.colour.image()->struct_size = 4; }},
+      {"particles.struct_size is 39", [](E& e) { e.particles.struct_size = 39; }},
+      {"focus.struct_size is 1", [](E& e) { e.focus.struct_size = 1; }},
+      {"focus.frame.struct_size is 0", [](E& e) { e.region.struct_size = 0; }},
+      {"fade.struct_size is 0", [](E& e) { e.fade.struct_size = 0; }},
+      {"sync.struct_size is 31", [](E& e) { e.sync.struct_size = 31; }},
+      {"colour is missing", [](E& e) { e.frame.colour = nullptr; }},
+      {"depth is missing", [](E& e) { e.frame.depth = nullptr; }},
+      {"particle_colour is missing", [](E& e) { e.frame.particles = nullptr; }},
+      {"particle_depth is missing", [](E& e) { e.particles.depth = nullptr; }},
+      {"exposure_image.extent is 24x18", [](E& e) { e.frame.exposure_image = e.depth.image(); }},
+      {"render_extent is 25x18", [](E& e) { e.frame.render_width = 25; }},
+      {"output_extent is 7x18", [](E& e) { e.frame.output_width = 7; }},
+      {"particle_render_extent is 0x18", [](E& e) { e.particles.render_width = 0; }},
+      {"jitter.x is nan", [](E& e) { e.frame.jitter_x = kNaN; }},
+      {"jitter.y is -2", [](E& e) { e.frame.jitter_y = -2; }},
+      {"velocity_scale.x is inf", [](E& e) { e.frame.velocity_scale_x = HUGE_VALF; }},
+      {"velocity_scale.y is nan", [](E& e) { e.frame.velocity_scale_y = kNaN; }},
+      {"camera.clip_to_previous_clip", [](E& e) { e.frame.clip_to_previous_clip[7] = kNaN; }},
+      {"near_plane is nan", [](E& e) { e.frame.near_plane = kNaN; }},
+      {"far_plane is 0.5", [](E& e) { e.frame.far_plane = 0.5f; }},
+      {"exposure is -1", [](E& e) { e.frame.exposure = -1; }},
+      {"fade_weight is nan", [](E& e) { e.fade.weight = kNaN; }},
+      {"fade.from is NULL", [](E& e) { e.fade.from = nullptr; }},
+      {"focus.frame is NULL", [](E& e) { e.focus.frame = nullptr; }},
+      {"focus.frame.focus is given", [](E& e) { e.region.focus = &e.focus; }},
+      {"focus.frame.sync is given", [](E& e) { e.region.sync = &e.sync; }},
+      {"of focus.frame: depth is missing", [](E& e) { e.region.depth = nullptr; }},
+      {"region of 12x8 at -1, 2 leaves", [](E& e) { e.focus.x = -1; }},
+      {"leaves the output's", [](E& e) { e.focus.y = 2147483647; }},
+      {"focus.rectangle_count is 5", [](E& e) { e.focus.rectangle_count = 5; }},
+      {"focus.rectangle_count is -1", [](E& e) { e.focus.rectangle_count = -1; }},
+      {"focus.rectangles is NULL", [](E& e) { e.focus.rectangles = nullptr; }},
+      {"focus.rectangles[1]", [](E& e) { e.rectangles[1].width = 2147483647; }},
+      {"focus.feather is nan", [](E& e) { e.focus.feather = kNaN; }},
+      {"focus.mask is missing", [](E& e) { e.focus.mask = nullptr; }},
+      {"outputs are both missing; give linear",
+       [](E& e) { e.outputs.linear = e.outputs.presented = nullptr; }},
+      {"linear.format is RGBA8", [](E& e) { e.outputs.linear = e.presented.image(); }},
+  };
+  const auto plan = plan_of(Everything::settings());
+  for (const Wrong<E>& wrong : table) {
+    Everything all;
+    ASSERT_EQ(quincunx_validate(plan.get(), &all.frame, &all.outputs), QUINCUNX_OK) << quincunx_last_error();
+    wrong.set(all);
+    EXPECT_EQ(quincunx_validate(plan.get(), &all.frame, &all.outputs), QUINCUNX_INVALID_ARGUMENT)
+        << wrong.word;
+    EXPECT_TRUE(names(wrong.word)) << wrong.word << ": " << quincunx_last_error();
+  }
+  Everything all;
+  const auto plain = plan_of(good_settings());
+  EXPECT_EQ(quincunx_validate(plain.get(), &all.frame, &all.outputs), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_TRUE(names("set settings.focus_width")) << quincunx_last_error();
+  all.frame.focus = nullptr;
+  EXPECT_EQ(quincunx_validate(plain.get(), &all.frame, &all.outputs), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_TRUE(names("set settings.fades")) << quincunx_last_error();
+}
+
+TEST(CBadInput, ReportsAreChecked) {
+  const auto plan = plan_of(good_settings());
+  quincunx_device* device = nullptr;
+  quincunx_service* service = nullptr;
+  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> device_owner(device);
+  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service_owner(service);
+  quincunx_content content = {};
+  int in_focus[1] = {};
+  const Wrong<quincunx_report> table[] = {
+      {"report.struct_size is 63", [](auto& r) { r.struct_size = 63; }},
+      {"report.pass_capacity is -1", [&](auto& r) { r.in_focus = in_focus, r.pass_capacity = -1; }},
+      {"report.content.struct_size is 0", [&](auto& r) { r.content = &content; }},
+  };
+  for (const auto& wrong : table) {
+    quincunx_report report = {};
+    report.struct_size = sizeof(report);
+    wrong.set(report);
+    EXPECT_EQ(quincunx_next_report(service, &report), QUINCUNX_INVALID_ARGUMENT) << wrong.word;
+    EXPECT_TRUE(names(wrong.word)) << wrong.word << ": " << quincunx_last_error();
+  }
+  EXPECT_EQ(quincunx_settings_set_method(nullptr, "temporal"), QUINCUNX_INVALID_ARGUMENT);
+  quincunx_settings settings = good_settings();
+  EXPECT_EQ(quincunx_settings_set_method(&settings, nullptr), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_EQ(quincunx_settings_set_method(&settings, "best"), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_TRUE(names("temporal:quality")) << quincunx_last_error();
+  ASSERT_EQ(quincunx_settings_set_method(&settings, "quincunx:reprojected"), QUINCUNX_OK);
+  EXPECT_EQ(settings.method, QUINCUNX_TWO_FRAMES);
+  EXPECT_EQ(settings.two_frame_form, QUINCUNX_REPROJECTED);
+  EXPECT_EQ(quincunx_variant_name(-1), nullptr);
+  EXPECT_EQ(quincunx_variant_name(9999), nullptr);
+  quincunx_plan* region = nullptr;
+  EXPECT_EQ(quincunx_plan_focus(plan.get(), &region), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_TRUE(names("the plan has no focus")) << quincunx_last_error();
+  EXPECT_EQ(quincunx_plan_focus(nullptr, nullptr), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_EQ(quincunx_plan_reads_history(nullptr, 1, 1, 0, 0), 0);
+  EXPECT_EQ(quincunx_plan_reads_history(plan.get(), 12, 9, 0, 0), 1);
+  EXPECT_EQ(quincunx_plan_reads_history(plan.get(), -1, 9, 0, 0), 0);
+  EXPECT_EQ(quincunx_allow_timing_waits(nullptr, 1), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_EQ(quincunx_allow_timing_waits(service, 1), QUINCUNX_OK);
+  EXPECT_EQ(quincunx_device_profile(nullptr), nullptr);
+  EXPECT_EQ(quincunx_device_pass_timer(nullptr), nullptr);
+  EXPECT_NE(std::string(quincunx_device_profile(device)), "");
+}
+
+// Bits that are wrong for most fields.
+std::int32_t nasty(std::mt19937& random) {
+  const float floats[] = {kNaN, HUGE_VALF, -HUGE_VALF, -1.f, 1e30f, 0.5f};
+  const std::int32_t whole[] = {
+      0, 1, -1, 2, 3, 7, 25, 99, 32768, 65537, 1 << 30, 2147483647, -2147483647 - 1};
+  std::int32_t bits = whole[random() % std::size(whole)];
+  if (random() % 3 == 0) std::memcpy(&bits, &floats[random() % std::size(floats)], sizeof(bits));
+  return bits;
+}
+
+// Overwrites some of the 4-byte numbers between two offsets.
+void spoil(std::mt19937& random, void* from, std::size_t begin, std::size_t end) {
+  for (unsigned i = 0; i < 1 + random() % 3; ++i) {
+    const std::size_t at = begin + 4 * (random() % ((end - begin) / 4));
+    const std::int32_t bits = nasty(random);
+    std::memcpy(static_cast<unsigned char*>(from) + at, &bits, sizeof(bits));
+  }
+}
+
+bool is_answer(quincunx_status status) {
+  return status == QUINCUNX_OK || ((status == QUINCUNX_INVALID_ARGUMENT || status == QUINCUNX_UNSUPPORTED) &&
+                                   quincunx_last_error()[0] != '\0');
+}
+
+TEST(CBadInput, NoCombinationOfSettingsCrashes) {
+  std::mt19937 random(4);
+  int made = 0;
+  for (int i = 0; i < 4000; ++i) {
+    quincunx_settings settings = i % 2 == 0 ? good_settings() : Everything::settings();
+    spoil(random, &settings, offsetof(quincunx_settings, moving_objects), sizeof(settings));
+    quincunx_plan* plan = nullptr;
+    const quincunx_status status = quincunx_plan_create(&settings, &plan);
+    ASSERT_TRUE(is_answer(status)) << status << ": " << quincunx_last_error();
+    ASSERT_EQ(plan != nullptr, status == QUINCUNX_OK);
+    made += plan != nullptr;
+    quincunx_plan_destroy(plan);
+  }
+  EXPECT_GT(made, 400);
+  EXPECT_LT(made, 3600);
+}
+
+// A service is given frames with any numbers wrong and any pointers missing; after each, a good frame is resolved.
+TEST(CBadInput, NoCombinationOfInputsCrashes) {
+  const auto plan = plan_of(Everything::settings());
+  quincunx_device* device = nullptr;
+  quincunx_service* service = nullptr;
+  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> device_owner(device);
+  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service_owner(service);
+  std::mt19937 random(5);
+  int refused = 0;
+  constexpr int kRounds = 400;
+  for (int i = 0; i < kRounds; ++i) {
+    Everything all;
+    std::vector<std::function<void()>> faults = {
+        [&] {
+          spoil(random, &all.frame, offsetof(quincunx_inputs, render_width),
+                offsetof(quincunx_inputs, exposure_image));
+        },
+        [&] {
+          spoil(random, &all.region, offsetof(quincunx_inputs, render_width),
+                offsetof(quincunx_inputs, exposure_image));
+        },
+        [&] {
+          spoil(random, &all.particles, offsetof(quincunx_particles, render_width), sizeof(all.particles));
+        },
+        [&] { spoil(random, &all.focus, offsetof(quincunx_focus, x), offsetof(quincunx_focus, rectangles)); },
+        [&] { spoil(random, &all.rectangles, 0, sizeof(all.rectangles)); },
+        [&] { all.focus.rectangle_count = nasty(random); },
+        [&] { spoil(random, &all.focus.feather, 0, sizeof(all.focus.feather)); },
+        [&] { spoil(random, &all.fade.weight, 0, sizeof(all.fade.weight)); },
+        [&] { all.sync.wait_count = nasty(random); },
+        [&] { all.frame.struct_size = random() % sizeof(all.frame); },
+        [&] { all.focus.struct_size = random() % sizeof(all.focus); },
+        [&] { all.colour.image()->struct_size = random() % sizeof(quincunx_image); },
+        [&] {
+          spoil(random, all.depth.image(), offsetof(quincunx_image, format), offsetof(quincunx_image, width));
+        },
+        [&] { all.frame.colour = nullptr; },
+        [&] { all.frame.reactive = nullptr; },
+        [&] { all.frame.particles = nullptr; },
+        [&] { all.frame.focus = nullptr; },
+        [&] { all.focus.frame = nullptr; },
+        [&] { all.focus.mask = nullptr; },
+        [&] { all.fade.from = nullptr; },
+        [&] { all.outputs.linear = nullptr; },
+    };
+    for (unsigned k = 0; k < 1 + random() % 3; ++k)
+      faults[random() % faults.size()]();
+    const quincunx_status status = quincunx_dispatch(service, &all.frame, &all.outputs, nullptr);
+    ASSERT_TRUE(is_answer(status)) << status << ": " << quincunx_last_error();
+    refused += status != QUINCUNX_OK;
+    if (i % 10 != 0) continue;
+    Everything good;
+    ASSERT_EQ(quincunx_dispatch(service, &good.frame, &good.outputs, nullptr), QUINCUNX_OK)
+        << quincunx_last_error();
+  }
+  EXPECT_GT(refused, kRounds / 2);
+  EXPECT_LT(refused, kRounds);
+}
+
+// What the plan does not read may be anything: it is not looked at.
+TEST(CBadInput, ImagesThatAreNotReadAreNotCopied) {
+  quincunx_settings settings = good_settings();
+  settings.method = QUINCUNX_BILINEAR;
+  const auto plan = plan_of(settings);
+  quincunx_device* device = nullptr;
+  quincunx_service* service = nullptr;
+  ASSERT_EQ(quincunx_device_open("", &device), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> device_owner(device);
+  ASSERT_EQ(quincunx_service_create(device, plan.get(), &service), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service_owner(service);
+  Everything all;
+  quincunx_image nothing = *all.depth.image();
+  nothing.memory = reinterpret_cast<void*>(16);  // no address of this program's
+  all.frame.depth = all.frame.velocity = &nothing;
+  all.frame.particles = nullptr;
+  all.frame.focus = nullptr;
+  all.frame.fade = nullptr;
+  EXPECT_EQ(quincunx_dispatch(service, &all.frame, &all.outputs, nullptr), QUINCUNX_OK)
+      << quincunx_last_error();
+}
+
+}  // namespace
+}  // namespace quincunx
