@@ -3,12 +3,14 @@
 """Checks what a shared library of Quincunx shows, and what its installed headers ask for.
 
     check_abi.py --library libquincunx.so --soname libquincunx.so.1 --headers PREFIX/include
-                 [--archive libquincunx.a --user libtools.a ...]
+                 [--c-symbols c_symbols.txt] [--archive libquincunx.a --user libtools.a ...]
 
 Fails, with one line for each finding, on
 - a SONAME other than the one given
 - an exported symbol that is not the project's, or whose type names a library that only the inside uses
 - a header that includes such a library, or a function of the C interface that a header has and the library has not
+- with --c-symbols, the list of the C interface: its SONAME, then its functions with the QUINCUNX_API_VERSION that each
+  came with. Whatever the library exports for C is there, and nothing else; the highest version is that of the headers
 - with --archive, the same code as a static library: a symbol of it that a --user needs and the shared one hides
 """
 import argparse
@@ -79,11 +81,31 @@ def functions_of_c(folder):
     return found
 
 
+def differs_from_list(text, exported, soname, version):
+    """The findings about the C interface, given the list's text and the headers' QUINCUNX_API_VERSION."""
+    head, *lines = text.split("\n")
+    listed = {name: int(since) for name, since in (line.split() for line in lines if line)}
+    ours = {name for name in exported if re.match(r"quincunx_\w+$", name)}
+    found = [] if head == soname else [f"the list is of {head}, and the library is {soname}"]
+    found += [f"exports '{name}', which the list has not: add it, with a QUINCUNX_API_VERSION that is one higher than "
+              "that of the last release" for name in sorted(ours - set(listed))]
+    found += [f"lacks '{name}', which the list has: programs of this SONAME use it" for name in sorted(set(listed) - ours)]
+    if max(listed.values()) != version:
+        found.append(f"the list's highest version is {max(listed.values())}, and QUINCUNX_API_VERSION is {version}")
+    return found
+
+
+def api_version_of(folder):
+    with open(os.path.join(folder, "quincunx", "quincunx.h"), encoding="utf-8") as header:
+        return int(re.search(r"#define QUINCUNX_API_VERSION (\d+)", header.read()).group(1))
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--library", required=True)
     parser.add_argument("--soname", required=True)
     parser.add_argument("--headers", required=True)
+    parser.add_argument("--c-symbols")
     parser.add_argument("--archive")
     parser.add_argument("--user", nargs="*", default=[])
     arguments = parser.parse_args()
@@ -97,6 +119,9 @@ def main():
     soname = soname_of(arguments.library)
     if soname != arguments.soname:
         findings.append(f"{arguments.library} has the SONAME {soname}; it must be {arguments.soname}")
+    if arguments.c_symbols:
+        with open(arguments.c_symbols, encoding="utf-8") as listed:
+            findings += differs_from_list(listed.read(), exported, soname, api_version_of(arguments.headers))
     if arguments.archive:
         defined = symbols_of(arguments.archive, "--defined-only", "--extern-only")
         needed = [name for user in arguments.user for name in symbols_of(user, "--undefined-only")]

@@ -23,6 +23,17 @@ class CheckAbi(unittest.TestCase):
         self.assertEqual(len(check_abi.hidden_but_needed(defined, {"a": ""}, ["a", "b", "puts"])), 1)
         self.assertEqual(check_abi.hidden_but_needed(defined, {"a": ""}, ["a", "puts"]), [])
 
+    def test_the_list_of_the_c_interface_is_kept(self):
+        def found(exported, soname="lib.so.1", version=2):
+            return check_abi.differs_from_list("lib.so.1\nquincunx_a 1\nquincunx_b 2\n", exported, soname, version)
+
+        both = {"quincunx_a": "", "quincunx_b": "", "_ZN8quincunx1cEv": ""}
+        self.assertEqual(found(both), [])
+        self.assertIn("exports 'quincunx_c'", found({**both, "quincunx_c": ""})[0])
+        self.assertIn("lacks 'quincunx_b'", found({"quincunx_a": ""})[0])
+        self.assertIn("the library is lib.so.2", found(both, soname="lib.so.2")[0])
+        self.assertIn("QUINCUNX_API_VERSION is 3", found(both, version=3)[0])
+
     def test_functions_of_the_c_interface_are_known(self):
         with tempfile.TemporaryDirectory() as folder:
             with open(os.path.join(folder, "a.h"), "w", encoding="utf-8") as header:
