@@ -10,7 +10,7 @@
 #include "render/view_math.h"
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
-#include "tools/sequence/exchange_format.h"
+#include "tools/sequence/exchange_attributes.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 using tools::Attribute;
 using tools::Channel;
 using tools::ChannelType;
-
-constexpr const char* kColourNames[] = {"R", "G", "B", "A"};
 
 tools::Matrix to_attribute(const glm::mat4& matrix) {
   tools::Matrix values;
@@ -29,23 +27,20 @@ tools::Matrix to_attribute(const glm::mat4& matrix) {
 
 std::vector<Attribute> attributes_of(const TargetFile& file) {
   const ViewMatrices matrices = view_of(file.camera, file.view.aspect);
-  const auto extent = [](Extent e) {
-    return Vec2{static_cast<float>(e.width), static_cast<float>(e.height)};
-  };
-  return {
-      {"quincunx:version", 1},
-      {"quincunx:jitter", file.view.jitter},
-      {"quincunx:renderSize", extent(file.view.render)},
-      {"quincunx:outputSize", extent(file.output)},
-      {"quincunx:frameIndex", static_cast<int>(file.index)},
-      {"quincunx:reset", file.reset ? 1 : 0},
-      {"quincunx:near", file.camera.near_plane},
-      {"quincunx:depthKind", std::string(file.linear_depth ? "linear" : "device-reversed")},
-      {"quincunx:dt", static_cast<float>(1 / file.fps)},
-      {"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))},
-      {"worldToNDC", to_attribute(matrices.clip_from_world())},
-      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}},
-  };
+  std::vector<Attribute> attributes = tools::to_attributes(
+      {.jitter = file.view.jitter,
+       .render = file.view.render,
+       .output = file.output,
+       .index = file.index,
+       .reset = file.reset,
+       .near_plane = file.camera.near_plane,
+       .depth_kind = file.linear_depth ? tools::DepthKind::kLinear : tools::DepthKind::kDeviceReversed,
+       .world_to_ndc = to_attribute(matrices.clip_from_world())});
+  attributes.push_back({"quincunx:dt", static_cast<float>(1 / file.fps)});
+  attributes.push_back({"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))});
+  attributes.push_back(
+      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}});
+  return attributes;
 }
 
 }  // namespace
@@ -115,19 +110,21 @@ void dilate_velocity(gl::TargetPixels& pixels) {
 Status write_targets(const std::string& path, const TargetFile& file) {
   std::vector<Channel> channels;
   const std::vector<float> colour = colour_of(file.pixels);
-  for (int i = 0; i < 4; ++i) {
-    channels.push_back({.name = kColourNames[i],
+  for (std::size_t i = 0; i < 4; ++i) {
+    channels.push_back({.name = tools::kColourChannels[i],
                         .type = ChannelType::kFloat,
                         .data = colour.data() + i,
                         .pixel_stride = 4 * sizeof(float)});
   }
   const std::vector<float> z = depth_of(file);
-  channels.push_back(
-      {.name = "Z", .type = ChannelType::kFloat, .data = z.data(), .stored = ChannelType::kFloat});
+  channels.push_back({.name = tools::kDepthChannel,
+                      .type = ChannelType::kFloat,
+                      .data = z.data(),
+                      .stored = ChannelType::kFloat});
   const std::vector<Vec2> motion = backward_motion(file);
   if (!motion.empty()) {
-    for (int i = 0; i < 2; ++i) {
-      channels.push_back({.name = i == 0 ? "backward.u" : "backward.v",
+    for (std::size_t i = 0; i < 2; ++i) {
+      channels.push_back({.name = tools::kBackwardChannels[i],
                           .type = ChannelType::kFloat,
                           .data = &motion.data()->x + i,
                           .pixel_stride = sizeof(Vec2),
@@ -136,15 +133,15 @@ Status write_targets(const std::string& path, const TargetFile& file) {
   }
   const std::vector<float> mask = reactive_mask(file);
   if (!mask.empty()) {
-    channels.push_back({.name = "reactive.mask", .type = ChannelType::kFloat, .data = mask.data()});
+    channels.push_back({.name = tools::kReactiveChannel, .type = ChannelType::kFloat, .data = mask.data()});
   }
   return tools::write_exr(path, file.pixels.render_extent, channels, attributes_of(file));
 }
 
 Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba) {
   std::vector<Channel> channels;
-  for (int i = 0; i < 4; ++i) {
-    channels.push_back({.name = kColourNames[i],
+  for (std::size_t i = 0; i < 4; ++i) {
+    channels.push_back({.name = tools::kColourChannels[i],
                         .type = ChannelType::kFloat,
                         .data = rgba.data() + i,
                         .pixel_stride = 4 * sizeof(float)});

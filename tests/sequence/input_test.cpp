@@ -131,7 +131,7 @@ TEST_F(Input, AttributesMayBeTextAndHaveShortNames) {
                      {"quincunx:frameIndex", 77}};
   const FrameAttributes attributes = attributes_of(header_of(file));
   EXPECT_EQ(attributes.jitter, (Vec2{0.25f, -0.5f}));
-  EXPECT_TRUE(attributes.reset);
+  EXPECT_EQ(attributes.reset, true);
   EXPECT_EQ(attributes.near_plane, 0.1f);
   EXPECT_EQ(attributes.index, 77);
 }

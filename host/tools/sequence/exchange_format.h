@@ -3,9 +3,11 @@
 // project or of other renderers (docs/inputs.md). Pure; thread-safe.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "quincunx/advanced/extent.h"
@@ -14,6 +16,14 @@
 #include "tools/image/image_io.h"
 
 namespace quincunx::tools {
+
+// The format's channels.
+inline const std::array<std::string, 4> kColourChannels = {"R", "G", "B", "A"};
+inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
+// Of recorded frames: velocity as it was given, in whatever unit.
+inline const std::array<std::string, 2> kVelocityChannels = {"velocity.u", "velocity.v"};
+inline const std::string kDepthChannel = "Z";
+inline const std::string kReactiveChannel = "reactive.mask";
 
 // `Z` where no surface was seen: finite, so that a filter over Z makes no NaN, far beyond any scene, and what
 // Blender writes there.

@@ -12,7 +12,7 @@
 #include "tools/image/image_reader.h"
 #include "tools/sequence/exchange_format.h"
 #include "tools/sequence/frame_pattern.h"
-#include "tools/sequence/sequence_attributes.h"
+#include "tools/sequence/sequence_jitter.h"
 
 namespace quincunx::tools {
 
@@ -27,11 +27,6 @@ struct ChannelNames {
   bool has_depth() const { return !depth.empty(); }
   bool has_reactive() const { return !reactive.empty(); }
 };
-
-// Those of the exchange format.
-inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
-inline const std::string kDepthChannel = "Z";
-inline const std::string kReactiveChannel = "reactive.mask";
 
 // "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
 // first three. Where the file has neither they are R, G and B.

@@ -18,7 +18,6 @@ namespace quincunx::tools {
 namespace {
 
 constexpr const char* kSettingsAttribute = "quincunx:resolve";
-constexpr const char* kColourNames[] = {"R", "G", "B", "A"};
 
 // The folder with its final slash, "" for the current one.
 std::string folder_of(const std::string& path) {
@@ -78,7 +77,7 @@ Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> r
                                     std::span<const Attribute> kept) const {
   std::vector<Channel> channels;
   for (std::size_t i = 0; i < 4; ++i) {
-    channels.push_back({.name = kColourNames[i],
+    channels.push_back({.name = kColourChannels[i],
                         .type = ChannelType::kFloat,
                         .data = rgba.data() + i,
                         .pixel_stride = 4 * sizeof(float),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sequence attributes: what a frame's file says beside its pixels, and where the jitter comes from. Thread-safe.
+// JitterSource: where the jitter of a sequence's frames comes from. Thread-safe.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +10,12 @@
 #include <variant>
 
 #include "quincunx/status.h"
-#include "tools/image/image_reader.h"
 #include "tools/program/jitter.h"
-#include "tools/sequence/exchange_format.h"
+#include "tools/sequence/exchange_attributes.h"
 
 namespace quincunx::tools {
 
-// Each under its name of the exchange format ("quincunx:jitter"); jitter and reset also without the prefix,
-// and pairs and numbers also as text ("0.25 -0.25"), as some programs can only write that.
-struct FrameAttributes {
-  std::optional<Vec2> jitter;  // render pixels
-  std::optional<Extent> render;
-  std::optional<Extent> output;
-  std::optional<std::int64_t> index;
-  bool reset = false;
-  std::optional<float> near_plane;
-  std::optional<DepthKind> depth_kind;
-  std::optional<Matrix> world_to_ndc;
-};
-
-// Errors: kIoFailure, naming `path` and the attribute, where one holds what it cannot mean.
-Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHeader& header);
-
-// Where the jitter of a sequence's frames comes from. A value.
+// A value.
 class JitterSource {
  public:
   // `text`: "attribute", a pattern ("none", "quincunx", "quincunx-half", "halton"), or a file: lines of
