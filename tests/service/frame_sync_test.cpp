@@ -119,5 +119,24 @@ TEST(FrameSync, EventsThatCannotBeWaitedForRefuseTheFrame) {
   }
 }
 
+// What it sees is what the passes will read, of accepted frames alone; the first begins without history.
+TEST(FrameObserver, SeesFramesUntilItHasEnough) {
+  ServiceRig rig({.transparents = false}, Method::kTemporal, kSize, kSize);
+  ASSERT_TRUE(dispatch(rig, rig.upload(frame_of(0)), {}).ok());
+  std::vector<float> seen;
+  rig.service().observe([&](const FrameInputs& inputs, const FocusInputs* focus) {
+    std::vector<Pixel> texels(static_cast<std::size_t>(kSize.area()));
+    EXPECT_TRUE(rig.service().device().download(inputs.colour, kSize, texels.data()).ok());
+    EXPECT_EQ(focus, nullptr);
+    seen.push_back(texels[0][0]);
+    return seen.size() < 2;
+  });
+  EXPECT_FALSE(dispatch(rig, {}, {}).ok());
+  EXPECT_FALSE(dispatch(rig, rig.upload(frame_of(1)), {}).used_previous);
+  EXPECT_TRUE(dispatch(rig, rig.upload(frame_of(2)), {}).used_previous);
+  ASSERT_TRUE(dispatch(rig, rig.upload(frame_of(3)), {}).ok());
+  EXPECT_EQ(seen, (std::vector<float>{1, 2}));
+}
+
 }  // namespace
 }  // namespace quincunx

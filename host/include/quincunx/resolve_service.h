@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,6 +50,11 @@ struct FrameSync {
   // frame was refused or failed.
   cl_event* done = nullptr;
 };
+
+// Sees a frame that dispatch() has accepted, before its work is enqueued: when all that is on the device's queue is
+// done, the images hold what the passes will read. `focus` is null where there is none. Returns whether it wants to see
+// the next one, too. It must not dispatch.
+using FrameObserver = std::function<bool(const FrameInputs& inputs, const FocusInputs* focus)>;
 
 // Pictures on the way to the finished one.
 enum class PictureStage : std::uint8_t {
@@ -106,9 +112,14 @@ class QUINCUNX_API ResolveService {
   // dispatch but one overwrites it. Errors: kInvalidArgument where the plan does not accumulate.
   Result<ImageView> history() const;
 
+  // Shows every frame from the next one on to `observer`, in place of the one before; an empty one ends that. The next
+  // frame begins without history, so that the pictures follow from what is seen and from the plan alone.
+  void observe(FrameObserver observer);
+
   Status finish();  // waits until every dispatched frame is done
 
   const ResolvePlan& plan() const;
+  const Device& device() const;
 
  private:
   struct QUINCUNX_HIDDEN Impl;

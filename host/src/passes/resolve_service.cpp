@@ -89,6 +89,7 @@ struct ResolveService::Impl {
   std::optional<FocusStream> focus;  // where the plan has one
   cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
+  FrameObserver observer;  // may be empty
 };
 
 void ResolveService::Impl::warm_up() {
@@ -157,6 +158,7 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
   if (!refused.ok()) return refused;
   try {
     wait_in_queue(device.impl()->queue, sync.wait_for);
+    if (observer && !observer(inputs, given)) observer = nullptr;
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
     slot.report.render_extent = inputs.render_extent;
@@ -268,6 +270,11 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
   }
 }
 
+void ResolveService::observe(FrameObserver observer) {
+  impl_->observer = std::move(observer);
+  impl_->forget();
+}
+
 Status ResolveService::finish() {
   return impl_->device.finish();
 }
@@ -309,6 +316,10 @@ Result<ImageView> ResolveService::history() const {
 
 const ResolvePlan& ResolveService::plan() const {
   return impl_->picture.plan();
+}
+
+const Device& ResolveService::device() const {
+  return impl_->device;
 }
 
 }  // namespace quincunx
