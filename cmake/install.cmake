@@ -3,7 +3,8 @@
 #
 #   find_package(quincunx REQUIRED)                          -> quincunx::quincunx
 #   find_package(quincunx REQUIRED COMPONENTS gl_interop)    -> quincunx::gl_interop, too
-#   pkg-config quincunx, quincunx-gl
+#   find_package(quincunx REQUIRED COMPONENTS record)        -> quincunx::record, too
+#   pkg-config quincunx, quincunx-gl, quincunx-record
 include(CMakePackageConfigHelpers)
 
 set(quincunx_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/quincunx)
@@ -24,6 +25,7 @@ function(quincunx_install_pc name)
   if(NOT BUILD_SHARED_LIBS)  # what a static library leaves to its user to link
     set(QUINCUNX_PC_REQUIRES " fmt spdlog libxxhash")
     set(QUINCUNX_PC_LIBS " -lstdc++ -lm -pthread")
+    set(QUINCUNX_PC_RECORD_REQUIRES " OpenImageIO")
   endif()
   configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${quincunx_pc_dir} COMPONENT dev)
@@ -42,6 +44,12 @@ if(TARGET quincunx_gl)
   quincunx_install_library(quincunx_gl lib_gl quincunx_gl_interopTargets)
   quincunx_install_pc(quincunx-gl)
   install(DIRECTORY gl_interop/include/quincunx_gl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+endif()
+
+if(TARGET quincunx_record)
+  quincunx_install_library(quincunx_record lib_record quincunx_recordTargets)
+  quincunx_install_pc(quincunx-record)
+  install(DIRECTORY host/tools/record/include/quincunx_record DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 endif()
 
 set(programs "")

@@ -83,9 +83,13 @@ quincunx_package(lib libquincunx1 libs "dynamic resolution rendering with OpenCL
 quincunx_package(lib_gl libquincunx-gl1 libs "dynamic resolution rendering with OpenCL: OpenGL bridge"
   "${about}This package has the library that hands frames from OpenGL to OpenCL."
   LIBRARY libquincunx_gl DEPENDS "libquincunx1 ${exactly}")
+quincunx_package(lib_record libquincunx-record1 libs "dynamic resolution rendering with OpenCL: recorder"
+  "${about}This package has the library that writes a program's frames, with all settings,
+into files that quincunx-resolve makes the same pictures of."
+  LIBRARY libquincunx_record DEPENDS "libquincunx1 ${exactly}")
 quincunx_package(dev libquincunx-dev libdevel "dynamic resolution rendering with OpenCL: development files"
   "${about}This package has headers and what CMake and pkg-config need to find them."
-  DEPENDS "${both}, ocl-icd-opencl-dev, libepoxy-dev")
+  DEPENDS "${both}, libquincunx-record1 ${exactly}, ocl-icd-opencl-dev, libepoxy-dev")
 quincunx_package(tools quincunx-tools graphics "dynamic resolution rendering with OpenCL: programs"
   "${about}This package has quincunx-render, which renders scenes, quincunx-resolve, which
 makes full-size frames from EXR sequences, quincunx-dump, which shows the

@@ -11,7 +11,7 @@ file(REMOVE_RECURSE ${WORK})
 step("install" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step("configure" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix
      -D CMAKE_BUILD_TYPE=${BUILD_TYPE} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
-     -D EXAMPLES=${EXAMPLES} -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_C_FLAGS=${FLAGS} -D GL_INTEROP=${GL_INTEROP})
+     -D EXAMPLES=${EXAMPLES} -D CMAKE_C_COMPILER=${C_COMPILER} -D CMAKE_C_FLAGS=${FLAGS} -D GL_INTEROP=${GL_INTEROP} -D RECORD=${RECORD})
 step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
 step("run" ${WORK}/build/minimal ${WORK}/minimal.ppm)
 step("run in C" ${WORK}/build/minimal_c ${WORK}/minimal_c.ppm)
@@ -30,4 +30,13 @@ step("run what pkg-config built" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_fo
      ${WORK}/by_pkg_config.ppm)
 if(GL_INTEROP)
   step("run with OpenGL" ${WORK}/build/gl_client)
+endif()
+if(RECORD)
+  step("record" ${WORK}/build/record_client ${WORK}/recorded)
+  step("replay" ${WORK}/prefix/bin/quincunx-resolve ${WORK}/recorded --out ${WORK}/again.%04d.png -q)
+  execute_process(COMMAND ${PKG_CONFIG} --cflags --libs quincunx-record OUTPUT_VARIABLE flags
+                  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")
+  step("build the recorder by pkg-config" ${COMPILER} -std=c++20 ${SOURCE}/record_client.cpp -o ${WORK}/record_by_pkg_config
+       ${flags})
 endif()

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <csignal>
+#include <filesystem>
+#include <system_error>
 
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
@@ -50,6 +52,10 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
                  task.method_reason);
   for (const std::string& warning : advice_on(task))
     spdlog::warn("{}", warning);
+  if (options.recorded) {
+    for (const std::string& difference : differences(options.resolve, options.recorded->settings))
+      spdlog::info("not as it was recorded: {}", difference);
+  }
   if (options.warm_up.value_or(0) > 0 && task.scan.frames.front().wanted) {
     spdlog::info("the sequence begins with frame {}: it has no history", task.scan.frames.front().number);
   }
@@ -75,6 +81,10 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
   }
   auto device = Device::open(options.device);
   if (!device.ok()) return device.status();
+  const std::string name = device->info().platform + " " + device->info().name;
+  if (options.recorded && options.recorded->device != name)
+    spdlog::info("recorded on '{}', resolved on '{}', which may round otherwise", options.recorded->device,
+                 name);
   if (task.output) {
     if (Status status = task.output->check_folder(); !status.ok()) return status;
     task.output->remove_leftovers(wanted);
@@ -106,6 +116,11 @@ int run(int argc, char** argv) {
   ResolveOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
   set_up_log(options.quiet, options.verbosity);
+  std::error_code error;
+  if (std::filesystem::is_directory(options.input, error)) {
+    if (Status status = take_recorded(options); !status.ok()) return fail(status);
+    if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
+  }
   set_exr_threads(options.threads > 1 ? options.threads : 0);
   if (options.list_devices) {
     print_opencl_devices();

@@ -165,6 +165,7 @@ MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
 }
 
 std::vector<std::string> advice_on(const ResolveTask& task) {
+  if (!task.format.recording.empty()) return {};  // what was, was
   std::vector<ScannedFrame> frames = task.scan.frames;
   std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
   if (frames.empty()) return {};

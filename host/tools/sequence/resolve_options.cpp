@@ -123,6 +123,7 @@ constexpr const char* kExamples = R"(Examples:
       --velocity-convention fsr2 --truth "truth/truth.%04d.exr"              with scores of each frame
   quincunx-resolve "seq/frame.%04d.exr" --out "up/up.%04d.exr" --frames 101-200   one chunk of a render farm
   quincunx-resolve "seq/frame.%04d.exr" --out "up/up.%04d.exr" -n            only say what would be done
+  quincunx-resolve recorded --out "up/up.%04d.exr"                           as it was recorded, bit for bit
 Exit status: 0 done, 1 failed, 2 wrong usage.)";
 
 UsageError wrong(const std::string& option, const std::string& reason) {
@@ -132,7 +133,9 @@ UsageError wrong(const std::string& option, const std::string& reason) {
 void add_picture_options(CommandLine& app, ResolveOptions& options) {
   static const std::map<std::string, ChannelType> kTypes = {{"half", ChannelType::kHalf},
                                                             {"float", ChannelType::kFloat}};
-  app.add_option("INPUT", options.input, "Frames to read: #, @ or %04d is the number").type_name("PATTERN");
+  app.add_option("INPUT", options.input,
+                 "Frames to read: #, @ or %04d is the number; or the folder of a recording")
+      .type_name("PATTERN");
   app.add_option("--out", options.out,
                  "Frames to write: .exr (linear) or .png (presented); #, @ or %04d is the number")
       .type_name("PATTERN");
@@ -199,6 +202,16 @@ void check_needs(const ResolveOptions& options) {
   if (options.resume && options.out.empty()) throw wrong("--resume", "needs --out");
 }
 
+// Refuses options of frames that nobody explains.
+void check_recorded(const CommandLine& app, const std::string& folder) {
+  for (const char* option :
+       {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
+        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up"}) {
+    if (app.has(option))
+      throw wrong(option, fmt::format("is what the recording in '{}' says itself", folder));
+  }
+}
+
 }  // namespace
 
 std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& options) {
@@ -212,6 +225,7 @@ std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& opt
   options.command_line = command_line_text("quincunx-resolve", argc, argv);
   return app.parse(argc, argv, [&app, &options] {
     options.method_named = app.has("--method");
+    if (options.recorded) check_recorded(app, options.input);
     check_needs(options);
   });
 }

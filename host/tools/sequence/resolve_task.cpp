@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
 #include "tools/program/resolve_settings_options.h"
 #include "tools/sequence/resolve_advice.h"
@@ -32,6 +33,14 @@ Result<FramePattern> parse_input(const std::string& text, const std::string& wha
         fmt::format("{} '{}' has no frame number; put %04d, # or @ where it stands", what, text));
   }
   return pattern;
+}
+
+// A % of the folder's is no number.
+std::string recorded_pattern(const std::string& folder) {
+  std::string path = (std::filesystem::path(folder) / "frame").string();
+  for (std::size_t at = 0; (at = path.find('%', at)) != std::string::npos; at += 2)
+    path.insert(at, 1, '%');
+  return path + ".%04d.exr";
 }
 
 // The first frame that can be opened, or with bad frames the first at all, whose failure is the error.
@@ -137,7 +146,60 @@ Status settle_frames(const ResolveOptions& options, ResolveTask& task) {
   return {};
 }
 
+Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
+  SequenceInput sequence = options.sequence;
+  auto jitter = JitterSource::parse(options.jitter);
+  if (!jitter.ok()) return jitter.status();
+  sequence.jitter = std::move(jitter).value();
+  auto format = settle_by_first(options, task, sequence);
+  if (!format.ok()) return format.status();
+  task.format = std::move(format).value();
+  settle_method(options, task);
+  auto output = output_for(options, task);
+  if (!output.ok()) return output.status();
+  task.output = std::move(output).value();
+  // Which channels are read follows from a plan of any size.
+  if (Status status = settle_plan(task, task.format.output, true); !status.ok()) return status;
+  if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
+  if (task.output) task.output->settings += "; " + summary_of(task.format);
+  return {};
+}
+
+// The settings say all but which frames there are.
+Status settle_recorded(const ResolveOptions& options, ResolveTask& task) {
+  task.resolve = options.resolve;
+  task.format.recording = options.input;
+  task.format.jitter = JitterSource::parse("attribute").value();
+  task.format.output = task.resolve.output_extent;
+  auto output = output_for(options, task);
+  if (!output.ok()) return output.status();
+  task.output = std::move(output).value();
+  ResolveSettings settings = task.resolve;
+  settings.present |= task.output && task.output->pattern.format() == FileFormat::kPng;
+  auto plan = plan_for(options.recorded->needs, settings);
+  if (!plan.ok()) return plan.status();
+  task.plan = std::move(plan).value();
+  ChannelNames& channels = task.format.channels;
+  if (task.plan.velocity == VelocitySource::kTarget) channels.velocity = kVelocityChannels;
+  if (task.plan.reads_depth) channels.depth = kDepthChannel;
+  if (task.plan.reads_reactive) channels.reactive = kReactiveChannel;
+  if (task.output)
+    task.output->settings += "; " + to_line({.needs = options.recorded->needs, .settings = settings});
+  return {};
+}
+
 }  // namespace
+
+Status take_recorded(ResolveOptions& options) {
+  auto recorded = read_settings(options.input);
+  if (!recorded.ok()) return recorded.status();
+  options = {};
+  options.resolve = recorded->settings;
+  options.stored =
+      recorded->settings.linear == PixelFormat::kRGBA32F ? ChannelType::kFloat : ChannelType::kHalf;
+  options.recorded = std::move(recorded).value();
+  return {};
+}
 
 Status ResolveTask::check(bool skip_bad_frames) const {
   if (Status status = scan.problem(); !status.ok() && !skip_bad_frames) return status;
@@ -154,7 +216,8 @@ Status ResolveTask::check(bool skip_bad_frames) const {
 }
 
 Result<ResolveTask> prepare(const ResolveOptions& options) {
-  auto input = parse_input(options.input, "input pattern");
+  const bool recorded = options.recorded.has_value();
+  auto input = parse_input(recorded ? recorded_pattern(options.input) : options.input, "input pattern");
   if (!input.ok()) return input.status();
   ResolveTask task = {.input = std::move(input).value()};
   if (!options.truth.empty()) {
@@ -162,33 +225,17 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
     if (!truth.ok()) return truth.status();
     task.truth = TruthFiles{std::move(truth).value(), options.truth_colour};
   }
-  SequenceInput sequence = options.sequence;
-  auto jitter = JitterSource::parse(options.jitter);
-  if (!jitter.ok()) return jitter.status();
-  sequence.jitter = std::move(jitter).value();
-
   if (Status status = settle_frames(options, task); !status.ok()) return status;
-  auto format = settle_by_first(options, task, sequence);
-  if (!format.ok()) return format.status();
-  task.format = std::move(format).value();
-  settle_method(options, task);
-  auto output = output_for(options, task);
-  if (!output.ok()) return output.status();
-  task.output = std::move(output).value();
-
-  // Which channels are read follows from a plan of any size.
-  if (Status status = settle_plan(task, task.format.output, true); !status.ok()) return status;
-  if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
-  const int history = history_of(task.plan);
-  if (task.output) {
-    task.output->settings += "; " + summary_of(task.format);
-    if (options.warm_up.value_or(history) < history) task.output->settings += "; begun without history";
-  }
+  const Status settled = recorded ? settle_recorded(options, task) : settle_sequence(options, task);
+  if (!settled.ok()) return settled;
+  const int history = recorded ? std::numeric_limits<int>::max() : history_of(task.plan);
+  if (task.output && options.warm_up.value_or(history) < history)
+    task.output->settings += "; begun without history";
   const std::vector<std::int64_t> left = left_to_do(options, task);
   const std::vector<std::int64_t> read = to_read(options, task, left, history);
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
   task.format.background = task.scan.background();
-  if (const Extent target = task.scan.target(); target != Extent{}) {
+  if (const Extent target = task.scan.target(); target != Extent{} && !recorded) {
     if (Status status = settle_plan(task, target, task.scan.half_colour()); !status.ok()) return status;
   }
   return task;

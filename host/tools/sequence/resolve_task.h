@@ -10,6 +10,7 @@
 
 #include "quincunx/resolve_plan.h"
 #include "tools/image/image_io.h"
+#include "tools/record/recorded_settings.h"
 #include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_scan.h"
@@ -18,11 +19,13 @@ namespace quincunx::tools {
 
 // Options that the command line gives.
 struct ResolveOptions {
-  std::string input;          // pattern
-  std::string out;            // pattern; may be empty with --dry-run, --explain and --truth
-  SequenceInput sequence;     // how the frames are to be understood, but for the jitter
-  std::string jitter;         // as JitterSource::parse() takes it
-  ResolveSettings resolve;    // sizes and formats follow from the frames
+  std::string input;        // pattern, or the folder of a recording
+  std::string out;          // pattern; may be empty with --dry-run, --explain and --truth
+  SequenceInput sequence;   // how the frames are to be understood, but for the jitter
+  std::string jitter;       // as JitterSource::parse() takes it
+  ResolveSettings resolve;  // sizes and formats follow from the frames
+  // Those of a recording; `resolve` then has all that was said otherwise.
+  std::optional<RecordedSettings> recorded;
   bool method_named = false;  // else it follows from the frames, too
   ChannelType stored = ChannelType::kHalf;
   float exposure = 0;
@@ -48,7 +51,7 @@ struct ResolveOptions {
 };
 
 // Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
-// instead.
+// instead. `options` holds the defaults.
 std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& options);
 
 struct ResolveTask {
@@ -68,6 +71,10 @@ struct ResolveTask {
   // the files. Errors: as of SequenceScan::problem() and SequenceOutput::check_names().
   Status check(bool skip_bad_frames) const;
 };
+
+// Takes the settings of the recording in folder `options.input` for defaults, to parse the command line again. Errors:
+// kIoFailure, as of read_settings().
+Status take_recorded(ResolveOptions& options);
 
 // Reads headers, no pixels, and writes nothing. Errors: kInvalidArgument for what the command line should
 // have said otherwise, kIoFailure where the first frame cannot be used.

@@ -224,6 +224,7 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
 }
 
 std::string summary_of(const SequenceFormat& format) {
+  if (!format.recording.empty()) return "a recording, by its settings";
   const ChannelNames& channels = format.channels;
   std::string text = colour_text(channels);
   if (channels.has_velocity()) {

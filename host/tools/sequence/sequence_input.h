@@ -83,6 +83,7 @@ struct SequenceInput {
 
 // Nothing is left open.
 struct SequenceFormat {
+  std::string recording;  // the folder of recorded frames; empty: they are none
   ChannelNames channels;
   MotionSource motion = MotionSource::kNone;  // never kAutomatic
   bool needs_camera = false;                  // the attribute worldToNDC of each frame is read

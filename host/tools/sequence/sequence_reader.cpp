@@ -174,6 +174,21 @@ float sky_motion(const CameraMotion& motion, Extent render) {
 
 }  // namespace
 
+Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
+                     SequenceFrame& frame) {
+  try {
+    auto recorded = read_recorded_frame(folder, expected.number, plan);
+    if (!recorded.ok()) return recorded.status();
+    frame.number = expected.number;
+    frame.render = recorded->inputs.render_extent;
+    frame.recorded = std::move(recorded).value();
+    return {};
+  } catch (const std::exception& problem) {  // no memory
+    return Status::io(
+        fmt::format("frame {} of '{}' cannot be read: {}", expected.number, folder, problem.what()));
+  }
+}
+
 Status read_frame(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
                   PixelFormat colour, SequenceFrame& frame) {
   try {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "quincunx/resolve_plan.h"
+#include "tools/record/recorded_frame.h"
 #include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_scan.h"
 
@@ -25,7 +26,8 @@ struct SequenceFrame {
   std::vector<float> depth;            // reversed infinite; empty where not read
   std::vector<std::uint8_t> reactive;  // empty where not read
   std::optional<Matrix> world_to_ndc;
-  std::vector<Attribute> kept;  // the file's (camera, rate and the like); the resolved frame's too
+  std::optional<RecordedFrame> recorded;  // then the images above are empty
+  std::vector<Attribute> kept;            // the file's (camera, rate and the like); the resolved frame's too
 };
 
 // Reads the channels of `format` of the file that `expected` was scanned from. Where the data window leaves
@@ -33,6 +35,10 @@ struct SequenceFrame {
 // `colour`: RGBA16F or RGBA32F; halves stay what they were either way. Errors: kIoFailure, naming `path`.
 Status read_frame(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
                   PixelFormat colour, SequenceFrame& frame);
+
+// Reads a recorded frame of the plan. Errors: kIoFailure, naming the file.
+Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
+                     SequenceFrame& frame);
 
 // Sees frames one after another. One thread.
 class SequenceWatch {

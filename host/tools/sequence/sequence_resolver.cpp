@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <bit>
 
 #include "tools/program/clock.h"
 #include "tools/sequence/exchange_format.h"
@@ -19,6 +20,23 @@ int reading_threads(int threads) {
 
 int writing_threads(int threads) {
   return std::max(threads / 2, 1);
+}
+
+float float_of(std::uint16_t half) {
+  const std::uint32_t sign = (half & 0x8000u) << 16, rest = static_cast<std::uint32_t>(half & 0x7fffu) << 13;
+  const bool finite = (half & 0x7c00u) != 0x7c00u;
+  const float value =
+      finite ? std::bit_cast<float>(rest) * 0x1p112f : std::bit_cast<float>(rest | 0x7f800000u);
+  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | sign);
+}
+
+// RGBA, tightly packed.
+template <typename Value>
+void turn_rows(std::vector<Value>& picture, Extent extent) {
+  const auto row = static_cast<std::ptrdiff_t>(extent.width) * 4;
+  for (int y = 0; y < extent.height / 2; ++y)
+    std::swap_ranges(picture.begin() + y * row, picture.begin() + (y + 1) * row,
+                     picture.end() - (y + 1) * row);
 }
 
 }  // namespace
@@ -50,6 +68,7 @@ Status SequenceResolver::allocate() {
   };
   const Extent target = plan.settings.target_extent;
   for (DeviceFrame& frame : ring_) {
+    if (!job_.format.recording.empty()) break;
     if (Status status = make(frame.colour, target, plan.settings.colour); !status.ok()) return status;
     if (plan.velocity == VelocitySource::kTarget) {
       if (Status status = make(frame.velocity, target, plan.settings.velocity); !status.ok()) return status;
@@ -63,7 +82,10 @@ Status SequenceResolver::allocate() {
   }
   if (Status status = make(linear_, plan.settings.output_extent, plan.settings.linear); !status.ok())
     return status;
-  return presents() ? make(presented_, plan.settings.output_extent, PixelFormat::kRGBA8) : Status();
+  if (!presents()) return {};
+  auto made = device_.allocate(plan.settings.output_extent, PixelFormat::kRGBA8, plan.presented_storage());
+  if (made.ok()) presented_ = std::move(made).value();
+  return made.status();
 }
 
 Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& to) const {
@@ -90,7 +112,27 @@ Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inpu
   return {};
 }
 
+Result<FrameReport> SequenceResolver::dispatch_recorded(const SequenceFrame& frame) {
+  const Clock::time_point start = Clock::now();
+  auto uploaded = quincunx::tools::upload(device_, service_.plan(), *frame.recorded);
+  if (!uploaded.ok()) return uploaded.status();
+  outcome_.upload_ms.push_back(ms_since(start));
+  FrameInputs& inputs = uploaded->inputs;
+  if (job_.exposure > 0) inputs.exposure = job_.exposure;
+  inputs.reset |= last_ + 1 != frame.number;
+  const FrameOutputs outputs = {linear_.view(), presented_.view()};
+  FrameReport report = uploaded->focus ? service_.dispatch(inputs, *uploaded->focus, outputs)
+                                       : service_.dispatch(inputs, outputs);
+  if (!report.ok())
+    return Status(report.status.code(), fmt::format("frame {}: {}", frame.number, report.status.message()));
+  played_[static_cast<std::size_t>(count_ % 2)] = std::move(uploaded).value();
+  last_ = frame.number;
+  ++count_;
+  return report;
+}
+
 Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const ScannedFrame& scanned) {
+  if (frame.recorded) return dispatch_recorded(frame);
   const DeviceFrame& device_frame = ring_[static_cast<std::size_t>(count_ % 2)];
   const Clock::time_point start = Clock::now();
   if (Status status = upload(frame, device_frame); !status.ok()) return status;
@@ -122,14 +164,27 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
 Status SequenceResolver::download(Picture& picture) const {
   const Extent output = service_.plan().settings.output_extent;
   const auto texels = static_cast<std::size_t>(output.area()) * 4;
+  const bool turns =
+      service_.plan().settings.conventions.origin == Origin::kBottom;  // files begin at the top
   if (!presents() || job_.scores != nullptr) {
     auto pixels = std::make_shared<std::vector<float>>(texels);
-    if (Status status = device_.download(linear_.view(), output, pixels->data()); !status.ok()) return status;
+    if (linear_.view().format == PixelFormat::kRGBA32F) {
+      if (Status status = device_.download(linear_.view(), output, pixels->data()); !status.ok())
+        return status;
+    } else {
+      std::vector<std::uint16_t> halves(texels);
+      if (Status status = device_.download(linear_.view(), output, halves.data()); !status.ok())
+        return status;
+      std::transform(halves.begin(), halves.end(), pixels->begin(), float_of);
+    }
+    if (turns) turn_rows(*pixels, output);
     picture.linear = std::move(pixels);
   }
   if (!presents()) return {};
   picture.presented.resize(texels);
-  return device_.download(presented_.view(), output, picture.presented.data());
+  const Status status = device_.download(presented_.view(), output, picture.presented.data());
+  if (turns) turn_rows(picture.presented, output);
+  return status;
 }
 
 // To those who write and measure; waits where they cannot keep up.
@@ -215,6 +270,8 @@ Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
   const int readers = reading_threads(job_.threads);
   ahead_ = std::make_unique<ReadAhead<SequenceFrame>>(
       good.size(), readers, readers + 1, [this, &good](std::size_t index, SequenceFrame& frame) {
+        if (const std::string& folder = job_.format.recording; !folder.empty())
+          return read_recorded(folder, good[index], service_.plan(), frame);
         return read_frame(job_.input.expand(good[index].number), job_.format, good[index],
                           service_.plan().settings.colour, frame);
       });

@@ -27,7 +27,7 @@ struct SequenceJob {
   SequenceFormat format;
   SequenceScan scan;
   std::optional<SequenceOutput> output;  // absent: frames are only scored
-  float exposure = 0;                    // exposure of a PNG; 0: 1
+  float exposure = 0;                    // exposure of a PNG; 0: 1, or the recorded one
   int threads = 1;                       // that read, and that write, at least one of each
   bool skip_bad_frames = false;
   SequenceScores* scores = nullptr;  // not owned; null: none
@@ -72,6 +72,7 @@ class SequenceResolver {
   Status allocate();
   Status upload(const SequenceFrame& frame, const DeviceFrame& to) const;
   Result<FrameReport> dispatch(const SequenceFrame& frame, const ScannedFrame& scanned);
+  Result<FrameReport> dispatch_recorded(const SequenceFrame& frame);
   Status camera_of(const SequenceFrame& frame, FrameInputs& inputs) const;
   Status resolve_frame(const ScannedFrame& scanned);
   Status download(Picture& picture) const;
@@ -83,8 +84,9 @@ class SequenceResolver {
   Device device_;
   ResolveService service_;
   SequenceJob job_;
-  std::array<DeviceFrame, 2> ring_;  // this frame and the one before
-  Image linear_;                     // the resolved picture, blurred where the plan blurs
+  std::array<DeviceFrame, 2> ring_;      // this frame and the one before
+  std::array<UploadedFrame, 2> played_;  // the same, where they are recorded
+  Image linear_;                         // the resolved picture, blurred where the plan blurs
   Image presented_;
   std::int64_t last_ = -1;  // the frame that was resolved before; -1: none
   std::optional<Matrix> last_world_to_ndc_;
