@@ -63,22 +63,20 @@ typedef struct quincunx_controller_settings {
   /* What follows counts for predictive and quality. */
   int32_t cpu_bound; /* default QUINCUNX_HOLD */
   double fixed_part; /* first guess of what does not scale, in [0, 0.9]; default 0.25 */
-  const quincunx_costs*
-      calibration;       /* replaces that guess, if it spans enough resolutions; copied; default NULL */
+  /* Replaces that guess, if it spans enough resolutions; copied; default NULL. */
+  const quincunx_costs* calibration;
   double blur_start_px;  /* mean streak of motion blur, output pixels, from which it counts; default 4 */
   double blur_full_px;   /* from which blur_min_scale is the limit; above blur_start_px; default 24 */
   double blur_min_scale; /* per axis, in (0, 1]; default 0.71 */
   int32_t blur_aware;    /* the three above count; default 0 */
   /* What follows counts for quality. */
   int32_t fade_frames; /* over which a change of method is faded in, in [0, 60]; 0: at once; default 6 */
-  const quincunx_front*
-      front; /* errors and costs of the methods; copied; default NULL: the one that is built in */
-  const char* const*
-      methods; /* to choose from, names as of quincunx_variant_name(); default NULL: all of the front */
-  int32_t method_count; /* default 0 */
-  int32_t padding;      /* 0 */
-  double hysteresis;    /* part of the expected error that a change has to save, in [0, 1); default 0.03 */
-  double rest_seconds;  /* between two changes of method, in [0, 60]; default 1 */
+  const quincunx_front* front; /* copied; default NULL: the one that is built in */
+  const char* const* methods;  /* names of quincunx_variant_name(); default NULL: all of the front */
+  int32_t method_count;        /* default 0 */
+  int32_t padding;             /* 0 */
+  double hysteresis;   /* part of the expected error that a change has to save, in [0, 1); default 0.03 */
+  double rest_seconds; /* between two changes of method, in [0, 60]; default 1 */
 } quincunx_controller_settings;
 
 /* Times of one past frame. Zero means not known unless a comment says otherwise. */
@@ -105,11 +103,10 @@ typedef struct quincunx_choice {
   int32_t render_height;
   int32_t rung; /* its number, from 0, the smallest */
   int32_t padding;
-  const char*
-      method; /* "temporal:fast", as quincunx_settings_set_method() takes it; NULL: not chosen. Static */
-  const char*
-      fading_from; /* resolve with this, too, and give it as inputs.fade; NULL: with nothing else. Static */
-  double weight;   /* of `method`'s picture, in (0, 1]; 1 unless fading */
+  /* Static names, "temporal:fast", as quincunx_settings_set_method() takes them. */
+  const char* method;      /* NULL: not chosen */
+  const char* fading_from; /* resolve with this, too, and give it as inputs.fade; NULL: with nothing else */
+  double weight;           /* of `method`'s picture, in (0, 1]; 1 unless fading */
 } quincunx_choice;
 
 /* Sets every field to its default but struct_size, which it reads. Errors: QUINCUNX_INVALID_ARGUMENT. */
@@ -119,8 +116,8 @@ QUINCUNX_API quincunx_status quincunx_controller_settings_init(quincunx_controll
 QUINCUNX_API quincunx_status quincunx_controller_create(const quincunx_controller_settings* settings,
                                                         quincunx_controller** controller);
 QUINCUNX_API void quincunx_controller_destroy(quincunx_controller* controller);
-QUINCUNX_API const char* quincunx_controller_name(
-    const quincunx_controller* controller); /* "predictive"; static */
+/* "predictive"; static. */
+QUINCUNX_API const char* quincunx_controller_name(const quincunx_controller* controller);
 /* Learns from one frame and chooses for the next. Errors: QUINCUNX_INVALID_ARGUMENT for a frame number that is not
  * above the last accepted one, and a field that cannot be; nothing has changed then, so a caller may ignore it. */
 QUINCUNX_API quincunx_status quincunx_controller_observe(quincunx_controller* controller,
@@ -169,10 +166,9 @@ QUINCUNX_API quincunx_status quincunx_front_parse(const char* json, quincunx_fro
 QUINCUNX_API quincunx_status quincunx_front_find(const quincunx_device* device, const char* scene,
                                                  quincunx_front** front);
 QUINCUNX_API void quincunx_front_destroy(quincunx_front* front);
-QUINCUNX_API const char* quincunx_front_text(
-    const quincunx_front* front); /* JSON; lives as long as the front */
-QUINCUNX_API const char* quincunx_front_summary(
-    const quincunx_front* front); /* where it comes from; the same */
+/* JSON; and where it comes from, in a clause. Live as long as the front. */
+QUINCUNX_API const char* quincunx_front_text(const quincunx_front* front);
+QUINCUNX_API const char* quincunx_front_summary(const quincunx_front* front);
 /* The expected mean FLIP of a mix; and the milliseconds of a method's passes for an output of so many megapixels.
  * `method`: a name of quincunx_variant_name(). Errors: QUINCUNX_INVALID_ARGUMENT. */
 QUINCUNX_API quincunx_status quincunx_front_flip(const quincunx_front* front,

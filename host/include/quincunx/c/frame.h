@@ -41,10 +41,10 @@ typedef struct quincunx_rectangle {
  * set. */
 typedef struct quincunx_focus {
   size_t struct_size; /* sizeof(quincunx_focus) */
-  const struct quincunx_inputs*
-      frame;    /* the region as a camera sees it that looks at just that; no focus in it */
-  int32_t x, y; /* the output pixel at the region's upper left corner */
-  const quincunx_rectangle* rectangles; /* where it shows, at most four; NULL: in the whole region */
+  /* The region as a camera sees it that looks at just that; without focus, particles, fade and sync. */
+  const struct quincunx_inputs* frame;
+  int32_t x, y;                         /* the output pixel at the region's upper left corner */
+  const quincunx_rectangle* rectangles; /* where it shows, at most four; none: in the whole region */
   int32_t rectangle_count;
   float feather;              /* output pixels over which it sets in; 0: 16 */
   const quincunx_image* mask; /* R8, the region's extent; where settings.focus_mask is set */
@@ -156,8 +156,7 @@ typedef struct quincunx_report {
   int32_t focused;       /* 1: a focus was laid over the picture */
   int32_t content_known; /* 1: `content` was written; 0: settings.measures_content is 0, or not known yet */
   quincunx_content* content; /* in: where to write it, with its struct_size, or NULL */
-  int32_t*
-      in_focus; /* in: room for pass_capacity numbers, or NULL; out: 1 for a pass of the focus's region */
+  int32_t* in_focus;         /* in: room for pass_capacity, or NULL; out: 1 for passes of the focus */
 } quincunx_report;
 
 #endif
