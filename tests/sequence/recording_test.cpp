@@ -378,6 +378,17 @@ TEST_F(RecordingFolder, OptionsCountAndAreSaid) {
   EXPECT_NE(resumed.err.find("1 frames are there, but made otherwise"), std::string::npos) << resumed.err;
 }
 
+TEST_F(RecordingFolder, IsNamedWhereItsFilesAreReadAsOthers) {
+  record_all(1);
+  const auto result = testing::run_program(folder_, "'{}/seen/frame.%04d.exr' -n");
+  EXPECT_NE(result.out.find("holds a recording: give the folder alone"), std::string::npos)
+      << result.out << result.err;
+  const auto listed = testing::run_program(folder_, "'{}/seen' -n");
+  EXPECT_EQ(listed.exit_code, 0) << listed.err;
+  EXPECT_NE(listed.out.find("a recording, by its settings"), std::string::npos) << listed.out;
+  EXPECT_EQ(listed.out.find("Warning"), std::string::npos) << listed.out;
+}
+
 // Every field that sequence.json has, each with another value than by itself.
 TEST(RecordedSettings, ComeBack) {
   const testing::TemporaryFolder folder;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 namespace quincunx::tools {
@@ -103,6 +104,13 @@ std::string on_size(const ResolveTask& task, const std::vector<ScannedFrame>& fr
   return {};
 }
 
+// Whoever names its files one by one reads them as any renderer's.
+std::string on_recording(const ResolveTask& task) {
+  const std::string folder = std::filesystem::path(task.input.text()).parent_path().string();
+  if (!is_recording(folder)) return {};
+  return fmt::format("'{}' holds a recording: give the folder alone, and all is as it was recorded", folder);
+}
+
 }  // namespace
 
 JitterKind kind_of(std::span<const Vec2> jitters) {
@@ -169,8 +177,9 @@ std::vector<std::string> advice_on(const ResolveTask& task) {
   std::vector<ScannedFrame> frames = task.scan.frames;
   std::erase_if(frames, [](const ScannedFrame& frame) { return !frame.problem.empty(); });
   if (frames.empty()) return {};
-  std::vector<std::string> advice = {on_motion(task), on_jitter(task, frames), on_compression(task, frames),
-                                     on_shape(task, frames), on_size(task, frames)};
+  std::vector<std::string> advice = {
+      on_motion(task),        on_jitter(task, frames), on_compression(task, frames),
+      on_shape(task, frames), on_size(task, frames),   on_recording(task)};
   std::erase(advice, "");
   return advice;
 }

@@ -150,7 +150,9 @@ void add_picture_options(CommandLine& app, ResolveOptions& options) {
          "Size of the picture (default: attribute quincunx:outputSize)")
       .type_name("WxH");
   add_resolve_options(app, options.resolve, "what the frames offer decides");
-  app.add_option("--exposure", options.exposure, "Multiplies linear colour in a PNG (default: 1)").positive();
+  app.add_option("--exposure", options.exposure,
+                 "Multiplies linear colour in a PNG (default: 1, or as recorded)")
+      .positive();
   add_choice(app, "--store", options.stored, kTypes, "half (default) or float in an EXR");
   app.add_option("--truth", options.truth, "True pictures to score the frames against, where there are any")
       .type_name("PATTERN");
