@@ -33,7 +33,8 @@ if(GL_INTEROP)
 endif()
 if(RECORD)
   step("record" ${WORK}/build/record_client ${WORK}/recorded)
-  step("replay" ${WORK}/prefix/bin/quincunx-resolve ${WORK}/recorded --out ${WORK}/again.%04d.png -q)
+  step("replay" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/.. ${WORK}/prefix/bin/quincunx-resolve
+       ${WORK}/recorded --out ${WORK}/again.%04d.png -q)
   execute_process(COMMAND ${PKG_CONFIG} --cflags --libs quincunx-record OUTPUT_VARIABLE flags
                   OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
   separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")

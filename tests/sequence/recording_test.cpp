@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What is recorded of a service's frames makes the same pictures again, bit for bit.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -112,6 +113,23 @@ class Player {
   std::vector<Image> kept_;
 };
 
+float value_of_half(std::uint16_t half) {
+  const int exponent = half >> 10 & 31, digits = half & 1023;
+  const float value = exponent == 0 ? std::ldexp(static_cast<float>(digits), -24)
+                                    : std::ldexp(static_cast<float>(1024 + digits), exponent - 25);
+  return half & 0x8000 ? -value : value;
+}
+
+// The linear picture where it has halves, of which download() fills the first bytes.
+std::vector<Pixel> from_halves(const std::vector<Pixel>& bytes) {
+  std::vector<std::uint16_t> halves(bytes.size() * 4);
+  std::memcpy(halves.data(), bytes.data(), halves.size() * sizeof(std::uint16_t));
+  std::vector<Pixel> pixels(bytes.size());
+  for (std::size_t i = 0; i < halves.size(); ++i)
+    pixels[i / 4][i % 4] = value_of_half(halves[i]);
+  return pixels;
+}
+
 struct Run {
   const char* name;
   ResolveSettings settings;
@@ -129,6 +147,7 @@ class Replay : public ::testing::TestWithParam<Run> {
 
 TEST_P(Replay, MakesTheSamePictures) {
   const Origin origin = GetParam().settings.conventions.origin;
+  const bool halves = GetParam().settings.linear == PixelFormat::kRGBA16F;
   Player player(GetParam().needs, GetParam().settings);
   for (int i = 0; i < kBefore; ++i)
     ASSERT_TRUE(player.dispatch(i).ok());
@@ -139,7 +158,8 @@ TEST_P(Replay, MakesTheSamePictures) {
   for (int i = kBefore; !recording->done(); ++i) {
     const FrameReport report = player.dispatch(i);
     ASSERT_TRUE(report.ok()) << report.status.message();
-    linear.push_back(upright(player.rig().resolved(), kOutput, origin));
+    const std::vector<Pixel> resolved = player.rig().resolved();
+    linear.push_back(upright(halves ? from_halves(resolved) : resolved, kOutput, origin));
     presented.push_back(upright(player.rig().presented(), kOutput, origin));
   }
   ASSERT_TRUE(recording->status().ok()) << recording->status().message();
@@ -154,7 +174,7 @@ TEST_P(Replay, MakesTheSamePictures) {
   for (std::size_t i = 0; i < linear.size(); ++i) {
     const auto exr = tools::read_image(folder_.file(fmt::format("again.{:04}.exr", i)));
     ASSERT_TRUE(exr.ok()) << exr.error();
-    ASSERT_EQ(exr->stored[0], tools::ChannelType::kFloat);
+    ASSERT_EQ(exr->stored[0], halves ? tools::ChannelType::kHalf : tools::ChannelType::kFloat);
     ASSERT_EQ(exr->pixels.size(), linear[i].size() * 4);
     EXPECT_EQ(std::memcmp(exr->pixels.data(), linear[i].data(), linear[i].size() * sizeof(Pixel)), 0) << i;
     const auto png = tools::read_image(folder_.file(fmt::format("again.{:04}.png", i)));
@@ -172,7 +192,7 @@ const Run kRuns[] = {
      .settings = {.method = Method::kTemporal, .particle_target_extent = kTarget, .blur = {.shutter = .5f}}},
     {.name = "checkerboard", .settings = {.method = Method::kQuincunx, .shading = Shading::kCheckerboard}},
     {.name = "rgba8_temporal", .settings = {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8}},
-    {.name = "noise", .settings = {.method = Method::kNoise}},
+    {.name = "noise_in_halves", .settings = {.method = Method::kNoise, .linear = PixelFormat::kRGBA16F}},
     {.name = "opengl_engine",
      .settings = {.method = Method::kTemporal,
                   .conventions = {.depth = DepthConvention::kForward,
