@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
   gl::BridgeSettings bridging = gl::bridge_settings(get(plan_for(needs, settings)));
   bridging.imports = true;
   const auto bridge = get(gl::Bridge::create(context, device, bridging));
-  settings.storage = bridge->storage();
+  settings.targets.storage = bridge->storage();
   auto service = get(ResolveService::create(device, get(plan_for(needs, settings))));
   const double scale = fixed ? std::atof(argv[3]) : 0.5;  // at least
   const auto controller = get(make_predictive_controller(

@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
   const auto context = get(gl::Context::create(gl::Platform::kCurrent));
   const auto device = get(gl::open_device(context, "", gl::Interop::kAuto));
   const auto bridge = get(gl::Bridge::create(context, device, bridging));
-  settings.storage = bridge->storage();
+  settings.targets.storage = bridge->storage();
   auto service = get(ResolveService::create(device, get(plan_for(needs, settings))));
   const auto controller = get(make_predictive_controller(
       {.ladder = {.output_extent = output, .min_scale = scale, .max_scale = fixed ? scale : 1}}));

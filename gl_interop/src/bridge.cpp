@@ -156,10 +156,10 @@ BridgeSettings bridge_settings(const ResolvePlan& plan) {
           .depth = plan.reads_depth,
           .velocity = plan.velocity == VelocitySource::kTarget,
           .reactive = plan.reads_reactive,
-          .checkerboard = plan.settings.shading == Shading::kCheckerboard,
+          .checkerboard = plan.settings.targets.shading == Shading::kCheckerboard,
           .colour = plan.settings.colour,
           .velocity_format = plan.settings.velocity,
-          .targets = plan.settings.targets};
+          .targets = plan.settings.targets.placement};
 }
 
 Status Bridge::check_owner(const char* call, bool imports) const {

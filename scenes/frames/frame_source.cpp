@@ -96,20 +96,20 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
   bridging.interop = settings_.interop;
   bridging.target_extent = sequence_->target();
   bridging.output_extent = sequence_->output();
-  bridging.targets = resolves.front().targets;
+  bridging.targets = resolves.front().targets.placement;
   bridging.colour = resolves.front().colour;
-  display_ = {.exposure = exposure(), .tone_map = resolves.front().tone_map};
+  display_ = {.exposure = exposure(), .tone_map = resolves.front().output.tone_map};
   bridging.depth = bridging.velocity = bridging.reactive = hand_over == HandOver::kEvery;
   for (ResolveSettings& resolve : resolves) {
     resolve.output_extent = bridging.output_extent;
-    resolve.min_output_extent = outputs_ ? outputs_->min_output() : Extent();
+    resolve.output.min_extent = outputs_ ? outputs_->min_output() : Extent();
     resolve.target_extent = bridging.target_extent;
-    resolve.particle_target_extent = particle_target();
-    resolve.targets = bridging.targets;
+    resolve.targets.particle_extent = particle_target();
+    resolve.targets.placement = bridging.targets;
     if (focus_) resolve.focus = focus_->settings();
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
-    bridging.checkerboard |= resolve.shading == Shading::kCheckerboard;
+    bridging.checkerboard |= resolve.targets.shading == Shading::kCheckerboard;
     bridging.depth |= plan->reads_depth;
     bridging.velocity |= plan->velocity == VelocitySource::kTarget;
     bridging.reactive |= plan->reads_reactive;
@@ -120,7 +120,7 @@ Result<std::vector<ResolvePlan>> FrameSource::connect_all(std::vector<ResolveSet
 
   std::vector<ResolvePlan> plans;
   for (ResolveSettings& resolve : resolves) {
-    resolve.storage = bridge().storage();
+    resolve.targets.storage = bridge().storage();
     const auto plan = plan_for(needs, resolve);
     if (!plan.ok()) return plan.status();
     plans.push_back(plan.value());

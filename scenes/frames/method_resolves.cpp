@@ -13,7 +13,7 @@ namespace {}  // namespace
 ResolveSettings method_settings(const ResolveSettings& settings, const MethodVariant& method) {
   ResolveSettings chosen = settings;
   apply(method, chosen);
-  chosen.measures_content = chosen.fades = true;
+  chosen.control.measures_content = chosen.control.fades = true;
   return chosen;
 }
 
@@ -48,7 +48,7 @@ Result<MethodResolves> MethodResolves::create(FrameSource& source, const Resolve
   Image fading;
   if (services.size() > 1) {
     const ResolveSettings& planned = plans->front().settings;
-    auto image = source.device().allocate(planned.output_extent, planned.linear);
+    auto image = source.device().allocate(planned.output_extent, planned.output.linear);
     if (!image.ok()) return image.status();
     fading = std::move(image).value();
   }

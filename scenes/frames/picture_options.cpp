@@ -144,7 +144,7 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
          "The output's resolution is dynamic, too: auto (follows the viewport's), a fixed scale, or random")
       .type_name("auto|S|random");
   tools::add_resolve_options(app, options.resolve);
-  tools::add_choice(app, "--targets", options.resolve.targets, tools::choices<Targets>(),
+  tools::add_choice(app, "--targets", options.resolve.targets.placement, tools::choices<Targets>(),
                     "viewport (default): a part of large targets; placed: targets of just that size");
   tools::add_choice(app, "--jitter", options.jitter, kJitters,
                     "none, quincunx, quincunx-half or halton (default: halton for temporal, quincunx for "
@@ -154,7 +154,7 @@ void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
   tools::add_choice(app, "--colour", options.resolve.colour, kColours,
                     "Of the colour target: rgba16f (linear light) or rgba8 (exposed, tone mapped and sRGB "
                     "encoded as it is drawn; default: rgba16f)");
-  tools::add_choice(app, "--shading", options.resolve.shading, tools::choices<Shading>(),
+  tools::add_choice(app, "--shading", options.resolve.targets.shading, tools::choices<Shading>(),
                     "Pixels that a frame shades: full or checkerboard, every other one (default: full)");
   add_part_options(app, options.parts);
   app.add_option(
@@ -231,7 +231,7 @@ Jitter jitter_for(const PictureOptions& options) {
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   auto path = scale_path_for(options);
   if (!path.ok()) return path.status();
-  if (options.resolve.targets == Targets::kPlaced && options.interop == gl::Interop::kGl) {
+  if (options.resolve.targets.placement == Targets::kPlaced && options.interop == gl::Interop::kGl) {
     return Status::invalid(
         "--targets placed and --interop gl exclude each other: OpenGL's textures cannot be placed in memory "
         "that OpenCL "
@@ -268,7 +268,7 @@ Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
     settings.outputs = outputs.value();
   }
   settings.jitter = jitter_for(options);
-  settings.shading = options.resolve.shading;
+  settings.shading = options.resolve.targets.shading;
   settings.frames = options.frames;
   settings.fps = options.fps;
   settings.start_seconds = options.start;

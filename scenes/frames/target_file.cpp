@@ -155,8 +155,8 @@ Result<PicturePresenter> PicturePresenter::create(const Device& device, Extent e
   settings.method = Method::kPoint;  // at scale 1 the identity
   settings.output_extent = settings.target_extent = extent;
   settings.colour = PixelFormat::kRGBA32F;
-  settings.tone_map = tone_map;
-  settings.dither = dither;
+  settings.output.tone_map = tone_map;
+  settings.output.dither = dither;
   auto plan = plan_for({}, settings);
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(device, plan.value());

@@ -105,17 +105,18 @@ Status DumpSession::open() {
   auto service = ResolveService::create(source_->device(), plan.value());
   if (!service.ok()) return service.status();
   service_.emplace(std::move(service).value());
-  auto made = source_->device().allocate(options_.output, plan->settings.linear);
+  auto made = source_->device().allocate(options_.output, plan->settings.output.linear);
   if (made.ok()) linear_ = std::move(made).value();
   return made.status();
 }
 
 std::string DumpSession::why_missing(Stage stage) const {
   const ResolvePlan& plan = service_->plan();
-  if (stage == Stage::kParticles && plan.settings.particle_target_extent == Extent())
+  if (stage == Stage::kParticles && plan.settings.targets.particle_extent == Extent())
     return source_->scene().particles ? "they are drawn with everything else; give --particle-scale"
                                       : "the scene has none";
-  if (stage == Stage::kHistory && !plan.accumulates() && plan.settings.shading == Shading::kCheckerboard)
+  if (stage == Stage::kHistory && !plan.accumulates() &&
+      plan.settings.targets.shading == Shading::kCheckerboard)
     return "the previous frame that is read is the filled one, which only the service has";
   if (stage == Stage::kHistory && !uses_earlier_frames(plan.settings.method)) {
     return fmt::format("the method '{}' uses one frame only", name_of(plan.settings.method));
@@ -260,7 +261,7 @@ Status DumpSession::collect_targets() {
   }
   planes_[Stage::kReactive] = {render, {"mask"}, {reactive_mask(file)}, tools::ChannelType::kHalf};
 
-  const bool placed = service_->plan().settings.targets == Targets::kPlaced;
+  const bool placed = service_->plan().settings.targets.placement == Targets::kPlaced;
   const Extent target = placed ? render : source_->sequence().target();
   std::vector<float> cleared(static_cast<std::size_t>(target.area()));
   for (int y = 0; y < render.height; ++y) {
@@ -305,7 +306,7 @@ Status DumpSession::collect_output() {
                             current_->view.seconds);
   if (!truth.ok()) return truth.status();
   if (is_display_referred())
-    truth = tools::display_light(truth.value(), options_.resolve.tone_map, exposure_);
+    truth = tools::display_light(truth.value(), options_.resolve.output.tone_map, exposure_);
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
   auto finished = download(linear_.view(), output);
   if (!finished.ok()) return finished.status();
@@ -360,8 +361,8 @@ Status DumpSession::write_pictures() {
     } else if (is_colour(stage)) {
       const bool shown = is_display_referred();
       auto presenter = PicturePresenter::create(source_->device(), planes.extent,
-                                                shown ? ToneMap::kClamp : options_.resolve.tone_map,
-                                                options_.resolve.dither, shown ? 1 : exposure_);
+                                                shown ? ToneMap::kClamp : options_.resolve.output.tone_map,
+                                                options_.resolve.output.dither, shown ? 1 : exposure_);
       if (!presenter.ok()) return presenter.status();
       auto codes = presenter->present(interleaved(planes));
       if (!codes.ok()) return codes.status();

@@ -86,7 +86,7 @@ std::optional<int> parse_command_line(int argc, char** argv, DumpOptions& option
     if (!listing && options.out.empty() && options.sequence.empty()) {
       throw tools::UsageError{"--out", "is missing: give the folder for the stages, or --sequence PATTERN"};
     }
-    if (!options.sequence.empty() && options.resolve.shading == Shading::kCheckerboard)
+    if (!options.sequence.empty() && options.resolve.targets.shading == Shading::kCheckerboard)
       throw tools::UsageError{"--sequence", "holds whole frames; give it without --shading checkerboard"};
     if (!options.sequence.empty() && options.parts.particles)
       throw tools::UsageError{"--sequence", "holds whole frames; give it without --particle-scale"};

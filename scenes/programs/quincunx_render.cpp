@@ -52,8 +52,8 @@ Status run_truth(const RenderOptions& options) {
   if (!renderer.ok()) return renderer.status();
   auto device = Device::open(options.device);
   if (!device.ok()) return device.status();
-  auto presenter = PicturePresenter::create(device.value(), options.output, options.resolve.tone_map,
-                                            options.resolve.dither,
+  auto presenter = PicturePresenter::create(device.value(), options.output, options.resolve.output.tone_map,
+                                            options.resolve.output.dither,
                                             options.exposure > 0 ? options.exposure : scene->exposure);
   if (!presenter.ok()) return presenter.status();
 
@@ -98,9 +98,10 @@ int explain(const RenderOptions& options) {
   const bool has_particles = static_cast<bool>(scene->particles);
   ResolveSettings settings = options.resolve;
   settings.output_extent = sequence->output();
-  if (source->sequence.outputs) settings.min_output_extent = source->sequence.outputs->min_output();
+  if (source->sequence.outputs) settings.output.min_extent = source->sequence.outputs->min_output();
   settings.target_extent = sequence->target();
-  if (has_particles) settings.particle_target_extent = particle_target(source->parts, settings.target_extent);
+  if (has_particles)
+    settings.targets.particle_extent = particle_target(source->parts, settings.target_extent);
   if (source->focus.target) {
     auto focus = FocusRegion::create(source->focus, scene.value(), source->sequence);
     if (!focus.ok()) return tools::fail(focus.status());

@@ -41,7 +41,7 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
   json["depth_kind"] = dump.linear_depth ? "linear" : "device-reversed";
   const bool encoded = options.resolve.colour == PixelFormat::kRGBA8;
   json["exposure"] = encoded ? 1 : source.exposure();
-  if (encoded) json["tone_map"] = name_of(options.resolve.tone_map);
+  if (encoded) json["tone_map"] = name_of(options.resolve.output.tone_map);
   if (dump.truth > 0) json["truth_samples"] = dump.truth * dump.truth;
   json["drawn_velocity"] = name_of(dump.dilates_velocity ? DrawnVelocity::kDilated : DrawnVelocity::kOwn);
   json["conventions"] = {
@@ -71,7 +71,7 @@ Status write_truth_of(FrameSource& source, const SequenceDump& dump, const Frame
   auto rgba = render_truth(source.renderer(), {.output = output, .samples = dump.truth}, view.seconds);
   if (!rgba.ok()) return rgba.status();
   if (options.resolve.colour == PixelFormat::kRGBA8)
-    rgba = tools::display_light(rgba.value(), options.resolve.tone_map, source.exposure());
+    rgba = tools::display_light(rgba.value(), options.resolve.output.tone_map, source.exposure());
   return writer.push([path = pattern->expand(index), output, pixels = std::move(rgba).value()] {
     return write_rgba(path, output, pixels);
   });

@@ -21,8 +21,8 @@ std::vector<ResolveSettings> resolves_of(std::span<const MethodVariant> methods)
   std::vector<ResolveSettings> resolves;
   for (const MethodVariant& variant : methods) {
     apply(variant, resolves.emplace_back());
-    resolves.back().present = false;
-    resolves.back().measures_content = true;
+    resolves.back().output.present = false;
+    resolves.back().control.measures_content = true;
   }
   return resolves;
 }
@@ -277,7 +277,7 @@ Status run_feed(const FrameSource& stage, const FrontFeed& feed, std::span<const
   if (!source.ok()) return source.status();
   const auto plans = source.value()->connect_all(resolves);
   if (!plans.ok()) return plans.status();
-  auto resolved = stage.device().allocate(feed.crop.extent, ResolveSettings{}.linear);
+  auto resolved = stage.device().allocate(feed.crop.extent, ResolveSettings{}.output.linear);
   if (!resolved.ok()) return resolved.status();
   std::vector<ResolveService> services;
   for (const ResolvePlan& plan : plans.value()) {

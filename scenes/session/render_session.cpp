@@ -58,7 +58,7 @@ Result<std::vector<float>> FrameScores::truth_at(FrameSource& source, double sec
 
 tools::MeasuredPicture FrameScores::measured_truth(std::vector<float> truth, float exposure) const {
   if (options_.resolve.colour == PixelFormat::kRGBA8)
-    return {options_.output, tools::display_light(truth, options_.resolve.tone_map, exposure)};
+    return {options_.output, tools::display_light(truth, options_.resolve.output.tone_map, exposure)};
   return {options_.output, exposed(std::move(truth), exposure)};
 }
 
@@ -190,7 +190,7 @@ Status RenderSession::open_resolves() {
   if (!resolves.ok()) return resolves.status();
   resolves_.emplace(std::move(resolves).value());
   if (!wants_resolved()) return {};
-  auto image = source_->device().allocate(options_.output, plan().settings.linear);
+  auto image = source_->device().allocate(options_.output, plan().settings.output.linear);
   if (!image.ok()) return image.status();
   resolved_ = std::move(image).value();
   return {};

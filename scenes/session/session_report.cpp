@@ -60,10 +60,10 @@ tools::RunReport RenderSession::report() const {
       {"jitter", front_ ? "that of the method" : name_of(jitter_for(options_))},
       {"velocity", name_of(plan().velocity)},
       {"colour", name_of(options_.resolve.colour)},
-      {"tone map", name_of(options_.resolve.tone_map)},
-      {"targets", targets_text(plan().settings.targets, source_->memory())},
+      {"tone map", name_of(options_.resolve.output.tone_map)},
+      {"targets", targets_text(plan().settings.targets.placement, source_->memory())},
       {"focus", focus_text(options_, plan().settings.focus)},
-      {"dither", options_.resolve.dither ? "on" : "off"},
+      {"dither", options_.resolve.output.dither ? "on" : "off"},
       {"frames", fmt::format("{} at {} a second of scene time", options_.frames, options_.fps)},
       {"overlap", overlap_text()},
   };

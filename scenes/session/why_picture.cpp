@@ -261,8 +261,9 @@ Status draw_why(const RenderOptions& options) {
   if (!settings.ok()) return settings.status();
   auto stage = FrameSource::create(settings.value());
   if (!stage.ok()) return stage.status();
-  auto presenter = PicturePresenter::create(stage.value()->device(), options.output, options.resolve.tone_map,
-                                            options.resolve.dither, stage.value()->exposure());
+  auto presenter =
+      PicturePresenter::create(stage.value()->device(), options.output, options.resolve.output.tone_map,
+                               options.resolve.output.dither, stage.value()->exposure());
   if (!presenter.ok()) return presenter.status();
   return WhyPicture(options, *stage.value(), std::move(presenter).value(), static_cast<float>(*scale)).draw();
 }

@@ -48,10 +48,10 @@ PictureOptions LivePicture::options_for(const LookSettings& look, Extent output)
   wanted.jitter = look.jitter;
   wanted.resolve.blur.shutter = look.shutter;
   wanted.resolve.blur.samples = look.blur_samples;
-  wanted.resolve.tone_map = look.tone_map;
-  wanted.resolve.dither = look.dither;
-  wanted.resolve.targets = look.targets;
-  wanted.resolve.shading = look.shading;
+  wanted.resolve.output.tone_map = look.tone_map;
+  wanted.resolve.output.dither = look.dither;
+  wanted.resolve.targets.placement = look.targets;
+  wanted.resolve.targets.shading = look.shading;
   wanted.parts.shadow = part_option(look.shadow_scale, options_.parts.shadow.budget_ms);
   const double budget_ms = options_.parts.particles ? options_.parts.particles->budget_ms : 0;
   wanted.parts.particles.reset();
@@ -212,7 +212,7 @@ Status LivePicture::dispatch(bool reset) {
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
   if (keep_ == Keep::kForFiles && !resolved_) {
-    auto image = source_->device().allocate(output(), plan().settings.linear);
+    auto image = source_->device().allocate(output(), plan().settings.output.linear);
     if (!image.ok()) return image.status();
     resolved_ = std::move(image).value();
   }

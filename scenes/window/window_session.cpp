@@ -48,10 +48,10 @@ WindowSettings settings_for(const RenderOptions& options, Vec2 scale) {
   settings.look.method = name_of(variant_of(options.resolve));
   settings.look.shutter = options.resolve.blur.shutter;
   settings.look.blur_samples = options.resolve.blur.samples;
-  settings.look.tone_map = options.resolve.tone_map;
-  settings.look.dither = options.resolve.dither;
-  settings.look.targets = options.resolve.targets;
-  settings.look.shading = options.resolve.shading;
+  settings.look.tone_map = options.resolve.output.tone_map;
+  settings.look.dither = options.resolve.output.dither;
+  settings.look.targets = options.resolve.targets.placement;
+  settings.look.shading = options.resolve.targets.shading;
   settings.look.shadow_scale = text_of(options.parts.shadow);
   if (options.parts.particles) settings.look.particle_scale = text_of(*options.parts.particles);
   settings.look.focus = options.focus;

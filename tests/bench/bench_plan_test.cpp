@@ -56,13 +56,14 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   EXPECT_EQ(plan->methods[1].name, plan->methods[0].name + "@rgba8");
   EXPECT_EQ(plan->methods[0].resolve.colour, PixelFormat::kRGBA16F);
   EXPECT_EQ(plan->methods[1].resolve.colour, PixelFormat::kRGBA8);
-  EXPECT_EQ(plan->methods[1].resolve.tone_map, ToneMap::kReinhard) << "the curve that the metrics have";
+  EXPECT_EQ(plan->methods[1].resolve.output.tone_map, ToneMap::kReinhard)
+      << "the curve that the metrics have";
   EXPECT_EQ(plan->methods[1].jitter, plan->methods[0].jitter);
   EXPECT_EQ(plan->frame_method, 0u);
   const auto both = plan_from(parsed({"--methods", "checkerboard/bilinear@rgba8"}));
   ASSERT_TRUE(both.ok()) << both.status().message();
   EXPECT_EQ(both->methods[0].name, "checkerboard/bilinear@rgba8");
-  EXPECT_EQ(both->methods[0].resolve.shading, Shading::kCheckerboard);
+  EXPECT_EQ(both->methods[0].resolve.targets.shading, Shading::kCheckerboard);
   EXPECT_EQ(both->methods[0].resolve.colour, PixelFormat::kRGBA8);
   const auto dual = plan_from(parsed({"--methods", "temporal,dual0.8/temporal"}));
   ASSERT_TRUE(dual.ok()) << dual.status().message();

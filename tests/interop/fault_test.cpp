@@ -131,7 +131,7 @@ class FaultyService : public DeviceFault {
       frames_[i].velocity = filled(settings.velocity, static_cast<std::uint32_t>(i + 3));
       frames_[i].depth = filled(PixelFormat::kR32F, static_cast<std::uint32_t>(i + 5));
     }
-    linear_ = device_.allocate(kOutput, settings.linear).value();
+    linear_ = device_.allocate(kOutput, settings.output.linear).value();
     presented_ = device_.allocate(kOutput, PixelFormat::kRGBA8).value();
   }
 

@@ -342,7 +342,7 @@ Texture from_bottom(GLenum internal, GLenum format, GLenum type, Extent extent, 
 std::vector<Bytes> pictures_from(Bridge& bridge, const Device& device, const ResolveSettings& resolve) {
   using enum PixelFormat;
   ResolveSettings settings = resolve;
-  settings.storage = bridge.storage();
+  settings.targets.storage = bridge.storage();
   auto service = ResolveService::create(device, plan_for({}, settings).value()).value();
   std::vector<Bytes> pictures;
   for (int frame = 0; frame < 3; ++frame) {
@@ -389,7 +389,7 @@ TEST_P(ImportTest, RowsFromTheBottomGiveThePictureFromTheBottom) {
   ResolveSettings resolve = {.output_extent = kOutput,
                              .target_extent = kTarget,
                              .colour = PixelFormat::kRGBA8,
-                             .dither = false};  // its pattern belongs to places
+                             .output = {.dither = false}};  // its pattern belongs to places
   const std::vector<Bytes> from_top = pictures_from(*bridge, *device_, resolve);
   resolve.conventions.origin = Origin::kBottom;
   const std::vector<Bytes> from_low = pictures_from(*bridge, *device_, resolve);

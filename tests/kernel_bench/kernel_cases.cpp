@@ -30,8 +30,10 @@ Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
   Scene scene;
   scene.suffix = fmt::format(" {:.2f} {}", scale, colour == PixelFormat::kRGBA16F ? "half" : "float");
   scene.scale = scale;
-  scene.settings = {
-      .output_extent = stage.output(), .target_extent = render, .colour = colour, .present = false};
+  scene.settings = {.output_extent = stage.output(),
+                    .target_extent = render,
+                    .colour = colour,
+                    .output = {.present = false}};
   scene.current = stage.frame(render, colour, .25f, 0);
   scene.previous = stage.frame(render, colour, -.25f, 1);
   return scene;
@@ -61,7 +63,7 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
 // Times whole frames, each with the history that those before it have left.
 void add_frames(std::vector<Case>& cases, Stage& stage, Case what, const Scene& scene) {
   auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
-  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.linear)};
+  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.output.linear)};
   FrameReport first;
   chain->run(chain->frame(scene.current, nullptr, outputs, stage.counter()), outputs, first, nullptr);
   FrameReport report;
@@ -91,14 +93,15 @@ void add_scale(std::vector<Case>& cases, Stage& stage, Scene scene, Method metho
   // A filter's kernel serves several methods, so both are named.
   const std::string name = filters ? fmt::format("{} {}", kernel, name_of(method)) : kernel;
   add_passes(cases, stage, {.name = name + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, {kernel});
+             scene, {.linear = stage.noise(stage.output(), scene.settings.output.linear)}, {kernel});
 }
 
 void add_resolve(std::vector<Case>& cases, Stage& stage, const Scene& scene, double wanted,
                  const std::string& suffix = {}) {
   add_passes(cases, stage,
              {.name = "resolve_quincunx" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, {"resolve_quincunx"});
+             scene, {.linear = stage.noise(stage.output(), scene.settings.output.linear)},
+             {"resolve_quincunx"});
 }
 
 // Both kernels, or where nothing moves the second alone.
@@ -117,7 +120,7 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, Scene scene, double
   if (pixels != 0) kernels.insert(kernels.begin(), "reproject");
   add_passes(cases, stage,
              {.name = "resolve_reprojected" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted},
-             scene, {.linear = stage.noise(stage.output(), scene.settings.linear)}, kernels);
+             scene, {.linear = stage.noise(stage.output(), scene.settings.output.linear)}, kernels);
 }
 
 // All kernels; everything moves by `pixels`, or if surfaces move `apart`, those of the case above. As these
@@ -155,7 +158,7 @@ void add_velocity(std::vector<Case>& cases, Stage& stage, Scene scene) {
 void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted,
                       const std::string& suffix, double pixels, bool apart = false) {
   scene.settings.method = Method::kBilinear;
-  scene.settings.shading = Shading::kCheckerboard;
+  scene.settings.targets.shading = Shading::kCheckerboard;
   scene.settings.velocity = PixelFormat::kRG32F;
   scene.needs.moving_objects = scene.needs.camera_motion = pixels != 0;
   scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
@@ -167,7 +170,7 @@ void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, doubl
   scene.current.parity = 1;
   auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
   Pass* const pass = chain->find("resolve_checkerboard");
-  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.linear)};
+  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.output.linear)};
   FrameReport unused;  // report of the frame that leaves its history
   chain->run(chain->frame(scene.previous, nullptr, outputs, stage.counter()), outputs, unused, nullptr);
   Stage::add(cases,
@@ -189,10 +192,10 @@ void add_blur(std::vector<Case>& cases, Stage& stage, Scene scene, double wanted
   scene.current.velocity = stage.velocity(scene.current.render_extent, [&](int x, int y) {
     return static_cast<float>(pixels(x, y) / stage.output().width);
   });
-  scene.resolved = stage.noise(stage.output(), scene.settings.linear, 1);
+  scene.resolved = stage.noise(stage.output(), scene.settings.output.linear, 1);
   add_passes(cases, stage,
              {.name = "motion_blur" + scene.suffix + suffix, .scale = scene.scale, .wanted = wanted}, scene,
-             {.linear = stage.noise(stage.output(), scene.settings.linear)},
+             {.linear = stage.noise(stage.output(), scene.settings.output.linear)},
              {"motion_tiles", "motion_neighbours", "motion_blur"});
 }
 
@@ -206,7 +209,7 @@ void add_blurs(std::vector<Case>& cases, Stage& stage, const Scene& scene) {
 void add_sharpens(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
-    scene.settings.linear = resolved;
+    scene.settings.output.linear = resolved;
     scene.settings.sharpness = .5f;
     scene.unsharpened = stage.noise(stage.output(), resolved, 1);
     add_passes(cases, stage,
@@ -220,9 +223,9 @@ void add_presents(std::vector<Case>& cases, Stage& stage) {
   for (const PixelFormat resolved : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
     for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
       Scene scene = scene_of(stage, 1, PixelFormat::kRGBA16F);
-      scene.settings.linear = resolved;
-      scene.settings.tone_map = tone_map;
-      scene.settings.present = true;
+      scene.settings.output.linear = resolved;
+      scene.settings.output.tone_map = tone_map;
+      scene.settings.output.present = true;
       add_passes(cases, stage,
                  {.name = fmt::format("present {} {}", name_of(tone_map),
                                       resolved == PixelFormat::kRGBA32F ? "float" : "half"),
@@ -327,9 +330,9 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     scene.settings.quincunx.sampling = Sampling::kPoint;
     add_resolve(cases, stage, scene, 5, " point");
     scene.settings.quincunx.sampling = Sampling::kBilinear;
-    scene.settings.clamp_ringing = false;
+    scene.settings.filter.clamp_ringing = false;
     add_scale(cases, stage, scene, Method::kCatmullRom, 1.7, " unclamped");
-    scene.settings.clamp_ringing = true;
+    scene.settings.filter.clamp_ringing = true;
     scene.needs.transparents = true;
     add_resolve(cases, stage, scene, 5, " reactive");
     scene.settings.quincunx.residual_weight = 1;
@@ -339,7 +342,7 @@ void add_scaled_cases(std::vector<Case>& cases, Stage& stage, double scale) {
     scene.needs.moving_objects = scene.needs.camera_motion = false;
     add_resolve(cases, stage, scene, 5, " still");
     scene.needs.moving_objects = scene.needs.camera_motion = true;
-    scene.settings.linear = PixelFormat::kRGBA16F;
+    scene.settings.output.linear = PixelFormat::kRGBA16F;
     add_scale(cases, stage, scene, Method::kBilinear, 1.1, " to half");
     add_resolve(cases, stage, scene, 5, " to half");
   }

@@ -32,7 +32,7 @@ class CompletedVelocityTest : public VelocityTest {
   TestFrame frame(Rig& rig, const FrameSpec& spec, const std::array<float, 16>& camera = kTurn,
                   Vec2 scale = {}) const {
     TestFrame made = make_frame(rig,
-                                {.storage = settings_.storage,
+                                {.storage = settings_.targets.storage,
                                  .velocity = settings_.velocity,
                                  .with_velocity = true,
                                  .with_depth = true},
@@ -44,7 +44,7 @@ class CompletedVelocityTest : public VelocityTest {
       depth.push_back({made.reference.depth[i], 0, 0, 0});
     }
     const auto put = [&](PixelFormat format, const std::vector<Pixel>& pixels) {
-      return rig.image(format, settings_.storage, spec.render, pixels, spec.outside, spec.tight);
+      return rig.image(format, settings_.targets.storage, spec.render, pixels, spec.outside, spec.tight);
     };
     made.inputs.velocity = put(settings_.velocity, velocity);
     made.inputs.depth = put(PixelFormat::kR32F, depth);
@@ -79,7 +79,7 @@ class CompletedVelocityTest : public VelocityTest {
         }
         const double units = 1 / std::abs(made.reference.velocity_scale[c]);
         const double magnitude = std::abs(wanted.velocity[c]);
-        const double rounding = velocity_rounding(settings_.velocity, settings_.storage, magnitude);
+        const double rounding = velocity_rounding(settings_.velocity, settings_.targets.storage, magnitude);
         const double bound = kError * wanted.condition * units + rounding;
         record_error({.error = std::abs(actual[i][c] - wanted.velocity[c]),
                       .bound = bound,

@@ -38,13 +38,14 @@ class ConvertInputs : public ::testing::TestWithParam<Variant> {
     const ResolveSettings settings = {.method = Method::kTemporal,
                                       .velocity = GetParam().velocity,
                                       .conventions = conventions,
-                                      .storage = GetParam().storage};
+                                      .targets = {.storage = GetParam().storage}};
     testing::PassRig pass({}, settings, "convert_inputs");
     inputs.jitter = kJitter;
     const FrameInputs previous = {.render_extent = {100, 75}, .jitter = kPreviousJitter};
     const std::vector<Pixel> before(static_cast<std::size_t>(inputs.render_extent.area()),
                                     Pixel{-7, -7, -7, -7});
-    const ImageView view = rig.image(format, settings.storage, inputs.render_extent, before, -7, tight);
+    const ImageView view =
+        rig.image(format, settings.targets.storage, inputs.render_extent, before, -7, tight);
     pass.run(inputs, previous, {1, 1}, {}, {{made, view}});
     const std::vector<Pixel> all = rig.pixels(view, view.extent);
     for (int y = 0; y < view.extent.height; ++y) {

@@ -21,7 +21,7 @@ class CrossFade : public ::testing::TestWithParam<PixelFormat> {
   std::vector<unsigned char> run(const std::vector<Pixel>& pixels, const std::vector<Pixel>& other,
                                  Extent extent, float weight, double outside = 1e30, bool tight = false) {
     Rig rig;
-    PassRig pass({}, {.linear = GetParam(), .fades = true}, "cross_fade");
+    PassRig pass({}, {.output = {.linear = GetParam()}, .control = {.fades = true}}, "cross_fade");
     const ImageView from = rig.image(GetParam(), Storage::kBuffer, extent, other, outside, tight);
     const ImageView view = rig.image(GetParam(), Storage::kBuffer, extent, pixels, outside, tight);
     FrameInputs inputs;

@@ -37,10 +37,10 @@ constexpr std::array<float, 9> kModel = {.01f, .008f, -.004f, -.006f, .003f, .00
 class FarMotionPasses : public ::testing::TestWithParam<Variant> {
  protected:
   FarMotionPasses() {
-    settings_.storage = GetParam().storage;
+    settings_.targets.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
     settings_.colour = GetParam().colour;
-    settings_.sky_motion = SkyMotion::kEvidence;
+    settings_.conventions.sky_motion = SkyMotion::kEvidence;
   }
 
   struct Inputs {
@@ -52,7 +52,7 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
   // Noise of which two thirds of the samples are far and without motion.
   Inputs inputs(Rig& rig, Extent render, Extent previous, unsigned seed, double outside = 0,
                 bool tight = false) const {
-    const testing::FrameFormats formats = {.storage = settings_.storage,
+    const testing::FrameFormats formats = {.storage = settings_.targets.storage,
                                            .colour = settings_.colour,
                                            .velocity = settings_.velocity,
                                            .with_velocity = true,
@@ -76,8 +76,9 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
       }
       inputs = made.inputs;
       frame = made.reference;
-      inputs.depth = rig.image(PixelFormat::kR32F, settings_.storage, extent, depth, outside, tight);
-      inputs.velocity = rig.image(settings_.velocity, settings_.storage, extent, velocity, outside, tight);
+      inputs.depth = rig.image(PixelFormat::kR32F, settings_.targets.storage, extent, depth, outside, tight);
+      inputs.velocity =
+          rig.image(settings_.velocity, settings_.targets.storage, extent, velocity, outside, tight);
     };
     make(render, {.21f, -.17f}, seed, in.current, in.reference.frame);
     make(previous, {-.11f, .37f}, seed + 50, in.previous, in.reference.previous);
@@ -164,7 +165,7 @@ class FarMotionPasses : public ::testing::TestWithParam<Variant> {
     const std::vector<Pixel> before(static_cast<std::size_t>(in.current.render_extent.area()),
                                     Pixel{-7, -7, -7, -7});
     const ImageView view =
-        rig.image(settings_.velocity, settings_.storage, in.current.render_extent, before, -7, tight);
+        rig.image(settings_.velocity, settings_.targets.storage, in.current.render_extent, before, -7, tight);
     PassRig pass(SceneNeeds{}, settings_, "far_velocity");
     pass.run(in.current, in.previous, kOutput, {},
              {{Resource::kFarMotion, records<FarModel>(motion, 1)},
@@ -324,8 +325,8 @@ TEST_P(FarMotionPasses, TheVelocityIsThatOfTheModel) {
           ASSERT_TRUE(actual[i][c] == drawn[c] || (std::isnan(actual[i][c]) && std::isnan(drawn[c]))) << i;
           continue;
         }
-        const double rounding =
-            testing::velocity_rounding(settings_.velocity, settings_.storage, std::abs(expected.value[c]));
+        const double rounding = testing::velocity_rounding(settings_.velocity, settings_.targets.storage,
+                                                           std::abs(expected.value[c]));
         ASSERT_NEAR(actual[i][c], expected.value[c], expected.bound[c].error + rounding) << i;
       }
     }

@@ -15,7 +15,8 @@ using testing::TestFrame;
 
 class FarVelocityPass : public testing::CompletedVelocityTest {
  protected:
-  FarVelocityPass() : CompletedVelocityTest({.sky_motion = SkyMotion::kCamera}, "far_velocity") {}
+  FarVelocityPass()
+      : CompletedVelocityTest({.conventions = {.sky_motion = SkyMotion::kCamera}}, "far_velocity") {}
 
   // Makes every third sample of a pattern of velocities and depths far and without motion, every fifth far and every
   // seventh without motion.

@@ -75,7 +75,7 @@ class LayFocus : public ::testing::TestWithParam<Variant> {
     Rig rig;
     PassRig pass({},
                  {.output_extent = kOutput,
-                  .linear = format(),
+                  .output = {.linear = format()},
                   .focus = {.extent = placed.region, .mask = GetParam().mask}},
                  "lay_focus");
     const ImageView under = rig.image(format(), Storage::kBuffer, kOutput, picture, outside, tight);

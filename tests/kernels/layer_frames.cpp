@@ -190,7 +190,7 @@ reference::RecordGrid to_reference(const KernelGrid& grid) {
 
 std::unique_ptr<PassRig> RecordStages::rig(const char* kernel) const {
   ResolveSettings settings{
-      .method = Method::kTemporal, .velocity = variant_.velocity, .storage = variant_.storage};
+      .method = Method::kTemporal, .velocity = variant_.velocity, .targets = {.storage = variant_.storage}};
   return std::make_unique<PassRig>(SceneNeeds{.background = true}, settings, kernel);
 }
 

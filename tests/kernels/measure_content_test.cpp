@@ -32,16 +32,16 @@ struct Variant {
 class MeasureContent : public ::testing::TestWithParam<Variant> {
  protected:
   MeasureContent() {
-    settings_.storage = GetParam().storage;
+    settings_.targets.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
-    settings_.measures_content = true;
+    settings_.control.measures_content = true;
     settings_.method = Method::kBilinear;
     pass_ = std::make_unique<PassRig>(SceneNeeds{.transparents = GetParam().reactive}, settings_,
                                       "measure_content");
   }
 
   testing::FrameFormats formats() const {
-    return {.storage = settings_.storage,
+    return {.storage = settings_.targets.storage,
             .velocity = settings_.velocity,
             .with_velocity = true,
             .with_depth = true,
@@ -85,9 +85,9 @@ class MeasureContent : public ::testing::TestWithParam<Variant> {
         depth.push_back({pixel[2], 0, 0, 0});
       }
     }
-    frame.inputs.velocity = rig.image(settings_.velocity, settings_.storage, render, velocity, 0);
-    frame.inputs.depth = rig.image(PixelFormat::kR32F, settings_.storage, render, depth, 0);
-    frame.inputs.reactive = rig.image(PixelFormat::kR8, settings_.storage, render, reactive, 0);
+    frame.inputs.velocity = rig.image(settings_.velocity, settings_.targets.storage, render, velocity, 0);
+    frame.inputs.depth = rig.image(PixelFormat::kR32F, settings_.targets.storage, render, depth, 0);
+    frame.inputs.reactive = rig.image(PixelFormat::kR8, settings_.targets.storage, render, reactive, 0);
     return frame;
   }
 

@@ -92,11 +92,11 @@ struct Variant {
 class MotionBlur : public ::testing::TestWithParam<Variant> {
  protected:
   MotionBlur() {
-    settings_.storage = GetParam().storage;
+    settings_.targets.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
-    settings_.linear = GetParam().resolved;
+    settings_.output.linear = GetParam().resolved;
     settings_.method = Method::kBilinear;
-    settings_.present = false;
+    settings_.output.present = false;
     settings_.blur.shutter = .5f;
   }
 
@@ -130,8 +130,9 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
     frame.inputs.render_extent = render;
     frame.inputs.jitter = jitter;
     frame.inputs.velocity =
-        rig.image(settings_.velocity, settings_.storage, render, velocity, outside, tight);
-    frame.inputs.depth = rig.image(PixelFormat::kR32F, settings_.storage, render, depth, outside, tight);
+        rig.image(settings_.velocity, settings_.targets.storage, render, velocity, outside, tight);
+    frame.inputs.depth =
+        rig.image(PixelFormat::kR32F, settings_.targets.storage, render, depth, outside, tight);
     return frame;
   }
 
@@ -139,8 +140,8 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
     settings_.output_extent = output;
     settings_.target_extent = frame.inputs.render_extent;
     PassChain chain(testing::device(), PlanFacts({}, settings_));
-    const ImageView source = rig.image(settings_.linear, Storage::kBuffer, output, resolved, 1e30);
-    const ImageView view = rig.output(settings_.linear, output);
+    const ImageView source = rig.image(settings_.output.linear, Storage::kBuffer, output, resolved, 1e30);
+    const ImageView view = rig.output(settings_.output.linear, output);
     PassFrame bound = chain.frame(frame.inputs, nullptr, {.linear = view}, rig.counter());
     bound[Resource::kResolved] = source;
     for (const char* kernel : {"motion_tiles", "motion_neighbours", "motion_blur"})
@@ -171,7 +172,7 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
     std::vector<Pixel> pixels = testing::pattern_pixels(testing::Pattern::kNoise, output, seed);
     for (Pixel& pixel : pixels) {
       for (double& value : pixel)
-        value = testing::stored_value(settings_.linear, value);
+        value = testing::stored_value(settings_.output.linear, value);
     }
     return pixels;
   }
@@ -190,12 +191,12 @@ class MotionBlur : public ::testing::TestWithParam<Variant> {
       ASSERT_EQ(actual.kinds[i], tiles[i].kind) << what << ", tile " << i;
     const reference::Picture expected = reference::motion_blur(input, resolved);
     testing::expect_close(
-        expected, testing::decode(settings_.linear, actual.bytes),
+        expected, testing::decode(settings_.output.linear, actual.bytes),
         [&](std::size_t i) {
           return kMeanError * expected.largest[i] + kDenormal +
-                 testing::output_rounding(settings_.linear, expected.largest[i]);
+                 testing::output_rounding(settings_.output.linear, expected.largest[i]);
         },
-        what, settings_.linear);
+        what, settings_.output.linear);
   }
 
   ResolveSettings settings_;
@@ -247,12 +248,12 @@ TEST_P(MotionBlur, StillPicturesAndStillObjectsKeepEveryBit) {
   const Extent output{96, 64};
   const std::vector<Pixel> resolved = picture(output, 5);
   Rig rig;
-  const ImageView source = rig.image(settings_.linear, Storage::kBuffer, output, resolved, 0);
+  const ImageView source = rig.image(settings_.output.linear, Storage::kBuffer, output, resolved, 0);
   const Run still = run(rig, frame_of(rig, scenes(1.0 / 96)[0], output, {}, 0), output, resolved);
   EXPECT_EQ(still.bytes, rig.bytes(source, output));
   // In front of a moving background: not a bit of halo. 2^-24 and more of a colour may go in the mean.
   const Run before = run(rig, frame_of(rig, scenes(1.0 / 96)[4], output, {}, 0), output, resolved);
-  const std::vector<Pixel> pixels = testing::decode(settings_.linear, before.bytes);
+  const std::vector<Pixel> pixels = testing::decode(settings_.output.linear, before.bytes);
   int inside = 0;
   for (int y = 0; y < output.height; ++y) {
     for (int x = 0; x < output.width; ++x) {
@@ -261,7 +262,7 @@ TEST_P(MotionBlur, StillPicturesAndStillObjectsKeepEveryBit) {
       for (std::size_t c = 0; c < 4; ++c) {
         EXPECT_NEAR(pixels[i][c], resolved[i][c],
                     kMeanError * std::abs(resolved[i][c]) +
-                        testing::output_rounding(settings_.linear, std::abs(resolved[i][c])))
+                        testing::output_rounding(settings_.output.linear, std::abs(resolved[i][c])))
             << x << ", " << y;
       }
       ++inside;
@@ -293,7 +294,7 @@ TEST_P(MotionBlur, TheStreakEndsWhereTheShutterEnds) {
     resolved.push_back(i % output.width >= 64 ? Pixel{1, 1, 1, 1} : Pixel{0, 0, 0, 1});
   Rig rig;
   const Run result = run(rig, frame_of(rig, scene, output, {}, 0), output, resolved);
-  const std::vector<Pixel> pixels = testing::decode(settings_.linear, result.bytes);
+  const std::vector<Pixel> pixels = testing::decode(settings_.output.linear, result.bytes);
   for (int x = 0; x < output.width; ++x) {
     double mean = 0;
     for (int y = 0; y < output.height; ++y)

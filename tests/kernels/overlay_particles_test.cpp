@@ -42,10 +42,10 @@ class Overlay : public ::testing::TestWithParam<Variant> {
   Overlay() {
     const Variant& v = GetParam();
     settings_.method = v.reactive ? Method::kQuincunx : Method::kBilinear;
-    settings_.storage = v.storage;
+    settings_.targets.storage = v.storage;
     settings_.colour = v.colour;
     settings_.output_extent = settings_.target_extent =
-        settings_.particle_target_extent = {1, 1};  // the plan's; not the frames'
+        settings_.targets.particle_extent = {1, 1};  // the plan's; not the frames'
     pass_ = std::make_unique<PassRig>(SceneNeeds{}, settings_, "overlay_particles");
   }
 
@@ -119,7 +119,7 @@ class Overlay : public ::testing::TestWithParam<Variant> {
     const std::vector<Pixel> untouched(static_cast<std::size_t>(inputs.render_extent.area()),
                                        Pixel{-7, -7, -7, -7});
     const auto output = [&](PixelFormat format) {
-      return rig.image(format, settings_.storage, inputs.render_extent, untouched, -7, tight);
+      return rig.image(format, settings_.targets.storage, inputs.render_extent, untouched, -7, tight);
     };
     const Overlaid made = {output(settings_.colour), output(PixelFormat::kR8)};
     pass_->run(inputs, inputs, {1, 1}, {},

@@ -34,15 +34,15 @@ class Present : public ::testing::TestWithParam<Variant> {
  protected:
   std::vector<unsigned char> present(Rig& rig, const std::vector<Pixel>& pixels, Extent extent,
                                      float exposure, std::int64_t* non_finite = nullptr) {
-    const ResolveSettings settings{.output_extent = extent,
-                                   .linear = GetParam().resolved,
-                                   .storage = GetParam().storage,
-                                   .tone_map = GetParam().tone_map,
-                                   .dither = GetParam().dither};
+    const ResolveSettings settings{
+        .output_extent = extent,
+        .targets = {.storage = GetParam().storage},
+        .output = {
+            .linear = GetParam().resolved, .tone_map = GetParam().tone_map, .dither = GetParam().dither}};
     PassRig pass({}, settings, "present");
     const double poison = std::nan("");
-    const ImageView source = rig.image(settings.linear, Storage::kBuffer, extent, pixels, poison);
-    const ImageView view = rig.output(PixelFormat::kRGBA8, extent, settings.storage);
+    const ImageView source = rig.image(settings.output.linear, Storage::kBuffer, extent, pixels, poison);
+    const ImageView view = rig.output(PixelFormat::kRGBA8, extent, settings.targets.storage);
     const Counter counter = rig.counter();
     FrameInputs inputs;
     inputs.exposure = exposure;

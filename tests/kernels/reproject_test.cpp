@@ -19,8 +19,10 @@ using testing::TestFrame;
 
 // With one layer: where there are two, layer_split goes on with what reproject wrote.
 ResolveSettings settings_for(Extent output) {
-  ResolveSettings settings{
-      .method = Method::kTemporal, .output_extent = output, .target_extent = output, .present = false};
+  ResolveSettings settings{.method = Method::kTemporal,
+                           .output_extent = output,
+                           .target_extent = output,
+                           .output = {.present = false}};
   settings.temporal.preset = TemporalPreset::kFast;
   return settings;
 }
@@ -38,7 +40,7 @@ TEST(TemporalReproject, MotionEdgesMatchTheReference) {
       unsigned seed = 0;
       for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
         ResolveSettings settings = settings_for({129, 65});
-        settings.storage = storage;
+        settings.targets.storage = storage;
         settings.velocity = velocity;
         Rig rig;
         const FrameFormats formats{
@@ -110,7 +112,7 @@ TEST(TemporalReproject, AnEarlierMotionEdgeAndReactiveValuesAroundTakeTrust) {
   for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
     for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{5, 7}, Extent{90, 33}}) {
       ResolveSettings settings = settings_for({129, 65});
-      settings.storage = storage;
+      settings.targets.storage = storage;
       Rig rig;
       const FrameFormats formats{
           .storage = storage, .with_velocity = true, .with_depth = true, .with_reactive = true};
@@ -203,7 +205,7 @@ TEST(TemporalReproject, OpenTrustMatchesTheReference) {
         for (const Extent render : {Extent{1, 1}, Extent{1, 6}, Extent{9, 1}, Extent{5, 7}, Extent{90, 33}}) {
           ResolveSettings settings = settings_for({129, 65});
           settings.temporal.preset = TemporalPreset::kBalanced;
-          settings.storage = storage;
+          settings.targets.storage = storage;
           settings.velocity = velocity;
           Rig rig;
           const FrameFormats formats{.storage = storage,

@@ -230,7 +230,7 @@ class Resize : public ::testing::TestWithParam<StageVariant> {
   static testing::PassRig rig_of(const char* kernel) {
     PlanFacts facts = TemporalStages(GetParam()).facts(TemporalPreset::kBalanced);
     facts.settings.output_extent = {2, 1};
-    facts.settings.min_output_extent = {1, 1};
+    facts.settings.output.min_extent = {1, 1};
     return {facts.needs, facts.settings, kernel};
   }
 };

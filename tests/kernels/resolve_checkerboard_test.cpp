@@ -60,8 +60,8 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
   Checkerboard() {
     const Variant& v = GetParam();
     settings_.method = v.keeps_velocity ? Method::kQuincunx : Method::kBilinear;
-    settings_.shading = Shading::kCheckerboard;
-    settings_.storage = v.storage;
+    settings_.targets.shading = Shading::kCheckerboard;
+    settings_.targets.storage = v.storage;
     settings_.colour = v.colour;
     settings_.velocity = v.velocity;
     const SceneNeeds needs{.moving_objects = v.moves == Moves::kAll,
@@ -140,7 +140,7 @@ class Checkerboard : public ::testing::TestWithParam<Variant> {
       const double value = untouched_value(format);
       const std::vector<Pixel> untouched(static_cast<std::size_t>(render.area()),
                                          Pixel{value, value, value, value});
-      return rig.image(format, settings_.storage, render, untouched, value, tight);
+      return rig.image(format, settings_.targets.storage, render, untouched, value, tight);
     };
     const Filled filled = {output(settings_.colour), output(PixelFormat::kR32F), output(settings_.velocity),
                            output(PixelFormat::kR8)};

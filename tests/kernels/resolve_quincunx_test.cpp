@@ -42,8 +42,8 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
     settings_ = {.method = Method::kQuincunx,
                  .colour = v.colour,
                  .velocity = v.velocity_format,
-                 .linear = v.resolved,
-                 .storage = v.storage};
+                 .targets = {.storage = v.storage},
+                 .output = {.linear = v.resolved}};
     settings_.quincunx.sampling = v.sampling;
     const bool moves = v.velocity == VelocitySource::kTarget;
     const SceneNeeds needs{.moving_objects = moves, .camera_motion = moves, .transparents = v.reactive};
@@ -57,11 +57,11 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
 
   template <typename Enqueue>
   Resolved run(Rig& rig, Extent output, Enqueue enqueue) {
-    const ImageView view = rig.output(settings_.linear, output);
+    const ImageView view = rig.output(settings_.output.linear, output);
     const Counter counter = rig.counter();
     enqueue(view, counter);
     Resolved result{rig.bytes(view, output), {}, 0};
-    result.pixels = testing::decode(settings_.linear, result.bytes);
+    result.pixels = testing::decode(settings_.output.linear, result.bytes);
     result.non_finite = rig.count(counter);
     return result;
   }
@@ -105,10 +105,10 @@ class Resolve : public ::testing::TestWithParam<Variant>, protected testing::Two
     const reference::Picture picture = expected(current, previous, output);
     const auto bound = [&](std::size_t i) {
       return kResolveError * picture.largest[i] + kDenormal +
-             testing::output_rounding(settings_.linear, picture.largest[i]);
+             testing::output_rounding(settings_.output.linear, picture.largest[i]);
     };
     const std::string what = testing::name_of(now, before, output);
-    testing::expect_close(picture, actual.pixels, bound, what, settings_.linear);
+    testing::expect_close(picture, actual.pixels, bound, what, settings_.output.linear);
     EXPECT_EQ(actual.non_finite, picture.non_finite) << what;
   }
 
@@ -145,7 +145,7 @@ TEST_P(Resolve, AConstantStaysConstant) {
   for (const Pixel& pixel : resolve(rig, current, previous, {64, 33}).pixels) {
     for (std::size_t c = 0; c < 4; ++c) {
       ASSERT_NEAR(pixel[c], value[c],
-                  kResolveError * value[c] + testing::output_rounding(settings_.linear, value[c]));
+                  kResolveError * value[c] + testing::output_rounding(settings_.output.linear, value[c]));
     }
   }
 }
@@ -202,7 +202,7 @@ TEST_P(Resolve, WithoutTrustItIsTheScalePass) {
   Rig rig;
   TestFrame current = frame(rig, {.render = {45, 23}, .jitter = {.25f, .25f}});
   const TestFrame previous = frame(rig, {.render = {60, 40}, .jitter = {-.25f, -.25f}, .seed = 2});
-  current.inputs.reactive = rig.image(PixelFormat::kR8, settings_.storage, {45, 23},
+  current.inputs.reactive = rig.image(PixelFormat::kR8, settings_.targets.storage, {45, 23},
                                       std::vector<Pixel>(45 * 23, Pixel{1, 1, 1, 1}), 0);
   EXPECT_EQ(resolve(rig, current, previous, {64, 33}).bytes, single(rig, current, {64, 33}).bytes);
 }

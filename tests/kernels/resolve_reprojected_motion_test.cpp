@@ -14,8 +14,10 @@ using testing::TestFrame;
 constexpr double kRounding = 0x1p-24;
 
 PlanFacts reprojected_facts(Extent output, Extent target) {
-  ResolveSettings settings{
-      .method = Method::kQuincunx, .output_extent = output, .target_extent = target, .present = false};
+  ResolveSettings settings{.method = Method::kQuincunx,
+                           .output_extent = output,
+                           .target_extent = target,
+                           .output = {.present = false}};
   settings.quincunx.form = TwoFrameForm::kReprojected;
   return {{.transparents = false}, settings};
 }

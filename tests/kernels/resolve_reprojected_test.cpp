@@ -61,9 +61,9 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
     settings_ = {.method = Method::kQuincunx,
                  .colour = v.colour,
                  .velocity = v.velocity,
-                 .linear = v.resolved,
-                 .storage = v.storage};
-    settings_.present = false;
+                 .targets = {.storage = v.storage},
+                 .output = {.linear = v.resolved}};
+    settings_.output.present = false;
     settings_.quincunx.form = TwoFrameForm::kReprojected;
     settings_.quincunx.residual_weight = v.residual ? .5f : 0;
     formats_ = {.storage = v.storage,
@@ -88,13 +88,13 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
 
   Resolved resolve(Rig& rig, const TestFrame& current, const TestFrame& previous, Extent output) override {
     PassChain& chain = chain_for(output);
-    const ImageView view = rig.output(settings_.linear, output);
+    const ImageView view = rig.output(settings_.output.linear, output);
     const Counter counter = rig.counter();
     FrameReport report;
     chain.run(chain.frame(current.inputs, &previous.inputs, {.linear = view}, counter), {.linear = view},
               report, nullptr);
     Resolved run{rig.bytes(view, output), {}, rig.count(counter)};
-    run.pixels = testing::decode(settings_.linear, run.bytes);
+    run.pixels = testing::decode(settings_.output.linear, run.bytes);
     reprojections_.assign(current.reference.colour.size(), {0, 0, 1});
     if (const ImageView found = chain.newest(Resource::kReprojection)) {
       const std::vector<Pixel> pixels = rig.pixels(found, current.inputs.render_extent);
@@ -149,9 +149,9 @@ class Reprojected : public ::testing::TestWithParam<Variant>, protected testing:
                                        !GetParam().moves && GetParam().reactive, output.width, output.height);
     const auto bound = [&](std::size_t i) {
       return weight_error(expected.motion[i]) * expected.condition[i] + kBlendError * expected.largest[i] +
-             16 * kDenormal + testing::output_rounding(settings_.linear, expected.largest[i]);
+             16 * kDenormal + testing::output_rounding(settings_.output.linear, expected.largest[i]);
     };
-    testing::expect_close(expected, run.pixels, bound, what, settings_.linear);
+    testing::expect_close(expected, run.pixels, bound, what, settings_.output.linear);
     EXPECT_GE(run.non_finite, expected.non_finite) << what;
     EXPECT_LE(run.non_finite, expected.non_finite + expected.undecided) << what;
   }
@@ -236,7 +236,7 @@ TEST_P(Reprojected, NothingOfANonFinitePreviousFrameSurvives) {
         // Eight weights at most, each off by its error, over a sum of 1.
         ASSERT_NEAR(pixel[c], bilinear.value[c],
                     (8 * weight_error(0) + kBlendError) * bilinear.largest +
-                        testing::output_rounding(settings_.linear, bilinear.largest))
+                        testing::output_rounding(settings_.output.linear, bilinear.largest))
             << x << ", " << y;
       }
     }

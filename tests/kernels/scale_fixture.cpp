@@ -35,13 +35,13 @@ bool rings(Method method) {
 
 ScaleRig::ScaleRig(const ScaleVariant& variant)
     : variant_(variant), formats_{.storage = variant.storage, .colour = variant.colour} {
-  settings_.storage = variant.storage;
+  settings_.targets.storage = variant.storage;
   settings_.colour = variant.colour;
-  settings_.linear = variant.resolved;
-  settings_.clamp_ringing = variant.clamp_ringing;
+  settings_.output.linear = variant.resolved;
+  settings_.filter.clamp_ringing = variant.clamp_ringing;
   settings_.method = variant.method;
-  settings_.present = false;
-  settings_.grain = 0.75f;
+  settings_.output.present = false;
+  settings_.filter.grain = 0.75f;
 }
 
 // Each chain serves one output, and viewports up to twice as wide and high or up to `render`.
@@ -59,13 +59,13 @@ PassChain& ScaleRig::chain_for(Extent output, Extent render) {
 }
 
 ScaleRig::Run ScaleRig::run(Rig& rig, const TestFrame& frame, Extent output) {
-  const ImageView view = rig.output(settings_.linear, output);
+  const ImageView view = rig.output(settings_.output.linear, output);
   const Counter counter = rig.counter();
   PassChain& chain = chain_for(output, frame.inputs.render_extent);
   FrameReport report;
   chain.run(chain.frame(frame.inputs, nullptr, {.linear = view}, counter), {.linear = view}, report, nullptr);
   Run result{rig.bytes(view, output), {}, 0};
-  result.pixels = decode(settings_.linear, result.bytes);
+  result.pixels = decode(settings_.output.linear, result.bytes);
   result.non_finite = rig.count(counter);
   const std::vector<Pixel> all = rig.pixels(view, view.extent);
   for (int y = 0; y < view.extent.height; ++y) {
@@ -82,7 +82,7 @@ reference::Sampler ScaleRig::sampler(const TestFrame& frame, Extent output) cons
   const auto seed = static_cast<std::uint32_t>(frame.inputs.frame_index);
   const Extent render = frame.inputs.render_extent;
   const double scale = std::sqrt(static_cast<double>(render.area()) / static_cast<double>(output.area()));
-  const double amplitude = static_cast<double>(settings_.grain) * std::max(0.0, 1 - scale);
+  const double amplitude = static_cast<double>(settings_.filter.grain) * std::max(0.0, 1 - scale);
   switch (variant_.method) {
     case Method::kPoint:
       return reference::scale_point(source, output.width, output.height);
@@ -95,7 +95,7 @@ reference::Sampler ScaleRig::sampler(const TestFrame& frame, Extent output) cons
       [[fallthrough]];
     default:
       return reference::scale_filter(source, reference::filter_named(quincunx::name_of(variant_.method)),
-                                     settings_.clamp_ringing && rings(variant_.method), output.width,
+                                     settings_.filter.clamp_ringing && rings(variant_.method), output.width,
                                      output.height);
   }
 }
@@ -115,7 +115,7 @@ void ScaleRig::compare(const FrameSpec& spec, Extent output, const std::vector<P
   source.inputs.frame_index = spec.seed;
   const Run actual = run(rig, source, output);
   reference::Picture expected = reference::scale(output.width, output.height, sampler(source, output));
-  if (settings_.linear == PixelFormat::kRGBA16F) {
+  if (settings_.output.linear == PixelFormat::kRGBA16F) {
     for (Pixel& pixel : expected.pixels) {
       for (double& value : pixel)
         value = std::clamp(value, -kLargestHalf, kLargestHalf);
@@ -127,12 +127,12 @@ void ScaleRig::compare(const FrameSpec& spec, Extent output, const std::vector<P
     for (const double value : expected.pixels[i])
       magnitude = std::max(magnitude, std::abs(value));
     return error * expected.largest[i] + kDenormal * (1 + error / kRounding) +
-           output_rounding(settings_.linear, magnitude);
+           output_rounding(settings_.output.linear, magnitude);
   };
   const std::string what =
       fmt::format("{}x{} -> {}x{}, jitter {}, {}, {}", spec.render.width, spec.render.height, output.width,
                   output.height, spec.jitter.x, spec.jitter.y, name_of(spec.colour));
-  expect_close(expected, actual.pixels, bound, what, settings_.linear);
+  expect_close(expected, actual.pixels, bound, what, settings_.output.linear);
   EXPECT_EQ(actual.non_finite, expected.non_finite) << what;
 }
 

@@ -39,7 +39,7 @@ class Sharpen : public ::testing::TestWithParam<PixelFormat> {
   std::vector<unsigned char> run(const std::vector<Pixel>& pixels, Extent extent, float sharpness,
                                  double outside = 1e30, bool tight = false) {
     Rig rig;
-    PassRig pass({}, {.linear = GetParam(), .sharpness = sharpness}, "sharpen");
+    PassRig pass({}, {.sharpness = sharpness, .output = {.linear = GetParam()}}, "sharpen");
     const ImageView source = rig.image(GetParam(), Storage::kBuffer, extent, pixels, outside, tight);
     const ImageView view = rig.output(GetParam(), extent);
     pass.run({}, {}, extent, {}, {{Resource::kUnsharpened, source}, {Resource::kResolved, view}});

@@ -123,9 +123,9 @@ std::vector<double> decode_plane(PixelFormat texels, const std::vector<unsigned 
 PlanFacts TemporalStages::facts(TemporalPreset preset) const {
   ResolveSettings settings{.method = Method::kTemporal,
                            .colour = variant_.colour,
-                           .linear = variant_.resolved,
-                           .storage = variant_.storage};
-  if (variant_.checkerboard) settings.shading = Shading::kCheckerboard;
+                           .targets = {.storage = variant_.storage},
+                           .output = {.linear = variant_.resolved}};
+  if (variant_.checkerboard) settings.targets.shading = Shading::kCheckerboard;
   settings.temporal = {.preset = preset, .history = variant_.history};
   return {{.moving_objects = variant_.moves,
            .camera_motion = variant_.moves,

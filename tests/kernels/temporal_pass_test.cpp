@@ -22,7 +22,7 @@ ResolveSettings settings_for(Extent output, PixelFormat history = PixelFormat::k
   ResolveSettings settings{.method = Method::kTemporal,
                            .output_extent = output,
                            .target_extent = {2 * output.width, 2 * output.height},
-                           .present = false};
+                           .output = {.present = false}};
   settings.temporal.history = history;
   return settings;
 }
@@ -46,7 +46,7 @@ class Sequence {
     // One surface, which hides nothing.
     now.inputs.depth =
         rig_.image(PixelFormat::kR32F, Storage::kBuffer, render, constant(render, {1, 0, 0, 0}), 0);
-    const ImageView view = rig_.output(settings_.linear, settings_.output_extent);
+    const ImageView view = rig_.output(settings_.output.linear, settings_.output_extent);
     const Counter counter = rig_.counter();
     FrameReport report;
     chain_.run(chain_.frame(now.inputs, count_ == 1 ? nullptr : &before_, {.linear = view}, counter),

@@ -46,7 +46,7 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
     Rig rig;
     const ResolveSettings settings = {
         .method = Method::kTemporal,
-        .linear = format(),
+        .output = {.linear = format()},
         .temporal = {.preset = TemporalPreset::kQuality, .history = GetParam().history}};
     PassRig pass({}, settings, "temporal_refine");
     std::vector<Pixel> known;

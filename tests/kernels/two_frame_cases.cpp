@@ -44,7 +44,7 @@ void TwoFrameCases::compare_at_every_size_scale_and_input(Extent largest) {
 }
 
 void TwoFrameCases::compare_at_any_speed_and_with_the_widest_rows() {
-  if (settings_.storage == Storage::kImage)
+  if (settings_.targets.storage == Storage::kImage)
     return;  // images end at 8192 on some devices, the margin included
   for (const double pixels : {0.0, 1e-6, .5, 400.0, 1e6}) {
     compare({.render = {45, 23}, .jitter = {.25f, .25f}, .seed = 3, .speed = pixels / 45},

@@ -20,7 +20,8 @@ constexpr std::array<float, 16> kUnknown = CameraMotion{}.clip_to_previous_clip;
 class UndilateVelocityPass : public testing::CompletedVelocityTest {
  protected:
   UndilateVelocityPass()
-      : CompletedVelocityTest({.drawn_velocity = DrawnVelocity::kDilated}, "undilate_velocity") {}
+      : CompletedVelocityTest({.conventions = {.drawn_velocity = DrawnVelocity::kDilated}},
+                              "undilate_velocity") {}
 
   // Wires of one and of three samples, blocks of samples each of a depth of its own, a few samples that are not finite
   // or less than 0, before a wall: flat, at a slant, at a slant so steep that neighbours are not within 1/32, or sky.
@@ -92,8 +93,8 @@ TEST_P(UndilateVelocityPass, TakesADilationBack) {
     }
   }
   EXPECT_GT(changed, render.area() / 8);
-  made.inputs.depth = rig.image(PixelFormat::kR32F, settings_.storage, render, depth, 0);
-  made.inputs.velocity = rig.image(settings_.velocity, settings_.storage, render, dilated, 0);
+  made.inputs.depth = rig.image(PixelFormat::kR32F, settings_.targets.storage, render, depth, 0);
+  made.inputs.velocity = rig.image(settings_.velocity, settings_.targets.storage, render, dilated, 0);
   const std::vector<Pixel> back = testing::decode(settings_.velocity, run(rig, made));
   for (std::size_t i = 0; i < own.size(); ++i) {
     EXPECT_EQ(back[i][0], own[i][0]) << i;

@@ -92,9 +92,12 @@ PlanInputs first_plan(Extent output = {64, 64}) {
 // Returns all values of all fields. Not each combination is accepted by plan_for().
 std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   // A field that is added to the settings stops this line from compiling: give it an axis, too.
-  [[maybe_unused]] const auto& [f01, f02, f03, f04, f05, f06, f07, f08, f09, f10, f11, f12, f13, f14, f15,
-                                f16, f17, f18, f19, f20, f21, f22, f23, f24, f25, f26, f27, f28] =
-      ResolveSettings();
+  [[maybe_unused]] const auto& [f01, f02, f03, f04, f05, f06, f07, targets, picture, filter, f11, f12, f13,
+                                f14, control] = ResolveSettings();
+  [[maybe_unused]] const auto& [t1, t2, t3, t4, t5] = targets;
+  [[maybe_unused]] const auto& [p1, p2, p3, p4, p5] = picture;
+  [[maybe_unused]] const auto& [l1, l2, l3] = filter;
+  [[maybe_unused]] const auto& [c1, c2] = control;
 
   std::vector<PlanAxis> axes;
   const auto add = [&axes]<typename Value, typename Set>(std::initializer_list<Value> values, Set set) {
@@ -110,12 +113,10 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
                                            std::initializer_list<Value> values) {
     add(values, [field](PlanInputs& inputs, const Value& value) { inputs.settings.*field = value; });
   };
-  const auto form = [&]<typename Value>(Value QuincunxSettings::*field, std::initializer_list<Value> values) {
-    add(values, [field](PlanInputs& inputs, Value value) { inputs.settings.quincunx.*field = value; });
-  };
-  const auto temporal = [&]<typename Value>(Value TemporalSettings::*field,
-                                            std::initializer_list<Value> values) {
-    add(values, [field](PlanInputs& inputs, Value value) { inputs.settings.temporal.*field = value; });
+  const auto within = [&]<typename Group, typename Value>(Group ResolveSettings::*group, Value Group::*field,
+                                                          std::initializer_list<Value> values) {
+    add(values,
+        [group, field](PlanInputs& inputs, const Value& value) { inputs.settings.*group.*field = value; });
   };
   const Extent small = {(output.width + 1) / 2, (output.height + 1) / 2};
   const Extent large = {2 * output.width, 2 * output.height};
@@ -130,40 +131,49 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   need(&SceneNeeds::camera_motion);
   need(&SceneNeeds::transparents);
   need(&SceneNeeds::background);
-  setting(&Settings::min_output_extent, {Extent{}, Extent{1, 1}});
+  within(&Settings::output, &PictureSettings::min_extent, {Extent{}, Extent{1, 1}});
   setting(&Settings::target_extent, {large, small});
-  setting(&Settings::particle_target_extent, {Extent{}, small});
+  within(&Settings::targets, &TargetSettings::particle_extent, {Extent{}, small});
   setting(&Settings::colour, {kRGBA16F, kRGBA32F, kRGBA8});
   setting(&Settings::velocity, {kRG16F, kRG32F});
-  setting(&Settings::linear, {kRGBA32F, kRGBA16F});
-  setting(&Settings::conventions,
-          {InputConventions{}, InputConventions{.depth = DepthConvention::kLinear, .velocity_jittered = true},
-           InputConventions{
-               .depth = DepthConvention::kLinear, .velocity_jittered = true, .origin = Origin::kBottom}});
-  setting(&Settings::storage, {Storage::kBuffer, Storage::kImage});
-  setting(&Settings::targets, {Targets::kViewport, Targets::kPlaced});
-  setting(&Settings::shading, {Shading::kFull, Shading::kCheckerboard});
-  setting(&Settings::present, {false, true});
-  setting(&Settings::clear, {false, true});
-  setting(&Settings::tone_map, {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces});
-  setting(&Settings::dither, {false, true});
-  setting(&Settings::clamp_ringing, {false, true});
-  setting(&Settings::drawn_velocity, {DrawnVelocity::kOwn, DrawnVelocity::kDilated});
-  setting(&Settings::sky_motion, {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence});
+  within(&Settings::output, &PictureSettings::linear, {kRGBA32F, kRGBA16F});
+  add({InputConventions{}, InputConventions{.depth = DepthConvention::kLinear, .velocity_jittered = true},
+       InputConventions{
+           .depth = DepthConvention::kLinear, .velocity_jittered = true, .origin = Origin::kBottom}},
+      [](PlanInputs& inputs, const InputConventions& value) {
+        auto& [depth, clip, unit, backward, up, jittered, origin, drawn, sky] = inputs.settings.conventions;
+        depth = value.depth;
+        jittered = value.velocity_jittered;
+        origin = value.origin;
+      });
+  within(&Settings::targets, &TargetSettings::storage, {Storage::kBuffer, Storage::kImage});
+  within(&Settings::targets, &TargetSettings::placement, {Targets::kViewport, Targets::kPlaced});
+  within(&Settings::targets, &TargetSettings::shading, {Shading::kFull, Shading::kCheckerboard});
+  within(&Settings::output, &PictureSettings::present, {false, true});
+  within(&Settings::targets, &TargetSettings::clear, {false, true});
+  within(&Settings::output, &PictureSettings::tone_map,
+         {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces});
+  within(&Settings::output, &PictureSettings::dither, {false, true});
+  within(&Settings::filter, &FilterSettings::clamp_ringing, {false, true});
+  within(&Settings::conventions, &InputConventions::drawn_velocity,
+         {DrawnVelocity::kOwn, DrawnVelocity::kDilated});
+  within(&Settings::conventions, &InputConventions::sky_motion,
+         {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence});
   setting(&Settings::sharpness, {0.0f, .5f});
-  setting(&Settings::measures_content, {false, true});
-  setting(&Settings::fades, {false, true});
+  within(&Settings::control, &ControlSettings::measures_content, {false, true});
+  within(&Settings::control, &ControlSettings::fades, {false, true});
   setting(&Settings::focus,
           {FocusSettings{}, FocusSettings{.extent = small}, FocusSettings{.extent = small, .mask = true}});
-  form(&QuincunxSettings::form, {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected});
-  form(&QuincunxSettings::sampling, {Sampling::kPoint, Sampling::kBilinear});
-  form(&QuincunxSettings::residual_weight, {0.0f, 1.0f});
-  temporal(&TemporalSettings::preset,
-           {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality});
-  temporal(&TemporalSettings::history, {kRGBA16F, kRGBA32F});
-  temporal(&TemporalSettings::view,
-           {TemporalView::kPicture, TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase,
-            TemporalView::kLayers, TemporalView::kCoverage, TemporalView::kNear, TemporalView::kFar});
+  within(&Settings::quincunx, &QuincunxSettings::form,
+         {TwoFrameForm::kMean, TwoFrameForm::kVelocity, TwoFrameForm::kReprojected});
+  within(&Settings::quincunx, &QuincunxSettings::sampling, {Sampling::kPoint, Sampling::kBilinear});
+  within(&Settings::quincunx, &QuincunxSettings::residual_weight, {0.0f, 1.0f});
+  within(&Settings::temporal, &TemporalSettings::preset,
+         {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality});
+  within(&Settings::temporal, &TemporalSettings::history, {kRGBA16F, kRGBA32F});
+  within(&Settings::temporal, &TemporalSettings::view,
+         {TemporalView::kPicture, TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase,
+          TemporalView::kLayers, TemporalView::kCoverage, TemporalView::kNear, TemporalView::kFar});
   add({0.0f, .5f}, [](PlanInputs& inputs, float value) { inputs.settings.blur.shutter = value; });
   // Neither grain, nor whether the noise moves, nor the other parameters of blur and forms choose passes.
   return axes;
@@ -174,8 +184,8 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
 bool is_listed(const ResolveSettings& settings) {
   const ResolveSettings first = first_plan().settings;
   return settings.temporal.view == TemporalView::kPicture ||
-         (settings.storage == first.storage && settings.colour == first.colour &&
-          settings.velocity == first.velocity && settings.linear == first.linear &&
+         (settings.targets.storage == first.targets.storage && settings.colour == first.colour &&
+          settings.velocity == first.velocity && settings.output.linear == first.output.linear &&
           settings.temporal.history == first.temporal.history);
 }
 

@@ -33,7 +33,7 @@ class Velocity : public testing::VelocityTest {
   Velocity() : VelocityTest(SceneNeeds{.moving_objects = false}, {}, "velocity_from_depth") {}
 
   TestFrame frame(Rig& rig, const FrameSpec& spec, const std::array<float, 16>& camera = kCameraStep) const {
-    TestFrame made = make_frame(rig, {.storage = settings_.storage, .with_depth = true}, spec);
+    TestFrame made = make_frame(rig, {.storage = settings_.targets.storage, .with_depth = true}, spec);
     made.inputs.camera.clip_to_previous_clip = camera;
     std::copy(camera.begin(), camera.end(), made.reference.clip_to_previous_clip.begin());
     return made;
@@ -56,7 +56,8 @@ class Velocity : public testing::VelocityTest {
           continue;
         }
         const double magnitude = std::abs(wanted.velocity[c]);
-        const double rounding = testing::velocity_rounding(settings_.velocity, settings_.storage, magnitude);
+        const double rounding =
+            testing::velocity_rounding(settings_.velocity, settings_.targets.storage, magnitude);
         const double bound = kVelocityError * wanted.condition + rounding;
         testing::record_error({.error = std::abs(actual[i][c] - wanted.velocity[c]),
                                .bound = bound,
@@ -73,7 +74,7 @@ TEST_P(Velocity, MatchesTheReference) {
   unsigned seed = 0;
   for (const Extent render : {Extent{1, 1}, {2, 3}, {3, 2}, {7, 5}, {64, 64}, {257, 129}, {8192, 3}}) {
     // Images end at 8192 on some devices, the margin included.
-    if (render.width == 8192 && settings_.storage == Storage::kImage) continue;
+    if (render.width == 8192 && settings_.targets.storage == Storage::kImage) continue;
     for (const Pattern depth : {Pattern::kConstant, Pattern::kRamp, Pattern::kNoise, Pattern::kNonFinite}) {
       for (const auto& camera : {kCameraStep, kAboutTurn, CameraMotion{}.clip_to_previous_clip}) {
         compare({.render = render, .jitter = {.25f, -.5f}, .velocity = depth, .seed = ++seed}, camera);

@@ -27,7 +27,7 @@ inline constexpr std::array<float, 16> kAboutTurn = {-0.2f, 0, 0, -0.98f, 0,    
 class VelocityTest : public ::testing::TestWithParam<VelocityVariant> {
  protected:
   VelocityTest(const SceneNeeds& needs, ResolveSettings settings, const char* kernel) : settings_(settings) {
-    settings_.storage = GetParam().storage;
+    settings_.targets.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
     pass_ = std::make_unique<PassRig>(needs, settings_, kernel);
   }
@@ -38,7 +38,8 @@ class VelocityTest : public ::testing::TestWithParam<VelocityVariant> {
   std::vector<unsigned char> run(Rig& rig, const TestFrame& frame, bool tight = false) {
     const Extent render = frame.inputs.render_extent;
     const std::vector<Pixel> before(static_cast<std::size_t>(render.area()), Pixel{-7, -7, -7, -7});
-    const ImageView view = rig.image(settings_.velocity, settings_.storage, render, before, -7, tight);
+    const ImageView view =
+        rig.image(settings_.velocity, settings_.targets.storage, render, before, -7, tight);
     pass_->run(frame.inputs, {}, {1, 1}, {}, {{Resource::kVelocity, view}});
     const std::vector<Pixel> all = rig.pixels(view, view.extent);
     for (int y = 0; y < view.extent.height; ++y) {

@@ -195,7 +195,7 @@ ResolvePlan plan(SkyMotion far = SkyMotion::kAsDrawn) {
   settings.method = Method::kTemporal;
   settings.output_extent = settings.target_extent = {128, 96};
   settings.colour = PixelFormat::kRGBA32F;
-  settings.sky_motion = far;
+  settings.conventions.sky_motion = far;
   return plan_for({}, settings).value();
 }
 

@@ -49,8 +49,9 @@ class Player {
   FrameReport dispatch(int index) {
     HostFrame frame = random_frame(random_, kTarget);
     frame.reset = index == kBefore + 4;
-    if (settings_.shading == Shading::kCheckerboard && frame.render != Extent{1, 1}) frame.parity = index % 2;
-    if (settings_.min_output_extent != Extent{} && index % 3 != 0)
+    if (settings_.targets.shading == Shading::kCheckerboard && frame.render != Extent{1, 1})
+      frame.parity = index % 2;
+    if (settings_.output.min_extent != Extent{} && index % 3 != 0)
       frame.output = random_frame(random_, kOutput).render;
     frame.camera.clip_to_previous_clip[8] = static_cast<float>(index) / 512;
     FrameInputs inputs = rig_.upload(frame);
@@ -60,15 +61,17 @@ class Player {
     inputs.far_plane = 1000.1f;
     inputs.exposure = .7f + static_cast<float>(index) / 3;
     if (index % 2 == 0) inputs.exposure_image = constant(PixelFormat::kR32F, {1, 1}, 1.3f);
-    const Extent own = settings_.particle_target_extent;
+    const Extent own = settings_.targets.particle_extent;
     if (own != Extent{}) {
       const HostFrame particles = random_frame(random_, own);
       const Extent extent = inputs.particle_render_extent = particles.render;
-      inputs.particle_colour = image(extent, PixelFormat::kRGBA32F, settings_.storage, particles.colour);
-      inputs.particle_depth = image(extent, PixelFormat::kR32F, settings_.storage, particles.depth);
-      inputs.particle_reactive = image(extent, PixelFormat::kR8, settings_.storage, particles.reactive);
+      inputs.particle_colour =
+          image(extent, PixelFormat::kRGBA32F, settings_.targets.storage, particles.colour);
+      inputs.particle_depth = image(extent, PixelFormat::kR32F, settings_.targets.storage, particles.depth);
+      inputs.particle_reactive =
+          image(extent, PixelFormat::kR8, settings_.targets.storage, particles.reactive);
     }
-    if (settings_.fades && index % 3 != 1) {
+    if (settings_.control.fades && index % 3 != 1) {
       inputs.fading_from = image(kOutput, PixelFormat::kRGBA32F, Storage::kBuffer, frame.colour);
       inputs.fade_weight = .3f;
     }
@@ -147,7 +150,7 @@ class Replay : public ::testing::TestWithParam<Run> {
 
 TEST_P(Replay, MakesTheSamePictures) {
   const Origin origin = GetParam().settings.conventions.origin;
-  const bool halves = GetParam().settings.linear == PixelFormat::kRGBA16F;
+  const bool halves = GetParam().settings.output.linear == PixelFormat::kRGBA16F;
   Player player(GetParam().needs, GetParam().settings);
   for (int i = 0; i < kBefore; ++i)
     ASSERT_TRUE(player.dispatch(i).ok());
@@ -189,10 +192,14 @@ TEST_P(Replay, MakesTheSamePictures) {
 
 const Run kRuns[] = {
     {.name = "temporal_particles",
-     .settings = {.method = Method::kTemporal, .particle_target_extent = kTarget, .blur = {.shutter = .5f}}},
-    {.name = "checkerboard", .settings = {.method = Method::kQuincunx, .shading = Shading::kCheckerboard}},
+     .settings = {.method = Method::kTemporal,
+                  .targets = {.particle_extent = kTarget},
+                  .blur = {.shutter = .5f}}},
+    {.name = "checkerboard",
+     .settings = {.method = Method::kQuincunx, .targets = {.shading = Shading::kCheckerboard}}},
     {.name = "rgba8_temporal", .settings = {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8}},
-    {.name = "noise_in_halves", .settings = {.method = Method::kNoise, .linear = PixelFormat::kRGBA16F}},
+    {.name = "noise_in_halves",
+     .settings = {.method = Method::kNoise, .output = {.linear = PixelFormat::kRGBA16F}}},
     {.name = "opengl_engine",
      .settings = {.method = Method::kTemporal,
                   .conventions = {.depth = DepthConvention::kForward,
@@ -205,14 +212,16 @@ const Run kRuns[] = {
     {.name = "linear_depth_from_the_bottom_in_images",
      .settings = {.method = Method::kQuincunx,
                   .conventions = {.depth = DepthConvention::kLinear, .origin = Origin::kBottom},
-                  .storage = Storage::kImage,
+                  .targets = {.storage = Storage::kImage},
                   .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1}}},
-    {.name = "dual", .settings = {.method = Method::kTemporal, .min_output_extent = {1, 1}}},
+    {.name = "dual", .settings = {.method = Method::kTemporal, .output = {.min_extent = {1, 1}}}},
     {.name = "camera_placed",
-     .settings = {.method = Method::kTemporal, .targets = Targets::kPlaced, .sharpness = .5f},
+     .settings = {.method = Method::kTemporal, .sharpness = .5f, .targets = {.placement = Targets::kPlaced}},
      .needs = kCameraOnly},
     {.name = "sky_fades",
-     .settings = {.method = Method::kTemporal, .sky_motion = SkyMotion::kEvidence, .fades = true}},
+     .settings = {.method = Method::kTemporal,
+                  .conventions = {.sky_motion = SkyMotion::kEvidence},
+                  .control = {.fades = true}}},
     {.name = "focus",
      .settings = {.method = Method::kTemporal,
                   .focus = {.extent = {21, 12}, .target_extent = kTarget, .mask = true}}},
@@ -228,8 +237,10 @@ TEST(RecordedFrame, KeepsEveryBit) {
   std::mt19937 random(5);
   for (const PixelFormat colour : {PixelFormat::kRGBA8, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
     for (const Storage storage : {Storage::kBuffer, Storage::kImage}) {
-      ResolveSettings settings{
-          .output_extent = {38, 22}, .target_extent = {30, 20}, .colour = colour, .storage = storage};
+      ResolveSettings settings{.output_extent = {38, 22},
+                               .target_extent = {30, 20},
+                               .colour = colour,
+                               .targets = {.storage = storage}};
       settings.velocity = colour == PixelFormat::kRGBA32F ? PixelFormat::kRG32F : PixelFormat::kRG16F;
       const ResolvePlan plan = plan_for({}, settings).value();
       std::vector<Image> memory;
@@ -315,7 +326,7 @@ class RecordingFolder : public ::testing::Test {
   bool there(const std::string& name) const { return std::filesystem::exists(file(name)); }
 
   testing::TemporaryFolder folder_;
-  Player player_{{}, {.method = Method::kBilinear, .particle_target_extent = kTarget}};
+  Player player_{{}, {.method = Method::kBilinear, .targets = {.particle_extent = kTarget}}};
 };
 
 TEST_F(RecordingFolder, WhatCannotBeRecordedIsSaid) {
@@ -375,7 +386,7 @@ TEST_F(RecordingFolder, WhatCannotBeReplayedIsSaid) {
   expect_refused(replay + " --method temporal", 1, "has no channel");
   expect_refused(replay + " --frames 1-3", 1, "frame 2 is missing");
   edit("\"grain\"", "\"grian\"");
-  expect_refused(replay, 1, "has a 'grian' that this version does not know");
+  expect_refused(replay, 1, "has a 'filter.grian' that this version does not know");
   edit("\"grian\"", "\"grain\"");
   edit("\"bilinear\"", "\"bylinear\"");
   expect_refused(replay, 1, "has a 'method' that cannot be meant");
@@ -417,38 +428,35 @@ TEST(RecordedSettings, ComeBack) {
       .needs = {.moving_objects = false, .camera_motion = false, .transparents = false, .background = false},
       .settings = {.method = Method::kLanczos3,
                    .output_extent = {1, 2},
-                   .min_output_extent = {3, 4},
                    .target_extent = {5, 6},
-                   .particle_target_extent = {7, 8},
                    .colour = PixelFormat::kRGBA8,
                    .velocity = PixelFormat::kRG32F,
-                   .linear = PixelFormat::kRGBA16F,
                    .conventions = {.depth = DepthConvention::kForward,
                                    .clip_space = ClipSpace::kVulkan,
                                    .velocity_unit = VelocityUnit::kNdc,
                                    .velocity_backward = true,
                                    .velocity_up = true,
                                    .velocity_jittered = true,
-                                   .origin = Origin::kBottom},
-                   .storage = Storage::kImage,
-                   .targets = Targets::kPlaced,
-                   .shading = Shading::kCheckerboard,
-                   .present = false,
-                   .clear = true,
-                   .tone_map = ToneMap::kReinhard,
-                   .dither = false,
-                   .clamp_ringing = false,
-                   .grain = .1f,
-                   .noise_moves = false,
-                   .drawn_velocity = DrawnVelocity::kDilated,
-                   .sky_motion = SkyMotion::kEvidence,
+                                   .origin = Origin::kBottom,
+                                   .drawn_velocity = DrawnVelocity::kDilated,
+                                   .sky_motion = SkyMotion::kEvidence},
+                   .sharpness = .9f,
+                   .targets = {.storage = Storage::kImage,
+                               .placement = Targets::kPlaced,
+                               .shading = Shading::kCheckerboard,
+                               .particle_extent = {7, 8},
+                               .clear = true},
+                   .output = {.min_extent = {3, 4},
+                              .linear = PixelFormat::kRGBA16F,
+                              .present = false,
+                              .tone_map = ToneMap::kReinhard,
+                              .dither = false},
+                   .filter = {.clamp_ringing = false, .grain = .1f, .noise_moves = false},
                    .quincunx = {TwoFrameForm::kReprojected, Sampling::kPoint, .3f, 1e-30f},
                    .temporal = {TemporalPreset::kQuality, TemporalView::kFar, PixelFormat::kRGBA32F},
                    .blur = {.7f, 64},
-                   .sharpness = .9f,
                    .focus = {{9, 10}, {11, 12}, true},
-                   .measures_content = true,
-                   .fades = true}};
+                   .control = {.measures_content = true, .fades = true}}};
   ASSERT_TRUE(tools::write_text(folder.file(tools::kSettingsFile), tools::to_json(recorded)).ok());
   const auto read = tools::read_settings(folder.file(""));
   ASSERT_TRUE(read.ok()) << read.error();

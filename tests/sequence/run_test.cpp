@@ -79,10 +79,10 @@ TEST_F(Run, TheProgramGivesWhatTheServiceGives) {
   settings.target_extent = {27, 14};
   settings.velocity = PixelFormat::kRG32F;
   settings.colour = PixelFormat::kRGBA32F;
-  settings.present = false;
+  settings.output.present = false;
   auto service = ResolveService::create(device, plan_for({.camera_motion = false}, settings).value());
   ASSERT_TRUE(service.ok()) << service.status().message();
-  const Image resolved = std::move(device.allocate(kOutput, settings.linear)).value();
+  const Image resolved = std::move(device.allocate(kOutput, settings.output.linear)).value();
   std::vector<Image> images;
   for (int i = 0; i < 2; ++i) {
     const tools::LoadedImage file = image(input(i + 1));

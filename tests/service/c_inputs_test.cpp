@@ -129,7 +129,7 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
     inputs.exposure_image = exposure.host.image();
     inputs.reset = frame.reset;
     inputs.frame_index = n;
-    if (settings.min_output_extent != Extent{}) {
+    if (settings.output.min_extent != Extent{}) {
       own.output_extent = {24 + static_cast<int>(random() % 25), 18 + static_cast<int>(random() % 19)};
       inputs.output_width = own.output_extent.width;
       inputs.output_height = own.output_extent.height;
@@ -230,24 +230,23 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
     EXPECT_EQ(content.struct_size, sizeof(content));
   }
   EXPECT_EQ(focused > 0, with.focus);
-  EXPECT_EQ(known > 0, settings.measures_content);
+  EXPECT_EQ(known > 0, settings.control.measures_content);
 }
 
 const Extras kExtras[] = {
-    {.name = "particles", .settings = {.particle_target_extent = kParticles}, .particles = true},
+    {.name = "particles", .settings = {.targets = {.particle_extent = kParticles}}, .particles = true},
     {.name = "fade",
-     .settings = {.min_output_extent = {24, 18}, .measures_content = true, .fades = true},
+     .settings = {.output = {.min_extent = {24, 18}}, .control = {.measures_content = true, .fades = true}},
      .fade = true},
     {.name = "focus",
      .settings = {.focus = {.extent = kRegion, .target_extent = kRegionTarget, .mask = true}},
      .focus = true},
     {.name = "all",
-     .settings = {.min_output_extent = {24, 18},
-                  .particle_target_extent = kParticles,
+     .settings = {.targets = {.particle_extent = kParticles},
+                  .output = {.min_extent = {24, 18}},
                   .blur = {.shutter = 0.5f},
                   .focus = {.extent = kRegion, .target_extent = kRegionTarget, .mask = true},
-                  .measures_content = true,
-                  .fades = true},
+                  .control = {.measures_content = true, .fades = true}},
      .particles = true,
      .focus = true,
      .fade = true},
@@ -265,7 +264,7 @@ TEST(CSync, EventsInAndOut) {
                                 .output_extent = kOutput,
                                 .target_extent = kOutput,
                                 .colour = PixelFormat::kRGBA32F,
-                                .present = false});
+                                .output = {.present = false}});
   quincunx_service* made = nullptr;
   ASSERT_EQ(quincunx_service_create(borrowed, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
   const COwner<quincunx_service> service(made);

@@ -24,7 +24,7 @@ class CRig {
     settings_.target_extent = target;
     settings_.colour = PixelFormat::kRGBA32F;
     settings_.velocity = PixelFormat::kRG32F;
-    settings_.dither = false;
+    settings_.output.dither = false;
     plan_ = c_plan(needs, settings_);
     quincunx_device* device = nullptr;
     EXPECT_EQ(quincunx_device_open(nullptr, &device), QUINCUNX_OK) << quincunx_last_error();
@@ -32,14 +32,15 @@ class CRig {
     quincunx_service* service = nullptr;
     EXPECT_EQ(quincunx_service_create(device, plan_.get(), &service), QUINCUNX_OK) << quincunx_last_error();
     service_.reset(service);
-    resolved_ = std::make_unique<HostPicture>(output, settings_.linear);
+    resolved_ = std::make_unique<HostPicture>(output, settings_.output.linear);
     presented_ = std::make_unique<HostPicture>(output, PixelFormat::kRGBA8);
     outputs_ = {sizeof(outputs_), resolved_->image(), presented_->image()};
   }
 
   // The frame's images are gone when it returns.
   quincunx_status resolve(const HostFrame& frame, quincunx_report* report = nullptr) {
-    const Extent size = settings_.targets == Targets::kPlaced ? frame.render : settings_.target_extent;
+    const Extent size =
+        settings_.targets.placement == Targets::kPlaced ? frame.render : settings_.target_extent;
     HostPicture colour(size, settings_.colour), velocity(size, settings_.velocity);
     HostPicture depth(size, PixelFormat::kR32F), reactive(size, PixelFormat::kR8);
     colour.fill<Pixel>(frame.render, frame.colour);
@@ -135,8 +136,8 @@ const CRun kRuns[] = {
     {.name = "reprojected", .settings = {.quincunx = {.form = TwoFrameForm::kReprojected}}},
     {.name = "temporal", .settings = {.method = Method::kTemporal}},
     {.name = "camera", .settings = {.method = Method::kTemporal}, .needs = {.moving_objects = false}},
-    {.name = "placed", .settings = {.method = Method::kTemporal, .targets = Targets::kPlaced}},
-    {.name = "images", .settings = {.method = Method::kTemporal, .storage = Storage::kImage}},
+    {.name = "placed", .settings = {.method = Method::kTemporal, .targets = {.placement = Targets::kPlaced}}},
+    {.name = "images", .settings = {.method = Method::kTemporal, .targets = {.storage = Storage::kImage}}},
 };
 INSTANTIATE_TEST_SUITE_P(Methods, CPictures, ::testing::ValuesIn(kRuns),
                          [](const auto& instance) { return instance.param.name; });
@@ -152,8 +153,8 @@ TEST(CInterface, BorrowsDeviceAndMemoryObjects) {
   const auto plan = c_plan({.background = false}, {.method = Method::kBilinear,
                                                    .output_extent = kOutput,
                                                    .target_extent = kTarget,
-                                                   .present = false,
-                                                   .clear = true});
+                                                   .targets = {.clear = true},
+                                                   .output = {.present = false}});
   quincunx_service* made = nullptr;
   ASSERT_EQ(quincunx_service_create(raw, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
   COwner<quincunx_service> service(made);
@@ -307,33 +308,36 @@ SceneNeeds other_needs() {
 
 ResolveSettings other_settings() {
   ResolveSettings settings;
-  auto& [method, output, min_output, target, particle_target, colour, velocity, linear, conventions, storage,
-         targets, shading, present, clear, tone_map, dither, clamp_ringing, grain, noise_moves,
-         drawn_velocity, sky_motion, quincunx, temporal, blur, sharpness, focus, measures_content, fades] =
-      settings;
+  auto& [method, output_extent, target_extent, colour, velocity, conventions, sharpness, targets, output,
+         filter, quincunx, temporal, blur, focus, control] = settings;
   method = Method::kTemporal;
-  output = {3, 4};
-  target = {5, 6};
+  output_extent = {3, 4};
+  target_extent = {5, 6};
   colour = PixelFormat::kRGBA8;
   velocity = PixelFormat::kRG32F;
-  linear = PixelFormat::kRGBA16F;
-  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin] =
-      conventions;
+  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin,
+         drawn_velocity, sky_motion] = conventions;
   depth = DepthConvention::kLinear;
   clip_space = ClipSpace::kVulkan;
   velocity_unit = VelocityUnit::kNdc;
   velocity_backward = velocity_up = velocity_jittered = true;
   origin = Origin::kBottom;
-  storage = Storage::kImage;
-  targets = Targets::kPlaced;
-  shading = Shading::kCheckerboard;
-  present = dither = clamp_ringing = noise_moves = false;
-  clear = true;
-  tone_map = ToneMap::kReinhard;
-  grain = 0.125f;
   drawn_velocity = DrawnVelocity::kDilated;
   sky_motion = SkyMotion::kEvidence;
   sharpness = 0.75f;
+  auto& [storage, placement, shading, particle_extent, clear] = targets;
+  storage = Storage::kImage;
+  placement = Targets::kPlaced;
+  shading = Shading::kCheckerboard;
+  particle_extent = {7, 8};
+  clear = true;
+  auto& [min_extent, linear, present, tone_map, dither] = output;
+  min_extent = {1, 2};
+  linear = PixelFormat::kRGBA16F;
+  tone_map = ToneMap::kReinhard;
+  auto& [clamp_ringing, grain, noise_moves] = filter;
+  grain = 0.125f;
+  present = dither = clamp_ringing = noise_moves = false;
   auto& [form, sampling, velocity_weight, residual_weight] = quincunx;
   form = TwoFrameForm::kReprojected;
   sampling = Sampling::kPoint;
@@ -346,9 +350,8 @@ ResolveSettings other_settings() {
   auto& [shutter, samples] = blur;
   shutter = 1.5f;
   samples = 64;
-  min_output = {1, 2};
-  particle_target = {7, 8};
   focus = {.extent = {9, 10}, .target_extent = {11, 12}, .mask = true};
+  auto& [measures_content, fades] = control;
   measures_content = fades = true;
   return settings;
 }

@@ -30,8 +30,10 @@ const PlannedBuffer* buffer_of(const ResolvePlan& plan, const std::string& name)
 }
 
 ResolvePlan plan_of(Method method, Shading shading, const SceneNeeds& needs) {
-  return plan_for(needs,
-                  {.method = method, .output_extent = kExtent, .target_extent = kExtent, .shading = shading})
+  return plan_for(needs, {.method = method,
+                          .output_extent = kExtent,
+                          .target_extent = kExtent,
+                          .targets = {.shading = shading}})
       .value();
 }
 
@@ -76,7 +78,8 @@ TEST(CheckerboardPlan, ACameraAloneNeedsNoVelocityTarget) {
 
 // Two frames hold every pixel of a picture that stands still; but a corner is not in the range of its two neighbours.
 TEST(Checkerboard, TwoFramesMakeAStillPictureWhole) {
-  ServiceRig rig(kMoving, {.method = Method::kPoint, .shading = Shading::kCheckerboard}, kExtent, kExtent);
+  ServiceRig rig(kMoving, {.method = Method::kPoint, .targets = {.shading = Shading::kCheckerboard}}, kExtent,
+                 kExtent);
   rig.resolve(ramp(0));
   const std::vector<Pixel> picture = rig.resolve(ramp(1));
   for (int i = 0; i < kExtent.area(); ++i) {
@@ -90,8 +93,9 @@ TEST(Checkerboard, TwoFramesMakeAStillPictureWhole) {
 
 // Codes that are copied stay what they are, and what lies between codes is one of them again.
 TEST(Checkerboard, TwoFramesOfEightBitsMakeAStillPictureWhole) {
-  const ResolveSettings settings{
-      .method = Method::kPoint, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard};
+  const ResolveSettings settings{.method = Method::kPoint,
+                                 .colour = PixelFormat::kRGBA8,
+                                 .targets = {.shading = Shading::kCheckerboard}};
   ServiceRig rig(kMoving, settings, kExtent, kExtent);
   HostFrame frame = ramp(0);
   const auto light_of = [](int x, int y) { return static_cast<float>(3 * x + 5 * y) / 256; };
@@ -121,7 +125,7 @@ TEST(CheckerboardPlan, OfEightBitsFillsCodes) {
                                  .output_extent = kExtent,
                                  .target_extent = kExtent,
                                  .colour = PixelFormat::kRGBA8,
-                                 .shading = Shading::kCheckerboard};
+                                 .targets = {.shading = Shading::kCheckerboard}};
   const auto plan = plan_for(kMoving, settings);
   ASSERT_TRUE(plan.ok()) << plan.status().message();
   const auto area = static_cast<std::size_t>(kExtent.area());
@@ -134,7 +138,8 @@ TEST(CheckerboardPlan, OfEightBitsFillsCodes) {
 
 // Without history, and from it where everything has become brighter, each pixel lies in its neighbours' range.
 TEST(Checkerboard, WhatIsFilledLiesInTheRangeOfItsNeighbours) {
-  ServiceRig rig(kMoving, {.method = Method::kPoint, .shading = Shading::kCheckerboard}, kExtent, kExtent);
+  ServiceRig rig(kMoving, {.method = Method::kPoint, .targets = {.shading = Shading::kCheckerboard}}, kExtent,
+                 kExtent);
   for (const float offset : {0.f, 4.f}) {
     const std::vector<Pixel> picture = rig.resolve(ramp(0, offset));
     for (int y = 1; y + 1 < kExtent.height; ++y) {
@@ -148,7 +153,7 @@ TEST(Checkerboard, WhatIsFilledLiesInTheRangeOfItsNeighbours) {
 }
 
 TEST(Checkerboard, AResetForgetsWhatCameBefore) {
-  const ResolveSettings settings{.method = Method::kBilinear, .shading = Shading::kCheckerboard};
+  const ResolveSettings settings{.method = Method::kBilinear, .targets = {.shading = Shading::kCheckerboard}};
   ServiceRig used(kMoving, settings, kExtent, kExtent), fresh(kMoving, settings, kExtent, kExtent);
   used.resolve(ramp(0, 7));
   HostFrame frame = ramp(1);
@@ -161,9 +166,9 @@ TEST(Checkerboard, AResetForgetsWhatCameBefore) {
 // Where targets are images, so are the service's own filled ones.
 TEST(Checkerboard, ImagesMakeThePicturesOfBuffers) {
   for (const SceneNeeds& needs : {kMoving, SceneNeeds{}}) {
-    ResolveSettings settings{.method = Method::kTemporal, .shading = Shading::kCheckerboard};
+    ResolveSettings settings{.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}};
     ServiceRig buffers(needs, settings, kExtent, kExtent);
-    settings.storage = Storage::kImage;
+    settings.targets.storage = Storage::kImage;
     ServiceRig images(buffers.device(), needs, settings, kExtent, kExtent);
     for (int i = 0; i < 3; ++i) {
       HostFrame frame = ramp(i % 2);
@@ -177,7 +182,8 @@ TEST(Checkerboard, ImagesMakeThePicturesOfBuffers) {
 
 // The caller may use the same images for each frame: the service has its own of the previous one.
 TEST(Checkerboard, TheSameImagesMayHoldEveryFrame) {
-  ServiceRig rig(kMoving, {.method = Method::kQuincunx, .shading = Shading::kCheckerboard}, kExtent, kExtent);
+  ServiceRig rig(kMoving, {.method = Method::kQuincunx, .targets = {.shading = Shading::kCheckerboard}},
+                 kExtent, kExtent);
   const FrameInputs inputs = rig.upload(ramp(0));
   EXPECT_TRUE(rig.dispatch(inputs).ok());
   const FrameReport report = rig.dispatch(inputs);

@@ -65,7 +65,7 @@ class FromTheBottom : public ::testing::TestWithParam<Run> {};
 // Particles, a focus and its mask are there where the settings ask for them.
 TEST_P(FromTheBottom, TheSamePicturesTurned) {
   ResolveSettings settings = GetParam().settings;
-  const Storage storage = settings.storage;
+  const Storage storage = settings.targets.storage;
   ServiceRig top(GetParam().needs, settings, kOutput, kTarget);
   settings.conventions.origin = Origin::kBottom;
   ServiceRig bottom(top.device(), GetParam().needs, settings, kOutput, kTarget);
@@ -90,18 +90,19 @@ TEST_P(FromTheBottom, TheSamePicturesTurned) {
   for (int i = 0; i < 12; ++i) {
     HostFrame frame = random_frame(random, kTarget);
     frame.reset = i == 8;
-    if (settings.shading == Shading::kCheckerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
-    if (settings.min_output_extent != Extent{} && i % 3 != 0)
+    if (settings.targets.shading == Shading::kCheckerboard && frame.render != Extent{1, 1})
+      frame.parity = i % 2;
+    if (settings.output.min_extent != Extent{} && i % 3 != 0)
       frame.output = random_frame(random, kOutput).render;
     frame.camera.clip_to_previous_clip[8] = static_cast<float>(i) / 512;
     HostFrame close = random_frame(random, kTarget);
     close.reset = frame.reset;
     const HostFrame particles = random_frame(
-        random, settings.particle_target_extent == Extent{} ? kTarget : settings.particle_target_extent);
+        random, settings.targets.particle_extent == Extent{} ? kTarget : settings.targets.particle_extent);
 
     const auto dispatch = [&](ServiceRig& rig, bool turns) {
       FrameInputs inputs = rig.upload(turns ? turned(frame) : frame);
-      if (settings.particle_target_extent != Extent{}) {
+      if (settings.targets.particle_extent != Extent{}) {
         const Extent extent = inputs.particle_render_extent = particles.render;
         inputs.particle_colour = image(extent, PixelFormat::kRGBA32F, storage, particles.colour, turns);
         inputs.particle_depth = image(extent, PixelFormat::kR32F, storage, particles.depth, turns);
@@ -140,36 +141,35 @@ const Run kOrigins[] = {
     {.name = "quincunx_rgba8", .settings = {.method = Method::kQuincunx, .colour = PixelFormat::kRGBA8}},
     {.name = "reprojected",
      .settings = {.method = Method::kQuincunx,
-                  .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
-                  .sharpness = .5f}},
+                  .sharpness = .5f,
+                  .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1}}},
     {.name = "temporal", .settings = {.method = Method::kTemporal}, .needs = kOpaque},
     {.name = "temporal_camera", .settings = {.method = Method::kTemporal}, .needs = kCameraOnly},
-    {.name = "temporal_dual", .settings = {.method = Method::kTemporal, .min_output_extent = {1, 1}}},
+    {.name = "temporal_dual", .settings = {.method = Method::kTemporal, .output = {.min_extent = {1, 1}}}},
     {.name = "temporal_placed",
-     .settings = {.method = Method::kTemporal, .targets = Targets::kPlaced},
+     .settings = {.method = Method::kTemporal, .targets = {.placement = Targets::kPlaced}},
      .needs = kOpaque},
     {.name = "temporal_images",
-     .settings = {.method = Method::kTemporal, .storage = Storage::kImage},
+     .settings = {.method = Method::kTemporal, .targets = {.storage = Storage::kImage}},
      .needs = kOpaque},
     {.name = "placed_images",
-     .settings = {.method = Method::kQuincunx, .storage = Storage::kImage, .targets = Targets::kPlaced}},
-    {.name = "far_evidence", .settings = {.method = Method::kTemporal, .sky_motion = SkyMotion::kEvidence}},
+     .settings = {.method = Method::kQuincunx,
+                  .targets = {.storage = Storage::kImage, .placement = Targets::kPlaced}}},
+    {.name = "far_evidence",
+     .settings = {.method = Method::kTemporal, .conventions = {.sky_motion = SkyMotion::kEvidence}}},
     {.name = "checkerboard",
      .settings = {.method = Method::kTemporal,
-                  .particle_target_extent = {40, 20},
-                  .shading = Shading::kCheckerboard}},
+                  .targets = {.shading = Shading::kCheckerboard, .particle_extent = {40, 20}}}},
     {.name = "checkerboard_images",
      .settings = {.method = Method::kQuincunx,
-                  .storage = Storage::kImage,
-                  .shading = Shading::kCheckerboard,
-                  .drawn_velocity = DrawnVelocity::kDilated}},
+                  .conventions = {.drawn_velocity = DrawnVelocity::kDilated},
+                  .targets = {.storage = Storage::kImage, .shading = Shading::kCheckerboard}}},
     {.name = "focus",
      .settings = {.method = Method::kQuincunx,
                   .focus = {.extent = {20, 12}, .target_extent = kTarget, .mask = true}}},
     {.name = "focus_images",
      .settings = {.method = Method::kCatmullRom,
-                  .particle_target_extent = {40, 20},
-                  .storage = Storage::kImage,
+                  .targets = {.storage = Storage::kImage, .particle_extent = {40, 20}},
                   .focus = {.extent = {20, 12}, .target_extent = kTarget, .mask = true}}},
 };
 
@@ -320,9 +320,12 @@ class Conventions : public ::testing::TestWithParam<Run> {};
 // Frames of the scene, given or native. With motion blur the pictures are the blurred ones.
 std::vector<std::vector<Pixel>> pictures_of(const Device& device, const Run& run, const Given& given) {
   ResolveSettings settings = run.settings;
+  const auto [drawn, sky] = std::pair(settings.conventions.drawn_velocity, settings.conventions.sky_motion);
   settings.conventions = given.conventions;
+  settings.conventions.drawn_velocity = drawn;
+  settings.conventions.sky_motion = sky;
   ServiceRig rig(device, run.needs, settings, kOutput, kTarget);
-  const Image finished = device.allocate(kOutput, settings.linear).value();
+  const Image finished = device.allocate(kOutput, settings.output.linear).value();
   std::vector<std::vector<Pixel>> pictures;
   HostFrame previous = scene_frame(0, given.depths);
   for (int i = 0; i < 7; ++i) {
@@ -354,12 +357,12 @@ TEST_P(Conventions, MakeTheSamePictures) {
 const Run kMethods[] = {
     {.name = "temporal", .settings = {.method = Method::kTemporal}, .needs = kOpaque},
     {.name = "temporal_images",
-     .settings = {.method = Method::kTemporal, .storage = Storage::kImage},
+     .settings = {.method = Method::kTemporal, .targets = {.storage = Storage::kImage}},
      .needs = kOpaque},
     {.name = "temporal_dilated_far",
      .settings = {.method = Method::kTemporal,
-                  .drawn_velocity = DrawnVelocity::kDilated,
-                  .sky_motion = SkyMotion::kCamera}},
+                  .conventions = {.drawn_velocity = DrawnVelocity::kDilated,
+                                  .sky_motion = SkyMotion::kCamera}}},
     {.name = "velocity", .settings = {.method = Method::kQuincunx}},
     {.name = "reprojected_blurred",
      .settings = {.method = Method::kQuincunx,
@@ -369,7 +372,7 @@ const Run kMethods[] = {
      .settings = {.method = Method::kQuincunx, .quincunx = {.form = TwoFrameForm::kReprojected}},
      .needs = kCameraOnly},
     {.name = "checkerboard",
-     .settings = {.method = Method::kTemporal, .shading = Shading::kCheckerboard},
+     .settings = {.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}},
      .needs = kOpaque},
 };
 
@@ -382,7 +385,7 @@ ResolvePlan plan_with(const InputConventions& conventions, Storage storage = Sto
                        .output_extent = kOutput,
                        .target_extent = kTarget,
                        .conventions = conventions,
-                       .storage = storage})
+                       .targets = {.storage = storage}})
       .value();
 }
 

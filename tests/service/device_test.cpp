@@ -307,7 +307,7 @@ std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfi
   settings.quincunx.form = TwoFrameForm::kReprojected;
   settings.sharpness = 0.5f;
   settings.blur.shutter = 0.5f;
-  settings.sky_motion = SkyMotion::kEvidence;
+  settings.conventions.sky_motion = SkyMotion::kEvidence;
   const ResolvePlan plan = plan_for({.moving_objects = true, .transparents = true}, settings).value();
   const Device own = device.with_profile(profile);
   ResolveService service = ResolveService::create(own, plan).value();
@@ -329,7 +329,7 @@ std::vector<unsigned char> pictures_with(const Device& device, const DeviceProfi
     frames.push_back({filled(settings.colour, 0x3400, 0x800), filled(settings.velocity, 0x1c00, 0x400),
                       filled(PixelFormat::kR32F, 0x3e00, 0x100), filled(PixelFormat::kR8, 0, 0x100)});
   }
-  const Image linear = own.allocate(kOutput, settings.linear).value();
+  const Image linear = own.allocate(kOutput, settings.output.linear).value();
   const Image presented = own.allocate(kOutput, PixelFormat::kRGBA8).value();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FrameReport report = service.dispatch({.colour = frames[i].colour.view(),

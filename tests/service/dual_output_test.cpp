@@ -36,7 +36,7 @@ class DualOutput : public ::testing::TestWithParam<Dual> {};
 TEST_P(DualOutput, AtItsLargestItChangesNoBit) {
   ResolveSettings settings = GetParam().settings;
   ServiceRig fixed({}, settings, kOutput, kTarget);
-  settings.min_output_extent = {1, 1};
+  settings.output.min_extent = {1, 1};
   ServiceRig dual({}, settings, kOutput, kTarget);
   const bool blurs = settings.blur.shutter > 0;  // then the displayed picture is the blurred one
   std::mt19937 random(7);
@@ -57,7 +57,7 @@ TEST_P(DualOutput, ASmallerOneHasTheBitsOfAPlanOfThatSize) {
   constexpr Extent kSmall{31, 22};
   ResolveSettings settings = GetParam().settings;
   ServiceRig fixed({}, settings, kSmall, kTarget);
-  settings.min_output_extent = {1, 1};
+  settings.output.min_extent = {1, 1};
   ServiceRig dual({}, settings, kOutput, kTarget);
   std::mt19937 random(8);
   for (int i = 0; i < 60; ++i) {
@@ -87,7 +87,7 @@ const Dual kDuals[] = {
       .blur = {.shutter = .5f}}},
     {"temporal", {.method = Method::kTemporal}},
     {"temporal_fast", {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kFast}}},
-    {"checkerboard", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}},
+    {"checkerboard", {.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, DualOutput, ::testing::ValuesIn(kDuals),
@@ -136,7 +136,7 @@ double decibels(double error) {
 Errors errors_of(const Change& change, Course run) {
   const TemporalScene scene = scene_of(change.pans);
   const int phases = testing::halton_phases(scene.output, kSamples);
-  ServiceRig rig({.transparents = false}, {.method = Method::kTemporal, .min_output_extent = {1, 1}},
+  ServiceRig rig({.transparents = false}, {.method = Method::kTemporal, .output = {.min_extent = {1, 1}}},
                  scene.output, {160, 96});
   Errors errors;
   for (int i = 0; i < kFramesBefore + kFramesAfter; ++i) {
@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(Changes, ChangeOfOutput, ::testing::ValuesIn(kChanges),
 TEST(DualPlan, SaysWhatItDoes) {
   ResolveSettings settings{.method = Method::kTemporal, .output_extent = kOutput, .target_extent = kTarget};
   EXPECT_NE(plan_for({}, settings)->explain().find("Output         always 48x27"), std::string::npos);
-  settings.min_output_extent = {24, 14};
+  settings.output.min_extent = {24, 14};
   const std::string text = plan_for({}, settings)->explain();
   EXPECT_NE(text.find("Output         dynamic: 24x14 to 48x27, shown in 48x27"), std::string::npos) << text;
   for (const char* kernel :
@@ -214,10 +214,10 @@ TEST(DualPlan, SaysWhatItDoes) {
 TEST(DualPlan, RefusesOutputsOutsideItsRange) {
   ResolveSettings settings{.method = Method::kBilinear, .output_extent = kOutput, .target_extent = kTarget};
   for (const Extent least : {Extent{49, 27}, Extent{48, 0}, Extent{-1, 5}}) {
-    settings.min_output_extent = least;
+    settings.output.min_extent = least;
     const auto plan = plan_for({}, settings);
     ASSERT_FALSE(plan.ok());
-    EXPECT_NE(plan.status().message().find("settings.min_output_extent is"), std::string::npos);
+    EXPECT_NE(plan.status().message().find("settings.output.min_extent is"), std::string::npos);
   }
   const auto refused = [](ServiceRig& rig, Extent output) {
     HostFrame frame;
@@ -230,7 +230,7 @@ TEST(DualPlan, RefusesOutputsOutsideItsRange) {
   ServiceRig fixed({}, {.method = Method::kBilinear}, kOutput, kTarget);
   EXPECT_NE(refused(fixed, {24, 14}).find("output_extent is 24x14; the plan has always 48x27"),
             std::string::npos);
-  ServiceRig dual({}, {.method = Method::kBilinear, .min_output_extent = {24, 14}}, kOutput, kTarget);
+  ServiceRig dual({}, {.method = Method::kBilinear, .output = {.min_extent = {24, 14}}}, kOutput, kTarget);
   EXPECT_NE(
       refused(dual, {23, 20}).find("output_extent is 23x20; it must lie within the plan's 24x14 and 48x27"),
       std::string::npos);

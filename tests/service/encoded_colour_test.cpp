@@ -59,7 +59,7 @@ TEST_P(EncodedColour, StaysWithinTheQuantisation) {
   const double half_code = 1 - std::pow((1 - 0.5 / 255 + 0.055) / 1.055, 2.4);
   const double bound = c.weight_sum * c.weight_sum * half_code;
   ResolveSettings settings = c.settings;
-  settings.tone_map = ToneMap::kClamp;
+  settings.output.tone_map = ToneMap::kClamp;
   for (const Extent render : {Extent{1, 1}, Extent{7, 5}, Extent{47, 29}, Extent{67, 41}, Extent{90, 50}}) {
     ServiceRig linear({.transparents = false}, settings, kOutput, {96, 64});
     settings.colour = PixelFormat::kRGBA8;
@@ -94,8 +94,9 @@ INSTANTIATE_TEST_SUITE_P(Methods, EncodedColour, ::testing::ValuesIn(kCases),
 
 // The picture is what was drawn: neither exposed nor tone mapped again, whatever the frame and the settings say.
 TEST(EncodedColourPicture, IsShownAsItWasDrawn) {
-  ServiceRig rig({}, {.method = Method::kPoint, .colour = PixelFormat::kRGBA8, .tone_map = ToneMap::kAces},
-                 {16, 16}, {16, 16});
+  ServiceRig rig(
+      {}, {.method = Method::kPoint, .colour = PixelFormat::kRGBA8, .output = {.tone_map = ToneMap::kAces}},
+      {16, 16}, {16, 16});
   HostFrame frame;
   frame.render = {16, 16};
   frame.colour = [](int x, int y) {

@@ -77,7 +77,7 @@ bool is_covered(const TemporalScene& scene, int x, int y, int frame, double marg
 
 SkyErrors errors_of(const TemporalScene& scene, ResolveSettings settings, SkyMotion far) {
   constexpr double kBeside = 4;  // output pixels
-  settings.sky_motion = far;
+  settings.conventions.sky_motion = far;
   TemporalRun run(scene, settings);
   SkyErrors errors;
   for (int frame = 0; frame < kEnd; ++frame) {
@@ -153,7 +153,7 @@ TEST(SkyMotion, ADrawnSkyIsLeftAlone) {
   const TemporalScene scene = with_drawn_sky(scene_under({-2.3, .4}, 1));
   for (ResolveSettings settings : kMethods) {
     TemporalRun as_drawn(scene, settings);
-    settings.sky_motion = SkyMotion::kCamera;
+    settings.conventions.sky_motion = SkyMotion::kCamera;
     TemporalRun completed(scene, settings);
     EXPECT_EQ(as_drawn.until(6), completed.until(6)) << name_of(settings.method);
   }
@@ -180,7 +180,7 @@ TEST(SkyMotion, UnderAStillCameraTheSkyStandsStill) {
   TemporalScene scene = scene_under(0, 1);
   for (ResolveSettings settings : kMethods) {
     TemporalRun as_drawn(scene, settings);
-    settings.sky_motion = SkyMotion::kCamera;
+    settings.conventions.sky_motion = SkyMotion::kCamera;
     TemporalRun completed(scene, settings);
     EXPECT_LE(testing::largest_difference(as_drawn.until(12), completed.until(12), kOutput), 1e-4)
         << name_of(settings.method);

@@ -31,9 +31,9 @@ ResolveSettings focused(ResolveSettings settings) {
 // The inputs of a region's frames: a service's own rig keeps them. Its service is never called.
 ServiceRig region_rig(const Device& device, const ResolveSettings& picture) {
   ResolveSettings settings = picture;
-  settings.shading = Shading::kFull;
-  settings.present = true;
-  settings.min_output_extent = {};
+  settings.targets.shading = Shading::kFull;
+  settings.output.present = true;
+  settings.output.min_extent = {};
   return ServiceRig(device, {}, settings, kRegion, kRegionTarget);
 }
 
@@ -52,7 +52,7 @@ bool is_inside(const Rectangle& where, int x, int y) {
 // dynamic, it is often the largest one.
 TEST_P(FocusMethods, OutsideOfItsRectangleNoBitChanges) {
   const ResolveSettings& settings = GetParam().settings;
-  const bool is_dual = settings.min_output_extent != Extent{};
+  const bool is_dual = settings.output.min_extent != Extent{};
   ServiceRig plain({}, settings, kOutput, kTarget);
   ServiceRig with(plain.device(), {}, focused(settings), kOutput, kTarget);
   ServiceRig region = region_rig(plain.device(), settings);
@@ -60,7 +60,7 @@ TEST_P(FocusMethods, OutsideOfItsRectangleNoBitChanges) {
   int changed = 0;
   for (int i = 0; i < 60; ++i) {
     HostFrame frame = random_frame(random, kTarget);
-    if (settings.shading == Shading::kCheckerboard && frame.render.area() > 1) frame.parity = i % 2;
+    if (settings.targets.shading == Shading::kCheckerboard && frame.render.area() > 1) frame.parity = i % 2;
     if (is_dual && i % 3 != 0) frame.output = random_frame(random, kOutput).render;
     HostFrame close = random_frame(random, kRegionTarget);
     close.reset = false;
@@ -111,12 +111,13 @@ const Case kCases[] = {
     {"temporal_rgba8", {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8}},
     {"temporal_fast_half",
      {.method = Method::kTemporal,
-      .linear = PixelFormat::kRGBA32F,
+      .output = {.linear = PixelFormat::kRGBA32F},
       .temporal = {.preset = TemporalPreset::kFast}}},
-    {"temporal_placed", {.method = Method::kTemporal, .targets = Targets::kPlaced}},
-    {"temporal_checkerboard", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}},
-    {"dual_lanczos3", {.method = Method::kLanczos3, .min_output_extent = {1, 1}, .blur = {.shutter = .5f}}},
-    {"dual_temporal", {.method = Method::kTemporal, .min_output_extent = {1, 1}, .sharpness = .5f}},
+    {"temporal_placed", {.method = Method::kTemporal, .targets = {.placement = Targets::kPlaced}}},
+    {"temporal_checkerboard", {.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}}},
+    {"dual_lanczos3",
+     {.method = Method::kLanczos3, .output = {.min_extent = {1, 1}}, .blur = {.shutter = .5f}}},
+    {"dual_temporal", {.method = Method::kTemporal, .sharpness = .5f, .output = {.min_extent = {1, 1}}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, FocusMethods, ::testing::ValuesIn(kCases),
@@ -226,7 +227,7 @@ TEST(Focus, ThePlanTellsOfIt) {
   ResolveSettings settings = focused({.method = Method::kTemporal,
                                       .output_extent = kOutput,
                                       .target_extent = kTarget,
-                                      .shading = Shading::kCheckerboard});
+                                      .targets = {.shading = Shading::kCheckerboard}});
   const ResolvePlan plan = plan_for({}, settings).value();
   EXPECT_TRUE(plan.has_focus());
   const std::string text = plan.explain();
@@ -235,7 +236,7 @@ TEST(Focus, ThePlanTellsOfIt) {
   const ResolvePlan region = plan.focus_plan().value();
   EXPECT_EQ(region.settings.output_extent, kRegion);
   EXPECT_EQ(region.settings.target_extent, kRegionTarget);
-  EXPECT_EQ(region.settings.shading, Shading::kFull);
+  EXPECT_EQ(region.settings.targets.shading, Shading::kFull);
   EXPECT_FALSE(region.has_focus());
   // Both at their most: the region's picture is read, and of the picture as much is read and written.
   const auto lay = std::find_if(plan.passes.begin(), plan.passes.end(),

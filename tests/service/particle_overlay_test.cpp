@@ -76,7 +76,7 @@ HostFrame particles_of(const HostFrame& frame, Extent own) {
 class ParticleOverlay : public ::testing::TestWithParam<Run> {
  protected:
   static ResolveSettings with_particles(ResolveSettings settings) {
-    settings.particle_target_extent = kTarget;
+    settings.targets.particle_extent = kTarget;
     return settings;
   }
 };
@@ -162,7 +162,7 @@ TEST_P(ParticleOverlay, PoisonOutsideTheirViewportNeverShows) {
 // history of the frame before is resized before they are laid over.
 TEST_P(ParticleOverlay, NoneChangeNoBit) {
   ResolveSettings settings = GetParam().settings;
-  settings.min_output_extent = {1, 1};
+  settings.output.min_extent = {1, 1};
   ServiceRig apart({}, with_particles(settings), kOutput, kTarget);
   ServiceRig without({}, settings, kOutput, kTarget);
   Particles particles(apart.device());
@@ -185,8 +185,8 @@ const Run kRuns[] = {
     {"bilinear", {.method = Method::kBilinear}},
     {"quincunx", {.method = Method::kQuincunx, .quincunx = {.form = TwoFrameForm::kReprojected}}},
     {"temporal", {.method = Method::kTemporal}},
-    {"checkerboard", {.method = Method::kBilinear, .shading = Shading::kCheckerboard}},
-    {"checkerboard_temporal", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}},
+    {"checkerboard", {.method = Method::kBilinear, .targets = {.shading = Shading::kCheckerboard}}},
+    {"checkerboard_temporal", {.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Methods, ParticleOverlay, ::testing::ValuesIn(kRuns),
@@ -194,9 +194,9 @@ INSTANTIATE_TEST_SUITE_P(Methods, ParticleOverlay, ::testing::ValuesIn(kRuns),
 
 // Where targets are images, so are the service's own that hold the particles as well.
 TEST(ParticleImages, MakeThePicturesOfBuffers) {
-  ResolveSettings settings{.method = Method::kTemporal, .particle_target_extent = kTarget};
+  ResolveSettings settings{.method = Method::kTemporal, .targets = {.particle_extent = kTarget}};
   ServiceRig buffers({}, settings, kOutput, kTarget);
-  settings.storage = Storage::kImage;
+  settings.targets.storage = Storage::kImage;
   ServiceRig images(buffers.device(), {}, settings, kOutput, kTarget);
   Particles in_buffers(buffers.device()), in_images(images.device(), Storage::kImage);
   std::mt19937 random(17);
@@ -215,7 +215,7 @@ TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
   ResolveSettings settings{.method = Method::kBilinear,
                            .output_extent = {64, 36},
                            .target_extent = {64, 36},
-                           .particle_target_extent = {32, 18}};
+                           .targets = {.particle_extent = {32, 18}}};
   const auto plan = plan_for({}, settings);
   ASSERT_TRUE(plan.ok()) << plan.status().message();
   EXPECT_EQ(plan->passes.front().kernel, "overlay_particles");
@@ -224,7 +224,7 @@ TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
   std::uint64_t own = 0;
   for (const PlannedBuffer& buffer : plan->buffers) {
     if (buffer.scaling != Scaling::kOwn) continue;
-    EXPECT_EQ(buffer.extent, settings.particle_target_extent);
+    EXPECT_EQ(buffer.extent, settings.targets.particle_extent);
     EXPECT_FALSE(buffer.owned);
     own += buffer.bytes;
   }
@@ -237,12 +237,12 @@ TEST(ParticlePlan, HasThePassItsImagesAndDepth) {
 TEST(ParticlePlan, RefusesATargetThatDoesNotFitAndEncodedColour) {
   ResolveSettings settings{.output_extent = {64, 36}, .target_extent = {64, 36}};
   for (const Extent target : {Extent{65, 36}, {64, 37}, {0, 5}, {-4, 5}}) {
-    settings.particle_target_extent = target;
+    settings.targets.particle_extent = target;
     const auto plan = plan_for({}, settings);
     ASSERT_FALSE(plan.ok());
-    EXPECT_NE(plan.status().message().find("particle_target"), std::string::npos) << plan.status().message();
+    EXPECT_NE(plan.status().message().find("particle_extent"), std::string::npos) << plan.status().message();
   }
-  settings.particle_target_extent = {32, 18};
+  settings.targets.particle_extent = {32, 18};
   settings.colour = PixelFormat::kRGBA8;
   const auto plan = plan_for({}, settings);
   ASSERT_FALSE(plan.ok());
@@ -250,7 +250,8 @@ TEST(ParticlePlan, RefusesATargetThatDoesNotFitAndEncodedColour) {
 }
 
 TEST(ParticlePlan, AFrameWithoutThemIsRefused) {
-  ServiceRig rig({}, {.method = Method::kQuincunx, .particle_target_extent = kTarget}, kOutput, kTarget);
+  ServiceRig rig({}, {.method = Method::kQuincunx, .targets = {.particle_extent = kTarget}}, kOutput,
+                 kTarget);
   HostFrame frame;
   frame.render = {20, 10};
   FrameInputs inputs = rig.upload(frame);

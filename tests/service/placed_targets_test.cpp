@@ -32,7 +32,7 @@ TEST_P(PlacedTargets, SamePicturesAsAViewport) {
   const PlacedRun& run = GetParam();
   ResolveSettings settings = run.settings;
   ServiceRig viewport(run.needs, settings, kOutput, kTarget);
-  settings.targets = Targets::kPlaced;
+  settings.targets.placement = Targets::kPlaced;
   ServiceRig placed(run.needs, settings, kOutput, kTarget);
   std::mt19937 random(2018);
   for (int i = 0; i < run.frames; ++i) {
@@ -58,26 +58,28 @@ const PlacedRun kRuns[] = {
     {.name = "quincunx_camera", .settings = {.method = Method::kQuincunx}, .needs = kCameraOnly},
     {.name = "reprojected_blurred",
      .settings = {.method = Method::kQuincunx,
+                  .sharpness = 0.5f,
                   .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
-                  .blur = {.shutter = 0.5f},
-                  .sharpness = 0.5f}},
+                  .blur = {.shutter = 0.5f}}},
     {.name = "fast",
      .settings = {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kFast}}},
     {.name = "balanced_layers", .settings = {.method = Method::kTemporal}, .needs = kOpaque},
     {.name = "quality",
      .settings = {.method = Method::kTemporal, .temporal = {.preset = TemporalPreset::kQuality}}},
     {.name = "temporal_camera", .settings = {.method = Method::kTemporal}, .needs = kCameraOnly},
-    {.name = "far_camera", .settings = {.method = Method::kTemporal, .sky_motion = SkyMotion::kCamera}},
-    {.name = "far_evidence", .settings = {.method = Method::kQuincunx, .sky_motion = SkyMotion::kEvidence}},
+    {.name = "far_camera",
+     .settings = {.method = Method::kTemporal, .conventions = {.sky_motion = SkyMotion::kCamera}}},
+    {.name = "far_evidence",
+     .settings = {.method = Method::kQuincunx, .conventions = {.sky_motion = SkyMotion::kEvidence}}},
     {.name = "quincunx_images",
-     .settings = {.method = Method::kQuincunx, .storage = Storage::kImage},
+     .settings = {.method = Method::kQuincunx, .targets = {.storage = Storage::kImage}},
      .frames = 30},
     {.name = "temporal_images",
-     .settings = {.method = Method::kTemporal, .storage = Storage::kImage},
+     .settings = {.method = Method::kTemporal, .targets = {.storage = Storage::kImage}},
      .needs = kOpaque,
      .frames = 30},
     {.name = "temporal_camera_images",
-     .settings = {.method = Method::kTemporal, .storage = Storage::kImage},
+     .settings = {.method = Method::kTemporal, .targets = {.storage = Storage::kImage}},
      .needs = kCameraOnly,
      .frames = 30},
 };
@@ -86,7 +88,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, PlacedTargets, ::testing::ValuesIn(kRuns),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(PlacedPlan, RefusesImagesOfAnotherSize) {
-  ServiceRig rig({}, {.method = Method::kBilinear, .targets = Targets::kPlaced}, kOutput, kTarget);
+  ServiceRig rig({}, {.method = Method::kBilinear, .targets = {.placement = Targets::kPlaced}}, kOutput,
+                 kTarget);
   HostFrame frame;
   frame.render = {20, 10};
   FrameInputs inputs = rig.upload(frame);
@@ -103,7 +106,7 @@ TEST(PlacedPlan, IsTheSamePassesAndSaysSo) {
   ResolveSettings settings = {
       .method = Method::kTemporal, .output_extent = kOutput, .target_extent = kTarget};
   const ResolvePlan viewport = plan_for({}, settings).value();
-  settings.targets = Targets::kPlaced;
+  settings.targets.placement = Targets::kPlaced;
   const ResolvePlan placed = plan_for({}, settings).value();
   EXPECT_EQ(placed.passes, viewport.passes);
   EXPECT_EQ(placed.buffers, viewport.buffers);
@@ -114,9 +117,10 @@ TEST(PlacedPlan, IsTheSamePassesAndSaysSo) {
 }
 
 TEST(PlacedPlan, PresentsIntoABuffer) {
-  ResolveSettings settings = {.output_extent = kOutput, .target_extent = kTarget, .storage = Storage::kImage};
+  ResolveSettings settings = {
+      .output_extent = kOutput, .target_extent = kTarget, .targets = {.storage = Storage::kImage}};
   EXPECT_EQ(plan_for({}, settings)->presented_storage(), Storage::kImage);
-  settings.targets = Targets::kPlaced;
+  settings.targets.placement = Targets::kPlaced;
   const ResolvePlan plan = plan_for({}, settings).value();
   EXPECT_EQ(plan.presented_storage(), Storage::kBuffer);
   EXPECT_NE(plan.passes.back().options.find("OUTPUT_STORAGE=BUFFER"), std::string::npos);

@@ -23,7 +23,7 @@ FrameReport completed(ServiceRig& rig, const FrameInputs& inputs) {
 
 TEST(QualityFrames, TheReportSaysWhatEachFrameShowsWhateverTheMethod) {
   for (const Method method : {Method::kBilinear, Method::kQuincunx, Method::kTemporal}) {
-    ServiceRig rig({}, {.method = method, .measures_content = true}, kOutput, kOutput);
+    ServiceRig rig({}, {.method = method, .control = {.measures_content = true}}, kOutput, kOutput);
     for (const float pixels : {2.f, 0.f, 4.f}) {
       const HostFrame frame = {.render = {48, 40}, .velocity = [&](int, int) {
                                  return Vec2{pixels / 64, 0};
@@ -41,7 +41,8 @@ TEST(QualityFrames, TheReportSaysWhatEachFrameShowsWhateverTheMethod) {
 
 TEST(QualityFrames, NothingMovesWhereNothingCan) {
   const SceneNeeds still = {.moving_objects = false, .camera_motion = false};
-  ServiceRig rig(still, {.method = Method::kBilinear, .measures_content = true}, kOutput, kOutput);
+  ServiceRig rig(still, {.method = Method::kBilinear, .control = {.measures_content = true}}, kOutput,
+                 kOutput);
   const FrameReport report = completed(rig, rig.upload({.render = kOutput}));
   ASSERT_TRUE(report.content.has_value());
   EXPECT_EQ(report.content->moving, 0);
@@ -54,7 +55,7 @@ TEST(QualityFrames, WhatNobodyAsksForIsNotMeasured) {
 }
 
 TEST(QualityFrames, TheFinishedPictureFadesFromAnother) {
-  ServiceRig rig({}, {.method = Method::kBilinear, .fades = true}, kOutput, kOutput);
+  ServiceRig rig({}, {.method = Method::kBilinear, .control = {.fades = true}}, kOutput, kOutput);
   const auto grey = [](float value) {
     return HostFrame{.render = kOutput, .colour = [value](int, int) {
                        return Pixel{value, value, value, 1};
@@ -76,12 +77,12 @@ TEST(QualityFrames, TheFinishedPictureFadesFromAnother) {
 }
 
 TEST(QualityFrames, AFadeThatCannotBeIsRefused) {
-  ServiceRig rig({}, {.method = Method::kBilinear, .fades = true}, kOutput, kOutput);
+  ServiceRig rig({}, {.method = Method::kBilinear, .control = {.fades = true}}, kOutput, kOutput);
   ServiceRig without(rig.device(), {}, {.method = Method::kBilinear}, kOutput, kOutput);
   Image other = rig.device().allocate(kOutput, PixelFormat::kRGBA32F).value();
   FrameInputs inputs = without.upload({.render = kOutput});
   inputs.fading_from = other.view();
-  EXPECT_NE(without.dispatch(inputs).status.message().find("set settings.fades"), std::string::npos);
+  EXPECT_NE(without.dispatch(inputs).status.message().find("set settings.control.fades"), std::string::npos);
   inputs = rig.upload({.render = kOutput});
   inputs.fading_from = other.view();
   inputs.fade_weight = 1.5f;

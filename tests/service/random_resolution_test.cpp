@@ -71,8 +71,8 @@ TEST_P(RandomResolution, PoisonOutsideNeverShows) {
                           -std::numeric_limits<float>::infinity(), 1e30f};
   for (int i = 0; i < run.frames; ++i) {
     HostFrame frame = random_frame(random, kTarget);
-    if (run.settings.min_output_extent != Extent{}) frame.output = random_output(random, i);
-    const bool checkerboard = run.settings.shading == Shading::kCheckerboard;
+    if (run.settings.output.min_extent != Extent{}) frame.output = random_output(random, i);
+    const bool checkerboard = run.settings.targets.shading == Shading::kCheckerboard;
     if (checkerboard && frame.render != Extent{1, 1}) frame.parity = i % 2;
     poisoned.flood(poison(values[i % 4]));
     const std::vector<Pixel> expected = clean.resolve(frame);
@@ -101,35 +101,43 @@ const LongRun kRuns[] = {
     {"velocity_rgba8", {.method = Method::kQuincunx, .colour = PixelFormat::kRGBA8}, 200},
     {"catmull_rom", {.method = Method::kCatmullRom}, 200},
     {"bilinear", {.method = Method::kBilinear}, 200},
-    {"checkerboard_bilinear", {.method = Method::kBilinear, .shading = Shading::kCheckerboard}, 400},
+    {"checkerboard_bilinear",
+     {.method = Method::kBilinear, .targets = {.shading = Shading::kCheckerboard}},
+     400},
     {"checkerboard_quincunx",
      {.method = Method::kQuincunx,
-      .shading = Shading::kCheckerboard,
+      .targets = {.shading = Shading::kCheckerboard},
       .quincunx = {.form = TwoFrameForm::kReprojected},
       .blur = {.shutter = 0.5f}},
      400},
-    {"checkerboard_temporal", {.method = Method::kTemporal, .shading = Shading::kCheckerboard}, 400},
+    {"checkerboard_temporal",
+     {.method = Method::kTemporal, .targets = {.shading = Shading::kCheckerboard}},
+     400},
     {"checkerboard_rgba8",
-     {.method = Method::kTemporal, .colour = PixelFormat::kRGBA8, .shading = Shading::kCheckerboard},
+     {.method = Method::kTemporal,
+      .colour = PixelFormat::kRGBA8,
+      .targets = {.shading = Shading::kCheckerboard}},
      200},
     {"noise_offset", {.method = Method::kNoiseOffset}, 200},
-    {"dual_bilinear", {.method = Method::kBilinear, .min_output_extent = {1, 1}}, 400},
-    {"dual_lanczos3", {.method = Method::kLanczos3, .min_output_extent = {1, 1}}, 400},
+    {"dual_bilinear", {.method = Method::kBilinear, .output = {.min_extent = {1, 1}}}, 400},
+    {"dual_lanczos3", {.method = Method::kLanczos3, .output = {.min_extent = {1, 1}}}, 400},
     {"dual_reprojected",
      {.method = Method::kQuincunx,
-      .min_output_extent = {1, 1},
+      .sharpness = .5f,
+      .output = {.min_extent = {1, 1}},
       .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
-      .blur = {.shutter = 0.5f},
-      .sharpness = .5f},
+      .blur = {.shutter = 0.5f}},
      400},
-    {"dual_temporal", {.method = Method::kTemporal, .min_output_extent = {1, 1}}, 1000},
+    {"dual_temporal", {.method = Method::kTemporal, .output = {.min_extent = {1, 1}}}, 1000},
     {"dual_temporal_half",
      {.method = Method::kTemporal,
-      .min_output_extent = {1, 1},
+      .output = {.min_extent = {1, 1}},
       .temporal = {.history = PixelFormat::kRGBA16F}},
      200},
     {"dual_checkerboard",
-     {.method = Method::kTemporal, .min_output_extent = {1, 1}, .shading = Shading::kCheckerboard},
+     {.method = Method::kTemporal,
+      .targets = {.shading = Shading::kCheckerboard},
+      .output = {.min_extent = {1, 1}}},
      400},
 };
 

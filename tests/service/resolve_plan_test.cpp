@@ -67,7 +67,7 @@ TEST(ResolvePlan, OnlyACameraMeansDepthInsteadOfAVelocityTarget) {
 
 TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.sky_motion = SkyMotion::kCamera;
+  wanted.conventions.sky_motion = SkyMotion::kCamera;
   const ResolvePlan p = plan({}, wanted);
   EXPECT_EQ(p.passes.front().kernel, "far_velocity");
   EXPECT_TRUE(p.reads_depth);
@@ -82,7 +82,7 @@ TEST(ResolvePlan, FarMotionCompletesTheDrawnVelocity) {
 
 TEST(ResolvePlan, FarMotionFromEvidenceNeedsNoCameraButTwoFrames) {
   ResolveSettings wanted = settings(Method::kTemporal);
-  wanted.sky_motion = SkyMotion::kEvidence;
+  wanted.conventions.sky_motion = SkyMotion::kEvidence;
   const ResolvePlan p = plan({}, wanted);
   for (const char* kernel : {"far_surroundings", "far_fit", "far_match", "far_velocity"})
     EXPECT_TRUE(has_pass(p, kernel)) << kernel;
@@ -97,7 +97,7 @@ TEST(ResolvePlan, FarMotionFromEvidenceNeedsNoCameraButTwoFrames) {
 
 TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.sky_motion = SkyMotion::kCamera;
+  wanted.conventions.sky_motion = SkyMotion::kCamera;
   EXPECT_TRUE(leaves_out(plan({.camera_motion = false}, wanted), "far_velocity"));
   EXPECT_TRUE(leaves_out(plan({.moving_objects = false}, wanted), "far_velocity"));
   wanted.method = Method::kBilinear;
@@ -107,7 +107,7 @@ TEST(ResolvePlan, FarMotionIsLeftOutWhereItTellsNothing) {
 
 TEST(ResolvePlan, ADilatedVelocityIsTakenBackFirst) {
   ResolveSettings wanted = settings(Method::kQuincunx);
-  wanted.drawn_velocity = DrawnVelocity::kDilated;
+  wanted.conventions.drawn_velocity = DrawnVelocity::kDilated;
   const ResolvePlan p = plan({}, wanted);
   EXPECT_EQ(p.passes.front().kernel, "undilate_velocity");
   EXPECT_TRUE(p.undilates_velocity());
@@ -115,8 +115,8 @@ TEST(ResolvePlan, ADilatedVelocityIsTakenBackFirst) {
   EXPECT_FALSE(p.reads_camera()) << "it is of use, not needed";
   EXPECT_TRUE(has_buffer(p, "dilated velocity"));
   EXPECT_FALSE(has_buffer(p, "drawn velocity"));
-  wanted.sky_motion = SkyMotion::kCamera;
-  wanted.shading = Shading::kCheckerboard;
+  wanted.conventions.sky_motion = SkyMotion::kCamera;
+  wanted.targets.shading = Shading::kCheckerboard;
   const ResolvePlan all = plan({}, wanted);
   ASSERT_GE(all.passes.size(), 3u);
   EXPECT_EQ(all.passes[0].kernel, "resolve_checkerboard");
@@ -128,7 +128,7 @@ TEST(ResolvePlan, ADilatedVelocityIsTakenBackFirst) {
 
 TEST(ResolvePlan, ADilatedVelocityIsLeftOutWhereNoneIsDrawnOrRead) {
   ResolveSettings wanted = settings(Method::kTemporal);
-  wanted.drawn_velocity = DrawnVelocity::kDilated;
+  wanted.conventions.drawn_velocity = DrawnVelocity::kDilated;
   EXPECT_TRUE(leaves_out(plan({.moving_objects = false}, wanted), "undilate_velocity"));
   wanted.method = Method::kBilinear;
   EXPECT_TRUE(leaves_out(plan({}, wanted), "undilate_velocity"));
@@ -171,7 +171,7 @@ TEST(ResolvePlan, SingleFrameMethodsKeepNoHistory) {
 TEST(ResolvePlan, ClearIsThereOnlyWhenWantedAndNeeded) {
   ResolveSettings wanted = settings(Method::kBilinear);
   EXPECT_FALSE(has_pass(plan({.background = false}, wanted), "clear_region"));
-  wanted.clear = true;
+  wanted.targets.clear = true;
   EXPECT_TRUE(has_pass(plan({.background = false}, wanted), "clear_region"));
   EXPECT_FALSE(has_pass(plan({.background = true}, wanted), "clear_region"));
 }
@@ -179,7 +179,7 @@ TEST(ResolvePlan, ClearIsThereOnlyWhenWantedAndNeeded) {
 TEST(ResolvePlan, PresentIsThereOnlyWhenWanted) {
   ResolveSettings wanted = settings(Method::kBilinear);
   EXPECT_TRUE(has_pass(plan({}, wanted), "present"));
-  wanted.present = false;
+  wanted.output.present = false;
   EXPECT_FALSE(has_pass(plan({}, wanted), "present"));
   EXPECT_FALSE(has_buffer(plan({}, wanted), "presented"));
 }
@@ -284,13 +284,14 @@ TEST(ResolvePlan, EveryBadFieldIsNamed) {
   bad.target_extent = {1280, -1};
   bad.colour = PixelFormat::kR8;
   bad.velocity = PixelFormat::kRGBA16F;
-  bad.linear = PixelFormat::kRGBA8;
+  bad.output.linear = PixelFormat::kRGBA8;
   bad.quincunx.velocity_weight = std::nanf("");
   const auto result = plan_for({}, bad);
   ASSERT_FALSE(result.ok());
   EXPECT_EQ(result.status().code(), StatusCode::kInvalidArgument);
-  for (const char* field : {"settings.output_extent", "settings.target_extent", "settings.colour",
-                            "settings.velocity", "settings.linear", "settings.quincunx.velocity_weight"}) {
+  for (const char* field :
+       {"settings.output_extent", "settings.target_extent", "settings.colour", "settings.velocity",
+        "settings.output.linear", "settings.quincunx.velocity_weight"}) {
     EXPECT_NE(result.status().message().find(field), std::string::npos) << field;
   }
 }
@@ -325,7 +326,7 @@ TEST(ResolvePlan, AnEditedPlanIsRefusedByName) {
 // all made.
 TEST(ResolvePlan, WhatIsKeptOverADynamicOutputIsResized) {
   ResolveSettings wanted = settings(Method::kTemporal);
-  wanted.min_output_extent = {640, 360};
+  wanted.output.min_extent = {640, 360};
   const std::vector<PassSpec> passes =
       list_passes(PlanFacts({.transparents = false, .background = false}, wanted)).passes;
   EXPECT_EQ(unresized(passes), std::nullopt);

@@ -65,7 +65,7 @@ class ServiceRig {
     settings.target_extent = target;
     if (settings.colour != PixelFormat::kRGBA8) settings.colour = PixelFormat::kRGBA32F;
     settings.velocity = PixelFormat::kRG32F;
-    settings.dither = false;
+    settings.output.dither = false;
     plan_ = plan_for(needs, settings).value();
     auto service = ResolveService::create(device_, plan_);
     EXPECT_TRUE(service.ok()) << service.status().message();
@@ -73,11 +73,11 @@ class ServiceRig {
     for (Slot& slot : slots_) {
       if (places()) break;
       for (const auto& [image, format] : planes_of(slot))
-        *image = device_.allocate(target, format, settings.storage).value();
+        *image = device_.allocate(target, format, settings.targets.storage).value();
     }
     if (places())
       memory_ = device_.allocate({static_cast<int>(2 * half_bytes()), 1}, PixelFormat::kR8).value();
-    resolved_ = device_.allocate(output, settings.linear).value();
+    resolved_ = device_.allocate(output, settings.output.linear).value();
     presented_ = device_.allocate(output, PixelFormat::kRGBA8, plan_.presented_storage()).value();
   }
 
@@ -149,7 +149,7 @@ class ServiceRig {
     Image colour, velocity, depth, reactive;
   };
 
-  bool places() const { return plan_.settings.targets == Targets::kPlaced; }
+  bool places() const { return plan_.settings.targets.placement == Targets::kPlaced; }
 
   std::array<std::pair<Image*, PixelFormat>, 4> planes_of(Slot& slot) const {
     return {{{&slot.colour, plan_.settings.colour},
@@ -167,7 +167,7 @@ class ServiceRig {
     std::size_t offset = count_ % 2 * half_bytes();
     for (const auto& [image, format] : planes_of(slot)) {
       offset = (offset + 15) / 16 * 16;
-      if (plan_.settings.storage == Storage::kImage) {
+      if (plan_.settings.targets.storage == Storage::kImage) {
         *image = device_.allocate(render, format, Storage::kImage).value();
       } else {
         *image = Image::borrow(

@@ -353,7 +353,7 @@ TEST(Service, ClearFillsTheRectangleOnly) {
   ResolveSettings settings;
   settings.output_extent = settings.target_extent = {16, 12};
   settings.colour = PixelFormat::kRGBA32F;
-  settings.clear = true;
+  settings.targets.clear = true;
   auto service = ResolveService::create(device, plan_for({.background = false}, settings).value());
   ASSERT_TRUE(service.ok()) << service.status().message();
   auto image = device.allocate({16, 12}, PixelFormat::kRGBA32F);

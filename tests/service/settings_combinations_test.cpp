@@ -55,13 +55,17 @@ template <typename T>
 Choice setting(const char* name, T ResolveSettings::*field, T value) {
   return {name, [=](Combination& made) { made.settings.*field = value; }};
 }
+template <typename Group, typename T>
+Choice setting(const char* name, Group ResolveSettings::*group, T Group::*field, T value) {
+  return {name, [=](Combination& made) { made.settings.*group.*field = value; }};
+}
 Choice view(const char* name, TemporalView view) {
   return {name, [=](Combination& made) { made.settings.temporal.view = view; }};
 }
 Choice targets(const char* name, Storage storage, Targets targets) {
   return {name, [=](Combination& made) {
-            made.settings.storage = storage;
-            made.settings.targets = targets;
+            made.settings.targets.storage = storage;
+            made.settings.targets.placement = targets;
           }};
 }
 
@@ -78,23 +82,28 @@ const std::vector<Axis>& axes_of_inputs() {
       {needs("anything", true, true, true), needs("opaque", true, true, false),
        needs("camera", false, true, true), needs("still camera", true, false, false),
        needs("still", false, false, true)},
-      {setting("full", &ResolveSettings::shading, Shading::kFull),
-       setting("checkerboard", &ResolveSettings::shading, Shading::kCheckerboard)},
-      {setting("together", &ResolveSettings::particle_target_extent, Extent{}),
-       setting("particles", &ResolveSettings::particle_target_extent, kParticleTarget)},
-      {setting("own", &ResolveSettings::drawn_velocity, DrawnVelocity::kOwn),
-       setting("dilated", &ResolveSettings::drawn_velocity, DrawnVelocity::kDilated)},
-      {setting("far as drawn", &ResolveSettings::sky_motion, SkyMotion::kAsDrawn),
-       setting("far camera", &ResolveSettings::sky_motion, SkyMotion::kCamera),
-       setting("far evidence", &ResolveSettings::sky_motion, SkyMotion::kEvidence)},
-      {setting("sharp", &ResolveSettings::blur, MotionBlurSettings{}),
-       setting("blurred", &ResolveSettings::blur, MotionBlurSettings{.shutter = .5f})},
-      {setting("uncounted", &ResolveSettings::measures_content, false),
-       setting("content", &ResolveSettings::measures_content, true)},
+      {setting("full", &ResolveSettings::targets, &TargetSettings::shading, Shading::kFull),
+       setting("checkerboard", &ResolveSettings::targets, &TargetSettings::shading, Shading::kCheckerboard)},
+      {setting("together", &ResolveSettings::targets, &TargetSettings::particle_extent, Extent{}),
+       setting("particles", &ResolveSettings::targets, &TargetSettings::particle_extent, kParticleTarget)},
+      // Before what are single fields of theirs.
       {setting("native", &ResolveSettings::conventions, InputConventions{}),
        setting("given", &ResolveSettings::conventions, kGiven)},
-      {setting("fixed", &ResolveSettings::min_output_extent, Extent{}),
-       setting("dual", &ResolveSettings::min_output_extent, Extent{8, 6})}};
+      {setting("own", &ResolveSettings::conventions, &InputConventions::drawn_velocity, DrawnVelocity::kOwn),
+       setting("dilated", &ResolveSettings::conventions, &InputConventions::drawn_velocity,
+               DrawnVelocity::kDilated)},
+      {setting("far as drawn", &ResolveSettings::conventions, &InputConventions::sky_motion,
+               SkyMotion::kAsDrawn),
+       setting("far camera", &ResolveSettings::conventions, &InputConventions::sky_motion,
+               SkyMotion::kCamera),
+       setting("far evidence", &ResolveSettings::conventions, &InputConventions::sky_motion,
+               SkyMotion::kEvidence)},
+      {setting("sharp", &ResolveSettings::blur, MotionBlurSettings{}),
+       setting("blurred", &ResolveSettings::blur, MotionBlurSettings{.shutter = .5f})},
+      {setting("uncounted", &ResolveSettings::control, &ControlSettings::measures_content, false),
+       setting("content", &ResolveSettings::control, &ControlSettings::measures_content, true)},
+      {setting("fixed", &ResolveSettings::output, &PictureSettings::min_extent, Extent{}),
+       setting("dual", &ResolveSettings::output, &PictureSettings::min_extent, Extent{8, 6})}};
   return axes;
 }
 
@@ -108,24 +117,25 @@ std::vector<Axis> axes_of_frames() {
   const auto focus = [](const char* name, FocusSettings settings) {
     return setting(name, &ResolveSettings::focus, settings);
   };
-  axes.insert(
-      axes.end(),
-      {{targets("buffers", Storage::kBuffer, Targets::kViewport),
-        targets("images", Storage::kImage, Targets::kViewport),
-        targets("placed buffers", Storage::kBuffer, Targets::kPlaced),
-        targets("placed images", Storage::kImage, Targets::kPlaced)},
-       {{"covered", [](Combination& made) { made.needs.background = true; }},
-        {"alpha", [](Combination& made) { made.needs.background = false; }},
-        {"cleared", [](Combination& made) { made.settings.clear = !(made.needs.background = false); }}},
-       {view("picture", TemporalView::kPicture), view("rejection", TemporalView::kRejection),
-        view("near", TemporalView::kNear)},
-       {focus("no focus", {}), focus("focus", {.extent = kRegion}),
-        focus("masked focus", {.extent = kRegion, .mask = true})},
-       {setting("as resolved", &ResolveSettings::sharpness, 0.f),
-        setting("sharpened", &ResolveSettings::sharpness, .5f)},
-       {setting("unfaded", &ResolveSettings::fades, false), setting("fades", &ResolveSettings::fades, true)},
-       {setting("presented", &ResolveSettings::present, true),
-        setting("linear", &ResolveSettings::present, false)}});
+  axes.insert(axes.end(),
+              {{targets("buffers", Storage::kBuffer, Targets::kViewport),
+                targets("images", Storage::kImage, Targets::kViewport),
+                targets("placed buffers", Storage::kBuffer, Targets::kPlaced),
+                targets("placed images", Storage::kImage, Targets::kPlaced)},
+               {{"covered", [](Combination& made) { made.needs.background = true; }},
+                {"alpha", [](Combination& made) { made.needs.background = false; }},
+                {"cleared",
+                 [](Combination& made) { made.settings.targets.clear = !(made.needs.background = false); }}},
+               {view("picture", TemporalView::kPicture), view("rejection", TemporalView::kRejection),
+                view("near", TemporalView::kNear)},
+               {focus("no focus", {}), focus("focus", {.extent = kRegion}),
+                focus("masked focus", {.extent = kRegion, .mask = true})},
+               {setting("as resolved", &ResolveSettings::sharpness, 0.f),
+                setting("sharpened", &ResolveSettings::sharpness, .5f)},
+               {setting("unfaded", &ResolveSettings::control, &ControlSettings::fades, false),
+                setting("fades", &ResolveSettings::control, &ControlSettings::fades, true)},
+               {setting("presented", &ResolveSettings::output, &PictureSettings::present, true),
+                setting("linear", &ResolveSettings::output, &PictureSettings::present, false)}});
   return axes;
 }
 
@@ -264,7 +274,7 @@ struct InputCase {
 };
 
 bool has_particles(const ResolvePlan& plan) {
-  return plan.settings.particle_target_extent != Extent{};
+  return plan.settings.targets.particle_extent != Extent{};
 }
 
 const InputCase kInputs[] = {
@@ -360,8 +370,8 @@ class Runner {
     for (std::size_t i = 0; i < std::size(renders); ++i) {
       FrameInputs inputs = frame_of(plan_, renders[i], i);
       if (plan_.is_dual()) inputs.output_extent = outputs_of_dual[i];
-      if (plan_.settings.fades) {
-        inputs.fading_from = image(kOutput, plan_.settings.linear, Storage::kBuffer);
+      if (plan_.settings.control.fades) {
+        inputs.fading_from = image(kOutput, plan_.settings.output.linear, Storage::kBuffer);
         inputs.fade_weight = .5f;
       }
       std::optional<FocusInputs> focus;
@@ -369,8 +379,8 @@ class Runner {
         focus = FocusInputs{.frame = frame_of(*region, {7, 5}, i), .x = 3, .y = 2};
         if (plan_.settings.focus.mask) focus->mask = image(kRegion, PixelFormat::kR8, Storage::kBuffer);
       }
-      const FrameOutputs outputs{image(kOutput, plan_.settings.linear, Storage::kBuffer),
-                                 plan_.settings.present
+      const FrameOutputs outputs{image(kOutput, plan_.settings.output.linear, Storage::kBuffer),
+                                 plan_.settings.output.present
                                      ? image(kOutput, PixelFormat::kRGBA8, plan_.presented_storage())
                                      : ImageView{}};
       if (i == 1) expect_dispatch_refuses(service, inputs, focus, region, outputs);
@@ -424,13 +434,15 @@ class Runner {
     inputs.parity = static_cast<int>(index % 2);
     if (has_particles(plan)) inputs.particle_render_extent = {5, 4};
     inputs.camera.clip_to_previous_clip[8] = .01f;
-    const bool placed = plan.settings.targets == Targets::kPlaced;
+    const bool placed = plan.settings.targets.placement == Targets::kPlaced;
     for (const InputCase& input : kInputs) {
       if (!input.needed(plan)) continue;
       const bool is_particles = input.viewport == &FrameInputs::particle_render_extent;
-      const Extent target = is_particles ? plan.settings.particle_target_extent : plan.settings.target_extent;
-      inputs.*input.image = image(placed ? inputs.*input.viewport : target, input.format(plan),
-                                  plan.settings.storage, input.image == &FrameInputs::velocity ? 0x18 : 0x30);
+      const Extent target =
+          is_particles ? plan.settings.targets.particle_extent : plan.settings.target_extent;
+      inputs.*input.image =
+          image(placed ? inputs.*input.viewport : target, input.format(plan), plan.settings.targets.storage,
+                input.image == &FrameInputs::velocity ? 0x18 : 0x30);
     }
     return inputs;
   }

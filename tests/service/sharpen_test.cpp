@@ -76,7 +76,7 @@ TEST(ServiceSharpen, EveryMethodsPictureWithinItsOwnRange) {
 }
 
 TEST(ServiceSharpen, ItRunsAfterTheResolveAndBeforeTheBlur) {
-  ServiceRig rig({}, {.method = Method::kTemporal, .blur = {.shutter = .5f}, .sharpness = .5f}, kOutput,
+  ServiceRig rig({}, {.method = Method::kTemporal, .sharpness = .5f, .blur = {.shutter = .5f}}, kOutput,
                  kOutput);
   const FrameReport report = rig.dispatch(rig.upload(frame_of(0)));
   ASSERT_TRUE(report.ok()) << report.status.message();
@@ -112,7 +112,7 @@ TEST(ServiceSharpen, WhatIsPresentedIsSharpened) {
 TEST(ServiceSharpen, ZeroAndViewsRunNothing) {
   ServiceRig off({}, {.method = Method::kTemporal}, kOutput, kOutput);
   ServiceRig view({},
-                  {.method = Method::kTemporal, .temporal = {.view = TemporalView::kPhase}, .sharpness = 1},
+                  {.method = Method::kTemporal, .sharpness = 1, .temporal = {.view = TemporalView::kPhase}},
                   kOutput, kOutput);
   for (ServiceRig* rig : {&off, &view}) {
     const std::vector<std::string> kernels = kernels_of(rig->dispatch(rig->upload(frame_of(0))));

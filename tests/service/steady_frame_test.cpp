@@ -145,7 +145,7 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
   constexpr int kFrames = 200;
   ServiceRig rig(needs, settings, {64, 48}, {96, 72});
   rig.service().allow_timing_waits(true);  // events are believed here, so that this changes nothing
-  const bool placed = settings.targets == Targets::kPlaced;
+  const bool placed = settings.targets.placement == Targets::kPlaced;
   const int slots = placed ? 2 : 3;
   // Two frames and more in each slot: every path (first frame, steady) has been taken once.
   std::vector<FrameInputs> frames;
@@ -164,7 +164,7 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
     FrameInputs inputs = frames[i % slots];
     inputs.render_extent = {1 + (i * 37) % 96, 1 + (i * 23) % 72};
     if (placed) place(inputs, inputs.render_extent);
-    if (settings.min_output_extent != Extent{})
+    if (settings.output.min_extent != Extent{})
       inputs.output_extent = {1 + (i / 2 * 29) % 64, 1 + (i / 2 * 17) % 48};
     inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
     inputs.reset = i % 50 == 49;
@@ -207,9 +207,9 @@ TEST(SteadyFrame, QuincunxWithCameraVelocity) {
 
 TEST(SteadyFrame, ReprojectedSharpenedWithMotionBlur) {
   run_steady_frames({}, {.method = Method::kQuincunx,
+                         .sharpness = .5f,
                          .quincunx = {.form = TwoFrameForm::kReprojected, .residual_weight = 1},
-                         .blur = {.shutter = .5f},
-                         .sharpness = .5f});
+                         .blur = {.shutter = .5f}});
 }
 TEST(SteadyFrame, TemporalWithVelocityTarget) {
   run_steady_frames({}, {.method = Method::kTemporal});
@@ -218,12 +218,13 @@ TEST(SteadyFrame, TemporalOfAStillScene) {
   run_steady_frames({.moving_objects = false, .camera_motion = false}, {.method = Method::kTemporal});
 }
 TEST(SteadyFrame, PlacedTargetsOfAnotherSizeEveryFrame) {
-  run_steady_frames({}, {.method = Method::kTemporal, .targets = Targets::kPlaced});
-  run_steady_frames({.moving_objects = false}, {.method = Method::kQuincunx, .targets = Targets::kPlaced});
+  run_steady_frames({}, {.method = Method::kTemporal, .targets = {.placement = Targets::kPlaced}});
+  run_steady_frames({.moving_objects = false},
+                    {.method = Method::kQuincunx, .targets = {.placement = Targets::kPlaced}});
 }
 TEST(SteadyFrame, AnOutputOfAnotherSizeEverySecondFrame) {
-  run_steady_frames({}, {.method = Method::kTemporal, .min_output_extent = {1, 1}});
-  run_steady_frames({}, {.method = Method::kCatmullRom, .min_output_extent = {1, 1}});
+  run_steady_frames({}, {.method = Method::kTemporal, .output = {.min_extent = {1, 1}}});
+  run_steady_frames({}, {.method = Method::kCatmullRom, .output = {.min_extent = {1, 1}}});
 }
 TEST(SteadyFrame, CatmullRomThatWidens) {
   run_steady_frames({}, {.method = Method::kCatmullRom});

@@ -293,7 +293,7 @@ double error_of(TemporalPreset preset, const std::function<void(HostFrame&)>& ap
   constexpr Extent kRender{80, 48};
   ResolveSettings settings{.method = Method::kTemporal};
   settings.temporal.preset = preset;
-  settings.drawn_velocity = drawn;
+  settings.conventions.drawn_velocity = drawn;
   TemporalRun run(testing::wires_before_a_wall(), settings);
   double sum = 0;
   for (int i = 0; i < 32; ++i) {

@@ -52,7 +52,7 @@ TEST_F(Validate, AGoodFramePasses) {
 TEST_F(Validate, ACheckerboardHasAShadedPixel) {
   inputs_.parity = 2;
   EXPECT_TRUE(check().ok()) << "all pixels are shaded";
-  settings_.shading = Shading::kCheckerboard;
+  settings_.targets.shading = Shading::kCheckerboard;
   EXPECT_NE(check().message().find("parity is 2; it must be 0 or 1"), std::string::npos) << check().message();
   inputs_.parity = 1;
   EXPECT_TRUE(check().ok()) << check().message();
@@ -77,11 +77,11 @@ TEST_F(Validate, WhatThePlanDoesNotReadMayBeMissing) {
 
 // The service makes each sample's own velocity from the caller's, which it needs all the same.
 TEST_F(Validate, DilatedVelocityIsNeededAsOwnVelocityIs) {
-  settings_.drawn_velocity = DrawnVelocity::kDilated;
+  settings_.conventions.drawn_velocity = DrawnVelocity::kDilated;
   for (const Method method : {Method::kQuincunx, Method::kTemporal}) {
     for (const SkyMotion far : {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence}) {
       settings_.method = method;
-      settings_.sky_motion = far;
+      settings_.conventions.sky_motion = far;
       inputs_.velocity = view(PixelFormat::kRG16F);
       EXPECT_TRUE(check().ok()) << check().message();
       inputs_.velocity.extent = {907, 512};
@@ -185,7 +185,7 @@ TEST_F(Validate, PlanesAreAskedForWhereDepthLiesBetweenThem) {
 }
 
 TEST_F(Validate, APresentedPictureNeedsAPresentPass) {
-  settings_.present = false;
+  settings_.output.present = false;
   EXPECT_NE(check().message().find("presented"), std::string::npos);
   outputs_.presented = {};
   EXPECT_TRUE(check().ok());

@@ -51,7 +51,7 @@ struct FrameInputs {
       {};  // RG16F or RG32F, as InputConventions says: this position - previous position, in uv
   ImageView reactive = {};    // R8, 0: trust history, 1: ignore it
   Extent render_extent = {};  // the viewport, within the images' (placed: just that); any size from 1x1
-  // The picture's size in this frame, from settings.min_output_extent to output_extent; {0, 0}: the latter. History of
+  // The picture's size in this frame, from settings.output.min_extent to output_extent; {0, 0}: the latter. History of
   // another size is resampled to it.
   Extent output_extent = {};
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
@@ -61,7 +61,7 @@ struct FrameInputs {
   float near_plane = 0;
   float far_plane = 0;
   CameraMotion camera = {};
-  // Where ResolveSettings::particle_target_extent says so, particles that were drawn apart, with the frame's camera and
+  // Where settings.targets.particle_extent says so, particles that were drawn apart, with the frame's camera and
   // jitter, over transparent black, hidden by `particle_depth`. They are laid over `colour` and `reactive`.
   ImageView particle_colour = {};      // as colour; alpha: coverage
   ImageView particle_depth = {};       // R32F: the frame's depth resampled, of a surface that the pixel shows
@@ -75,7 +75,7 @@ struct FrameInputs {
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
   int parity = 0;
   std::uint64_t frame_index = 0;  // the caller's number, echoed in the report
-  // Where ResolveSettings::fades, another picture of this frame, as another method's service made it: format and
+  // With settings.control.fades, another picture of this frame, as another method's service made it: format and
   // extent of FrameOutputs::linear, a buffer, other memory. The finished picture has `fade_weight` of its own, in
   // [0, 1], and the rest of this one.
   ImageView fading_from = {};
@@ -84,7 +84,7 @@ struct FrameInputs {
 
 // Where the finished picture goes, in settings.output_extent. At least one is needed.
 struct FrameOutputs {
-  ImageView linear = {};     // RGBA32F or RGBA16F, as settings.linear says: linear light, in a buffer
+  ImageView linear = {};     // RGBA32F or RGBA16F, as settings.output.linear says: linear light, in a buffer
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
 };
 
@@ -135,7 +135,7 @@ struct [[nodiscard]] FrameReport {
   bool focused = false;  // a focus was laid over the picture
   // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;
-  // With ResolveSettings::measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
+  // With settings.control.measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
   // known yet. Moving light has no velocity: it is seen by reactive values alone.
   std::optional<ContentStatistics> content = {};
 

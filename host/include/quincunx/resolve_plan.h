@@ -79,40 +79,68 @@ enum class Targets : std::uint8_t {
 
 QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 
-struct ResolveSettings {
-  Method method = Method::kTemporal;
-  Extent output_extent = {};  // the picture's size
-  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output_extent may have any size from this one to
-  // `output_extent`, in which its picture is then shown. {0, 0}: always `output_extent`.
-  Extent min_output_extent = {};
-  Extent target_extent = {};  // the inputs' allocated size: at least the largest viewport
+// A frame's images, and what is drawn into them.
+struct TargetSettings {
+  Storage storage = Storage::kBuffer;      // the inputs'; see ResolvePlan::presented_storage()
+  Targets placement = Targets::kViewport;  // the inputs' and the service's own images'
+  Shading shading = Shading::kFull;        // kCheckerboard: the other half is filled first
   // 0x0: the inputs' colour holds everything. Else particles are drawn apart, into a viewport of their own within
   // images of this size, at most the target's: see FrameInputs::particle_colour.
-  Extent particle_target_extent = {};
-  PixelFormat colour = PixelFormat::kRGBA16F;  // the input's: RGBA8, RGBA16F or RGBA32F
-  PixelFormat velocity = PixelFormat::kRG16F;  // the input's: RG16F or RG32F
-  PixelFormat linear = PixelFormat::kRGBA32F;  // the linear picture's: RGBA16F or RGBA32F
-  InputConventions conventions = {};           // what the inputs mean
-  Storage storage = Storage::kBuffer;          // the inputs'; see ResolvePlan::presented_storage()
-  Targets targets = Targets::kViewport;        // the inputs' and the service's own images'
-  Shading shading = Shading::kFull;            // kCheckerboard: the other half is filled first
+  Extent particle_extent = {};
+  bool clear = false;  // ResolveService::clear() will be called
+
+  friend bool operator==(const TargetSettings&, const TargetSettings&) = default;
+};
+
+// The finished picture, and the present pass, which makes 8 bits of it.
+struct PictureSettings {
+  // Where the output is dynamic, too ("dual"), a frame's FrameInputs::output_extent may have any size from this one to
+  // settings.output_extent, in which its picture is then shown. {0, 0}: always that.
+  Extent min_extent = {};
+  PixelFormat linear = PixelFormat::kRGBA32F;  // RGBA16F or RGBA32F
   bool present = true;                         // run the present pass
-  bool clear = false;                          // ResolveService::clear() will be called
   ToneMap tone_map = ToneMap::kAces;           // the present pass's; with RGBA8 colour the renderer's
   bool dither = true;                          // the present pass's: +- half a code value, fixed pattern
+
+  friend bool operator==(const PictureSettings&, const PictureSettings&) = default;
+};
+
+// The methods that see one frame alone.
+struct FilterSettings {
   // Filters that ring (SeparableFilter::rings) stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
   float grain = 0.25f;  // kNoise: amplitude of the grain as part of the colour, in [0, 1]; times 1 - scale
-  bool noise_moves = true;                             // kNoise, kNoiseOffset: another pattern every frame
-  DrawnVelocity drawn_velocity = DrawnVelocity::kOwn;  // where velocity is drawn
-  SkyMotion sky_motion = SkyMotion::kAsDrawn;          // the same
+  bool noise_moves = true;  // kNoise, kNoiseOffset: another pattern every frame
+
+  friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
+};
+
+// Services to a QualityController.
+struct ControlSettings {
+  bool measures_content = false;  // FrameReport::content is wanted
+  bool fades = false;             // FrameInputs::fading_from may be given
+
+  friend bool operator==(const ControlSettings&, const ControlSettings&) = default;
+};
+
+// The first seven say what most callers need; the groups have defaults for all others.
+struct ResolveSettings {
+  Method method = Method::kTemporal;
+  Extent output_extent = {};                   // the picture's size
+  Extent target_extent = {};                   // the inputs' allocated size: at least the largest viewport
+  PixelFormat colour = PixelFormat::kRGBA16F;  // the input's: RGBA8, RGBA16F or RGBA32F
+  PixelFormat velocity = PixelFormat::kRG16F;  // the input's: RG16F or RG32F
+  InputConventions conventions = {};           // what the inputs mean
+  float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
+
+  TargetSettings targets = {};
+  PictureSettings output = {};
+  FilterSettings filter = {};
   QuincunxSettings quincunx = {};
   TemporalSettings temporal = {};
   MotionBlurSettings blur = {};
-  float sharpness = 0;  // how far the resolved picture is sharpened, before motion blur, in [0, 1]
   FocusSettings focus = {};
-  bool measures_content = false;  // FrameReport::content is wanted
-  bool fades = false;             // FrameInputs::fading_from may be given
+  ControlSettings control = {};
 
   friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };
@@ -179,12 +207,12 @@ struct QUINCUNX_API ResolvePlan {
   bool accumulates() const;           // all frames since the last reset count
   bool blurs() const;                 // motion blur is wanted, and something moves
   bool has_focus() const;             // dispatch() takes FocusInputs
-  bool is_dual() const;               // the output is dynamic: settings.min_output_extent
-  bool undilates_velocity() const;    // settings.drawn_velocity counts: velocity is drawn and read
-  bool moves_sky() const;             // settings.sky_motion counts: velocity is drawn, and the camera moves
-  bool reads_camera() const;          // FrameInputs::camera is needed
-  // Returns the storage of FrameOutputs::presented: settings.storage, but a buffer where targets are placed, because an
-  // image of that size is not made again and so needs no such memory.
+  bool is_dual() const;               // the output is dynamic: settings.output.min_extent
+  bool undilates_velocity() const;    // conventions.drawn_velocity counts: velocity is drawn and read
+  bool moves_sky() const;     // conventions.sky_motion counts: velocity is drawn, and the camera moves
+  bool reads_camera() const;  // FrameInputs::camera is needed
+  // Returns the storage of FrameOutputs::presented: settings.targets.storage, but a buffer where targets are placed,
+  // because an image of that size is not made again and so needs no such memory.
   Storage presented_storage() const;
   // Returns the plan of the focus's region: the same settings for a picture of its extent, with all pixels shaded.
   // FocusInputs::frame is a frame of that plan. Nothing where there is no focus.

@@ -90,7 +90,7 @@ Status read_images(const ResolvePlan& plan,
     if (!reads(plan, slot)) continue;
     const bool is_buffer =
         slot.image == &FrameInputs::exposure_image || slot.image == &FrameInputs::fading_from;
-    const Storage storage = is_buffer ? Storage::kBuffer : plan.settings.storage;
+    const Storage storage = is_buffer ? Storage::kBuffer : plan.settings.targets.storage;
     if (Status status = read_into(slot.name, images[i], storage, to.*slot.image, host[i]); !status.ok())
       return status;
   }
@@ -309,11 +309,11 @@ Status HostStream::bring(FrameInputs& inputs, const HostInputs& host) {
     const InputSlot& slot = kInputSlots[i];
     ImageView& view = inputs.*slot.image;
     Image& image = images_[slot.kept ? turn_ : 0][i];
-    const Extent size = slot.size != nullptr ? settings_.*slot.size : Extent{1, 1};
+    const Extent size = slot.size != nullptr ? slot.size(settings_) : Extent{1, 1};
     const Extent used = slot.viewport != nullptr ? inputs.*slot.viewport : size;
     if (Status status = make(device_, image, size, view); !status.ok()) return status;
     view = image.view();
-    if (slot.viewport != nullptr && settings_.targets == Targets::kPlaced) {
+    if (slot.viewport != nullptr && settings_.targets.placement == Targets::kPlaced) {
       view.extent = used;
       view.pitch = 0;
     }

@@ -23,23 +23,32 @@ struct HostMemory {
 struct InputSlot {
   const char* name;
   ImageView FrameInputs::*image;
-  Extent FrameInputs::*viewport;  // null: the whole image
-  Extent ResolveSettings::*size;  // of what is allocated; null: 1x1
-  bool kept;                      // the next frame may read it
+  Extent FrameInputs::*viewport;                    // null: the whole image
+  Extent (*size)(const ResolveSettings& settings);  // of what is allocated; null: 1x1
+  bool kept;                                        // the next frame may read it
 };
+inline Extent target_extent_of(const ResolveSettings& settings) {
+  return settings.target_extent;
+}
+inline Extent particle_extent_of(const ResolveSettings& settings) {
+  return settings.targets.particle_extent;
+}
+inline Extent output_extent_of(const ResolveSettings& settings) {
+  return settings.output_extent;
+}
 constexpr std::array<InputSlot, 9> kInputSlots = {{
-    {"colour", &FrameInputs::colour, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
-    {"depth", &FrameInputs::depth, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
-    {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
-    {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent, &ResolveSettings::target_extent, true},
+    {"colour", &FrameInputs::colour, &FrameInputs::render_extent, target_extent_of, true},
+    {"depth", &FrameInputs::depth, &FrameInputs::render_extent, target_extent_of, true},
+    {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent, target_extent_of, true},
+    {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent, target_extent_of, true},
     {"particles.colour", &FrameInputs::particle_colour, &FrameInputs::particle_render_extent,
-     &ResolveSettings::particle_target_extent, false},
+     particle_extent_of, false},
     {"particles.depth", &FrameInputs::particle_depth, &FrameInputs::particle_render_extent,
-     &ResolveSettings::particle_target_extent, false},
+     particle_extent_of, false},
     {"particles.reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render_extent,
-     &ResolveSettings::particle_target_extent, false},
+     particle_extent_of, false},
     {"exposure_image", &FrameInputs::exposure_image, nullptr, nullptr, false},
-    {"fade.from", &FrameInputs::fading_from, nullptr, &ResolveSettings::output_extent, false},
+    {"fade.from", &FrameInputs::fading_from, nullptr, output_extent_of, false},
 }};
 constexpr std::array kOutputImages = {&FrameOutputs::linear, &FrameOutputs::presented};
 

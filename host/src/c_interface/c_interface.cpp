@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The functions of quincunx.h. Each checks its pointers, calls the library and lets no exception out.
+#include <fmt/format.h>
+
 #include <exception>
 #include <memory>
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "c_interface/c_frame.h"
@@ -63,10 +66,28 @@ quincunx_status report(quincunx_status code, const char* text) noexcept {
   return code;
 }
 
+// Names fields of the settings as C's struct does, which has no groups.
+std::string in_words_of_c(std::string sentence) {
+  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+      {"output.min_extent", "min_output_extent"},
+      {"output.linear", "linear"},
+      {"output.present", "present"},
+      {"targets.particle_extent", "particle_target_extent"},
+      {"targets.clear", "clear"},
+      {"filter.grain", "grain"},
+      {"control.fades", "fades"}};
+  for (const auto& [ours, theirs] : kNames) {
+    const std::string field = fmt::format("settings.{}", ours);
+    for (std::size_t at = 0; (at = sentence.find(field, at)) != std::string::npos;)
+      sentence.replace(at, field.size(), fmt::format("settings.{}", theirs));
+  }
+  return sentence;
+}
+
 }  // namespace
 
 quincunx_status report(const Status& status) {
-  if (!status.ok()) message = status.message();
+  if (!status.ok()) message = in_words_of_c(status.message());
   return code_of(status.code());
 }
 

@@ -34,17 +34,17 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.target_height = resolve.target_extent.height;
   to.colour_format = static_cast<int>(resolve.colour);
   to.velocity_format = static_cast<int>(resolve.velocity);
-  to.linear_format = static_cast<int>(resolve.linear);
-  to.storage = static_cast<int>(resolve.storage);
-  to.targets = static_cast<int>(resolve.targets);
-  to.shading = static_cast<int>(resolve.shading);
-  to.present = resolve.present;
-  to.clear = resolve.clear;
-  to.tone_map = static_cast<int>(resolve.tone_map);
-  to.dither = resolve.dither;
-  to.clamp_ringing = resolve.clamp_ringing;
-  to.noise_moves = resolve.noise_moves;
-  to.drawn_velocity = static_cast<int>(resolve.drawn_velocity);
+  to.linear_format = static_cast<int>(resolve.output.linear);
+  to.storage = static_cast<int>(resolve.targets.storage);
+  to.targets = static_cast<int>(resolve.targets.placement);
+  to.shading = static_cast<int>(resolve.targets.shading);
+  to.present = resolve.output.present;
+  to.clear = resolve.targets.clear;
+  to.tone_map = static_cast<int>(resolve.output.tone_map);
+  to.dither = resolve.output.dither;
+  to.clamp_ringing = resolve.filter.clamp_ringing;
+  to.noise_moves = resolve.filter.noise_moves;
+  to.drawn_velocity = static_cast<int>(resolve.conventions.drawn_velocity);
   const InputConventions& given = resolve.conventions;
   to.depth_convention = static_cast<int>(given.depth);
   to.clip_space = static_cast<int>(given.clip_space);
@@ -53,7 +53,7 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.velocity_up = given.velocity_up;
   to.velocity_jittered = given.velocity_jittered;
   to.origin = static_cast<int>(given.origin);
-  to.sky_motion = static_cast<int>(resolve.sky_motion);
+  to.sky_motion = static_cast<int>(resolve.conventions.sky_motion);
   to.two_frame_form = static_cast<int>(resolve.quincunx.form);
   to.sampling = static_cast<int>(resolve.quincunx.sampling);
   to.temporal_preset = static_cast<int>(resolve.temporal.preset);
@@ -62,20 +62,20 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.blur_samples = resolve.blur.samples;
   to.shutter = resolve.blur.shutter;
   to.sharpness = resolve.sharpness;
-  to.grain = resolve.grain;
+  to.grain = resolve.filter.grain;
   to.velocity_weight = resolve.quincunx.velocity_weight;
   to.residual_weight = resolve.quincunx.residual_weight;
-  to.min_output_width = resolve.min_output_extent.width;
-  to.min_output_height = resolve.min_output_extent.height;
-  to.particle_target_width = resolve.particle_target_extent.width;
-  to.particle_target_height = resolve.particle_target_extent.height;
+  to.min_output_width = resolve.output.min_extent.width;
+  to.min_output_height = resolve.output.min_extent.height;
+  to.particle_target_width = resolve.targets.particle_extent.width;
+  to.particle_target_height = resolve.targets.particle_extent.height;
   to.focus_width = resolve.focus.extent.width;
   to.focus_height = resolve.focus.extent.height;
   to.focus_target_width = resolve.focus.target_extent.width;
   to.focus_target_height = resolve.focus.target_extent.height;
   to.focus_mask = resolve.focus.mask;
-  to.measures_content = resolve.measures_content;
-  to.fades = resolve.fades;
+  to.measures_content = resolve.control.measures_content;
+  to.fades = resolve.control.fades;
   return to;
 }
 
@@ -94,17 +94,18 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
   resolve.target_extent = {from.target_width, from.target_height};
   read_format(read, "colour_format", from.colour_format, resolve.colour);
   read_format(read, "velocity_format", from.velocity_format, resolve.velocity);
-  read_format(read, "linear_format", from.linear_format, resolve.linear);
-  read.value("storage", from.storage, Storage::kImage, resolve.storage);
-  read.value("targets", from.targets, Targets::kPlaced, resolve.targets);
-  read.value("shading", from.shading, Shading::kCheckerboard, resolve.shading);
-  resolve.present = from.present != 0;
-  resolve.clear = from.clear != 0;
-  read.value("tone_map", from.tone_map, ToneMap::kAces, resolve.tone_map);
-  resolve.dither = from.dither != 0;
-  resolve.clamp_ringing = from.clamp_ringing != 0;
-  resolve.noise_moves = from.noise_moves != 0;
-  read.value("drawn_velocity", from.drawn_velocity, DrawnVelocity::kDilated, resolve.drawn_velocity);
+  read_format(read, "linear_format", from.linear_format, resolve.output.linear);
+  read.value("storage", from.storage, Storage::kImage, resolve.targets.storage);
+  read.value("targets", from.targets, Targets::kPlaced, resolve.targets.placement);
+  read.value("shading", from.shading, Shading::kCheckerboard, resolve.targets.shading);
+  resolve.output.present = from.present != 0;
+  resolve.targets.clear = from.clear != 0;
+  read.value("tone_map", from.tone_map, ToneMap::kAces, resolve.output.tone_map);
+  resolve.output.dither = from.dither != 0;
+  resolve.filter.clamp_ringing = from.clamp_ringing != 0;
+  resolve.filter.noise_moves = from.noise_moves != 0;
+  read.value("drawn_velocity", from.drawn_velocity, DrawnVelocity::kDilated,
+             resolve.conventions.drawn_velocity);
   InputConventions& given = resolve.conventions;
   read.value("depth_convention", from.depth_convention, DepthConvention::kLinear, given.depth);
   read.value("clip_space", from.clip_space, ClipSpace::kVulkan, given.clip_space);
@@ -113,7 +114,7 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
   given.velocity_up = from.velocity_up != 0;
   given.velocity_jittered = from.velocity_jittered != 0;
   read.value("origin", from.origin, Origin::kBottom, given.origin);
-  read.value("sky_motion", from.sky_motion, SkyMotion::kEvidence, resolve.sky_motion);
+  read.value("sky_motion", from.sky_motion, SkyMotion::kEvidence, resolve.conventions.sky_motion);
   read.value("two_frame_form", from.two_frame_form, TwoFrameForm::kReprojected, resolve.quincunx.form);
   read.value("sampling", from.sampling, Sampling::kBilinear, resolve.quincunx.sampling);
   read.value("temporal_preset", from.temporal_preset, TemporalPreset::kQuality, resolve.temporal.preset);
@@ -121,16 +122,16 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
   read_format(read, "history_format", from.history_format, resolve.temporal.history);
   resolve.blur = {.shutter = from.shutter, .samples = from.blur_samples};
   resolve.sharpness = from.sharpness;
-  resolve.grain = from.grain;
+  resolve.filter.grain = from.grain;
   resolve.quincunx.velocity_weight = from.velocity_weight;
   resolve.quincunx.residual_weight = from.residual_weight;
-  resolve.min_output_extent = {from.min_output_width, from.min_output_height};
-  resolve.particle_target_extent = {from.particle_target_width, from.particle_target_height};
+  resolve.output.min_extent = {from.min_output_width, from.min_output_height};
+  resolve.targets.particle_extent = {from.particle_target_width, from.particle_target_height};
   resolve.focus = {.extent = {from.focus_width, from.focus_height},
                    .target_extent = {from.focus_target_width, from.focus_target_height},
                    .mask = from.focus_mask != 0};
-  resolve.measures_content = from.measures_content != 0;
-  resolve.fades = from.fades != 0;
+  resolve.control.measures_content = from.measures_content != 0;
+  resolve.control.fades = from.fades != 0;
   if (!read.status().ok()) return read.status();
   return to;
 }

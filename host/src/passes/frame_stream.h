@@ -56,7 +56,7 @@ class FocusStream {
   // `plan` is a plan's focus_plan().
   FocusStream(const Device& device, const ResolvePlan& plan)
       : frames_(device, plan),
-        picture_(allocate_image(device, plan.settings.output_extent, plan.settings.linear)) {}
+        picture_(allocate_image(device, plan.settings.output_extent, plan.settings.output.linear)) {}
 
   const ResolvePlan& plan() const { return frames_.plan(); }
   PassChain& chain() { return frames_.chain(); }

@@ -133,18 +133,19 @@ const char* storage_option(Storage storage) {
 
 std::string colour_options(const ResolveSettings& settings) {
   const bool encoded = settings.colour == PixelFormat::kRGBA8;
-  if (settings.storage == Storage::kImage)
+  if (settings.targets.storage == Storage::kImage)
     return encoded ? "-D SOURCE_STORAGE=IMAGE -D SOURCE_FORMAT=SRGB8" : "-D SOURCE_STORAGE=IMAGE";
   return fmt::format("-D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={}",
                      encoded ? "SRGB8" : precision_of(settings.colour));
 }
 
 std::string scale_options(const ResolveSettings& settings) {
-  return fmt::format("{} -D OUTPUT_FORMAT={}", colour_options(settings), precision_of(settings.linear));
+  return fmt::format("{} -D OUTPUT_FORMAT={}", colour_options(settings),
+                     precision_of(settings.output.linear));
 }
 
 std::string velocity_options(const ResolveSettings& settings) {
-  if (settings.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
+  if (settings.targets.storage == Storage::kImage) return "-D SOURCE_STORAGE=IMAGE";
   return fmt::format("-D SOURCE_STORAGE=BUFFER -D VELOCITY_FORMAT={}", precision_of(settings.velocity));
 }
 

@@ -83,7 +83,7 @@ Image allocate_image(const Device& device, Extent extent, PixelFormat format, St
 PassChain::PassChain(const Device& device, const PlanFacts& facts)
     : device_(device),
       facts_(facts),
-      tables_(*device_.impl(), {facts_.settings.target_extent, facts_.settings.min_output_extent,
+      tables_(*device_.impl(), {facts_.settings.target_extent, facts_.settings.output.min_extent,
                                 facts_.settings.output_extent}) {
   const PassList list = list_passes(facts_);
   resources_ = resources_of(list.passes);

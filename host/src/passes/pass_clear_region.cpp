@@ -122,17 +122,18 @@ void plan_clear_region(const PlanFacts& facts, PassList& list) {
     list.left_out.push_back({"clear_region", "the background covers every pixel of the viewport"});
     return;
   }
-  if (!settings.clear) {
+  if (!settings.targets.clear) {
     list.left_out.push_back({"clear_region", "the renderer clears its own targets"});
     return;
   }
   std::vector<PixelFormat> planned;
   const auto add = [&](Resource resource, PixelFormat format) {
     for (const PixelFormat other : planned) {
-      if (settings.storage == Storage::kImage || bytes_per_pixel(other) == bytes_per_pixel(format)) return;
+      if (settings.targets.storage == Storage::kImage || bytes_per_pixel(other) == bytes_per_pixel(format))
+        return;
     }
     planned.push_back(format);
-    list.passes.push_back(clear_region_spec(settings.storage, resource, format));
+    list.passes.push_back(clear_region_spec(settings.targets.storage, resource, format));
   };
   add(Resource::kColour, settings.colour);
   if (facts.velocity == VelocitySource::kTarget) add(Resource::kVelocity, settings.velocity);

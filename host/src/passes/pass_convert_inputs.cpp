@@ -49,7 +49,8 @@ class ConvertInputsPass : public Pass {
 
 PassSpec conversion(Conversion kind, const InputImage& input, const Use& made, const PlanFacts& facts) {
   const char* depth = name_of(facts.settings.conventions.depth);
-  const std::string storage = fmt::format("-D SOURCE_STORAGE={}", storage_option(facts.settings.storage));
+  const std::string storage =
+      fmt::format("-D SOURCE_STORAGE={}", storage_option(facts.settings.targets.storage));
   PassSpec spec{.kernel = "convert_inputs",
                 .options = "-D INPUT=ROWS " + storage,
                 .reason = fmt::format("{} is an image that begins with the lowest row", input.field),

@@ -43,10 +43,11 @@ void plan_sharpen(const PlanFacts& facts, PassList& list) {
   }
   list.passes.push_back(
       {.kernel = "sharpen",
-       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.linear)),
+       .options =
+           fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.output.linear)),
        .reason = "sharpness is wanted: contrast between neighbours, within their range",
-       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.linear},
-                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.linear}},
+       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.output.linear},
+                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<SharpenPass>});
 }
 
@@ -142,10 +143,10 @@ void plan_lay_focus(const PlanFacts& facts, PassList& list) {
   }
   PassSpec spec{.kernel = "lay_focus",
                 .options = fmt::format("-D MASK={0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}",
-                                       settings.focus.mask ? 1 : 0, precision_of(settings.linear)),
+                                       settings.focus.mask ? 1 : 0, precision_of(settings.output.linear)),
                 .reason = "a part is in focus: its own picture is laid over",
-                .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.linear},
-                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.linear}},
+                .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.output.linear},
+                         {shown_of(facts), Access::kUpdate, Area::kFocus, settings.output.linear}},
                 .make = make_pass<LayFocusPass>,
                 .frames = Frames::kWithFocus};
   if (settings.focus.mask)
@@ -179,13 +180,14 @@ class CrossFadePass : public Pass {
 
 void plan_cross_fade(const PlanFacts& facts, PassList& list) {
   const ResolveSettings& settings = facts.settings;
-  if (!settings.fades) return;
+  if (!settings.control.fades) return;
   list.passes.push_back(
       {.kernel = "cross_fade",
-       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.linear)),
+       .options =
+           fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.output.linear)),
        .reason = "a change of method is faded: the picture of the other one is mixed in",
-       .uses = {{Resource::kFadingFrom, Access::kRead, Area::kDisplay, settings.linear},
-                {shown_of(facts), Access::kUpdate, Area::kDisplay, settings.linear}},
+       .uses = {{Resource::kFadingFrom, Access::kRead, Area::kDisplay, settings.output.linear},
+                {shown_of(facts), Access::kUpdate, Area::kDisplay, settings.output.linear}},
        .make = make_pass<CrossFadePass>,
        .frames = Frames::kFading});
 }
@@ -252,7 +254,7 @@ const char* curve(ToneMap tone_map) {
 
 void plan_present(const PlanFacts& facts, PassList& list) {
   const ResolveSettings& settings = facts.settings;
-  if (!settings.present) {
+  if (!settings.output.present) {
     list.left_out.push_back({"present", "no 8-bit picture is wanted"});
     return;
   }
@@ -262,10 +264,11 @@ void plan_present(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(
       {.kernel = "present",
        .options = fmt::format("-D TONE_MAP={} -D DITHER={} -D SOURCE_FORMAT={} -D OUTPUT_STORAGE={}",
-                              curve(tone_maps ? settings.tone_map : ToneMap::kClamp), settings.dither ? 1 : 0,
-                              precision_of(settings.linear), storage_option(facts.presented_storage())),
+                              curve(tone_maps ? settings.output.tone_map : ToneMap::kClamp),
+                              settings.output.dither ? 1 : 0, precision_of(settings.output.linear),
+                              storage_option(facts.presented_storage())),
        .reason = "an 8-bit sRGB picture is wanted",
-       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.linear},
+       .uses = {{shown_of(facts), Access::kRead, Area::kDisplay, settings.output.linear},
                 {Resource::kPresented, Access::kWrite, Area::kDisplay, PixelFormat::kRGBA8}},
        .make = make_pass<PresentPass>});
 }

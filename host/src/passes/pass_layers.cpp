@@ -277,7 +277,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
                 {Resource::kHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kNearHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});
 }

@@ -131,13 +131,13 @@ void plan_motion_blur(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(
       {.kernel = "motion_blur",
        .options = fmt::format("{0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}", velocity_options(settings),
-                              precision_of(settings.linear)),
+                              precision_of(settings.output.linear)),
        .reason = "motion blur: the mean over the shutter's time",
-       .uses = {{Resource::kResolved, Access::kRead, Area::kOutput, settings.linear},
+       .uses = {{Resource::kResolved, Access::kRead, Area::kOutput, settings.output.linear},
                 {Resource::kVelocity, Access::kRead, Area::kViewport, settings.velocity},
                 {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
                 {Resource::kTileBlurs, Access::kRead, Area::kBlurTiles, {}, sizeof(TileBlur)},
-                {Resource::kBlurred, Access::kWrite, Area::kOutput, settings.linear}},
+                {Resource::kBlurred, Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<MotionBlurPass>});
 }
 

@@ -185,7 +185,7 @@ void plan_resize_layers(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(
       {.kernel = "resize_layers",
        .options = fmt::format("-D SOURCE_STORAGE={} -D HISTORY_FORMAT={}",
-                              storage_option(facts.settings.storage), precision_of(history)),
+                              storage_option(facts.settings.targets.storage), precision_of(history)),
        .reason = "where the output's size changes: the second layer in the new one",
        .uses = {{Resource::kPreviousDepth, Access::kRead, Area::kPreviousViewport, PixelFormat::kR32F},
                 tiles(Resource::kPreviousTileReprojection, Area::kPreviousTiles, sizeof(TileReprojection)),

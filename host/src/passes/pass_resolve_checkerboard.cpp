@@ -73,7 +73,7 @@ std::string options_for(const PlanFacts& facts) {
   std::string options = fmt::format("-D MOTION={} -D VELOCITY={} -D REACTIVE={} {}",
                                     motion_option(facts.velocity), target && facts.reads_velocity() ? 1 : 0,
                                     facts.needs.transparents ? 1 : 0, colour_options(settings));
-  if (target && settings.storage == Storage::kBuffer)
+  if (target && settings.targets.storage == Storage::kBuffer)
     options += fmt::format(" -D VELOCITY_FORMAT={}", precision_of(settings.velocity));
   return options;
 }

@@ -62,12 +62,12 @@ class ResolveQuincunxPass : public Pass {
 std::string options_of(const PlanFacts& facts) {
   const ResolveSettings& settings = facts.settings;
   std::string format;
-  if (facts.weighs_velocity() && settings.storage == Storage::kBuffer)
+  if (facts.weighs_velocity() && settings.targets.storage == Storage::kBuffer)
     format = fmt::format(" -D VELOCITY_FORMAT={}", precision_of(settings.velocity));
   return fmt::format("-D SAMPLING={} -D WEIGHT={} -D REACTIVE={} {}{} -D OUTPUT_FORMAT={}",
                      settings.quincunx.sampling == Sampling::kPoint ? "POINT" : "BILINEAR",
                      facts.weighs_velocity() ? 1 : 0, facts.reads_reactive() ? 1 : 0,
-                     colour_options(settings), format, precision_of(settings.linear));
+                     colour_options(settings), format, precision_of(settings.output.linear));
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ void plan_resolve_quincunx(const PlanFacts& facts, PassList& list) {
                 .reason = "the method: this frame and the previous one",
                 .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                          {Resource::kPreviousColour, Access::kRead, Area::kPreviousViewport, settings.colour},
-                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
                 .make = make_pass<ResolveQuincunxPass>,
                 .frames = Frames::kWithHistory};
   if (facts.weighs_velocity()) read_both_frames(spec.uses, Resource::kVelocity, settings.velocity);

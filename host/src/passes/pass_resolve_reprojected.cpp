@@ -70,7 +70,7 @@ void plan_resolve_reprojected(const PlanFacts& facts, PassList& list) {
                 .reason = "the method: this frame and the previous one where it moved to",
                 .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
                          {Resource::kPreviousColour, Access::kRead, Area::kPreviousViewport, settings.colour},
-                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                         {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
                 .make = make_pass<ResolveReprojectedPass>,
                 .frames = Frames::kWithHistory};
   if (facts.reprojects())

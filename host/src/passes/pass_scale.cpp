@@ -94,8 +94,8 @@ class ScalePass : public Pass {
                              .columns_per_item = columns_per_item(shape(), extent.width)};
     const cl::Buffer& taps = frame.tables.axis().get(frame.queue, frame.key());
     if (is_noise(settings().method)) {
-      const auto seed = static_cast<unsigned>(settings().noise_moves ? frame.current.frame_index : 0);
-      const NoiseParams noise{params, seed, grain_amplitude(settings().grain, render, extent),
+      const auto seed = static_cast<unsigned>(settings().filter.noise_moves ? frame.current.frame_index : 0);
+      const NoiseParams noise{params, seed, grain_amplitude(settings().filter.grain, render, extent),
                               random_reach(render.width, extent.width),
                               random_reach(render.height, extent.height)};
       bind(noise, taps, colour, output, frame.counter);
@@ -143,7 +143,7 @@ void plan_scale(const PlanFacts& facts, PassList& list) {
        .options = scale_options(settings),
        .reason = choice.reason,
        .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<ScalePass>,
        .frames = choice.frames,
        // Bilinear widens above scale 1, which is scale_filter's work.
@@ -184,14 +184,14 @@ void plan_scale_filter(const PlanFacts& facts, PassList& list) {
   const ResolveSettings& settings = facts.settings;
   const Filter* own = own_filter(settings.method);
   if (skips_samples(settings.method)) return;
-  const bool clamps = own != nullptr && own->rings && settings.clamp_ringing;
+  const bool clamps = own != nullptr && own->rings && settings.filter.clamp_ringing;
   const auto add = [&](int taps, const std::string& reason, Viewports viewports) {
     list.passes.push_back(
         {.kernel = "scale_filter",
          .options = fmt::format("-D TAPS={} -D CLAMP={} {}", taps, clamps ? 1 : 0, scale_options(settings)),
          .reason = reason,
          .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                  {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                  {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
          .make = make_pass<ScaleFilterPass>,
          .frames = facts.accumulates()           ? Frames::kDense
                    : facts.resolves_two_frames() ? Frames::kWithoutHistory
@@ -248,10 +248,10 @@ void plan_scale_to_display(const PlanFacts& facts, PassList& list) {
       {.kernel = "scale_filter",
        .options = fmt::format(
            "-D TAPS=4 -D CLAMP=1 -D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}",
-           precision_of(settings.linear)),
+           precision_of(settings.output.linear)),
        .reason = "the output is dynamic: its picture in the size in which it is shown",
-       .uses = {{finished_of(facts), Access::kRead, Area::kOutput, settings.linear},
-                {Resource::kDisplayed, Access::kWrite, Area::kDisplay, settings.linear}},
+       .uses = {{finished_of(facts), Access::kRead, Area::kOutput, settings.output.linear},
+                {Resource::kDisplayed, Access::kWrite, Area::kDisplay, settings.output.linear}},
        .make = make_pass<ScaleToDisplayPass>,
        .frames = Frames::kScaledOutput});
 }

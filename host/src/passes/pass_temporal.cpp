@@ -198,7 +198,8 @@ int taps_of(const PlanFacts& facts) {
 std::string options_of(const PlanFacts& facts, bool reactive) {
   const ResolveSettings& settings = facts.settings;
   std::string format;
-  if (!facts.displays_history()) format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.linear));
+  if (!facts.displays_history())
+    format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.output.linear));
   return fmt::format(
       "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
       "-D HISTORY_FORMAT={}{}",
@@ -238,7 +239,7 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
   }
   if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
   if (!facts.displays_history())
-    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.linear});
+    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.output.linear});
   list.passes.push_back(std::move(spec));
 }
 
@@ -268,12 +269,12 @@ void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   PassSpec spec{
       .kernel = "temporal_display",
       .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0, precision_of(settings.linear),
-                             precision_of(settings.temporal.history)),
+                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0,
+                             precision_of(settings.output.linear), precision_of(settings.temporal.history)),
       .reason = "the method: the history's picture",
       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
       .make = make_pass<TemporalDisplayPass>,
       .frames = Frames::kSparse};
   if (alpha)
@@ -312,11 +313,11 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(
       {.kernel = "temporal_refine",
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
-                              precision_of(settings.linear), precision_of(settings.temporal.history)),
+                              precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the preset: sharpened, and smoothed along edges where little is known",
-       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.linear},
+       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.output.linear},
                 {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.linear}},
+                {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});
 }

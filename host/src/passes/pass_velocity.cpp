@@ -80,7 +80,7 @@ class UndilateVelocityPass : public Pass {
 }  // namespace
 
 void plan_undilate_velocity(const PlanFacts& facts, PassList& list) {
-  if (facts.settings.drawn_velocity == DrawnVelocity::kOwn) return;
+  if (facts.settings.conventions.drawn_velocity == DrawnVelocity::kOwn) return;
   if (!facts.undilates_velocity()) {
     list.left_out.push_back({"undilate_velocity", facts.reads_velocity()
                                                       ? "velocity comes from depth and the camera everywhere"
@@ -212,7 +212,7 @@ void plan_far_motion(const PlanFacts& facts, PassList& list) {
                           {Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
                           {Resource::kFarMatch, Access::kAccumulate, Area::kWhole, {}, sizeof(FarMatch)}},
                  .make = make_pass<FarMatchPass>};
-  if (settings.storage == Storage::kBuffer)
+  if (settings.targets.storage == Storage::kBuffer)
     match.options += std::string(" -D VELOCITY_FORMAT=") + precision_of(settings.velocity);
   read_both_frames(match.uses, Resource::kDepth, PixelFormat::kR32F);
   read_both_frames(match.uses, Resource::kColour, settings.colour);
@@ -252,7 +252,7 @@ class FarVelocityPass : public Pass {
 }  // namespace
 
 void plan_far_velocity(const PlanFacts& facts, PassList& list) {
-  if (facts.settings.sky_motion == SkyMotion::kAsDrawn) return;
+  if (facts.settings.conventions.sky_motion == SkyMotion::kAsDrawn) return;
   if (!facts.moves_sky()) {
     const char* reason =
         !facts.reads_velocity()                     ? "no pass reads velocity"

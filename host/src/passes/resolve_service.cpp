@@ -132,7 +132,7 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
   }
   picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.passes.size());
   // Where nothing moves there are no sums, and nothing is what there is to tell.
-  slot.measures_content = settings.measures_content;
+  slot.measures_content = settings.control.measures_content;
   if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
     queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.content),
                             &slot.content);
@@ -202,7 +202,7 @@ ResolveService::~ResolveService() {
 }
 
 Result<ResolveService> ResolveService::create(const Device& device, const ResolvePlan& plan) {
-  if (plan.settings.storage == Storage::kImage && !device.info().images) {
+  if (plan.settings.targets.storage == Storage::kImage && !device.info().images) {
     return Status::unsupported(
         fmt::format("'{}' has no images; plan with buffer storage", device.info().name));
   }
@@ -244,7 +244,7 @@ void ResolveService::allow_timing_waits(bool allow) {
 
 Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {
   if (!image) return Status::invalid("the image to clear is empty; it needs an allocation");
-  if (image.storage != plan().settings.storage) {
+  if (image.storage != plan().settings.targets.storage) {
     return Status::invalid("the image to clear has another storage than the plan; they must agree");
   }
   if (render.width < 1 || render.height < 1 || render.width > image.extent.width ||
@@ -256,7 +256,7 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
   ClearRegionPass* pass = impl_->clear_pass(image);
   if (pass == nullptr) {
     return Status::invalid(
-        fmt::format("a clear of {} is not in the plan; set settings.clear for a scene without a "
+        fmt::format("a clear of {} is not in the plan; set settings.targets.clear for a scene without a "
                     "covering background",
                     name_of(image.format)));
   }

@@ -115,7 +115,7 @@ Conversion conversion_of(const InputImage& input, const ResolveSettings& setting
   const bool is_depth = &input == &kDepthInput || &input == &kParticleDepthInput;
   if (is_depth && given.depth != DepthConvention::kReversedInfinite) return Conversion::kDepth;
   if (&input == &kVelocityInput && given.velocity_jittered) return Conversion::kVelocity;
-  const bool turns = given.origin == Origin::kBottom && settings.storage == Storage::kImage;
+  const bool turns = given.origin == Origin::kBottom && settings.targets.storage == Storage::kImage;
   return turns ? Conversion::kRows : Conversion::kNone;
 }
 

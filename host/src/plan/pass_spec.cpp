@@ -27,9 +27,13 @@ void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat for
 
 FrameExtents largest_extents(const ResolveSettings& settings) {
   const Extent output = settings.output_extent;
-  return {
-      settings.target_extent, settings.target_extent, output, settings.particle_target_extent, output, output,
-      settings.focus.extent};
+  return {settings.target_extent,
+          settings.target_extent,
+          output,
+          settings.targets.particle_extent,
+          output,
+          output,
+          settings.focus.extent};
 }
 
 Extent extent_of(Area area, const FrameExtents& extents) {

@@ -10,8 +10,9 @@ bool method_reads_velocity(const ResolveSettings& settings) {
 }
 
 VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
-  const bool fills = settings.shading == Shading::kCheckerboard;
-  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills && !settings.measures_content)
+  const bool fills = settings.targets.shading == Shading::kCheckerboard;
+  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills &&
+      !settings.control.measures_content)
     return VelocitySource::kNone;
   if (needs.moving_objects) return VelocitySource::kTarget;
   return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
@@ -21,20 +22,20 @@ VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& s
 
 PlanFacts::PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings)
     : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {
-  if (settings.min_output_extent == Extent{}) settings.min_output_extent = settings.output_extent;
+  if (settings.output.min_extent == Extent{}) settings.output.min_extent = settings.output_extent;
 }
 
 bool PlanFacts::may_widen() const {
-  return widens(settings.target_extent, settings.min_output_extent);
+  return widens(settings.target_extent, settings.output.min_extent);
 }
 
 bool PlanFacts::may_be_dense() const {
-  return is_dense(settings.target_extent, settings.min_output_extent);
+  return is_dense(settings.target_extent, settings.output.min_extent);
 }
 
 bool PlanFacts::reads_velocity() const {
   return has_velocity() &&
-         (method_reads_velocity(settings) || settings.blur.shutter > 0 || settings.measures_content);
+         (method_reads_velocity(settings) || settings.blur.shutter > 0 || settings.control.measures_content);
 }
 
 bool is_dense(Extent render, Extent output) {

@@ -18,8 +18,8 @@ struct PlanFacts {
   // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.
   bool is_display_referred() const { return settings.colour == PixelFormat::kRGBA8; }
   bool reads_velocity() const;  // some pass after those that complete the frame
-  bool overlays_particles() const { return settings.particle_target_extent != Extent(); }
-  bool fills() const { return settings.shading == Shading::kCheckerboard; }
+  bool overlays_particles() const { return settings.targets.particle_extent != Extent(); }
+  bool fills() const { return settings.targets.shading == Shading::kCheckerboard; }
   bool accumulates() const { return settings.method == Method::kTemporal; }
   bool resolves_two_frames() const { return settings.method == Method::kQuincunx; }
   bool keeps_previous_frame() const { return uses_earlier_frames(settings.method); }
@@ -32,17 +32,17 @@ struct PlanFacts {
     return reprojects() && !accumulates() && settings.quincunx.residual_weight > 0;
   }
   bool undilates_velocity() const {
-    return settings.drawn_velocity == DrawnVelocity::kDilated && velocity == VelocitySource::kTarget &&
-           reads_velocity();
+    return settings.conventions.drawn_velocity == DrawnVelocity::kDilated &&
+           velocity == VelocitySource::kTarget && reads_velocity();
   }
   bool moves_sky() const {  // the drawn velocity of what is infinitely far away is completed
-    const bool possible = settings.sky_motion != SkyMotion::kEvidence || keeps_previous_frame();
-    return settings.sky_motion != SkyMotion::kAsDrawn && velocity == VelocitySource::kTarget &&
+    const bool possible = settings.conventions.sky_motion != SkyMotion::kEvidence || keeps_previous_frame();
+    return settings.conventions.sky_motion != SkyMotion::kAsDrawn && velocity == VelocitySource::kTarget &&
            reads_velocity() && needs.camera_motion && possible;
   }
-  bool fits_sky() const { return moves_sky() && settings.sky_motion == SkyMotion::kEvidence; }
+  bool fits_sky() const { return moves_sky() && settings.conventions.sky_motion == SkyMotion::kEvidence; }
   bool reads_reactive() const { return (keeps_previous_frame() || measures_content()) && needs.transparents; }
-  bool measures_content() const { return settings.measures_content && has_velocity(); }
+  bool measures_content() const { return settings.control.measures_content && has_velocity(); }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;
   }
@@ -67,13 +67,13 @@ struct PlanFacts {
   bool has_focus() const { return settings.focus.extent != Extent{} && shows_picture(); }
   bool blurs() const { return settings.blur.shutter > 0 && has_velocity(); }
   bool is_dual() const {
-    return settings.min_output_extent != settings.output_extent;
+    return settings.output.min_extent != settings.output_extent;
   }  // the output is dynamic
   // Whether a viewport may be larger than an output on an axis, or dense.
   bool may_widen() const;
   bool may_be_dense() const;
-  bool places_targets() const { return settings.targets == Targets::kPlaced; }
-  Storage presented_storage() const { return places_targets() ? Storage::kBuffer : settings.storage; }
+  bool places_targets() const { return settings.targets.placement == Targets::kPlaced; }
+  Storage presented_storage() const { return places_targets() ? Storage::kBuffer : settings.targets.storage; }
 };
 
 // Whether the temporal upscaler's samples are so dense, from 1.56 a pixel on, that a frame alone is the better

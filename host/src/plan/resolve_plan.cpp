@@ -36,13 +36,13 @@ void check_extent(Complaints& complaints, const char* field, Extent extent) {
 }
 
 void check_min_output_extent(Complaints& complaints, const ResolveSettings& settings) {
-  const Extent least = settings.min_output_extent;
+  const Extent least = settings.output.min_extent;
   const Extent most = settings.output_extent;
   if (least == Extent{} || !usable(most)) return;
   if (least.width >= 1 && least.height >= 1 && least.width <= most.width && least.height <= most.height)
     return;
   complaints.add(
-      fmt::format("settings.min_output_extent is {}x{}; it must lie within 1x1 and the output's {}x{}",
+      fmt::format("settings.output.min_extent is {}x{}; it must lie within 1x1 and the output's {}x{}",
                   least.width, least.height, most.width, most.height));
 }
 
@@ -78,12 +78,12 @@ Status check(const ResolveSettings& settings) {
     complaints.add(
         fmt::format("settings.colour is {}; it must be RGBA8, RGBA16F or RGBA32F", name_of(settings.colour)));
   }
-  if (settings.particle_target_extent != Extent()) {
-    const Extent particles = settings.particle_target_extent;
+  if (settings.targets.particle_extent != Extent()) {
+    const Extent particles = settings.targets.particle_extent;
     if (particles.width < 1 || particles.height < 1 || particles.width > settings.target_extent.width ||
         particles.height > settings.target_extent.height) {
       complaints.add(fmt::format(
-          "settings.particle_target_extent is {}x{}; it must lie within 1x1 and the target's {}x{}, or be "
+          "settings.targets.particle_extent is {}x{}; it must lie within 1x1 and the target's {}x{}, or be "
           "0x0",
           particles.width, particles.height, settings.target_extent.width, settings.target_extent.height));
     }
@@ -93,7 +93,8 @@ Status check(const ResolveSettings& settings) {
           "linear");
   }
   check_format(complaints, "velocity", settings.velocity, PixelFormat::kRG16F, PixelFormat::kRG32F);
-  check_format(complaints, "linear", settings.linear, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F);
+  check_format(complaints, "output.linear", settings.output.linear, PixelFormat::kRGBA16F,
+               PixelFormat::kRGBA32F);
   check_format(complaints, "temporal.history", settings.temporal.history, PixelFormat::kRGBA16F,
                PixelFormat::kRGBA32F);
   const auto check_weight = [&](const char* field, float weight) {
@@ -103,8 +104,8 @@ Status check(const ResolveSettings& settings) {
   };
   check_weight("velocity_weight", settings.quincunx.velocity_weight);
   check_weight("residual_weight", settings.quincunx.residual_weight);
-  if (!(settings.grain >= 0 && settings.grain <= 1)) {
-    complaints.add(fmt::format("settings.grain is {}; it must lie in [0, 1]", settings.grain));
+  if (!(settings.filter.grain >= 0 && settings.filter.grain <= 1)) {
+    complaints.add(fmt::format("settings.filter.grain is {}; it must lie in [0, 1]", settings.filter.grain));
   }
   if (!(settings.blur.shutter >= 0 && settings.blur.shutter <= 2)) {
     complaints.add(fmt::format("settings.blur.shutter is {}; it must lie in [0, 2]", settings.blur.shutter));
@@ -190,8 +191,9 @@ bool ResolvePlan::accumulates() const {
 }
 
 bool ResolvePlan::keeps_previous_frame() const {
-  const bool copies = settings.storage == Storage::kImage && settings.conventions.origin == Origin::kBottom;
-  return uses_earlier_frames(settings.method) && settings.shading == Shading::kFull && !copies;
+  const bool copies =
+      settings.targets.storage == Storage::kImage && settings.conventions.origin == Origin::kBottom;
+  return uses_earlier_frames(settings.method) && settings.targets.shading == Shading::kFull && !copies;
 }
 
 bool ResolvePlan::is_dual() const {
@@ -200,7 +202,7 @@ bool ResolvePlan::is_dual() const {
 
 bool ResolvePlan::reads_history(Extent render, Extent output) const {
   if (accumulates()) return !is_dense(render, output == Extent{} ? settings.output_extent : output);
-  return uses_earlier_frames(settings.method) || settings.shading == Shading::kCheckerboard;
+  return uses_earlier_frames(settings.method) || settings.targets.shading == Shading::kCheckerboard;
 }
 
 bool ResolvePlan::has_focus() const {
@@ -211,15 +213,15 @@ std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   if (!has_focus()) return std::nullopt;
   ResolveSettings region = settings;
   region.output_extent = settings.focus.extent;
-  region.min_output_extent = {};
+  region.output.min_extent = {};
   region.target_extent =
       settings.focus.target_extent != Extent{} ? settings.focus.target_extent : settings.focus.extent;
-  region.shading = Shading::kFull;
-  region.present = false;
-  region.clear = false;
-  region.particle_target_extent = {};  // those of the region are drawn with the rest of it
+  region.targets.shading = Shading::kFull;
+  region.output.present = false;
+  region.targets.clear = false;
+  region.targets.particle_extent = {};  // those of the region are drawn with the rest of it
   region.focus = {};
-  region.measures_content = region.fades = false;
+  region.control.measures_content = region.control.fades = false;
   return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
 }
 
@@ -232,7 +234,8 @@ bool ResolvePlan::moves_sky() const {
 }
 
 bool ResolvePlan::reads_camera() const {
-  return velocity == VelocitySource::kCamera || (moves_sky() && settings.sky_motion == SkyMotion::kCamera);
+  return velocity == VelocitySource::kCamera ||
+         (moves_sky() && settings.conventions.sky_motion == SkyMotion::kCamera);
 }
 
 Storage ResolvePlan::presented_storage() const {
@@ -258,10 +261,10 @@ namespace {
 
 // Says who makes the picture's light out of the scene's.
 std::string colour_text(const ResolveSettings& settings) {
-  const char* curve = name_of(settings.tone_map);
+  const char* curve = name_of(settings.output.tone_map);
   if (settings.colour == PixelFormat::kRGBA8)
     return fmt::format("RGBA8, sRGB encoded; the renderer exposes and tone maps ({})", curve);
-  if (!settings.present) return fmt::format("{}, linear light", name_of(settings.colour));
+  if (!settings.output.present) return fmt::format("{}, linear light", name_of(settings.colour));
   return fmt::format("{}, linear light; the present pass exposes and tone maps ({})",
                      name_of(settings.colour), curve);
 }
@@ -280,7 +283,7 @@ std::string size_text(std::uint64_t bytes) {
 
 std::string targets_text(const ResolvePlan& plan) {
   const Extent largest = plan.settings.target_extent;
-  if (plan.settings.targets == Targets::kViewport) {
+  if (plan.settings.targets.placement == Targets::kViewport) {
     return fmt::format("viewport: each frame is the top left part of images of {}x{}; {} a frame",
                        largest.width, largest.height, size_text(plan.frame_bytes()));
   }
@@ -291,7 +294,7 @@ std::string targets_text(const ResolvePlan& plan) {
 }
 
 std::string output_text(const ResolvePlan& plan) {
-  const Extent least = plan.settings.min_output_extent;
+  const Extent least = plan.settings.output.min_extent;
   const Extent most = plan.settings.output_extent;
   if (!plan.is_dual()) return fmt::format("always {}x{}", most.width, most.height);
   const char* history = plan.accumulates() ? "; history is resized where it changes" : "";
@@ -402,14 +405,17 @@ std::string ResolvePlan::explain() const {
   std::string form;
   if (settings.method == Method::kQuincunx) form = fmt::format(":{}", name_of(settings.quincunx.form));
   if (accumulates()) form = fmt::format(":{}", name_of(settings.temporal.preset));
-  fmt::format_to(
-      out, "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, dither {}\n",
-      name_of(settings.method), form, settings.output_extent.width, settings.output_extent.height,
-      settings.target_extent.width, settings.target_extent.height,
-      settings.storage == Storage::kImage ? "image" : "buffer", settings.sharpness, yes(settings.dither));
+  fmt::format_to(out,
+                 "Settings       {}{}, output {}x{}, target {}x{}, {} storage, sharpness {}, dither {}\n",
+                 name_of(settings.method), form, settings.output_extent.width, settings.output_extent.height,
+                 settings.target_extent.width, settings.target_extent.height,
+                 settings.targets.storage == Storage::kImage ? "image" : "buffer", settings.sharpness,
+                 yes(settings.output.dither));
   fmt::format_to(out, "Colour         {}\n", colour_text(settings));
-  if (settings.conventions != InputConventions{})
-    fmt::format_to(out, "Conventions    {}\n", conventions_text(settings.conventions));
+  const InputConventions& given = settings.conventions;
+  if (given != InputConventions{.drawn_velocity = given.drawn_velocity,
+                                .sky_motion = given.sky_motion})  // told by passes
+    fmt::format_to(out, "Conventions    {}\n", conventions_text(given));
   fmt::format_to(out, "Output         {}\n", output_text(*this));
   fmt::format_to(out, "Targets        {}\n", targets_text(*this));
   const std::optional<ResolvePlan> region = focus_plan();

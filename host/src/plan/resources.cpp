@@ -36,7 +36,7 @@ bool is_previous(Resource resource) {
 
 Storage storage_of(Resource resource, const PlanFacts& facts) {
   if (resource == Resource::kPresented) return facts.presented_storage();
-  return info_of(resource).input != nullptr ? facts.settings.storage : Storage::kBuffer;
+  return info_of(resource).input != nullptr ? facts.settings.targets.storage : Storage::kBuffer;
 }
 
 }  // namespace quincunx

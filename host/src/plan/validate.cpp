@@ -46,8 +46,8 @@ class FrameCheck {
 };
 
 void FrameCheck::input(const char* field, const ImageView& image, PixelFormat format, Extent viewport) {
-  image_in(field, image, format, plan_.settings.storage);
-  if (image && plan_.settings.targets == Targets::kPlaced && image.extent != viewport) {
+  image_in(field, image, format, plan_.settings.targets.storage);
+  if (image && plan_.settings.targets.placement == Targets::kPlaced && image.extent != viewport) {
     complain(fmt::format("{}.extent is {}x{}; placed targets have exactly the viewport's {}x{}", field,
                          image.extent.width, image.extent.height, viewport.width, viewport.height));
   } else if (image && (image.extent.width < viewport.width || image.extent.height < viewport.height)) {
@@ -136,31 +136,31 @@ void check_outputs(FrameCheck& check, const ResolvePlan& plan, const FrameOutput
   if (!outputs.linear && !outputs.presented)
     check.complain("outputs are both missing; give linear, presented or both");
   if (outputs.linear)
-    check.output("linear", outputs.linear, settings.linear, Storage::kBuffer, settings.output_extent,
+    check.output("linear", outputs.linear, settings.output.linear, Storage::kBuffer, settings.output_extent,
                  "output");
   if (!outputs.presented) return;
-  if (settings.present) {
+  if (settings.output.present) {
     check.output("presented", outputs.presented, PixelFormat::kRGBA8, plan.presented_storage(),
                  settings.output_extent, "output");
   } else {
-    check.complain("presented is given, but the plan has no present pass; set settings.present");
+    check.complain("presented is given, but the plan has no present pass; set settings.output.present");
   }
 }
 
 void check_fade(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   if (!inputs.fading_from) return;
-  if (!plan.settings.fades) {
-    check.complain("fading_from is given, but the plan has no cross-fade; set settings.fades");
+  if (!plan.settings.control.fades) {
+    check.complain("fading_from is given, but the plan has no cross-fade; set settings.control.fades");
     return;
   }
-  check.output("fading_from", inputs.fading_from, plan.settings.linear, Storage::kBuffer,
+  check.output("fading_from", inputs.fading_from, plan.settings.output.linear, Storage::kBuffer,
                plan.settings.output_extent, "output");
   check.finite("fade_weight", inputs.fade_weight, 0, 1);
 }
 
 void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent output) {
   const Extent most = plan.settings.output_extent;
-  const Extent least = plan.is_dual() ? plan.settings.min_output_extent : most;
+  const Extent least = plan.is_dual() ? plan.settings.output.min_extent : most;
   if (output == Extent{}) return;
   if (output.width >= least.width && output.height >= least.height && output.width <= most.width &&
       output.height <= most.height)
@@ -171,14 +171,14 @@ void check_output_extent(FrameCheck& check, const ResolvePlan& plan, Extent outp
                                most.height));
   } else {
     check.complain(
-        fmt::format("output_extent is {}x{}; the plan has always {}x{}; set settings.min_output_extent",
+        fmt::format("output_extent is {}x{}; the plan has always {}x{}; set settings.output.min_extent",
                     output.width, output.height, most.width, most.height));
   }
 }
 
 void check_planes(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   const DepthConvention depth = plan.settings.conventions.depth;
-  if (!needs_near_plane(depth) || (!plan.reads_depth && plan.settings.particle_target_extent == Extent()))
+  if (!needs_near_plane(depth) || (!plan.reads_depth && plan.settings.targets.particle_extent == Extent()))
     return;
   constexpr float kLargest = std::numeric_limits<float>::max();
   if (!(inputs.near_plane > 0 && inputs.near_plane <= kLargest)) {
@@ -194,9 +194,9 @@ void check_planes(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
 void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs& inputs) {
   constexpr float kLargest = 1e6f;
   check.viewport("render_extent", inputs.render_extent, plan.settings.target_extent);
-  if (plan.settings.particle_target_extent != Extent())
+  if (plan.settings.targets.particle_extent != Extent())
     check.viewport("particle_render_extent", inputs.particle_render_extent,
-                   plan.settings.particle_target_extent);
+                   plan.settings.targets.particle_extent);
   check_output_extent(check, plan, inputs.output_extent);
   for (const ResourceInfo& info : kResources) {
     if (info.input == nullptr || is_previous(info.resource)) continue;
@@ -212,7 +212,7 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
   if (plan.reads_camera() || PlanFacts(plan.needs, plan.settings).reprojects())
     check_camera(check, inputs.camera);
   check_planes(check, plan, inputs);
-  if (plan.settings.shading == Shading::kCheckerboard) check_parity(check, inputs);
+  if (plan.settings.targets.shading == Shading::kCheckerboard) check_parity(check, inputs);
   check.finite("jitter.x", inputs.jitter.x, -1, 1);
   check.finite("jitter.y", inputs.jitter.y, -1, 1);
   check.finite("exposure", inputs.exposure, 0, kLargest);

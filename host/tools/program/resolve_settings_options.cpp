@@ -66,7 +66,7 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .non_negative()
       .show_default()
       .type_name("K");
-  add_choice(app, "--sky-motion", settings.sky_motion, choices<SkyMotion>(),
+  add_choice(app, "--sky-motion", settings.conventions.sky_motion, choices<SkyMotion>(),
              "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence "
              "(default: drawn)");
   add_choice(app, "--view", settings.temporal.view, choices<TemporalView>(),
@@ -84,16 +84,16 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .check(complain_beyond_one)
       .show_default()
       .type_name("AMOUNT");
-  app.add_flag("!--no-clamp-ringing", settings.clamp_ringing,
+  app.add_flag("!--no-clamp-ringing", settings.filter.clamp_ringing,
                "Let catmull-rom, mitchell and lanczos overshoot at edges");
-  app.add_option("--grain", settings.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
+  app.add_option("--grain", settings.filter.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
       .check(complain_beyond_one)
       .show_default()
       .type_name("A");
-  app.add_flag("!--still-noise", settings.noise_moves, "The same noise in every frame");
-  add_choice(app, "--tone-map", settings.tone_map, choices<ToneMap>(),
+  app.add_flag("!--still-noise", settings.filter.noise_moves, "The same noise in every frame");
+  add_choice(app, "--tone-map", settings.output.tone_map, choices<ToneMap>(),
              "clamp, reinhard or aces (default: aces)");
-  app.add_flag("!--no-dither", settings.dither, "Round to 8 bits without dither");
+  app.add_flag("!--no-dither", settings.output.dither, "Round to 8 bits without dither");
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
@@ -101,10 +101,11 @@ std::string resolve_settings_text(const ResolveSettings& settings) {
       "{}, view {}, far {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness "
       "{}, blur {} of {} "
       "samples",
-      name_of(variant_of(settings)), name_of(settings.temporal.view), name_of(settings.sky_motion),
-      name_of(settings.drawn_velocity), settings.quincunx.velocity_weight,
-      settings.clamp_ringing ? "clamped" : "free", settings.grain, settings.noise_moves ? "moves" : "still",
-      settings.sharpness, settings.blur.shutter, settings.blur.samples);
+      name_of(variant_of(settings)), name_of(settings.temporal.view),
+      name_of(settings.conventions.sky_motion), name_of(settings.conventions.drawn_velocity),
+      settings.quincunx.velocity_weight, settings.filter.clamp_ringing ? "clamped" : "free",
+      settings.filter.grain, settings.filter.noise_moves ? "moves" : "still", settings.sharpness,
+      settings.blur.shutter, settings.blur.samples);
 }
 
 }  // namespace quincunx::tools

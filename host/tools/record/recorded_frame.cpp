@@ -44,7 +44,7 @@ bool brings(const ResolvePlan& plan, const std::string& name) {
 std::vector<PartImage> images_of(const ResolvePlan& plan, FramePart part, FrameInputs& inputs,
                                  FocusInputs& focus) {
   const ResolveSettings& settings = plan.settings;
-  const Storage storage = settings.storage;
+  const Storage storage = settings.targets.storage;
   std::vector<PartImage> images;
   const auto add = [&](bool there, ImageView& view, PixelFormat format, Storage stored) {
     if (there) images.push_back({&view, format, stored});
@@ -62,7 +62,7 @@ std::vector<PartImage> images_of(const ResolvePlan& plan, FramePart part, FrameI
       add(brings(plan, "particle reactive"), inputs.particle_reactive, PixelFormat::kR8, storage);
       break;
     case FramePart::kFadingFrom:
-      add(settings.fades, inputs.fading_from, settings.linear, Storage::kBuffer);
+      add(settings.control.fades, inputs.fading_from, settings.output.linear, Storage::kBuffer);
       break;
     case FramePart::kFocus:
       if (const auto region = plan.focus_plan())

@@ -35,8 +35,8 @@ void each_need(Needs& of, Visit&& visit) {
 
 template <typename Visit, typename Settings>
 void each_convention(Settings& of, Visit&& visit) {
-  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin] =
-      of.conventions;
+  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin,
+         drawn_velocity, sky_motion] = of.conventions;
   visit("conventions.depth", depth);
   visit("conventions.clip_space", clip_space);
   visit("conventions.velocity_unit", velocity_unit);
@@ -44,10 +44,28 @@ void each_convention(Settings& of, Visit&& visit) {
   visit("conventions.velocity_up", velocity_up);
   visit("conventions.velocity_jittered", velocity_jittered);
   visit("conventions.origin", origin);
+  visit("conventions.drawn_velocity", drawn_velocity);
+  visit("conventions.sky_motion", sky_motion);
 }
 
 template <typename Visit, typename Settings>
 void each_part(Settings& of, Visit&& visit) {
+  auto& [storage, placement, shading, particle_extent, clear] = of.targets;
+  visit("targets.storage", storage);
+  visit("targets.placement", placement);
+  visit("targets.shading", shading);
+  visit("targets.particle_extent", particle_extent);
+  visit("targets.clear", clear);
+  auto& [min_extent, linear, present, tone_map, dither] = of.output;
+  visit("output.min_extent", min_extent);
+  visit("output.linear", linear);
+  visit("output.present", present);
+  visit("output.tone_map", tone_map);
+  visit("output.dither", dither);
+  auto& [clamp_ringing, grain, noise_moves] = of.filter;
+  visit("filter.clamp_ringing", clamp_ringing);
+  visit("filter.grain", grain);
+  visit("filter.noise_moves", noise_moves);
   auto& [form, sampling, velocity_weight, residual_weight] = of.quincunx;
   visit("quincunx.form", form);
   visit("quincunx.sampling", sampling);
@@ -64,37 +82,21 @@ void each_part(Settings& of, Visit&& visit) {
   visit("focus.extent", extent);
   visit("focus.target_extent", target_extent);
   visit("focus.mask", mask);
+  auto& [measures_content, fades] = of.control;
+  visit("control.measures_content", measures_content);
+  visit("control.fades", fades);
 }
 
 template <typename Visit, typename Settings>
 void each_setting(Settings& of, Visit&& visit) {
-  auto& [method, output_extent, min_output_extent, target_extent, particle_target_extent, colour, velocity,
-         linear, conventions, storage, targets, shading, present, clear, tone_map, dither, clamp_ringing,
-         grain, noise_moves, drawn_velocity, sky_motion, quincunx, temporal, blur, sharpness, focus,
-         measures_content, fades] = of;
+  auto& [method, output_extent, target_extent, colour, velocity, conventions, sharpness, targets, output,
+         filter, quincunx, temporal, blur, focus, control] = of;
   visit("method", method);
   visit("output_extent", output_extent);
-  visit("min_output_extent", min_output_extent);
   visit("target_extent", target_extent);
-  visit("particle_target_extent", particle_target_extent);
   visit("colour", colour);
   visit("velocity", velocity);
-  visit("linear", linear);
-  visit("storage", storage);
-  visit("targets", targets);
-  visit("shading", shading);
-  visit("present", present);
-  visit("clear", clear);
-  visit("tone_map", tone_map);
-  visit("dither", dither);
-  visit("clamp_ringing", clamp_ringing);
-  visit("grain", grain);
-  visit("noise_moves", noise_moves);
-  visit("drawn_velocity", drawn_velocity);
-  visit("sky_motion", sky_motion);
   visit("sharpness", sharpness);
-  visit("measures_content", measures_content);
-  visit("fades", fades);
   each_convention(of, visit);
   each_part(of, visit);
 }

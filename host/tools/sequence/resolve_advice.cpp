@@ -159,8 +159,8 @@ MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
   const bool moves = format.motion != MotionSource::kNone;
   if (!moves) return {{.method = Method::kCatmullRom}, "no motion is known, so frames stay apart"};
   const bool needs_depth = format.motion == MotionSource::kCamera ||
-                           settings.sky_motion != SkyMotion::kAsDrawn ||
-                           settings.drawn_velocity == DrawnVelocity::kDilated;
+                           settings.conventions.sky_motion != SkyMotion::kAsDrawn ||
+                           settings.conventions.drawn_velocity == DrawnVelocity::kDilated;
   if (format.channels.has_depth() || needs_depth) {
     if (jitter == JitterKind::kNone)
       return {{.method = Method::kQuincunx, .form = TwoFrameForm::kReprojected},

@@ -77,7 +77,7 @@ void add_motion_options(CommandLine& app, ResolveOptions& options) {
          "Or: what makes motion current - previous in parts of the image, y down")
       .type_name("X,Y")
       .excludes("--velocity-convention");
-  add_choice(app, "--drawn-velocity", options.resolve.drawn_velocity, choices<DrawnVelocity>(),
+  add_choice(app, "--drawn-velocity", options.resolve.conventions.drawn_velocity, choices<DrawnVelocity>(),
              "Whose motion a pixel has: its own surface's, or dilated, that of the nearest of its 3x3 "
              "(default: own)");
 }

@@ -79,10 +79,10 @@ ResolveSettings settings_for(const ResolveTask& task, Extent target, bool half_c
   settings.target_extent = target;
   settings.colour = half_colour ? PixelFormat::kRGBA16F : PixelFormat::kRGBA32F;
   settings.velocity = PixelFormat::kRG32F;
-  settings.linear = PixelFormat::kRGBA32F;
-  settings.storage = Storage::kBuffer;
-  settings.present = task.output && task.output->pattern.format() == FileFormat::kPng;
-  settings.clear = false;
+  settings.output.linear = PixelFormat::kRGBA32F;
+  settings.targets.storage = Storage::kBuffer;
+  settings.output.present = task.output && task.output->pattern.format() == FileFormat::kPng;
+  settings.targets.clear = false;
   return settings;
 }
 
@@ -175,7 +175,7 @@ Status settle_recorded(const ResolveOptions& options, ResolveTask& task) {
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();
   ResolveSettings settings = task.resolve;
-  settings.present |= task.output && task.output->pattern.format() == FileFormat::kPng;
+  settings.output.present |= task.output && task.output->pattern.format() == FileFormat::kPng;
   auto plan = plan_for(options.recorded->needs, settings);
   if (!plan.ok()) return plan.status();
   task.plan = std::move(plan).value();
@@ -196,7 +196,7 @@ Status take_recorded(ResolveOptions& options) {
   options = {};
   options.resolve = recorded->settings;
   options.stored =
-      recorded->settings.linear == PixelFormat::kRGBA32F ? ChannelType::kFloat : ChannelType::kHalf;
+      recorded->settings.output.linear == PixelFormat::kRGBA32F ? ChannelType::kFloat : ChannelType::kHalf;
   options.recorded = std::move(recorded).value();
   return {};
 }

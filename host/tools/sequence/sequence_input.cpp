@@ -208,11 +208,11 @@ SceneNeeds needs_of(const SequenceFormat& format) {
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   ChannelNames& channels = format.channels;
   if (plan.reads_depth && !channels.has_depth()) {
-    const std::string reader = plan.blurs()                ? "motion blur"
-                               : plan.undilates_velocity() ? "--drawn-velocity dilated"
-                               : plan.moves_sky()
-                                   ? fmt::format("--sky-motion {}", name_of(plan.settings.sky_motion))
-                                   : fmt::format("method {}", name_of(plan.settings.method));
+    const std::string reader =
+        plan.blurs()                ? "motion blur"
+        : plan.undilates_velocity() ? "--drawn-velocity dilated"
+        : plan.moves_sky() ? fmt::format("--sky-motion {}", name_of(plan.settings.conventions.sky_motion))
+                           : fmt::format("method {}", name_of(plan.settings.method));
     return Status::io(fmt::format("{} reads depth here, but the frames have no channel '{}'; say --depth",
                                   reader, kDepthChannel));
   }

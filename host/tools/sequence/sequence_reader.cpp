@@ -226,7 +226,7 @@ std::string SequenceWatch::see_motion(const SequenceFrame& frame, bool reset) {
 std::string SequenceWatch::see_sky(const SequenceFrame& frame, bool reset) {
   constexpr float kLeastMotion = .25f;  // pixels
   constexpr int kLeastPart = 100;       // one pixel of so many
-  const bool asked = plan_.settings.sky_motion == SkyMotion::kAsDrawn && !sky_is_known_ && !reset;
+  const bool asked = plan_.settings.conventions.sky_motion == SkyMotion::kAsDrawn && !sky_is_known_ && !reset;
   if (!asked || !frame.world_to_ndc || !last_world_to_ndc_ || frame.velocity.empty() || frame.depth.empty())
     return {};
   const auto camera = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, near_plane_);

@@ -80,7 +80,7 @@ Status SequenceResolver::allocate() {
       if (Status status = make(frame.reactive, target, PixelFormat::kR8); !status.ok()) return status;
     }
   }
-  if (Status status = make(linear_, plan.settings.output_extent, plan.settings.linear); !status.ok())
+  if (Status status = make(linear_, plan.settings.output_extent, plan.settings.output.linear); !status.ok())
     return status;
   if (!presents()) return {};
   auto made = device_.allocate(plan.settings.output_extent, PixelFormat::kRGBA8, plan.presented_storage());

@@ -25,13 +25,13 @@ class RowRun {
   static Result<RowRun> create(const PartScene& scene, const PartCase& wanted) {
     const BenchMethod& method = scene.plan.methods.front();
     ResolveSettings resolve = method.resolve;
-    resolve.present = false;
+    resolve.output.present = false;
     auto feed = FrameFeed::create(scene.stage, sequence_for(scene.plan, wanted.scale, method), {resolve},
                                   wanted.parts);
     if (!feed.ok()) return feed.status();
     auto contender = Contender::create(scene.stage.device(), feed->plans().front());
     if (!contender.ok()) return contender.status();
-    auto resolved = scene.stage.device().allocate(scene.plan.conditions.output, resolve.linear);
+    auto resolved = scene.stage.device().allocate(scene.plan.conditions.output, resolve.output.linear);
     if (!resolved.ok()) return resolved.status();
     return RowRun(scene, std::move(feed).value(), std::move(contender).value(), std::move(resolved).value());
   }

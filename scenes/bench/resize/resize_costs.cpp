@@ -209,7 +209,7 @@ class Kind {
   static Result<std::unique_ptr<Kind>> create(const scenes::FrameSource& stage,
                                               const scenes::SequenceSettings& sequence,
                                               ResolveSettings resolve, Targets targets) {
-    resolve.targets = targets;
+    resolve.targets.placement = targets;
     auto feed = FrameFeed::create(stage, sequence, {resolve});
     if (!feed.ok()) return feed.status();
     auto contender = Contender::create(stage.device(), feed->plans().front());

@@ -48,7 +48,7 @@ BenchMethod in_eight_bits(BenchMethod method) {
   method.name += kEncoded;
   method.summary += ", of RGBA8 colour";
   method.resolve.colour = PixelFormat::kRGBA8;
-  method.resolve.tone_map = ToneMap::kReinhard;
+  method.resolve.output.tone_map = ToneMap::kReinhard;
   method.is_default = false;
   return method;
 }
@@ -59,7 +59,7 @@ constexpr std::string_view kCheckerboard = "checkerboard/";
 BenchMethod on_checkerboard(BenchMethod method) {
   method.name = std::string(kCheckerboard) + method.name;
   method.summary += ", of a checkerboard";
-  method.resolve.shading = Shading::kCheckerboard;
+  method.resolve.targets.shading = Shading::kCheckerboard;
   method.is_default = false;
   return method;
 }
@@ -242,7 +242,7 @@ scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const
   const auto axis = static_cast<float>(scale);
   sequence.scale_path = scenes::ScalePath::fixed({axis, axis}).value();  // plan_from() has checked it
   sequence.jitter = method.jitter;
-  sequence.shading = method.resolve.shading;
+  sequence.shading = method.resolve.targets.shading;
   if (!method.dual.empty())  // chosen_methods() has checked it
     sequence.outputs = scenes::OutputPath::parse(method.dual, conditions.output, conditions.seed).value();
   sequence.frames = frames_of(conditions) - first_frame_for(conditions, method);

@@ -45,7 +45,7 @@ Result<std::unique_ptr<CaseRun>> CaseRun::create(const scenes::FrameSource& stag
 }
 
 Status CaseRun::open(const scenes::FrameSource& stage) {
-  auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.linear);
+  auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.output.linear);
   if (!resolved.ok()) return resolved.status();
   resolved_ = std::move(resolved).value();
   auto copy = CopyKernel::create(device_, plan_.conditions.output);
@@ -57,8 +57,8 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   std::map<Feeding, std::vector<std::size_t>> feeds;
   for (std::size_t i = 0; i < plan_.methods.size(); ++i) {
     const BenchMethod& method = plan_.methods[i];
-    feeds[{method.resolve.shading, method.jitter, method.detail, method.accumulates, method.resolve.colour,
-           method.focuses, method.dual}]
+    feeds[{method.resolve.targets.shading, method.jitter, method.detail, method.accumulates,
+           method.resolve.colour, method.focuses, method.dual}]
         .push_back(i);
   }
   entries_.resize(plan_.methods.size());
@@ -73,7 +73,7 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
   std::vector<ResolveSettings> resolves;
   for (const std::size_t method : methods) {
     resolves.push_back(plan_.methods[method].resolve);
-    resolves.back().present = false;
+    resolves.back().output.present = false;
   }
   const bool presents = std::find(methods.begin(), methods.end(), plan_.frame_method) != methods.end();
   if (presents) resolves.push_back(plan_.methods[plan_.frame_method].resolve);

@@ -19,7 +19,7 @@ scenes::SequenceSettings sequence_of(const TuneCase& what, const TuneEffort& eff
   sequence.output = effort.output;
   sequence.scale_path = scenes::ScalePath::fixed({kScale, kScale}).value();
   sequence.jitter = scenes::Jitter::kHalton;
-  sequence.shading = what.resolve.shading;
+  sequence.shading = what.resolve.targets.shading;
   sequence.frames = TuneEffort::kWarmUp + effort.frames;
   sequence.fps = effort.fps;
   return sequence;
@@ -61,7 +61,7 @@ std::map<std::string, double> pass_times(const FrameReport& report) {
 ResolveSettings settings_of(Method method) {
   ResolveSettings settings;
   settings.method = method;
-  settings.present = false;
+  settings.output.present = false;
   return settings;
 }
 
@@ -133,7 +133,7 @@ Result<Way> open_way(const Device& device, const ResolvePlan& like, const Resolv
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(device, plan.value());
   if (!service.ok()) return service.status();
-  Way way{std::move(service).value(), settings.storage};
+  Way way{std::move(service).value(), settings.targets.storage};
   way.service.allow_timing_waits(true);
   return way;
 }
@@ -159,14 +159,14 @@ Result<Ways> open_ways(const Device& device, const ResolvePlan& plan) {
     return {};
   };
   ResolveSettings settings = plan.settings;
-  settings.storage = Storage::kBuffer;
+  settings.targets.storage = Storage::kBuffer;
   Status status = open(ways.buffers, settings);
   if (status.ok() && plan.accumulates()) {
     settings.temporal.history = PixelFormat::kRGBA32F;
     status = open(ways.floats, settings);
     settings.temporal.history = plan.settings.temporal.history;
   }
-  settings.storage = Storage::kImage;
+  settings.targets.storage = Storage::kImage;
   if (status.ok() && device.info().images) status = open(ways.images, settings);
   if (!status.ok()) return status;
   return ways;
@@ -178,7 +178,7 @@ Result<TunedStorage> time_storage(const scenes::FrameSource& stage, const TuneCa
   if (!stand.ok()) return stand.status();
   auto ways = open_ways(stage.device().with_profile(profile), stand->plan());
   if (!ways.ok()) return ways.status();
-  const Storage drawn = stand->plan().settings.storage;
+  const Storage drawn = stand->plan().settings.targets.storage;
   StoredCopies copies(stage.device(), drawn == Storage::kImage ? Storage::kBuffer : Storage::kImage);
   for (int frame = 0; frame < TuneEffort::kWarmUp + effort.frames; ++frame) {
     auto inputs = stand->feed().next();
@@ -226,9 +226,9 @@ Status TuneStand::allocate() {
     image = std::move(made).value();
     return {};
   };
-  Status status = make(linear_, settings.linear, Storage::kBuffer);
-  if (status.ok() && settings.fades) status = make(other_, settings.linear, Storage::kBuffer);
-  if (status.ok() && settings.present)
+  Status status = make(linear_, settings.output.linear, Storage::kBuffer);
+  if (status.ok() && settings.control.fades) status = make(other_, settings.output.linear, Storage::kBuffer);
+  if (status.ok() && settings.output.present)
     status = make(presented_, PixelFormat::kRGBA8, plan_.presented_storage());
   return status;
 }
@@ -241,7 +241,7 @@ Result<double> TuneStand::time_copy() {
 }
 
 Status TuneStand::resolve(ResolveService& service, FrameInputs inputs, PassTimes* times) {
-  if (plan_.settings.fades) inputs.fading_from = other_.view();
+  if (plan_.settings.control.fades) inputs.fading_from = other_.view();
   const FrameOutputs outputs{.linear = linear_.view(), .presented = presented_.view()};
   const FocusInputs* focus = feed_.focus();
   const FrameReport accepted =
@@ -267,18 +267,18 @@ std::vector<TuneCase> tune_cases() {
                                  {"camera", settings_of(Method::kQuincunx)},
                                  {"temporal", settings_of(Method::kTemporal)},
                                  {"checkerboard", settings_of(Method::kTemporal)}};
-  cases[0].resolve.present = true;
+  cases[0].resolve.output.present = true;
   cases[1].resolve.sharpness = 0.5f;
-  cases[1].resolve.measures_content = cases[1].resolve.fades = true;
+  cases[1].resolve.control.measures_content = cases[1].resolve.control.fades = true;
   cases[5].resolve.blur.shutter = 0.5f;
   cases[6].resolve.quincunx.form = TwoFrameForm::kReprojected;
   cases[6].resolve.conventions.velocity_jittered = true;  // it is not, but this costs the same
   cases[7].only_camera_moves = true;
   cases[8].resolve.temporal.preset = TemporalPreset::kQuality;
-  cases[8].resolve.sky_motion = SkyMotion::kEvidence;
-  cases[8].resolve.drawn_velocity = DrawnVelocity::kDilated;  // nor is this; about the same
+  cases[8].resolve.conventions.sky_motion = SkyMotion::kEvidence;
+  cases[8].resolve.conventions.drawn_velocity = DrawnVelocity::kDilated;  // nor is this; about the same
   cases[9].resolve.temporal.preset = TemporalPreset::kFast;
-  cases[9].resolve.shading = Shading::kCheckerboard;
+  cases[9].resolve.targets.shading = Shading::kCheckerboard;
   cases[9].has_parts = true;
   return cases;
 }
@@ -335,7 +335,7 @@ Result<std::vector<TunedStorage>> time_storages(const scenes::FrameSource& stage
   for (const Method method : {Method::kBilinear, Method::kQuincunx, Method::kTemporal}) {
     TuneCase what{.name = name_of(method), .resolve = {}};
     what.resolve.method = method;
-    what.resolve.present = false;
+    what.resolve.output.present = false;
     const bool is_wanted = std::any_of(cases.begin(), cases.end(),
                                        [&what](const TuneCase& one) { return one.name == what.name; });
     if (!is_wanted) continue;

@@ -44,6 +44,20 @@ enum class VelocityUnit : std::uint8_t {
 // The row that is first in the memory of images.
 enum class Origin : std::uint8_t { kTop, kBottom };
 
+// Source of the motion of samples that are infinitely far away and have a velocity of exactly 0, as many renderers
+// write it for the sky whatever the camera does.
+enum class SkyMotion : std::uint8_t {
+  kAsDrawn,  // nothing: they stand still in the picture
+  kCamera,   // the camera's rotation, from FrameInputs::camera
+  kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
+};
+
+// Whose velocity a drawn sample has.
+enum class DrawnVelocity : std::uint8_t {
+  kOwn,      // that of the surface that it shows
+  kDilated,  // that of the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
+};
+
 // The defaults are the library's own, which cost nothing. Other depth than kReversedInfinite, velocity with jitter in
 // it, and image2d_t from the bottom take a pass that writes images of the service's own; the rest takes none.
 struct InputConventions {
@@ -59,6 +73,9 @@ struct InputConventions {
   // of smaller outputs reach upwards; and what counts rows or pixels counts from there: jitter.y, parity, and a
   // focus's y and rectangles. The camera's matrix, velocity and Halton's order are as they are.
   Origin origin = Origin::kTop;
+  // Where velocity is drawn.
+  DrawnVelocity drawn_velocity = DrawnVelocity::kOwn;
+  SkyMotion sky_motion = SkyMotion::kAsDrawn;
 
   friend bool operator==(const InputConventions&, const InputConventions&) = default;
 };
@@ -67,5 +84,7 @@ QUINCUNX_API const char* name_of(DepthConvention depth);  // "reversed infinite"
 QUINCUNX_API const char* name_of(ClipSpace clip_space);   // "OpenGL"
 QUINCUNX_API const char* name_of(VelocityUnit unit);      // "pixels"
 QUINCUNX_API const char* name_of(Origin origin);          // "bottom"
+QUINCUNX_API const char* name_of(SkyMotion motion);       // "camera"
+QUINCUNX_API const char* name_of(DrawnVelocity drawn);    // "dilated"
 
 }  // namespace quincunx

@@ -37,7 +37,7 @@ enum class Method {
 struct SeparableFilter {
   int radius = 0;                        // samples, up to scale 1; the weight is 0 from there on
   double (*weight)(double d) = nullptr;  // at a distance d >= 0, in samples; need not be normalised
-  bool rings = false;                    // has negative lobes, so that ResolveSettings::clamp_ringing counts
+  bool rings = false;                    // has negative lobes, so that FilterSettings::clamp_ringing counts
 
   friend bool operator==(const SeparableFilter&, const SeparableFilter&) = default;
 };
@@ -83,20 +83,6 @@ enum class TemporalView : std::uint8_t {
   kCoverage,  // the near layer's
   kNear,      // the near layer alone, premultiplied
   kFar,       // the picture without it
-};
-
-// Source of the motion of samples that are infinitely far away and have a velocity of exactly 0, as many renderers
-// write it for the sky whatever the camera does.
-enum class SkyMotion : std::uint8_t {
-  kAsDrawn,  // nothing: they stand still in the picture
-  kCamera,   // the camera's rotation, from FrameInputs::camera
-  kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
-};
-
-// Whose velocity a drawn sample has.
-enum class DrawnVelocity : std::uint8_t {
-  kOwn,      // that of the surface that it shows
-  kDilated,  // that of the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
 };
 
 // A method with the settings that change its picture and its cost. `form` and `sampling` count for kQuincunx alone, and
@@ -147,8 +133,6 @@ QUINCUNX_API const char* name_of(TwoFrameForm form);      // "velocity"
 QUINCUNX_API const char* name_of(Sampling sampling);      // "point"
 QUINCUNX_API const char* name_of(TemporalPreset preset);  // "balanced"
 QUINCUNX_API const char* name_of(TemporalView view);      // "confidence"
-QUINCUNX_API const char* name_of(SkyMotion motion);       // "camera"
-QUINCUNX_API const char* name_of(DrawnVelocity drawn);    // "dilated"
 QUINCUNX_API const char* name_of(ToneMap tone_map);       // "aces"
 QUINCUNX_API const char* name_of(Shading shading);        // "checkerboard"
 
