@@ -23,7 +23,7 @@ function(quincunx_install_pc name)
   file(RELATIVE_PATH QUINCUNX_PC_TO_PREFIX /${quincunx_pc_dir} /)
   string(REGEX REPLACE "/$" "" QUINCUNX_PC_TO_PREFIX "${QUINCUNX_PC_TO_PREFIX}")
   if(NOT BUILD_SHARED_LIBS)  # what a static library leaves to its user to link
-    set(QUINCUNX_PC_REQUIRES " fmt spdlog libxxhash")
+    set(QUINCUNX_PC_REQUIRES " fmt libxxhash")
     set(QUINCUNX_PC_LIBS " -lstdc++ -lm -pthread")
     set(QUINCUNX_PC_RECORD_REQUIRES " OpenImageIO")
   endif()

@@ -2,7 +2,6 @@
 // What most files of the product include, precompiled. No file may count on it: each includes what it uses, which
 // the builds without precompiled headers check (docs/testing.md).
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,6 @@
 
 #include <CL/cl_gl.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include "current_context.h"
 #include "gl_sharing.h"
 #include "host_copy.h"
+#include "quincunx/advanced/log.h"
 #include "state_scope.h"
 
 namespace quincunx::gl {
@@ -201,7 +201,7 @@ Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Dev
   } else if (settings.interop != Interop::kCopy) {
     auto shared = GlSharing::create(context, device, settings);
     if (shared.ok()) {
-      spdlog::info("interop: gl ({})", shared.value()->reason());
+      log_line(LogLevel::kInfo, fmt::format("interop: gl ({})", shared.value()->reason()));
       return shared;
     }
     if (settings.interop == Interop::kGl) {
@@ -212,7 +212,7 @@ Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Dev
     reason = shared.status().message();
   }
   auto copy = make_host_copy(device, settings, reason);
-  if (copy.ok()) spdlog::info("interop: copy ({})", reason);
+  if (copy.ok()) log_line(LogLevel::kInfo, fmt::format("interop: copy ({})", reason));
   return copy;
 }
 

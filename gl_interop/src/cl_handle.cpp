@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cl_handle.h"
+#include "quincunx/advanced/log.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 namespace quincunx::gl {
 namespace {
@@ -46,7 +46,8 @@ void check_cl(cl_int code, const char* call) {
 }
 
 void log_release_failure(cl_int code) {
-  spdlog::warn("releasing an OpenCL object of the bridge failed: {}", describe(code));
+  log_line(LogLevel::kWarning,
+           fmt::format("releasing an OpenCL object of the bridge failed: {}", describe(code)));
 }
 
 void wait_and_reset(ClEvent& event) {

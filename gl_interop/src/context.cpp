@@ -4,7 +4,6 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include <vector>
 
 #include "current_context.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx_gl/capabilities.h"
 
 namespace quincunx::gl {
@@ -89,7 +89,7 @@ class DisplayUse {
     const std::lock_guard lock(mutex());
     if (--counts()[display] > 0) return;
     counts().erase(display);
-    if (eglTerminate(display) != EGL_TRUE) spdlog::warn("{}", egl_error("eglTerminate"));
+    if (eglTerminate(display) != EGL_TRUE) log_line(LogLevel::kWarning, egl_error("eglTerminate"));
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;
@@ -97,7 +97,8 @@ class DisplayUse {
 
 void APIENTRY log_gl_error(GLenum, GLenum type, GLuint id, GLenum, GLsizei, const GLchar* message,
                            const void*) {
-  if (type == GL_DEBUG_TYPE_ERROR) spdlog::error("OpenGL error {}: {}", id, message);
+  if (type == GL_DEBUG_TYPE_ERROR)
+    log_line(LogLevel::kError, fmt::format("OpenGL error {}: {}", id, message));
 }
 
 std::string gl_string(GLenum name) {
@@ -128,10 +129,10 @@ struct Context::Impl {
     eglBindAPI(traits_of(info.api).api);
     if (eglGetCurrentContext() == context &&
         eglMakeCurrent(display.get(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) != EGL_TRUE) {
-      spdlog::warn("{}", egl_error("eglMakeCurrent"));
+      log_line(LogLevel::kWarning, egl_error("eglMakeCurrent"));
     }
     if (eglDestroyContext(display.get(), context) != EGL_TRUE) {
-      spdlog::warn("{}", egl_error("eglDestroyContext"));
+      log_line(LogLevel::kWarning, egl_error("eglDestroyContext"));
     }
   }
 

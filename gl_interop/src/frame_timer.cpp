@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "quincunx_gl/frame_timer.h"
 
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fence.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
@@ -124,7 +125,9 @@ bool grow_alike(const LoadTimes& light, const LoadTimes& heavy) {
   constexpr double kMostAgreement = 1.2;
   const double grown = heavy.host - light.host;
   const double seen = heavy.query - light.query;
-  spdlog::debug("frame timer: a known load grew by {:.2f} ms, by GL_TIME_ELAPSED {:.2f} ms", grown, seen);
+  log_line(
+      LogLevel::kDebug,
+      fmt::format("frame timer: a known load grew by {:.2f} ms, by GL_TIME_ELAPSED {:.2f} ms", grown, seen));
   // llvmpipe may answer with the time since the machine started: then only differences are right.
   const bool plausible =
       heavy.query <= kMostAgreement * heavy.host && light.query <= kMostAgreement * light.host;
@@ -185,10 +188,12 @@ Result<FrameTimer> FrameTimer::create(std::optional<TimerMethod> method) try {
   if (!method) {
     const bool has_queries = capabilities().time_queries;
     method = has_queries && queries_agree() ? TimerMethod::kQuery : TimerMethod::kFence;
-    spdlog::info("frame timer: {}",
-                 *method == TimerMethod::kQuery ? "GL_TIME_ELAPSED"
-                 : has_queries ? "fences (GL_TIME_ELAPSED does not agree with them on a known load)"
-                               : "fences (the OpenGL ES context has no GL_EXT_disjoint_timer_query)");
+    log_line(
+        LogLevel::kInfo,
+        fmt::format("frame timer: {}",
+                    *method == TimerMethod::kQuery ? "GL_TIME_ELAPSED"
+                    : has_queries ? "fences (GL_TIME_ELAPSED does not agree with them on a known load)"
+                                  : "fences (the OpenGL ES context has no GL_EXT_disjoint_timer_query)"));
   }
   impl->method = *method;
   for (Impl::Slot& slot : impl->slots) {

@@ -3,6 +3,8 @@
 """quincunx.py: its structs are those of the headers, its pictures those of a reference, its errors sentences."""
 import os
 import re
+import subprocess
+import sys
 import tempfile
 import unittest
 import unittest.mock
@@ -263,6 +265,17 @@ class Controllers(unittest.TestCase):
             quincunx.QualityController(output=(64, 64), methods=["best"])
         with self.assertRaisesRegex(TypeError, "'jiter_x' is no input; there are: velocity_scale_x"):
             quincunx.Resolver((8, 8)).resolve(np.zeros((8, 8, 4)), jiter_x=1)
+
+
+class Log(unittest.TestCase):
+    def test_lines_go_to_logging(self):
+        no_cache = {**os.environ, "QUINCUNX_CACHE_DIR": ""}  # so that the device's clock is measured, which is told
+        code = ("import logging, sys, quincunx\n"
+                "logging.basicConfig(stream=sys.stdout, level='DEBUG', format='%(levelname)s %(name)s %(message)s')\n"
+                "quincunx.Resolver((8, 8), method='point')")
+        run = subprocess.run([sys.executable, "-c", code], env=no_cache, capture_output=True, text=True, check=True)
+        self.assertRegex(run.stdout, r"(?m)^(DEBUG|INFO) quincunx pass times of '.+': ")
+        self.assertEqual(run.stderr, "")
 
 
 class Example(unittest.TestCase):

@@ -186,9 +186,9 @@ class DeviceProfiles : public ::testing::Test {
 
   // Returns the warnings of opening the device.
   static std::string warnings_of_opening(DeviceProfile& used) {
-    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
     used = open().profile();
-    return ::testing::internal::GetCapturedStdout();
+    return ::testing::internal::GetCapturedStderr();
   }
 
   fs::path folder_;

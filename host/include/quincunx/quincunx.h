@@ -56,6 +56,14 @@ QUINCUNX_API const char* quincunx_version(void); /* "0.1.0"; static */
 /* Why the last call of this thread that failed did so; "" where none has. Valid until the next one that fails. */
 QUINCUNX_API const char* quincunx_last_error(void);
 
+/* Levels of the log's lines. */
+enum { QUINCUNX_LOG_DEBUG = 0, QUINCUNX_LOG_INFO = 1, QUINCUNX_LOG_WARNING = 2, QUINCUNX_LOG_ERROR = 3 };
+/* `message`: one line of UTF-8 without its end, valid until the function returns. */
+typedef void (*quincunx_log_function)(int32_t level, const char* message, void* user);
+/* As quincunx::set_log() of advanced/log.h, which says which thread calls: all lines of the process go to `function`,
+ * with `user`; NULL: warnings and errors to stderr. At any time, from any thread. Errors: QUINCUNX_OUT_OF_MEMORY. */
+QUINCUNX_API quincunx_status quincunx_set_log(quincunx_log_function function, void* user);
+
 /* Sets every field to its default but struct_size, which it reads. Errors: QUINCUNX_INVALID_ARGUMENT. */
 QUINCUNX_API quincunx_status quincunx_settings_init(quincunx_settings* settings);
 

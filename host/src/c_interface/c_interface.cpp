@@ -15,6 +15,7 @@
 #include "c_interface/calls.h"
 #include "c_interface/sized_struct.h"
 #include "quincunx/advanced/device_profile.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 
@@ -130,6 +131,21 @@ const char* quincunx_version(void) {
 
 const char* quincunx_last_error(void) {
   return quincunx::c::message.c_str();
+}
+
+static_assert(static_cast<int>(quincunx::LogLevel::kError) == QUINCUNX_LOG_ERROR);
+
+quincunx_status quincunx_set_log(quincunx_log_function function, void* user) {
+  return guarded([=]() -> Status {
+    if (function == nullptr) {
+      quincunx::set_log({});
+    } else {
+      quincunx::set_log([=](quincunx::LogLevel level, const std::string& line) {
+        function(static_cast<int32_t>(level), line.c_str(), user);
+      });
+    }
+    return {};
+  });
 }
 
 quincunx_status quincunx_settings_init(quincunx_settings* settings) {

@@ -2,7 +2,6 @@
 #include "quincunx/advanced/device_profile.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <fstream>
 #include <iterator>
@@ -11,6 +10,7 @@
 #include "device/device_profile_file.h"
 #include "device/program_cache.h"
 #include "embedded_files.h"
+#include "quincunx/advanced/log.h"
 
 namespace quincunx {
 namespace {
@@ -132,8 +132,9 @@ std::optional<DeviceProfile> tuned_profile(const Device::Impl& device) {
   const Result<ProfileFile> file = parse_profile(text);
   std::string fault = file.ok() ? misfit(file.value().owner, owner_of(device.info)) : file.status().message();
   if (!fault.empty()) {
-    spdlog::warn("device profile {} is not used: {}; quincunx-bench --tune writes a new one", path->string(),
-                 fault);
+    log_line(LogLevel::kWarning,
+             fmt::format("device profile {} is not used: {}; quincunx-bench --tune writes a new one",
+                         path->string(), fault));
     return std::nullopt;
   }
   DeviceProfile profile = file.value().profile;
@@ -146,7 +147,8 @@ std::optional<DeviceProfile> shipped_profile(const DeviceInfo& info) {
   for (const EmbeddedFile& shipped : shipped_profile_files()) {
     const Result<ProfileFile> file = parse_profile(std::string(shipped.text));
     if (!file.ok()) {
-      spdlog::warn("the shipped device profile {} is not used: {}", shipped.name, file.status().message());
+      log_line(LogLevel::kWarning, fmt::format("the shipped device profile {} is not used: {}", shipped.name,
+                                               file.status().message()));
       continue;
     }
     if (file.value().owner.platform != wanted.platform || file.value().owner.kind != wanted.kind) continue;

@@ -2,7 +2,6 @@
 #include "device/program_cache.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 #include <xxhash.h>
 
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "embedded_kernels.h"
+#include "quincunx/advanced/log.h"
 
 namespace quincunx {
 
@@ -83,7 +83,8 @@ bool write_whole_file(const fs::path& path, std::string_view bytes) {
 void write_cache_entry(const fs::path& path, const std::vector<unsigned char>& bytes) {
   std::string entry = fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
   entry.append(bytes.begin(), bytes.end());
-  if (!write_whole_file(path, entry)) spdlog::debug("cache: cannot write {}", path.string());
+  if (!write_whole_file(path, entry))
+    log_line(LogLevel::kDebug, fmt::format("cache: cannot write {}", path.string()));
 }
 
 namespace {
@@ -134,7 +135,8 @@ std::optional<cl::Program> load(const Device::Impl& device, const fs::path& path
     cl::Kernel(program, name.c_str());  // which a damaged program may lack
     return program;
   } catch (const cl::Error& error) {
-    spdlog::debug("program cache: {} rejected ({}); rebuilding", path.string(), error_name(error.err()));
+    log_line(LogLevel::kDebug, fmt::format("program cache: {} rejected ({}); rebuilding", path.string(),
+                                           error_name(error.err())));
     return std::nullopt;
   }
 }

@@ -2,7 +2,6 @@
 #include "device/timer_validation.h"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <filesystem>
@@ -11,6 +10,7 @@
 
 #include "device/program_cache.h"
 #include "quincunx/advanced/cache_folder.h"
+#include "quincunx/advanced/log.h"
 
 namespace quincunx {
 namespace {
@@ -111,11 +111,13 @@ std::string doubt_about_events(const Device::Impl& device) {
 
 PassTimer believed(const Device::Impl& device, const std::string& doubt) {
   if (doubt.empty()) {
-    spdlog::debug("pass times of '{}': OpenCL events agree with the host's clock", device.info.name);
+    log_line(LogLevel::kDebug,
+             fmt::format("pass times of '{}': OpenCL events agree with the host's clock", device.info.name));
     return PassTimer::kEvents;
   }
-  spdlog::info("pass times of '{}': host clock, because OpenCL events are not believed: {}", device.info.name,
-               doubt);
+  log_line(LogLevel::kInfo,
+           fmt::format("pass times of '{}': host clock, because OpenCL events are not believed: {}",
+                       device.info.name, doubt));
   return PassTimer::kHostClock;
 }
 

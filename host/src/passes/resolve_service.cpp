@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "passes/pass_clear_region.h"
 #include "plan/native_frame.h"
 #include "plan/validate.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {
@@ -197,7 +197,7 @@ ResolveService::~ResolveService() {
   // The device may still write the counters of the ring.
   const Status status = finish();
   if (status.ok()) return;
-  spdlog::warn("closing the resolve service: {}", status.message());
+  log_line(LogLevel::kWarning, fmt::format("closing the resolve service: {}", status.message()));
   never_free(std::move(impl_));
 }
 

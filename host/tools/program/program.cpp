@@ -12,9 +12,27 @@
 #include <exception>
 
 #include "quincunx/advanced/device_profile.h"
+#include "quincunx/advanced/log.h"
 #include "quincunx/device.h"
 
 namespace quincunx::tools {
+namespace {
+
+spdlog::level::level_enum spdlog_level(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      return spdlog::level::err;
+  }
+  return spdlog::level::err;
+}
+
+}  // namespace
 
 void set_up_log(bool quiet, int verbosity) {
   auto log = spdlog::stderr_color_mt("quincunx");
@@ -24,6 +42,7 @@ void set_up_log(bool quiet, int verbosity) {
                  : verbosity == 1 ? spdlog::level::debug
                                   : spdlog::level::info);
   spdlog::set_default_logger(log);
+  set_log([](LogLevel level, const std::string& message) { spdlog::log(spdlog_level(level), message); });
 }
 
 int fail(const Status& status) {

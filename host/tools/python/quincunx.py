@@ -8,9 +8,12 @@
 
 It needs NumPy and libquincunx.so.1, which is looked for where the system looks for libraries, or is the file that the
 environment variable QUINCUNX_LIBRARY names. quincunx.h says what every setting and input means, docs/inputs.md has the
-conventions. Errors are quincunx.Error with the library's sentence. A Resolver belongs to one thread at a time.
+conventions. Errors are quincunx.Error with the library's sentence; its log goes to logging's
+"quincunx". A Resolver belongs to one thread at a time.
 """
+import atexit
 import ctypes
+import logging
 import os
 from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint64, c_void_p
 
@@ -141,6 +144,11 @@ def load():
 
 
 LIBRARY = load()
+LEVELS = (logging.DEBUG, logging.INFO, logging.WARNING, logging.ERROR)
+LOG = ctypes.CFUNCTYPE(None, c_int32, c_char_p, c_void_p)(
+    lambda level, message, _: logging.getLogger("quincunx").log(LEVELS[level], "%s", message.decode()))
+LIBRARY.quincunx_set_log(LOG, None)
+atexit.register(LIBRARY.quincunx_set_log, None, None)  # the library may outlive Python
 
 
 def call(name, *arguments):
