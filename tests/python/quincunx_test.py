@@ -302,7 +302,7 @@ class Example(unittest.TestCase):
 class Errors(unittest.TestCase):
     def test_what_the_library_refuses_is_its_sentence(self):
         resolver = quincunx.Resolver((40, 30), method="bilinear", present=0)
-        with self.assertRaisesRegex(quincunx.Error, "render_extent is 50x20; it must lie within 1x1 and the target's 40x30"):
+        with self.assertRaisesRegex(quincunx.Error, "render_width x render_height is 50x20; it must lie within 1x1 and the target's 40x30"):
             resolver.resolve(np.zeros((20, 50, 4)))
         with self.assertRaisesRegex(quincunx.Error, "velocity is missing; the plan needs it as RG32F"):
             quincunx.Resolver((40, 30), transparents=False).resolve(np.zeros((20, 30, 4)))

@@ -216,7 +216,7 @@ TEST(CInterface, ABadFrameIsRefusedWhole) {
     bad.jitter.y = 2;
     const auto before = rig.resolved().texels();
     ASSERT_EQ(rig.resolve(bad), QUINCUNX_INVALID_ARGUMENT);
-    EXPECT_TRUE(tells("jitter.y is 2; it must lie in [-1, 1]")) << quincunx_last_error();
+    EXPECT_TRUE(tells("jitter_y is 2; it must lie in [-1, 1]")) << quincunx_last_error();
     ASSERT_EQ(rig.resolved().texels(), before);
     const std::vector<Pixel> resolved = expected.resolve(frame);
     ASSERT_EQ(rig.resolve(frame), QUINCUNX_OK) << quincunx_last_error();

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "c_interface/c_settings.h"
 #include "c_interface/sized_struct.h"
 #include "plan/resources.h"
 #include "quincunx/c/settings.h"
@@ -217,9 +218,9 @@ Result<Frame> checked_frame(const ResolvePlan& plan, const quincunx_inputs* inpu
   if (Status status = read_inputs(plan, in, frame.inputs, frame.host_inputs); !status.ok()) return status;
   if (Status status = read_focus(plan, in.focus, frame); !status.ok()) return status;
   if (Status status = read_outputs(plan, out, frame); !status.ok()) return status;
-  Status status = frame.focus ? validate(plan, frame.inputs, *frame.focus, frame.outputs)
-                              : validate(plan, frame.inputs, frame.outputs);
-  return status.ok() ? Result<Frame>(frame) : status;
+  const Status status = frame.focus ? validate(plan, frame.inputs, *frame.focus, frame.outputs)
+                                    : validate(plan, frame.inputs, frame.outputs);
+  return status.ok() ? Result<Frame>(frame) : in_c_words(status);
 }
 
 Result<ImageView> memory_object(const char* name, const quincunx_image* image) {

@@ -205,7 +205,7 @@ quincunx_status quincunx_plan_create(const quincunx_settings* settings, quincunx
     const auto scene = quincunx::c::from_c(settings);
     if (!scene.ok()) return scene.status();
     auto made = quincunx::plan_for(scene->needs, scene->resolve);
-    if (!made.ok()) return made.status();
+    if (!made.ok()) return quincunx::c::in_c_words(made.status());
     return plan_of(std::move(made).value());
   });
 }
@@ -322,7 +322,7 @@ quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inpu
     const quincunx::FrameReport made =
         frame->focus ? service->service.dispatch(frame->inputs, *frame->focus, frame->outputs, frame->sync)
                      : service->service.dispatch(frame->inputs, frame->outputs, frame->sync);
-    if (!made.ok()) return made.status;
+    if (!made.ok()) return quincunx::c::in_c_words(made.status);
     if (report != nullptr) quincunx::c::write_report(made, own, report);
     return service->host.fetch(frame.value());
   });
@@ -356,7 +356,8 @@ quincunx_status quincunx_clear(quincunx_service* service, const quincunx_image* 
     if (service == nullptr) return null("service");
     if (value == nullptr) return null("value");
     const auto view = quincunx::c::memory_object("image", image);
-    return view.ok() ? service->service.clear(view.value(), {width, height}, value) : view.status();
+    return view.ok() ? quincunx::c::in_c_words(service->service.clear(view.value(), {width, height}, value))
+                     : view.status();
   });
 }
 

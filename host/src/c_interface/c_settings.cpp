@@ -3,6 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <string>
+#include <string_view>
+#include <utility>
+
 #include "c_interface/sized_struct.h"
 
 namespace quincunx::c {
@@ -147,6 +152,81 @@ quincunx_needs needs_of(const ResolvePlan& plan) {
   needs.accumulates = plan.accumulates();
   needs.frame_bytes = plan.frame_bytes();
   return needs;
+}
+
+namespace {
+
+// Fields whose names differ, as sentences have them: in C++ and in C.
+constexpr std::pair<std::string_view, std::string_view> kNames[] = {
+    {"settings.output_extent", "settings.output_width x output_height"},
+    {"settings.target_extent", "settings.target_width x target_height"},
+    {"settings.colour", "settings.colour_format"},
+    {"settings.velocity", "settings.velocity_format"},
+    {"settings.targets.particle_extent", "settings.particle_target_width x particle_target_height"},
+    {"settings.targets.clear", "settings.clear"},
+    {"settings.output.min_extent", "settings.min_output_width x min_output_height"},
+    {"settings.output.linear", "settings.linear_format"},
+    {"settings.output.present", "settings.present"},
+    {"settings.filter.grain", "settings.grain"},
+    {"settings.quincunx.velocity_weight", "settings.velocity_weight"},
+    {"settings.quincunx.residual_weight", "settings.residual_weight"},
+    {"settings.temporal.view", "settings.temporal_view"},
+    {"settings.temporal.history", "settings.history_format"},
+    {"settings.blur.shutter", "settings.shutter"},
+    {"settings.blur.samples", "settings.blur_samples"},
+    {"settings.focus.extent", "settings.focus_width x focus_height"},
+    {"settings.focus.target_extent", "settings.focus_target_width x focus_target_height"},
+    {"settings.control.fades", "settings.fades"},
+    {"render_extent", "render_width x render_height"},
+    {"output_extent", "output_width x output_height"},
+    {"particle_render_extent", "particles.render_width x render_height"},
+    {"particle_colour", "particles.colour"},
+    {"particle_depth", "particles.depth"},
+    {"particle_reactive", "particles.reactive"},
+    {"jitter.x", "jitter_x"},
+    {"jitter.y", "jitter_y"},
+    {"velocity_scale.x", "velocity_scale_x"},
+    {"velocity_scale.y", "velocity_scale_y"},
+    {"camera.clip_to_previous_clip", "clip_to_previous_clip"},
+    {"fading_from", "fade.from"},
+    {"fade_weight", "fade.weight"},
+};
+
+std::string_view c_name(std::string_view name) {
+  for (const auto& [own, in_c] : kNames)
+    if (name == own) return in_c;
+  return name;
+}
+
+// Of an image's part, "particle_colour.extent", both are translated.
+std::string c_words(std::string_view name) {
+  const std::size_t dot = name.rfind('.');
+  if (dot == name.npos || c_name(name) != name) return std::string(c_name(name));
+  const std::string_view image = name.substr(0, dot), part = name.substr(dot + 1);
+  const bool is_image = image != "settings";
+  return std::string(c_name(image)) + "." +
+         std::string(is_image && part == "extent"    ? "width x height"
+                     : is_image && part == "storage" ? "place"
+                                                     : part);
+}
+
+}  // namespace
+
+Status in_c_words(const Status& status) {
+  const std::string& message = status.message();
+  const auto in_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+  };
+  std::string words;
+  for (std::size_t at = 0; at < message.size();) {
+    std::size_t end = at;
+    while (end < message.size() && in_name(message[end]))
+      ++end;
+    words += c_words(std::string_view(message).substr(at, end - at));
+    if (end < message.size()) words += message[end++];
+    at = end;
+  }
+  return {status.code(), std::move(words)};
 }
 
 }  // namespace quincunx::c

@@ -22,4 +22,7 @@ Result<SceneSettings> from_c(const quincunx_settings* settings);
 // struct_size is 0.
 quincunx_needs needs_of(const ResolvePlan& plan);
 
+// Returns the status with C's names of the fields in place of those of C++.
+Status in_c_words(const Status& status);
+
 }  // namespace quincunx::c
