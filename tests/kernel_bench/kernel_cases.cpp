@@ -30,7 +30,8 @@ Scene scene_of(Stage& stage, double scale, PixelFormat colour) {
   Scene scene;
   scene.suffix = fmt::format(" {:.2f} {}", scale, colour == PixelFormat::kRGBA16F ? "half" : "float");
   scene.scale = scale;
-  scene.settings = {.output_extent = stage.output(),
+  scene.settings = {.method = Method::kQuincunx,
+                    .output_extent = stage.output(),
                     .target_extent = render,
                     .colour = colour,
                     .output = {.present = false}};
@@ -46,6 +47,7 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
   std::vector<Pass*> passes;
   for (const std::string& kernel : kernels) {
     passes.push_back(chain->find(kernel));
+    if (passes.back() == nullptr) throw std::logic_error("the plan has no pass " + kernel);
     what.bytes += bytes_of(passes.back()->spec(), largest_extents(scene.settings));
   }
   Stage::add(
