@@ -45,7 +45,7 @@ class Process {
   // The exit code; -1 when it was ended by a signal, -2 when it still runs after a time that is long for any
   // test here.
   int wait() {
-    for (int i = 0; i < 1200 && pid_ > 0; ++i) {
+    for (int i = 0; i < 6000 && pid_ > 0; ++i) {
       int status = 0;
       if (waitpid(pid_, &status, WNOHANG) == pid_) {
         pid_ = -1;
