@@ -296,6 +296,45 @@ TEST(ResolvePlan, EveryBadFieldIsNamed) {
   }
 }
 
+TEST(ResolvePlan, ValuesThatHaveNoNameAreRefused) {
+  const std::pair<const char*, void (*)(ResolveSettings&)> cases[] = {
+      {"method is 99; it must lie in [0, 10]", [](auto& s) { s.method = Method(99); }},
+      {"method is -1; it must lie in [0, 10]", [](auto& s) { s.method = Method(-1); }},
+      {"conventions.depth is 9; it must lie in [0, 4]",
+       [](auto& s) { s.conventions.depth = DepthConvention(9); }},
+      {"conventions.clip_space is 3; it must lie in [0, 2]",
+       [](auto& s) { s.conventions.clip_space = ClipSpace(3); }},
+      {"conventions.velocity_unit is 3; it must lie in [0, 2]",
+       [](auto& s) { s.conventions.velocity_unit = VelocityUnit(3); }},
+      {"conventions.origin is 2; it must lie in [0, 1]", [](auto& s) { s.conventions.origin = Origin(2); }},
+      {"conventions.drawn_velocity is 2; it must lie in [0, 1]",
+       [](auto& s) { s.conventions.drawn_velocity = DrawnVelocity(2); }},
+      {"conventions.sky_motion is 3; it must lie in [0, 2]",
+       [](auto& s) { s.conventions.sky_motion = SkyMotion(3); }},
+      {"targets.storage is 2; it must lie in [0, 1]", [](auto& s) { s.targets.storage = Storage(2); }},
+      {"targets.placement is 255; it must lie in [0, 1]",
+       [](auto& s) { s.targets.placement = Targets(255); }},
+      {"targets.shading is 2; it must lie in [0, 1]", [](auto& s) { s.targets.shading = Shading(2); }},
+      {"output.tone_map is 3; it must lie in [0, 2]", [](auto& s) { s.output.tone_map = ToneMap(3); }},
+      {"quincunx.form is 3; it must lie in [0, 2]", [](auto& s) { s.quincunx.form = TwoFrameForm(3); }},
+      {"quincunx.sampling is 2; it must lie in [0, 1]", [](auto& s) { s.quincunx.sampling = Sampling(2); }},
+      {"temporal.preset is 9; it must lie in [0, 2]", [](auto& s) { s.temporal.preset = TemporalPreset(9); }},
+      {"temporal.view is 8; it must lie in [0, 7]", [](auto& s) { s.temporal.view = TemporalView(8); }},
+      {"colour is unknown; it must be RGBA8, RGBA16F or RGBA32F",
+       [](auto& s) { s.colour = PixelFormat(99); }},
+      {"velocity is unknown; it must be RG16F or RG32F", [](auto& s) { s.velocity = PixelFormat(99); }},
+      {"output.linear is unknown; it must be RGBA16F or RGBA32F",
+       [](auto& s) { s.output.linear = PixelFormat(99); }},
+      {"temporal.history is unknown; it must be RGBA16F or RGBA32F",
+       [](auto& s) { s.temporal.history = PixelFormat(99); }},
+  };
+  for (const auto& [complaint, spoil] : cases) {
+    ResolveSettings bad = settings(Method::kTemporal);
+    spoil(bad);
+    EXPECT_EQ(plan_for({}, bad).status().message(), std::string("settings.") + complaint);
+  }
+}
+
 // Nobody's change to a plan is passed over: what differs from the planner's own is refused by name.
 TEST(ResolvePlan, AnEditedPlanIsRefusedByName) {
   Result<Device> device = Device::open();

@@ -23,6 +23,15 @@ bool usable(Extent extent) {
 class Complaints {
  public:
   void add(std::string text) { text_ += (text_.empty() ? "" : "; ") + std::move(text); }
+
+  // Checks a value of an enum that counts from 0 to `last`.
+  template <typename Value>
+  void check_named(const char* field, Value value, Value last) {
+    const int number = static_cast<int>(value), highest = static_cast<int>(last);
+    if (number >= 0 && number <= highest) return;
+    add(fmt::format("settings.{} is {}; it must lie in [0, {}]", field, number, highest));
+  }
+
   Status status() const { return text_.empty() ? Status() : Status::invalid(text_); }
 
  private:
@@ -68,8 +77,29 @@ void check_focus(Complaints& complaints, const ResolveSettings& settings) {
   if (focus.target_extent != Extent{}) check_extent(complaints, "focus.target_extent", focus.target_extent);
 }
 
+// Formats are checked apart: few of them suit a field.
+void check_named_values(Complaints& complaints, const ResolveSettings& settings) {
+  complaints.check_named("method", settings.method, Method::kTemporal);
+  const InputConventions& given = settings.conventions;
+  complaints.check_named("conventions.depth", given.depth, DepthConvention::kLinear);
+  complaints.check_named("conventions.clip_space", given.clip_space, ClipSpace::kVulkan);
+  complaints.check_named("conventions.velocity_unit", given.velocity_unit, VelocityUnit::kNdc);
+  complaints.check_named("conventions.origin", given.origin, Origin::kBottom);
+  complaints.check_named("conventions.drawn_velocity", given.drawn_velocity, DrawnVelocity::kDilated);
+  complaints.check_named("conventions.sky_motion", given.sky_motion, SkyMotion::kEvidence);
+  complaints.check_named("targets.storage", settings.targets.storage, Storage::kImage);
+  complaints.check_named("targets.placement", settings.targets.placement, Targets::kPlaced);
+  complaints.check_named("targets.shading", settings.targets.shading, Shading::kCheckerboard);
+  complaints.check_named("output.tone_map", settings.output.tone_map, ToneMap::kAces);
+  complaints.check_named("quincunx.form", settings.quincunx.form, TwoFrameForm::kReprojected);
+  complaints.check_named("quincunx.sampling", settings.quincunx.sampling, Sampling::kBilinear);
+  complaints.check_named("temporal.preset", settings.temporal.preset, TemporalPreset::kQuality);
+  complaints.check_named("temporal.view", settings.temporal.view, TemporalView::kFar);
+}
+
 Status check(const ResolveSettings& settings) {
   Complaints complaints;
+  check_named_values(complaints, settings);
   check_extent(complaints, "output_extent", settings.output_extent);
   check_extent(complaints, "target_extent", settings.target_extent);
   check_min_output_extent(complaints, settings);
