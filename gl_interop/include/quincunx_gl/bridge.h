@@ -44,7 +44,7 @@ struct BridgeSettings {
   PixelFormat velocity_format = PixelFormat::kRG16F;  // imported also RG32F
   PixelFormat picture =
       PixelFormat::kRGBA8;  // RGBA8: the presented picture comes back; RGBA16F, RGBA32F: the linear one
-  int slots = 3;            // >= 3 where the previous frame is read
+  int slots = 3;            // 2 to 16; from 3 on a frame can be drawn while others are resolved
   Targets targets = Targets::kViewport;  // kPlaced: HostCopy only, kGl then fails
 };
 

@@ -21,7 +21,7 @@ namespace quincunx {
 // Where the camera was: for velocity from depth, and to know surfaces again. Column-major: (ndc.x, ndc.y, depth, 1)
 // of this frame, jitter excluded, becomes homogeneous clip coordinates of the previous frame, jitter excluded;
 // ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
-// target holds. All as InputConventions::clip_space has it.
+// target holds. All as InputConventions::clip_space has it. The identity: the camera stands still, or nobody knows.
 struct CameraMotion {
   std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
@@ -29,8 +29,10 @@ struct CameraMotion {
 // Returns the jitter of a frame for Method::kTemporal, in render pixels, +x right, +y down, within half a pixel: one of
 // jitter_phases() places, in turns (Halton in bases 2 and 3, about the mean of the places). A frame is drawn with it
 // where clip coordinates, +y up, are shifted by (-2 x / render.width, 2 y / render.height) times w, and is told it by
-// FrameInputs::jitter. Without jitter, or with the same in all frames, several frames see no more than one: a still
-// picture stays coarse, and its edges crawl when it moves. Pure; {0, 0} where an extent is empty.
+// FrameInputs::jitter. Where images begin with the lowest row (Origin::kBottom) the jitter's y counts upwards, so the
+// shift is (-2 x / render.width, -2 y / render.height) times w. Without jitter, or with the same in all frames, several
+// frames see no more than one: a still picture stays coarse, and its edges crawl when it moves. Pure; {0, 0} where an
+// extent is empty.
 [[nodiscard]] QUINCUNX_API Vec2 jitter(std::uint64_t frame_index, Extent render, Extent output);
 // Returns ceil(8 output.area() / render.area()), at most 512: each output pixel then gets eight samples.
 [[nodiscard]] QUINCUNX_API int jitter_phases(Extent render, Extent output);

@@ -126,8 +126,8 @@ struct ControlSettings {
 // The first seven say what most callers need; the groups have defaults for all others.
 struct ResolveSettings {
   Method method = Method::kTemporal;
-  Extent output_extent = {};                   // the picture's size
-  Extent target_extent = {};                   // the inputs' allocated size: at least the largest viewport
+  Extent output_extent = {};  // the picture's size
+  Extent target_extent = {};  // the largest viewport; inputs that are made once have its size
   PixelFormat colour = PixelFormat::kRGBA16F;  // the input's: RGBA8, RGBA16F or RGBA32F
   PixelFormat velocity = PixelFormat::kRG16F;  // the input's: RG16F or RG32F
   InputConventions conventions = {};           // what the inputs mean

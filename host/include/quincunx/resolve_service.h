@@ -4,7 +4,7 @@
 //   auto device = quincunx::Device::open();
 //   auto plan = quincunx::plan_for(needs, settings);
 //   auto service = quincunx::ResolveService::create(device.value(), plan.value());
-//   FrameReport report = service.value().dispatch({.colour = ..., .render = ...}, {.presented = ...});
+//   FrameReport report = service.value().dispatch({.colour = ..., .render_extent = ...}, {.presented = ...});
 //
 // create() compiles (or loads from the program cache), allocates and warms up; after it a frame allocates
 // nothing, compiles nothing and does not wait for the device; only a caller who runs more than six frames

@@ -153,7 +153,8 @@ void add_picture_options(CommandLine& app, ResolveOptions& options) {
   app.add_option("--exposure", options.exposure,
                  "Multiplies linear colour in a PNG (default: 1, or as recorded)")
       .positive();
-  add_choice(app, "--store", options.stored, kTypes, "half (default) or float in an EXR");
+  add_choice(app, "--store", options.stored, kTypes,
+             "half or float in an EXR (default: half, or as recorded)");
   app.add_option("--truth", options.truth, "True pictures to score the frames against, where there are any")
       .type_name("PATTERN");
   app.add_option("--truth-colour,--truth-color", options.truth_colour,

@@ -11,13 +11,13 @@
 namespace quincunx {
 
 // Values of FrameInputs::depth and particle_depth. Exactly the value of what is farthest means that nothing is there:
-// infinitely far.
+// infinitely far. d: the distance along the view axis; n, f: near_plane and far_plane.
 enum class DepthConvention : std::uint8_t {
-  kReversedInfinite,  // near / distance: 1 at the near plane, 0 at infinity
-  kReversed,          // 1 at the near plane, 0 at the far plane
-  kInfinite,          // 0 at the near plane, 1 at infinity
-  kForward,           // 0 at the near plane, 1 at the far plane
-  kLinear,            // the distance along the view axis; infinity, 0 and less: nothing is there
+  kReversedInfinite,  // n / d: 1 at the near plane, 0 at infinity
+  kReversed,          // n (f - d) / (d (f - n)): 1 at the near plane, 0 at the far plane
+  kInfinite,          // 1 - n / d: 0 at the near plane, 1 at infinity
+  kForward,           // f (d - n) / (d (f - n)): 0 at the near plane, 1 at the far plane
+  kLinear,            // d; infinity, 0 and less: nothing is there
 };
 
 // Whether a frame needs FrameInputs::near_plane, and far_plane.
