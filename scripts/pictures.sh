@@ -156,14 +156,14 @@ draw_sky() {
   local resolve=(build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 24 -q)
   build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
   dump . "${run[@]}" --frame 24 --stages truth --truth 8 --exposure 1
-  for far in drawn camera evidence; do
+  for far in as-drawn camera evidence; do
     "${resolve[@]}" --out "$work/$far.%04d.png" --method temporal --sky-motion "$far"
     add_tile "--sky-motion $far" "$work/$far.0024.png" "$sun" 300
     convert "$work/$far.0024.png" \( "$truth" -crop 640x360+0+0 +repage \) -compose difference -composite \
       -colorspace gray -level 0,12% "$work/$far.error.png"
   done
   add_tile "truth, 64 samples" "$truth" "$sun" 300
-  for far in drawn camera evidence; do
+  for far in as-drawn camera evidence; do
     add_tile "its error, 8 times" "$work/$far.error.png" "$wheel" 100
   done
   "${resolve[@]}" --out "$work/point.%04d.png" --method point

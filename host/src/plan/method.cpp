@@ -251,7 +251,7 @@ const char* name_of(TemporalView view) {
 const char* name_of(SkyMotion motion) {
   switch (motion) {
     case SkyMotion::kAsDrawn:
-      return "drawn";
+      return "as-drawn";
     case SkyMotion::kCamera:
       return "camera";
     case SkyMotion::kEvidence:

@@ -67,8 +67,8 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
       .show_default()
       .type_name("K");
   add_choice(app, "--sky-motion", settings.conventions.sky_motion, choices<SkyMotion>(),
-             "What moves an infinitely far sample whose velocity is 0: drawn (nothing), camera or evidence "
-             "(default: drawn)");
+             "What moves an infinitely far sample whose velocity is 0: as-drawn (nothing), camera or "
+             "evidence (default: as-drawn)");
   add_choice(app, "--view", settings.temporal.view, choices<TemporalView>(),
              "What temporal shows: picture, confidence, rejection, phase, layers, coverage, near or far "
              "(default: picture)");
@@ -98,7 +98,8 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
   return fmt::format(
-      "{}, view {}, far {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, sharpness "
+      "{}, view {}, sky motion {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, "
+      "sharpness "
       "{}, blur {} of {} "
       "samples",
       name_of(variant_of(settings)), name_of(settings.temporal.view),

@@ -84,7 +84,7 @@ QUINCUNX_API const char* name_of(DepthConvention depth);  // "reversed infinite"
 QUINCUNX_API const char* name_of(ClipSpace clip_space);   // "OpenGL"
 QUINCUNX_API const char* name_of(VelocityUnit unit);      // "pixels"
 QUINCUNX_API const char* name_of(Origin origin);          // "bottom"
-QUINCUNX_API const char* name_of(SkyMotion motion);       // "camera"
+QUINCUNX_API const char* name_of(SkyMotion motion);       // "as-drawn"
 QUINCUNX_API const char* name_of(DrawnVelocity drawn);    // "dilated"
 
 }  // namespace quincunx
