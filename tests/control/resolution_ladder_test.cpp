@@ -122,7 +122,7 @@ TEST(ResolutionLadder, BadSettingsNameTheField) {
   refused({.output_extent = {1, 0}}, "output");
   refused({.output_extent = {-4, 4}}, "output");
   refused({.output_extent = {40000, 4}}, "output");
-  for (const double bad : {0.0, -1.0, nan, infinity})
+  for (const double bad : {0.0, -1.0, nan, infinity, 2.5})
     refused({.output_extent = {64, 64}, .min_scale = bad}, "min_scale");
   for (const double bad : {0.4, -1.0, nan, infinity, 2.5}) {
     refused({.output_extent = {64, 64}, .min_scale = 0.5, .max_scale = bad}, "max_scale");

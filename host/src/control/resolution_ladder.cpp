@@ -11,6 +11,7 @@ namespace quincunx {
 namespace {
 
 constexpr int kLargestSide = 32768;
+constexpr double kMaxScale = 2;
 
 struct Range {
   int low = 0;
@@ -91,13 +92,13 @@ Status check(const LadderSettings& settings) {
     return Status::invalid(fmt::format("output_extent is {}x{}; both sides must lie in [1, {}]", output.width,
                                        output.height, kLargestSide));
   }
-  if (!(settings.min_scale > 0) || !std::isfinite(settings.min_scale)) {
+  if (!(settings.min_scale > 0 && settings.min_scale <= kMaxScale)) {
     return Status::invalid(
-        fmt::format("min_scale is {}; it must be a positive finite number", settings.min_scale));
+        fmt::format("min_scale is {}; it must be above 0 and at most {}", settings.min_scale, kMaxScale));
   }
-  if (!(settings.max_scale >= settings.min_scale && settings.max_scale <= 2)) {
-    return Status::invalid(fmt::format("max_scale is {}; it must lie in [{}, 2], the first being min_scale",
-                                       settings.max_scale, settings.min_scale));
+  if (!(settings.max_scale >= settings.min_scale && settings.max_scale <= kMaxScale)) {
+    return Status::invalid(fmt::format("max_scale is {}; it must lie in [{}, {}], the first being min_scale",
+                                       settings.max_scale, settings.min_scale, kMaxScale));
   }
   if (settings.step < 1 || settings.step > kLargestSide) {
     return Status::invalid(

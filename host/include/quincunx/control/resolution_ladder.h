@@ -25,7 +25,7 @@ enum class AxisOrder : std::uint8_t {
 
 struct LadderSettings {
   Extent output_extent = {};  // both sides in [1, 32768]
-  double min_scale = 0.5;     // per axis, of the output; above 0
+  double min_scale = 0.5;     // per axis, of the output; in (0, 2]
   double max_scale = 1;       // in [min_scale, 2]
   AxisOrder order = AxisOrder::kHorizontalFirst;
   int step = 2;                // pixels, at least 1
