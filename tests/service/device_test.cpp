@@ -140,11 +140,26 @@ TEST(Device, CopiesAsManyRowsAsARowHasBytes) {
   }
 }
 
+TEST(Device, CopiesFromAndToNowhereAreRefused) {
+  const Device device = Device::open().value();
+  const Image image = device.allocate({4, 2}, PixelFormat::kR32F).value();
+  std::vector<float> texels(8);
+  const std::string missing = "texels is null; it must point to 4x2 texels of R32F";
+  EXPECT_EQ(device.upload(image.view(), {4, 2}, nullptr).message(), missing);
+  EXPECT_EQ(device.download(image.view(), {4, 2}, nullptr).message(), missing);
+  const std::string narrow = "row_bytes is 12; it must be 0 or at least the 16 of a row";
+  EXPECT_EQ(device.upload(image.view(), {4, 2}, texels.data(), 12).message(), narrow);
+  EXPECT_EQ(device.download(image.view(), {4, 2}, texels.data(), 12).message(), narrow);
+}
+
 TEST(Device, BadAllocationsAreRefused) {
   auto device = Device::open();
   ASSERT_TRUE(device.ok());
-  EXPECT_FALSE(device->allocate({0, 4}, PixelFormat::kR8).ok());
-  EXPECT_FALSE(device->allocate({4, 4}, PixelFormat::kNone).ok());
+  const std::string rule = "; its sides must be at least 1, and its format must not be none";
+  EXPECT_EQ(device->allocate({0, 4}, PixelFormat::kR8).status().message(),
+            "the image to allocate is 0x4 of format R8" + rule);
+  EXPECT_EQ(device->allocate({4, 4}, PixelFormat::kNone).status().message(),
+            "the image to allocate is 4x4 of format none" + rule);
   EXPECT_FALSE(device->allocate({4, 4}, PixelFormat::kRGBA16F, Storage::kBuffer, 24).ok());
   EXPECT_FALSE(device->allocate({4, 4}, PixelFormat::kRGBA16F, Storage::kImage, 64).ok());
   auto image = device->allocate({4, 4}, PixelFormat::kR8);

@@ -162,12 +162,21 @@ cl::ImageFormat channel_format(PixelFormat format, bool two_channel_images) {
   return {};
 }
 
-Status check_copy(const ImageView& image, Extent extent) {
+Status check_copy(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes) {
   if (!image) return Status::invalid("the image is empty; it needs an allocation");
   if (extent.width < 1 || extent.height < 1 || extent.width > image.extent.width ||
       extent.height > image.extent.height) {
     return Status::invalid(fmt::format("extent is {}x{}; it must lie within 1x1 and the image's {}x{}",
                                        extent.width, extent.height, image.extent.width, image.extent.height));
+  }
+  if (texels == nullptr) {
+    return Status::invalid(fmt::format("texels is null; it must point to {}x{} texels of {}", extent.width,
+                                       extent.height, name_of(image.format)));
+  }
+  const std::size_t row = static_cast<std::size_t>(extent.width) * bytes_per_pixel(image.format);
+  if (row_bytes != 0 && row_bytes < row) {
+    return Status::invalid(
+        fmt::format("row_bytes is {}; it must be 0 or at least the {} of a row", row_bytes, row));
   }
   return {};
 }
@@ -320,8 +329,10 @@ cl_command_queue Device::queue() const {
 Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storage, std::size_t pitch) const {
   const std::size_t texel = bytes_per_pixel(format);
   if (extent.width < 1 || extent.height < 1 || texel == 0) {
-    return Status::invalid(fmt::format("cannot allocate {}x{} texels of format {}; all must be set",
-                                       extent.width, extent.height, name_of(format)));
+    return Status::invalid(fmt::format(
+        "the image to allocate is {}x{} of format {}; its sides must be at least 1, and its format "
+        "must not be none",
+        extent.width, extent.height, name_of(format)));
   }
   ImageView view = {.storage = storage, .format = format, .extent = extent};
   try {
@@ -354,7 +365,7 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
 
 Status Device::upload(const ImageView& image, Extent extent, const void* texels,
                       std::size_t row_bytes) const {
-  if (Status status = check_copy(image, extent); !status.ok()) return status;
+  if (Status status = check_copy(image, extent, texels, row_bytes); !status.ok()) return status;
   const std::size_t texel = bytes_per_pixel(image.format);
   const std::size_t wide = device_texel_bytes(image);
   const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
@@ -374,7 +385,7 @@ Status Device::upload(const ImageView& image, Extent extent, const void* texels,
 }
 
 Status Device::download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes) const {
-  if (Status status = check_copy(image, extent); !status.ok()) return status;
+  if (Status status = check_copy(image, extent, texels, row_bytes); !status.ok()) return status;
   const std::size_t texel = bytes_per_pixel(image.format);
   const std::size_t wide = device_texel_bytes(image);
   const std::size_t host_row = row_bytes != 0 ? row_bytes : extent.width * texel;
