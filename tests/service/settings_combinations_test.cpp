@@ -271,31 +271,35 @@ struct InputCase {
   Extent FrameInputs::*viewport;
   PixelFormat (*format)(const ResolvePlan& plan);
   bool (*needed)(const ResolvePlan& plan);
+  const char* remedy = "";  // how to plan without
 };
 
 bool has_particles(const ResolvePlan& plan) {
   return plan.settings.targets.particle_extent != Extent{};
 }
 
+constexpr const char* kNoTransparents = ", or plan with transparents = false";
+
 const InputCase kInputs[] = {
     {"colour", &FrameInputs::colour, &FrameInputs::render_extent,
      [](const ResolvePlan& plan) { return plan.settings.colour; }, [](const ResolvePlan&) { return true; }},
     {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent,
      [](const ResolvePlan& plan) { return plan.settings.velocity; },
-     [](const ResolvePlan& plan) { return plan.velocity == VelocitySource::kTarget; }},
+     [](const ResolvePlan& plan) { return plan.velocity == VelocitySource::kTarget; },
+     ", or plan with moving_objects = false"},
     {"depth", &FrameInputs::depth, &FrameInputs::render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR32F; },
      [](const ResolvePlan& plan) { return plan.reads_depth; }},
     {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR8; },
-     [](const ResolvePlan& plan) { return plan.reads_reactive; }},
+     [](const ResolvePlan& plan) { return plan.reads_reactive; }, kNoTransparents},
     {"particle_colour", &FrameInputs::particle_colour, &FrameInputs::particle_render_extent,
      [](const ResolvePlan& plan) { return plan.settings.colour; }, has_particles},
     {"particle_depth", &FrameInputs::particle_depth, &FrameInputs::particle_render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR32F; }, has_particles},
     {"particle_reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render_extent,
      [](const ResolvePlan&) { return PixelFormat::kR8; },
-     [](const ResolvePlan& plan) { return has_particles(plan) && plan.reads_reactive; }},
+     [](const ResolvePlan& plan) { return has_particles(plan) && plan.reads_reactive; }, kNoTransparents},
 };
 
 // Expects that the plan needs its images whole: each one left out once and too small once is refused by one sentence.
@@ -310,8 +314,8 @@ void expect_refusals(const ResolvePlan& plan, const FrameInputs& good,
     inputs.*input.image = {};
     Status status = check(inputs);
     ASSERT_EQ(status.code(), StatusCode::kInvalidArgument) << input.field << " is left out";
-    const std::string missing =
-        fmt::format("{} is missing; the plan needs it as {}", input.field, name_of(input.format(plan)));
+    const std::string missing = fmt::format("{} is missing; the plan needs it as {}{}", input.field,
+                                            name_of(input.format(plan)), input.remedy);
     ASSERT_TRUE(status.message().ends_with(missing)) << status.message() << ", not " << missing;
     inputs = good;
     (inputs.*input.image).extent.width = (inputs.*input.viewport).width - 1;

@@ -87,7 +87,8 @@ TEST_F(Validate, DilatedVelocityIsNeededAsOwnVelocityIs) {
       inputs_.velocity.extent = {907, 512};
       EXPECT_EQ(check().message(), "velocity.extent is 907x512; it must hold the viewport of 908x512");
       inputs_.velocity = {};
-      EXPECT_EQ(check().message(), "velocity is missing; the plan needs it as RG16F");
+      EXPECT_EQ(check().message(),
+                "velocity is missing; the plan needs it as RG16F, or plan with moving_objects = false");
     }
   }
 }
@@ -111,7 +112,8 @@ TEST_F(Validate, EachBadFieldIsNamed) {
       {"colour.offset", [](auto& in, auto&) { in.colour.offset = 8; }},
       {"velocity is missing", [](auto& in, auto&) { in.velocity = {}; }},
       {"velocity_scale.x", [nan](auto& in, auto&) { in.velocity_scale.x = nan; }},
-      {"reactive is missing", [](auto& in, auto&) { in.reactive = {}; }},
+      {"reactive is missing; the plan needs it as R8, or plan with transparents = false",
+       [](auto& in, auto&) { in.reactive = {}; }},
       {"render_extent is 0x512", [](auto& in, auto&) { in.render_extent.width = 0; }},
       {"render_extent is 1281x512", [](auto& in, auto&) { in.render_extent.width = 1281; }},
       {"jitter.x", [nan](auto& in, auto&) { in.jitter.x = nan; }},

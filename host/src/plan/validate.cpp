@@ -81,7 +81,11 @@ void FrameCheck::finite(const char* field, float value, float low, float high) {
 
 void FrameCheck::image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage) {
   if (!image) {
-    complain(fmt::format("{} is missing; the plan needs it as {}", field, name_of(format)));
+    const std::string_view name = field;
+    complain(fmt::format("{} is missing; the plan needs it as {}{}", field, name_of(format),
+                         name == "velocity"           ? ", or plan with moving_objects = false"
+                         : name.ends_with("reactive") ? ", or plan with transparents = false"
+                                                      : ""));
     return;
   }
   if (image.format != format) {
