@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -16,6 +18,7 @@
 #include "../tools/own_cache.h"
 #include "quincunx/device.h"
 #include "quincunx/quincunx.h"
+#include "service_fixture.h"
 
 namespace quincunx {
 namespace {
@@ -66,6 +69,47 @@ TEST_F(Log, OpeningADeviceTellsItsClock) {
   ASSERT_TRUE(Device::open().ok());
   const auto tells = [](const auto& line) { return line.second.starts_with("pass times of '"); };
   EXPECT_EQ(std::count_if(lines_.begin(), lines_.end(), tells), 1);
+}
+
+// Resolves 8x8 to 16x16 for longer than frames are looked at; returns how many lines hold `words`.
+std::ptrdiff_t lines_of_run(const Lines& lines, const char* words,
+                            const std::function<void(int, testing::HostFrame&)>& set) {
+  testing::ServiceRig rig({.moving_objects = false}, Method::kTemporal, {16, 16}, {16, 16});
+  for (int n = 0; n < 80; ++n) {
+    testing::HostFrame frame{.render = {8, 8}};
+    set(n, frame);
+    EXPECT_TRUE(rig.dispatch(rig.upload(frame)).ok());
+  }
+  return std::count_if(lines.begin(), lines.end(), [&](const auto& line) {
+    return line.first == LogLevel::kWarning && line.second.find(words) != std::string::npos;
+  });
+}
+
+TEST_F(Log, ACameraThatIsNeverToldIsNamedOnce) {
+  keep_lines();
+  const char* words = "in the first 32 frames `camera` is the identity";
+  EXPECT_EQ(lines_of_run(lines_, words, [](int, auto& frame) { frame.camera = {}; }), 1);
+  lines_.clear();
+  EXPECT_EQ(lines_of_run(lines_, words,
+                         [](int n, auto& frame) {
+                           if (n == 20) frame.camera.clip_to_previous_clip[12] = .01f;
+                         }),
+            0);
+}
+
+TEST_F(Log, AJitterOfTooFewPlacesIsNamedOnce) {
+  keep_lines();
+  const char* words = "of a pixel, where temporal wants 32";
+  const auto run = [&](Extent render, Extent output) {
+    lines_.clear();
+    return lines_of_run(lines_, words, [=](int n, testing::HostFrame& frame) {
+      frame.jitter = jitter(static_cast<std::uint64_t>(n), render, output);
+    });
+  };
+  EXPECT_EQ(run({8, 8}, {16, 16}), 0);
+  EXPECT_EQ(run({16, 16}, {8, 8}), 1) << "swapped";
+  EXPECT_EQ(run({}, {}), 1) << "none";
+  EXPECT_EQ(run({16, 16}, {16, 16}), 0) << "fewer than best, and enough";
 }
 
 TEST_F(Log, ACallbackMayReplaceItselfAndWhatItSaysOrThrowsIsLost) {

@@ -166,7 +166,8 @@ void run_steady_frames(const SceneNeeds& needs, const ResolveSettings& settings)
     if (placed) place(inputs, inputs.render_extent);
     if (settings.output.min_extent != Extent{})
       inputs.output_extent = {1 + (i / 2 * 29) % 64, 1 + (i / 2 * 17) % 48};
-    inputs.jitter = {0.25f, i % 2 != 0 ? 0.25f : -0.25f};
+    inputs.jitter = jitter(static_cast<std::uint64_t>(i), inputs.render_extent, {64, 48});
+    inputs.camera.clip_to_previous_clip[12] = .01f;
     inputs.reset = i % 50 == 49;
     refused += dispatch(rig, inputs).ok() ? 0 : 1;
     while (rig.service().next_completed())

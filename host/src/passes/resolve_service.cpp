@@ -8,6 +8,7 @@
 #include "device/opencl.h"
 #include "device/program_cache.h"
 #include "motion/blur_params.h"
+#include "passes/frame_advice.h"
 #include "passes/frame_ring.h"
 #include "passes/frame_stream.h"
 #include "passes/pass_clear_region.h"
@@ -70,6 +71,7 @@ struct ResolveService::Impl {
   Impl(const Device& on, const ResolvePlan& to_do)
       : device(on),
         picture(on, to_do),
+        advice(to_do),
         counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
         ring(pass_timer(on) == PassTimer::kEvents) {
     if (const auto of_focus = to_do.focus_plan()) focus.emplace(on, *of_focus);
@@ -86,6 +88,7 @@ struct ResolveService::Impl {
 
   Device device;
   FrameStream picture;
+  FrameAdvice advice;
   std::optional<FocusStream> focus;  // where the plan has one
   cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
@@ -172,6 +175,7 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     if (sync.done != nullptr) *sync.done = retained(slot.done);
     ring.commit();
     picture.keep(inputs);
+    advice.look_at(picture.plan(), inputs);
     return slot.report;
   } catch (const cl::Error& error) {
     forget();  // part of the frame may be queued; what it left behind is not to be trusted as history
