@@ -135,7 +135,11 @@ TEST(CostTable, BadJsonIsRefused) {
     EXPECT_FALSE(table.ok()) << text;
     EXPECT_EQ(table.status().code(), StatusCode::kInvalidArgument);
     EXPECT_EQ(table.status().message().rfind("cost table: ", 0), 0u) << table.status().message();
+    EXPECT_EQ(table.status().message().find("json.exception"), std::string::npos) << table.status().message();
   }
+  EXPECT_EQ(CostTable::from_json("x").status().message().rfind(
+                "cost table: it must be the JSON that a table gave, and is not: parse error at line 1", 0),
+            0u);
 }
 
 }  // namespace

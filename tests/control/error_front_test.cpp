@@ -239,6 +239,7 @@ TEST(ErrorFront, BadFilesAreRefusedInOneSentence) {
     EXPECT_EQ(front.status().message().rfind("error front: ", 0), 0u) << front.status().message();
     EXPECT_NE(front.status().message().find(part), std::string::npos) << front.status().message();
     EXPECT_EQ(front.status().message().find('\n'), std::string::npos) << front.status().message();
+    EXPECT_EQ(front.status().message().find("json.exception"), std::string::npos) << front.status().message();
   }
 }
 

@@ -165,7 +165,9 @@ Result<CostTable> CostTable::from_json(const std::string& text) {
     }
     return table;
   } catch (const nlohmann::json::exception& error) {
-    return Status::invalid(std::string("cost table: ") + error.what());
+    const std::string why = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
+    return Status::invalid("cost table: it must be the JSON that a table gave, and is not: " +
+                           why.substr(why.find("] ") + 2));
   }
 }
 

@@ -128,6 +128,9 @@ Result<ErrorFront> ErrorFront::from_json(const std::string& text) {
     auto front = create(source_of(root), std::move(points));
     if (!front.ok()) return refuse(front.status().message());
     return front;
+  } catch (const nlohmann::json::exception& error) {
+    const std::string why = error.what();  // "[json.exception.parse_error.101] parse error at line 1, ..."
+    return refuse("it must be the JSON that a front gave, and is not: " + why.substr(why.find("] ") + 2));
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
