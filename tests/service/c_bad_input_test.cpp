@@ -258,6 +258,15 @@ TEST(CBadInput, ReportsAreChecked) {
   ASSERT_EQ(quincunx_settings_set_method(&settings, "quincunx:reprojected"), QUINCUNX_OK);
   EXPECT_EQ(settings.method, QUINCUNX_TWO_FRAMES);
   EXPECT_EQ(settings.two_frame_form, QUINCUNX_REPROJECTED);
+  settings.method = 99;
+  ASSERT_EQ(quincunx_settings_set_method(&settings, "temporal:fast"), QUINCUNX_OK) << quincunx_last_error();
+  EXPECT_EQ(settings.method, QUINCUNX_TEMPORAL);
+  EXPECT_EQ(settings.temporal_preset, QUINCUNX_FAST);
+  EXPECT_EQ(settings.two_frame_form, QUINCUNX_REPROJECTED);
+  settings.tone_map = 99;
+  EXPECT_EQ(quincunx_settings_set_method(&settings, "point"), QUINCUNX_INVALID_ARGUMENT);
+  EXPECT_TRUE(names("settings.tone_map is 99")) << quincunx_last_error();
+  EXPECT_EQ(settings.method, QUINCUNX_TEMPORAL);
   EXPECT_EQ(quincunx_variant_name(-1), nullptr);
   EXPECT_EQ(quincunx_variant_name(9999), nullptr);
   quincunx_plan* region = nullptr;

@@ -82,8 +82,8 @@ QUINCUNX_API const char* quincunx_method_name(int32_t method);
 /* Names of methods with the settings that change their picture and cost, "temporal:fast", in the order of growing
  * effort. NULL for a number that is none. Static. */
 QUINCUNX_API const char* quincunx_variant_name(int32_t variant);
-/* Sets the method and what goes with it to what such a name says; a method's name stands for its defaults. Errors:
- * QUINCUNX_INVALID_ARGUMENT; the sentence lists the names. */
+/* Sets the method, whatever it was, and what goes with it to what such a name says; a method's name stands for its
+ * defaults. Errors: QUINCUNX_INVALID_ARGUMENT for another name (the sentence lists them) and other bad fields. */
 QUINCUNX_API quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name);
 
 /* The passes and images that follow from the settings. Pure: needs no device. Errors: QUINCUNX_INVALID_ARGUMENT; the

@@ -190,10 +190,14 @@ const char* quincunx_variant_name(int32_t variant) {
 quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name) {
   return guarded([&]() -> Status {
     if (name == nullptr) return null("name");
-    auto scene = quincunx::c::from_c(settings);
-    if (!scene.ok()) return scene.status();
+    quincunx_settings own = quincunx::c::to_c({});
+    if (Status status = quincunx::c::read_sized(settings, "settings", own); !status.ok()) return status;
     const auto variant = quincunx::parse_variant(name);
     if (!variant.ok()) return variant.status();
+    own.struct_size = sizeof own;
+    own.method = static_cast<int>(variant->method);  // a bad one is replaced, too
+    auto scene = quincunx::c::from_c(&own);
+    if (!scene.ok()) return scene.status();
     quincunx::apply(*variant, scene->resolve);
     quincunx::c::write_sized(quincunx::c::to_c(*scene), settings);
     return {};
