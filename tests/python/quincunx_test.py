@@ -78,11 +78,14 @@ class Structs(unittest.TestCase):
 
     def test_names_are_numbers_of_the_header(self):
         text = read(HEADERS, "c", "settings.h") + read(HEADERS, "c", "control.h")
-        for name, number in {"QUINCUNX_TEMPORAL": quincunx.METHODS["temporal"], "QUINCUNX_HOST": quincunx.HOST,
+        for name, number in {"QUINCUNX_HOST": quincunx.HOST,
                              "QUINCUNX_REPROJECTED": quincunx.number_of("two_frame_form", "reprojected"),
                              "QUINCUNX_RGBA16F": quincunx.FORMATS[4, "float16"],
                              "QUINCUNX_BY_EVIDENCE": quincunx.number_of("sky_motion", "evidence"),
                              "QUINCUNX_DILATED_VELOCITY": quincunx.number_of("drawn_velocity", "dilated"),
+                             "QUINCUNX_VIEW_FAR": quincunx.number_of("temporal_view", "far"),
+                             "QUINCUNX_RGBA32F": quincunx.number_of("history_format", "float32"),
+                             "QUINCUNX_PLACED": quincunx.number_of("targets", "placed"),
                              "QUINCUNX_LINEAR": quincunx.number_of("depth_convention", "linear"),
                              "QUINCUNX_BOTTOM": quincunx.number_of("origin", "bottom"),
                              "QUINCUNX_QUALITY": quincunx.number_of("temporal_preset", "quality"),
@@ -127,7 +130,7 @@ class Pictures(unittest.TestCase):
         for index in range(3):
             resolver.resolve(np.zeros((20, 30, 4)), frame_index=index)
         reports = resolver.reports()
-        self.assertEqual([(r["frame"], r["render"]) for r in reports], [(i, (30, 20)) for i in range(3)])
+        self.assertEqual([(r["frame_index"], r["render_extent"]) for r in reports], [(i, (30, 20)) for i in range(3)])
         self.assertEqual([p[0] for p in reports[0]["passes"]], ["scale_bilinear"])
         self.assertEqual(resolver.reports(), [])
 
@@ -140,7 +143,7 @@ class Extras(unittest.TestCase):
                 "velocity": np.zeros((*size, 2)), "reactive": np.zeros(size, np.uint8)}
 
     def test_particles_lie_over_the_frame(self):
-        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, particle_target=(16, 12))
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, particle_target_extent=(16, 12))
         dust = {"colour": np.zeros((12, 16, 4)), "depth": np.full((12, 16), 0.5)}
         dust["colour"][:, 8:] = [0, 1, 0, 1]
         picture = resolver.resolve(**self.frame(0.25, (30, 40)), particles={**dust, "reactive": np.zeros((12, 16))})
@@ -148,7 +151,7 @@ class Extras(unittest.TestCase):
         np.testing.assert_allclose(picture[:, 25:], np.broadcast_to([0, 1, 0, 1], (30, 15, 4)), atol=1e-6)
 
     def test_a_focus_shows_in_its_rectangle(self):
-        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, focus=(20, 16))
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, focus_extent=(20, 16))
         self.assertIn("20x16", resolver.focus_plan())
         focus = {**self.frame(1, (16, 20)), "x": 10, "y": 4, "rectangles": [(12, 6, 16, 12)], "feather": 1}
         picture = resolver.resolve(**self.frame(0, (30, 40)), focus=focus)
@@ -167,10 +170,10 @@ class Extras(unittest.TestCase):
         np.testing.assert_allclose(picture, np.broadcast_to([0.875, 0.125, 0.125, 1], (30, 40, 4)), atol=1e-6)
 
     def test_a_smaller_output_is_shown_in_the_pictures_size(self):
-        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, min_output=(20, 15))
-        picture = resolver.resolve(**self.frame(0.5), output=(24, 18))
+        resolver = quincunx.Resolver((40, 30), method="bilinear", present=0, min_output_extent=(20, 15))
+        picture = resolver.resolve(**self.frame(0.5), output_extent=(24, 18))
         np.testing.assert_allclose(picture[:, :, 0], 0.5, atol=1e-6)
-        self.assertEqual(resolver.reports()[0]["output"], (24, 18))
+        self.assertEqual(resolver.reports()[0]["output_extent"], (24, 18))
 
     def test_exposure_of_an_image_counts_as_the_number_does(self):
         def shown(**exposure):
@@ -205,7 +208,7 @@ class Controllers(unittest.TestCase):
 
     def test_each_holds_its_target(self):
         for kind in self.KINDS:
-            controller = kind(output=(1920, 1080), target_ms=16, min_scale=0.4, order="both-axes")
+            controller = kind(output_extent=(1920, 1080), target_ms=16, min_scale=0.4, order="both-axes")
             self.assertEqual(controller.next(), (1920, 1080))
             for number in range(1, 400):
                 width, height = controller.next()
@@ -218,7 +221,8 @@ class Controllers(unittest.TestCase):
             self.assertEqual(controller.target_ms, 40)
 
     def test_quality_chooses_a_method_and_says_why(self):
-        controller = quincunx.QualityController(output=(1280, 720), target_ms=20, methods=["bilinear", "temporal:fast"])
+        controller = quincunx.QualityController(output_extent=(1280, 720), target_ms=20,
+                                                methods=["bilinear", "temporal:fast"])
         controller.observe(1, (1280, 720), 25, resolve_ms=2, content={"moving": 1, "speed_px": 3})
         choice = controller.choice()
         self.assertIn(choice["method"], ("bilinear", "temporal:fast"))
@@ -240,11 +244,12 @@ class Controllers(unittest.TestCase):
         self.assertLess(front.flip(mix, "temporal", 0.5), front.flip(mix, "bilinear", 0.5))
         self.assertGreater(front.resolve_ms("temporal", 0.5, 2), front.resolve_ms("bilinear", 0.5, 2))
         self.assertEqual(front.summary(), quincunx.ErrorFront(resolver=quincunx.Resolver((8, 8))).summary())
-        controller = quincunx.QualityController(output=(640, 360), front=again, calibration=costs)
+        controller = quincunx.QualityController(output_extent=(640, 360), front=again, calibration=costs)
         self.assertEqual(controller.name, "quality")
 
     def test_followers_follow(self):
-        outputs, details = quincunx.OutputFollower(display=(1920, 1080)), quincunx.DetailFollower(levels=3, rest_frames=0)
+        outputs = quincunx.OutputFollower(display_extent=(1920, 1080))
+        details = quincunx.DetailFollower(levels=3, rest_frames=0)
         self.assertEqual(outputs.observe((1920, 1080)), (1920, 1080))
         for _ in range(100):
             output = outputs.observe((640, 360))
@@ -254,16 +259,16 @@ class Controllers(unittest.TestCase):
 
     def test_what_cannot_be_is_refused_in_words(self):
         with self.assertRaisesRegex(quincunx.Error, "buffers is 1"):
-            quincunx.PredictiveController(output=(64, 64), buffers=1)
-        with self.assertRaisesRegex(TypeError, "'bufers' is no setting; there are: output, min, .*buffers"):
-            quincunx.PredictiveController(output=(64, 64), bufers=3)
+            quincunx.PredictiveController(output_extent=(64, 64), buffers=1)
+        with self.assertRaisesRegex(TypeError, "'bufers' is no setting; there are: output_extent, .*buffers"):
+            quincunx.PredictiveController(output_extent=(64, 64), bufers=3)
         with self.assertRaisesRegex(ValueError, "order is 'sideways'; it must be one of horizontal-first"):
-            quincunx.PredictiveController(output=(64, 64), order="sideways")
+            quincunx.PredictiveController(output_extent=(64, 64), order="sideways")
         with self.assertRaisesRegex(quincunx.Error, "gpu_ms"):
-            quincunx.ProportionalController(output=(64, 64)).observe(1, (64, 64), float("nan"))
+            quincunx.ProportionalController(output_extent=(64, 64)).observe(1, (64, 64), float("nan"))
         with self.assertRaisesRegex(quincunx.Error, r"settings.methods\[0\].*temporal:fast"):
-            quincunx.QualityController(output=(64, 64), methods=["best"])
-        with self.assertRaisesRegex(TypeError, "'jiter_x' is no input; there are: velocity_scale_x"):
+            quincunx.QualityController(output_extent=(64, 64), methods=["best"])
+        with self.assertRaisesRegex(TypeError, "'jiter_x' is no input; there are: velocity_scale, clip"):
             quincunx.Resolver((8, 8)).resolve(np.zeros((8, 8, 4)), jiter_x=1)
 
 
@@ -313,12 +318,80 @@ class Errors(unittest.TestCase):
             quincunx.Resolver((40, 30), device="none such")
 
     def test_what_python_refuses_says_what_would_be_right(self):
-        with self.assertRaisesRegex(ValueError, "method is 'best'; it must be one of point, bilinear"):
-            quincunx.Resolver((40, 30), method="best")
-        with self.assertRaisesRegex(TypeError, "'sharp' is no setting; there are: .*sharpness"):
-            quincunx.Resolver((40, 30), sharp=1)
-        with self.assertRaisesRegex(ValueError, r"colour has the shape \(20, 30, 2\); it must be \(height, width, 4\)"):
-            quincunx.Resolver((40, 30), method="point").resolve(np.zeros((20, 30, 2)))
+        def made(**settings):
+            return quincunx.Resolver((40, 30), **{"method": "point", **settings})
+
+        frame = np.zeros((20, 30, 4))
+        controller = quincunx.PredictiveController(output_extent=(64, 64))
+        for kind, sentence, refused in (
+                (quincunx.Error, "no method 'best'; there are point, .*temporal:fast", lambda: made(method="best")),
+                (TypeError, "'sharp' is no setting; there are: .*sharpness", lambda: made(sharp=1)),
+                (TypeError, "'min_output_width' is no setting; .* min_output_extent", lambda: made(min_output_width=9)),
+                (TypeError, "dither is None; it must be a whole number", lambda: made(dither=None)),
+                (TypeError, r"blur_samples is 8\.5; it must be a whole number", lambda: made(blur_samples=8.5)),
+                (ValueError, "target_width is 4294967300; it must be a whole number of 32 bits",
+                 lambda: made(target_extent=(2 ** 32 + 4, 30))),
+                (ValueError, "shutter is 'long'; it must be a number", lambda: made(shutter="long")),
+                (ValueError, "focus_extent is 8; it must be a pair of numbers", lambda: made(focus_extent=8)),
+                (ValueError, "output_extent is 8; it must be a pair of numbers", lambda: quincunx.Resolver(8)),
+                (ValueError, "colour is 'float64'; it must be one of uint8, float16, float32",
+                 lambda: made(colour="float64")),
+                (ValueError, "temporal_view is 'all'; it must be one of picture, conf",
+                 lambda: made(temporal_view="all")),
+                (ValueError, "history_format is 'int'; it must be one of float16", lambda: made(history_format="int")),
+                (ValueError, r"colour has the shape \(20, 30, 2\); it must be \(height, width, 4\)",
+                 lambda: made().resolve(frame[:, :, :2])),
+                (ValueError, r"clip_to_previous_clip has the shape \(3, 4\); it must be \(4, 4\) or \(16,\)",
+                 lambda: made().resolve(frame, clip_to_previous_clip=np.zeros((3, 4)))),
+                (ValueError, "velocity_scale is 2; it must be a pair", lambda: made().resolve(frame, velocity_scale=2)),
+                (TypeError, r"frame_index is \[\]; it must be a whole number",
+                 lambda: made().resolve(frame, frame_index=[])),
+                (ValueError, "frame_index is -1; it must be a whole number of 64 bits, from 0 on",
+                 lambda: made().resolve(frame, frame_index=-1)),
+                (TypeError, "'cpu' is no field of Timing; there are: .* cpu_ms",
+                 lambda: controller.observe(1, (8, 8), 9, cpu=1)),
+                (TypeError, "'speed' is no field of Content; there are: moving, speed_px, .* cut$",
+                 lambda: quincunx.mix_of(speed=1)),
+                (TypeError, "calibration is '{}'; it must be of CostTable",
+                 lambda: quincunx.PredictiveController(calibration="{}", output_extent=(8, 8))),
+                (TypeError, "front is 1; it must be of ErrorFront",
+                 lambda: quincunx.QualityController(front=1, output_extent=(8, 8))),
+                (TypeError, "json is {}; it must be text", lambda: quincunx.CostTable(json={})),
+                (TypeError, "a name in methods is 1; it must be text",
+                 lambda: quincunx.QualityController(methods=[1], output_extent=(8, 8))),
+                (TypeError, "resolver is 'gpu'; it must be of Resolver", lambda: quincunx.ErrorFront(resolver="gpu")),
+                (quincunx.Error, "cost table: it must be the JSON that a table gave",
+                 lambda: quincunx.CostTable(json="x")),
+                (quincunx.Error, "error front: it must be the JSON that a front gave",
+                 lambda: quincunx.ErrorFront(json="x"))):
+            with self.subTest(sentence), self.assertRaisesRegex(kind, sentence):
+                refused()
+
+    def test_names_stand_for_numbers_and_pairs(self):
+        self.assertEqual(quincunx.Settings.names()["min_output_extent"], ["min_output_width", "min_output_height"])
+        self.assertEqual(quincunx.Settings(output_extent=(4, 3), sky_motion="camera").output_height, 3)
+        hidden = [name for name in quincunx.Settings.names() if "padding" in name or name in ("struct_size", "kind")]
+        self.assertEqual(hidden, [])
+        for name in quincunx.Settings.names():
+            self.assertIn(name, quincunx.Resolver.__doc__)
+        self.assertIn("history_format (float16 | float32)", quincunx.Resolver.__doc__)
+        resolver = quincunx.Resolver((8, 6), device=0, history_format="float32", temporal_view="confidence",
+                                     storage="image2d", transparents=False)
+        self.assertIn("image storage", str(resolver))
+        self.assertRegex(repr(resolver.needs), r"^Needs\(reads_depth=1, reads_velocity=1, .*frame_bytes=\d+\)$")
+        self.assertEqual(repr(quincunx.Choice(render_extent=(4, 3)))[:29], "Choice(render_extent=(4, 3), ")
+
+    def test_a_pair_of_velocity_scales_counts_for_its_axes(self):
+        def second(velocity, **inputs):
+            resolver = quincunx.Resolver((40, 30), method="quincunx", present=0, transparents=False)
+            for value in (0, 1):
+                picture = resolver.resolve(np.full((30, 40, 4), value), depth=np.full((30, 40), 0.5),
+                                           velocity=velocity, **inputs)
+            return picture
+
+        velocity = np.full((30, 40, 2), [4 / 40, 2 / 30], np.float32)
+        np.testing.assert_array_equal(second(velocity / [2, 4], velocity_scale=(2, 4)), second(velocity))
+        self.assertGreater(np.abs(second(velocity / [2, 4], velocity_scale=(4, 2)) - second(velocity)).max(), 0.01)
 
 
 if __name__ == "__main__":

@@ -15,24 +15,30 @@ import atexit
 import ctypes
 import logging
 import os
+import re
+import textwrap
 from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint64, c_void_p
 
 import numpy as np
 
 API_VERSION, MAX_PASSES = 2, 72
 HOST = 2  # images lie in host memory
-METHODS = {}  # name: number, as the library has them
-CHOICES = {  # settings that are names here and numbers there
-    "two_frame_form": ("mean", "velocity", "reprojected"), "sampling": ("point", "bilinear"),
-    "temporal_preset": ("fast", "balanced", "quality"), "sky_motion": ("as-drawn", "camera", "evidence"),
-    "drawn_velocity": ("own", "dilated"),
-    "depth_convention": ("reversed-infinite", "reversed", "infinite", "forward", "linear"),
-    "clip_space": ("direct3d", "opengl", "vulkan"), "velocity_unit": ("uv", "pixels", "ndc"), "origin": ("top", "bottom"),
-    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard"),
-    "order": ("horizontal-first", "horizontal-only", "both-axes"), "cpu_bound": ("hold", "follow")}
 # Channels and type of an array's pixels, and the number of their format.
 FORMATS = {(1, "uint8"): 1, (1, "float32"): 2, (2, "float16"): 3, (2, "float32"): 4, (4, "uint8"): 5,
            (4, "float16"): 6, (4, "float32"): 7}
+# Settings that are names here and numbers there: from 0 on, or as they are given.
+CHOICES = {name: words if isinstance(words, dict) else {word: i for i, word in enumerate(words)} for name, words in {
+    "two_frame_form": ("mean", "velocity", "reprojected"), "sampling": ("point", "bilinear"),
+    "temporal_preset": ("fast", "balanced", "quality"),
+    "temporal_view": ("picture", "confidence", "rejection", "phase", "layers", "coverage", "near", "far"),
+    "history_format": {kind: FORMATS[4, kind] for kind in ("float16", "float32")},
+    "colour": {kind: FORMATS[4, kind] for kind in ("uint8", "float16", "float32")},
+    "storage": ("buffer", "image2d"), "targets": ("viewport", "placed"), "drawn_velocity": ("own", "dilated"),
+    "sky_motion": ("as-drawn", "camera", "evidence"),
+    "depth_convention": ("reversed-infinite", "reversed", "infinite", "forward", "linear"),
+    "clip_space": ("direct3d", "opengl", "vulkan"), "velocity_unit": ("uv", "pixels", "ndc"), "origin": ("top", "bottom"),
+    "tone_map": ("clamp", "reinhard", "aces"), "shading": ("full", "checkerboard"),
+    "order": ("horizontal-first", "horizontal-only", "both-axes"), "cpu_bound": ("hold", "follow")}.items()}
 
 
 class Error(RuntimeError):
@@ -44,10 +50,45 @@ class Error(RuntimeError):
 
 
 class Sized(Structure):
-    """A struct that knows its size."""
+    """A struct that knows its size. Its fields are set by name, those of an extent or a vector as one pair."""
+
+    UNNAMED = ("struct_size", "colour_format", "velocity_format", "linear_format",  # follow from what is given
+               "kind", "calibration", "front", "methods", "method_count")
+    WHOLE = {c_int32: "a whole number of 32 bits", c_uint64: "a whole number of 64 bits, from 0 on"}
 
     def __init__(self, **fields):
-        super().__init__(ctypes.sizeof(self), **fields)
+        super().__init__(ctypes.sizeof(self))
+        self.set(**fields)
+
+    def __repr__(self):
+        values = {name: tuple(getattr(self, field) for field in fields) for name, fields in self.names().items()}
+        return "%s(%s)" % (type(self).__name__, ", ".join(
+            f"{name}={value if len(value) > 1 else value[0]!r}" for name, value in values.items()))
+
+    @classmethod
+    def names(cls):
+        """The names here, each with its fields there: {"output_extent": ["output_width", "output_height"], ...}."""
+        names = {}
+        for field, _ in cls._fields_:
+            if field not in cls.UNNAMED and "padding" not in field:
+                names.setdefault(re.sub("_(width|height)$", "_extent", re.sub("_[xy]$", "", field)), []).append(field)
+        return names
+
+    def set(self, **values):
+        """Sets fields by their names here. Raises TypeError for a name that is none and a value of another type."""
+        names, kinds = self.names(), dict(self._fields_)
+        for name, value in values.items():
+            if name not in names:
+                what = "setting" if "Settings" in type(self).__name__ else "field of " + type(self).__name__
+                raise TypeError(f"'{name}' is no {what}; there are: {', '.join(names)}")
+            for field, part in zip(names[name], (value,) if len(names[name]) == 1 else pair_of(name, value)):
+                number, kind = number_of(field, part), self.WHOLE.get(kinds[field])
+                try:
+                    setattr(self, field, number)
+                except TypeError:
+                    raise TypeError(f"{field} is {part!r}; it must be {kind or 'a number'}") from None
+                if kind and getattr(self, field) != number:
+                    raise ValueError(f"{field} is {part!r}; it must be {kind}")
 
 
 def sized(name, *fields):
@@ -92,10 +133,8 @@ Report = sized("Report", ("passes", POINTER(PassReport)), ("pass_capacity pass_c
                                               c_int32), ("content", POINTER(Content)), ("in_focus", POINTER(c_int32)))
 
 
-EXTENTS = ("min_output", "particle_target", "focus", "focus_target")  # settings of a width and a height
-NUMBERS = ("velocity_scale_x", "velocity_scale_y", "clip_to_previous_clip", "exposure", "reset", "parity", "frame_index",
-           "near_plane", "far_plane")
-CONTENT = ("moving", "speed_px", "apart", "thin", "light", "zoom", "cut")
+NUMBERS = ("velocity_scale", "clip_to_previous_clip", "exposure", "reset", "parity", "frame_index", "near_plane",
+           "far_plane")
 TEXTS = ("quincunx_version", "quincunx_last_error", "quincunx_method_name", "quincunx_variant_name",
          "quincunx_plan_text", "quincunx_device_name", "quincunx_device_profile", "quincunx_device_pass_timer",
          "quincunx_controller_name", "quincunx_controller_text", "quincunx_costs_text", "quincunx_front_text",
@@ -138,8 +177,6 @@ def load():
     library.quincunx_front_flip.argtypes = [c_void_p, c_void_p, c_char_p, c_double, c_void_p]
     library.quincunx_front_resolve_ms.argtypes = [c_void_p, c_char_p, c_double, c_double, c_void_p]
     library.quincunx_detail_follower_observe.argtypes = [c_void_p, c_double, c_void_p]
-    while (name := library.quincunx_method_name(len(METHODS))) is not None:
-        METHODS[name.decode()] = len(METHODS)
     return library
 
 
@@ -159,24 +196,24 @@ def call(name, *arguments):
     return code
 
 
-def jitter(frame_index, render, output):
+def jitter(frame_index, render_extent, output_extent):
     """Where the samples of a frame lie, for the method "temporal": (x, y) in pixels of the frame, +x right, +y down.
 
     Several frames see more than one only if their samples lie elsewhere in each: move the camera's projection by it.
     """
     place = (c_float * 2)()
-    LIBRARY.quincunx_jitter(frame_index, *render, *output, place)
+    LIBRARY.quincunx_jitter(frame_index, *render_extent, *output_extent, place)
     return place[0], place[1]
 
 
-def jitter_phases(render, output):
+def jitter_phases(render_extent, output_extent):
     """After so many frames jitter() begins again."""
-    return LIBRARY.quincunx_jitter_phases(*render, *output)
+    return LIBRARY.quincunx_jitter_phases(*render_extent, *output_extent)
 
 
-def texture_lod_bias(render, output):
+def texture_lod_bias(render_extent, output_extent):
     """What to add to the textures' level of detail where frames have that jitter."""
-    return LIBRARY.quincunx_texture_lod_bias(*render, *output)
+    return LIBRARY.quincunx_texture_lod_bias(*render_extent, *output_extent)
 
 
 def image_of(array):
@@ -232,31 +269,22 @@ class Resolver:
     target_extent  (width, height) of the largest frame; None: that of the pictures
     device         OpenCL device: "", "cpu", "gpu", a number or a part of a name
     colour         type of the frames' colour: "float16" or "float32" (linear, premultiplied), or "uint8" (sRGB encoded)
-    settings       fields of quincunx_settings by name; methods and the keys of CHOICES take names, and extents take
-                   (width, height): min_output, particle_target, focus, focus_target. transparents=False where frames
-                   have no reactive values, moving_objects=False where only the camera moves. A name of variants() as
-                   method sets its preset or form, too.
+    settings       as below, where choices take one of the words; extents are (width, height). method is a name of
+                   variants(), or its part before the colon. transparents=False where frames have no reactive values,
+                   moving_objects=False where only the camera moves.
     """
 
     def __init__(self, output_extent, target_extent=None, device="", colour="float32", **settings):
         self._device, self._plan, self._service = c_void_p(), c_void_p(), c_void_p()
-        self.output_extent, self._colour = tuple(output_extent), colour
+        self.output_extent, self._colour = pair_of("output_extent", output_extent), colour
         plan = Settings()
         call("quincunx_settings_init", byref(plan))
-        plan.output_width, plan.output_height = output_extent
-        plan.target_width, plan.target_height = target_extent or output_extent
-        plan.colour_format, plan.velocity_format = FORMATS[4, colour], FORMATS[2, "float32"]
-        if ":" in str(settings.get("method")):
+        plan.colour_format, plan.velocity_format = number_of("colour", str(colour)), FORMATS[2, "float32"]
+        if isinstance(settings.get("method"), str):
             call("quincunx_settings_set_method", byref(plan), settings.pop("method").encode())
-        for name in [name for name in EXTENTS if name in settings]:
-            width, height = settings.pop(name)
-            settings.update({name + "_width": width, name + "_height": height})
-        for name, value in settings.items():
-            if name not in dict(Settings._fields_):
-                raise TypeError(f"'{name}' is no setting; there are: {', '.join(dict(Settings._fields_))}")
-            setattr(plan, name, number_of(name, value))
+        plan.set(output_extent=output_extent, target_extent=target_extent or output_extent, **settings)
         call("quincunx_plan_create", byref(plan), byref(self._plan))
-        call("quincunx_device_open", device.encode(), byref(self._device))
+        call("quincunx_device_open", str(device).encode(), byref(self._device))
         call("quincunx_service_create", self._device, self._plan, byref(self._service))
         self.needs = Needs()  # which inputs resolve() wants: reads_depth, reads_velocity, ...
         call("quincunx_plan_needs", self._plan, byref(self.needs))
@@ -278,9 +306,9 @@ class Resolver:
         """Lets frames wait for each pass where the pass timer is "host clock", so that passes have times."""
         call("quincunx_allow_timing_waits", self._service, int(allow))
 
-    def reads_history(self, render, output=(0, 0)):
+    def reads_history(self, render_extent, output_extent=(0, 0)):
         """Whether a frame of this size reads earlier ones where there are any."""
-        return bool(LIBRARY.quincunx_plan_reads_history(self._plan, *render, *output))
+        return bool(LIBRARY.quincunx_plan_reads_history(self._plan, *render_extent, *output_extent))
 
     def focus_plan(self):
         """The plan of the focus's region, as text. Raises Error where there is none."""
@@ -290,51 +318,59 @@ class Resolver:
         LIBRARY.quincunx_plan_destroy(region)
         return text
 
-    def resolve(self, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), presented=False, output=None,
-                particles=None, focus=None, fading_from=None, fade_weight=1, exposure_image=None, **inputs):
+    def resolve(self, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), presented=False,
+                output_extent=None, particles=None, focus=None, fading_from=None, fade_weight=1, exposure_image=None,
+                **inputs):
         """The picture of one frame, as an array of (height, width, 4).
 
         Arrays of the frame's size: colour (h, w, 3 or 4), depth (h, w), velocity (h, w, 2), reactive (h, w, uint8).
-        jitter is in pixels of the frame; `inputs` are further fields of quincunx_inputs by name, for example reset or
-        clip_to_previous_clip. Gives linear float32, or with presented=True sRGB encoded uint8.
+        jitter is in pixels of the frame. Gives linear float32, or with presented=True sRGB encoded uint8. `inputs`, as
+        docs/inputs.md has them:
 
-        output          (width, height) of this frame's picture, from the setting min_output to the pictures' size;
-                        it is then shown in theirs
-        particles       where the setting particle_target is made: {"colour": (h, w, 4), "depth": (h, w), "reactive":
+        reset                  True: a cut; nothing of the frames before may be used
+        clip_to_previous_clip  (4, 4) or 16 numbers, column by column: of a matrix that multiplies columns (m @ v) m.T
+        near_plane, far_plane  distances, where the depth_convention needs them
+        velocity_scale         (x, y) that make velocity what the settings say
+        exposure, parity, frame_index
+
+        output_extent   (width, height) of this frame's picture, from the setting min_output_extent to the pictures'
+                        size; it is then shown in theirs
+        particles       where particle_target_extent is set: {"colour": (h, w, 4), "depth": (h, w), "reactive":
                         (h, w)}, drawn apart at a size of their own
-        focus           where the setting focus is made: {"colour", "depth", ... and other inputs of the region's frame,
+        focus           where focus_extent is set: {"colour", "depth", ... and other inputs of the region's frame,
                         "x", "y": its upper left output pixel, "rectangles": [(x, y, width, height)], at most four,
                         "feather": output pixels, "mask": (height, width, uint8) of the region}
-        fading_from     where the setting fades is made: another method's linear picture of this frame, of which it
+        fading_from     where fades is set: another method's linear picture of this frame, of which it
                         keeps 1 - fade_weight; fade_weight in [0, 1]
         exposure_image  (1, 1) float32: another factor of the exposure
         """
         kept = Kept()
         frame = self._frame(kept, colour, depth, velocity, reactive, jitter, inputs)
-        frame.output_width, frame.output_height = output or (0, 0)
+        frame.set(output_extent=output_extent or (0, 0))
         frame.exposure_image = kept.image("exposure_image", exposure_image, 1, "float32")
         if particles is not None:
             frame.particles = kept.pointer(self._particles(kept, **particles))
         if focus is not None:
             frame.focus = kept.pointer(self._focus(kept, **focus))
         if fading_from is not None:
-            fade = Fade(weight=fade_weight)
-            setattr(fade, "from", kept.image("fading_from", fading_from, 4, "float32"))
-            frame.fade = kept.pointer(fade)
+            old = kept.image("fading_from", fading_from, 4, "float32")
+            frame.fade = kept.pointer(Fade(**{"from": old}, weight=fade_weight))
         picture = np.empty((self.output_extent[1], self.output_extent[0], 4), "uint8" if presented else "float32")
         outputs = Outputs(**{"presented" if presented else "linear": ctypes.pointer(image_of(picture))})
         call("quincunx_dispatch", self._service, byref(frame), byref(outputs), None)
         return picture
 
     def _frame(self, kept, colour, depth, velocity, reactive, jitter, inputs):
-        if "clip_to_previous_clip" in inputs:
-            inputs = {**inputs, "clip_to_previous_clip": (c_float * 16)(*np.ravel(inputs["clip_to_previous_clip"]))}
         for name in inputs:
             if name not in NUMBERS:
                 raise TypeError(f"'{name}' is no input; there are: {', '.join(NUMBERS)}")
+        if "clip_to_previous_clip" in inputs:
+            matrix = np.asarray(inputs["clip_to_previous_clip"], "float32")
+            if matrix.shape not in ((4, 4), (16,)):
+                raise ValueError(f"clip_to_previous_clip has the shape {matrix.shape}; it must be (4, 4) or (16,)")
+            inputs = {**inputs, "clip_to_previous_clip": (c_float * 16)(*matrix.ravel())}
         image = kept.image("colour", colour, 4, self._colour)
-        return Inputs(jitter_x=jitter[0], jitter_y=jitter[1], render_width=image.contents.width,
-                      render_height=image.contents.height, colour=image,
+        return Inputs(jitter=jitter, render_extent=(image.contents.width, image.contents.height), colour=image,
                       depth=kept.image("depth", depth, 1, "float32"),
                       velocity=kept.image("velocity", velocity, 2, "float32"),
                       reactive=kept.image("reactive", reactive, 1, "uint8"), **inputs)
@@ -343,7 +379,7 @@ class Resolver:
         image = kept.image("particles' colour", colour, 4, self._colour)
         return Particles(colour=image, depth=kept.image("particles' depth", depth, 1, "float32"),
                          reactive=kept.image("particles' reactive", reactive, 1, "uint8"),
-                         render_width=image.contents.width, render_height=image.contents.height)
+                         render_extent=(image.contents.width, image.contents.height))
 
     def _focus(self, kept, colour, depth=None, velocity=None, reactive=None, jitter=(0, 0), x=0, y=0, rectangles=(),
                feather=0, mask=None, **inputs):
@@ -356,22 +392,28 @@ class Resolver:
     def reports(self):
         """Of the frames since the last call, each a dictionary:
 
-        frame, render, output, used_previous, focused, non_finite_pixels, passes: [(name, ms, bytes)], where those of a
-        focus begin with "focus: ", and content: with the setting measures_content the shares of ContentStatistics by
-        name, else None.
+        frame_index, render_extent, output_extent, used_previous, focused, non_finite_pixels, passes: [(name, ms,
+        bytes)], where those of a focus begin with "focus: ", and content: with the setting measures_content the shares
+        of ContentStatistics by name, else None.
         """
         found, passes, in_focus = [], (PassReport * MAX_PASSES)(), (c_int32 * MAX_PASSES)()
         content = Content()
         report = Report(passes=passes, pass_capacity=MAX_PASSES, in_focus=in_focus, content=ctypes.pointer(content))
         while call("quincunx_next_report", self._service, byref(report)) == 0:
-            known = {name: getattr(content, name) for name in CONTENT} if report.content_known else None
-            found.append({"frame": report.frame_index, "render": (report.render_width, report.render_height),
-                          "output": (report.output_width, report.output_height),
+            known = {name: getattr(content, name) for name in Content.names()} if report.content_known else None
+            found.append({"frame_index": report.frame_index,
+                          "render_extent": (report.render_width, report.render_height),
+                          "output_extent": (report.output_width, report.output_height),
                           "used_previous": bool(report.used_previous), "focused": bool(report.focused),
                           "non_finite_pixels": report.non_finite_pixels, "content": known,
                           "passes": [("focus: " * bool(in_focus[i]) + passes[i].kernel.decode(), passes[i].ms,
                                       passes[i].bytes) for i in range(report.pass_count)]})
         return found
+
+
+Resolver.__doc__ = (Resolver.__doc__ or "") + "\n" + textwrap.fill(", ".join(
+    f"{name} ({' | '.join(CHOICES[name])})" if name in CHOICES else name for name in Settings.names()), 118,
+    initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False)
 
 
 class Handle:
@@ -389,44 +431,42 @@ class Handle:
     def _text(self, what):
         return getattr(LIBRARY, f"quincunx_{self.OBJECT}_{what}")(self.handle).decode()
 
+    @classmethod
+    def handle_of(cls, name, given):
+        """What a setting of this class holds; None for None."""
+        if given is not None and not isinstance(given, cls):
+            raise TypeError(f"{name} is {given!r}; it must be of {cls.__name__}")
+        return given.handle if given is not None else None
 
-def settings_of(struct, init, pairs, fields):
-    """A struct of settings: its defaults, and fields by name, of which `pairs` are a width and a height."""
+
+def settings_of(struct, init, fields):
+    """A struct of settings: its defaults, and fields by name."""
     settings = struct()
     call(init, byref(settings))
-    known = dict(struct._fields_)
-    for name, value in fields.items():
-        if name in pairs:
-            width, height = value
-            setattr(settings, name + "_width", width)
-            setattr(settings, name + "_height", height)
-        elif name not in known or name in ("kind", "methods", "method_count", "front", "calibration"):
-            raise TypeError(f"'{name}' is no setting; there are: {', '.join((*pairs, *known))}")
-        else:
-            setattr(settings, name, number_of(name, value))
+    settings.set(**fields)
     return settings
 
 
 class Controller(Handle):
     """Chooses each frame's size from the times of frames past; the base of those below.
 
-    Every one takes output=(width, height), each in [1, 32768], target_ms in (0, 60000], and the ladder of sizes:
+    Every one takes output_extent=(width, height), each in [1, 32768], target_ms in (0, 60000], and the ladder of sizes:
     min_scale above 0, max_scale up to 2, order ("horizontal-first", "horizontal-only", "both-axes"), step (pixels),
-    min=(width, height). Settings outside their ranges raise Error. Pure: the same calls give the same sizes.
+    min_extent=(width, height). Settings outside their ranges raise Error. Pure: the same calls give the same sizes.
 
-        controller = quincunx.PredictiveController(output=(1920, 1080), target_ms=16.7)
+        controller = quincunx.PredictiveController(output_extent=(1920, 1080), target_ms=16.7)
         each frame: width, height = controller.next(); then controller.observe(number, (width, height), gpu_ms)
     """
 
     OBJECT, KIND = "controller", None
 
     def __init__(self, calibration=None, front=None, methods=(), **settings):
-        made = settings_of(ControllerSettings, "quincunx_controller_settings_init", ("output", "min"), settings)
+        made = settings_of(ControllerSettings, "quincunx_controller_settings_init", settings)
         made.kind = self.KIND
-        names = (c_char_p * len(methods))(*(name.encode() for name in methods))
+        names = (c_char_p * len(methods))(*(text_of("a name in methods", name) for name in methods))
         made.methods, made.method_count = names, len(methods)
-        made.calibration = calibration.handle if calibration is not None else None
-        made.front = front.handle if front is not None else None
+        made.calibration = CostTable.handle_of("calibration", calibration)
+        made.front = ErrorFront.handle_of("front", front)
         super().__init__("create", byref(made))
 
     @property
@@ -451,36 +491,36 @@ class Controller(Handle):
             rungs.append(tuple(extent))
         return rungs
 
-    def observe(self, frame, render, gpu_ms, content=None, **times):
+    def observe(self, frame, render_extent, gpu_ms, content=None, **times):
         """Learns from one past frame, oldest first.
 
-        frame      its number, which rises; gaps are allowed
-        render     (width, height) that it was drawn at
-        gpu_ms     busy time of its critical path, resolve included, in (0, 60000]
-        times      cpu_ms, interval_ms, blur_px, resolve_ms, queued, missed_vsyncs, next_frame; 0: not known
-        content    of QualityController: shares as Resolver.reports() has them; None: as the frame before
+        frame          its number, which rises; gaps are allowed
+        render_extent  (width, height) that it was drawn at
+        gpu_ms         busy time of its critical path, resolve included, in (0, 60000]
+        times          cpu_ms, interval_ms, blur_px, resolve_ms, queued, missed_vsyncs, next_frame; 0: not known
+        content        of QualityController: shares as Resolver.reports() has them; None: as the frame before
         Raises Error for what cannot be; nothing has changed then.
         """
-        timing = Timing(frame=frame, render_width=render[0], render_height=render[1], gpu_ms=gpu_ms, **times)
+        timing = Timing(frame=frame, render_extent=render_extent, gpu_ms=gpu_ms, **times)
         if content is not None:
             timing.content = ctypes.pointer(Content(**content))
         call("quincunx_controller_observe", self.handle, byref(timing))
 
     def choice(self):
-        """{"render": (width, height), "rung", "method", "fading_from", "weight"}.
+        """{"render_extent": (width, height), "rung", "method", "fading_from", "weight"}.
 
         method and fading_from are names of variants(), None where none is chosen. With fading_from, resolve with that
         as well and give its picture to resolve(fading_from=..., fade_weight=weight).
         """
         choice = Choice()
         call("quincunx_controller_choice", self.handle, byref(choice))
-        return {"render": (choice.render_width, choice.render_height), "rung": choice.rung,
+        return {"render_extent": (choice.render_width, choice.render_height), "rung": choice.rung,
                 "method": choice.method and choice.method.decode(),
                 "fading_from": choice.fading_from and choice.fading_from.decode(), "weight": choice.weight}
 
     def next(self):
         """(width, height) to draw the next frame at; at first the largest."""
-        return self.choice()["render"]
+        return self.choice()["render_extent"]
 
 
 class ProportionalController(Controller):
@@ -531,7 +571,7 @@ class CostTable(Handle):
         if json is None:
             super().__init__("create", half_life_frames)
         else:
-            super().__init__("parse", json.encode())
+            super().__init__("parse", text_of("json", json))
 
     def __str__(self):
         return self._text("text")
@@ -567,9 +607,11 @@ class ErrorFront(Handle):
 
     def __init__(self, json=None, resolver=None, scene=""):
         if resolver is None:
-            super().__init__("parse", json if json is None else json.encode())
+            super().__init__("parse", text_of("json", json))
+        elif isinstance(resolver, Resolver):
+            super().__init__("find", resolver._device, text_of("scene", scene))
         else:
-            super().__init__("find", resolver._device, scene.encode())
+            raise TypeError(f"resolver is {resolver!r}; it must be of Resolver")
 
     def __str__(self):
         return self._text("text")
@@ -599,26 +641,26 @@ def mix_of(**content):
 
 
 class OutputFollower(Handle):
-    """An output that goes along with the size of frames, for resolve(output=...).
+    """An output that goes along with the size of frames, for resolve(output_extent=...).
 
-    display=(width, height), min_scale in (0, 1], steps at least 1, max_filled in (0, 1], hysteresis in [0, 1),
+    display_extent=(width, height), min_scale in (0, 1], steps at least 1, max_filled in (0, 1], hysteresis in [0, 1),
     rest_frames at least 0.
     """
 
     OBJECT = "output_follower"
 
     def __init__(self, **settings):
-        made = settings_of(OutputSettings, "quincunx_output_settings_init", ("display",), settings)
+        made = settings_of(OutputSettings, "quincunx_output_settings_init", settings)
         super().__init__("create", byref(made))
 
-    def observe(self, render):
+    def observe(self, render_extent):
         """Called once per frame with the (width, height) it is drawn at. Returns the output's (width, height)."""
         output = (c_int32 * 2)()
-        call("quincunx_output_follower_observe", self.handle, *render, output)
+        call("quincunx_output_follower_observe", self.handle, *render_extent, output)
         return tuple(output)
 
     def min_output(self):
-        """The smallest there may be, for the setting min_output."""
+        """The smallest there may be, for the setting min_output_extent."""
         output = (c_int32 * 2)()
         call("quincunx_output_follower_min_output", self.handle, output)
         return tuple(output)
@@ -633,7 +675,7 @@ class DetailFollower(Handle):
     OBJECT = "detail_follower"
 
     def __init__(self, **settings):
-        made = settings_of(DetailSettings, "quincunx_detail_settings_init", (), settings)
+        made = settings_of(DetailSettings, "quincunx_detail_settings_init", settings)
         super().__init__("create", byref(made))
 
     def observe(self, area_fraction):
@@ -645,9 +687,25 @@ class DetailFollower(Handle):
 
 def number_of(name, value):
     """The number of a setting whose value may be a name."""
-    choices = METHODS if name == "method" else {word: i for i, word in enumerate(CHOICES.get(name, ()))}
     if not isinstance(value, str):
         return value
-    if value not in choices:
-        raise ValueError(f"{name} is '{value}'; it must be one of {', '.join(choices) or 'numbers'}")
-    return choices[value]
+    if value not in CHOICES.get(name, ()):
+        raise ValueError(f"{name} is '{value}'; it must be {'one of ' * (name in CHOICES)}"
+                         f"{', '.join(CHOICES.get(name, ('a number',)))}")
+    return CHOICES[name][value]
+
+
+def pair_of(name, value):
+    """Two numbers, in words where they are not."""
+    try:
+        first, second = value
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} is {value!r}; it must be a pair of numbers") from None
+    return first, second
+
+
+def text_of(name, value):
+    """Text as C has it; None for None."""
+    if value is not None and not isinstance(value, str):
+        raise TypeError(f"{name} is {value!r}; it must be text")
+    return value if value is None else value.encode()
