@@ -14,6 +14,7 @@
 #include "tools/program/progress.h"
 #include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_advice.h"
+#include "tools/sequence/resolve_diagnosis.h"
 #include "tools/sequence/resolve_report.h"
 
 namespace quincunx::tools {
@@ -36,6 +37,17 @@ int print_listing(const ResolveOptions& options, const ResolveTask& task) {
   if (!status.ok() && !listed) return fail(status);
   fmt::print("{}", options.json ? listing_json(task) : listing_text(task, options.verbosity > 0));
   return status.ok() ? kDone : kFailed;
+}
+
+int print_diagnosis(const ResolveOptions& options, const ResolveTask& task) {
+  constexpr int kFoundWrong = 3;
+  if (const Status status = task.check(options.skip_bad_frames); !status.ok()) return fail(status);
+  const auto frames = read_for_diagnosis(task);
+  if (!frames.ok()) return fail(frames.status());
+  const Diagnosis diagnosis = diagnose(frames.value(), diagnosed_input(task));
+  fmt::print("{}",
+             options.json ? diagnosis_json(task, diagnosis) : diagnosis_text(frames.value(), diagnosis));
+  return diagnosis.wrong() ? kFoundWrong : kDone;
 }
 
 // Tells what a careful user would want to know before the first frame.
@@ -129,6 +141,7 @@ int run(int argc, char** argv) {
   auto task = prepare(options);
   if (!task.ok()) return fail(task.status());
   if (options.dry_run) return print_listing(options, task.value());
+  if (options.diagnose) return print_diagnosis(options, task.value());
   if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
   if (options.explain) {
     fmt::print("{}{}", device_lines(Device::open(options.device)), task->plan.explain());

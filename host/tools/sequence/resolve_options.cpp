@@ -124,7 +124,7 @@ constexpr const char* kExamples = R"(Examples:
   quincunx-resolve "seq/frame.%04d.exr" --out "up/up.%04d.exr" --frames 101-200   one chunk of a render farm
   quincunx-resolve "seq/frame.%04d.exr" --out "up/up.%04d.exr" -n            only say what would be done
   quincunx-resolve recorded --out "up/up.%04d.exr"                           as it was recorded, bit for bit
-Exit status: 0 done, 1 failed, 2 wrong usage.)";
+Exit status: 0 done, 1 failed, 2 wrong usage, 3 --diagnose found something wrong.)";
 
 UsageError wrong(const std::string& option, const std::string& reason) {
   return UsageError{option, reason};
@@ -181,6 +181,9 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
   app.add_flag("-n,--dry-run", options.dry_run, "Only list what would be read and made, and what is missing");
+  app.add_flag(
+      "--diagnose", options.diagnose,
+      "Only say what is wrong with motion, jitter, depth and camera, by up to 16 of the frames themselves");
   app.add_flag("--explain", options.explain, "Only print the plan: passes, buffers, what is left out");
   app.add_option("--threads", options.threads,
                  "Threads that read and write files (default: as many as there are processors)")
@@ -199,7 +202,8 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
 void check_needs(const ResolveOptions& options) {
   if (options.list_devices) return;
   if (options.input.empty()) throw wrong("INPUT", "is missing: give the pattern of the frames to read");
-  const bool writes_nothing = options.dry_run || options.explain || !options.truth.empty();
+  const bool writes_nothing =
+      options.dry_run || options.explain || options.diagnose || !options.truth.empty();
   if (options.out.empty() && !writes_nothing)
     throw wrong("--out", "is missing: give the pattern of the frames to write");
   if (options.resume && options.out.empty()) throw wrong("--resume", "needs --out");
@@ -207,6 +211,8 @@ void check_needs(const ResolveOptions& options) {
 
 // Refuses options of frames that nobody explains.
 void check_recorded(const CommandLine& app, const std::string& folder) {
+  if (app.has("--diagnose"))
+    throw wrong("--diagnose", fmt::format("looks at EXR sequences alone, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
         "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up"}) {

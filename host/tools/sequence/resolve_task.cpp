@@ -160,6 +160,7 @@ Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
   task.output = std::move(output).value();
   // Which channels are read follows from a plan of any size.
   if (Status status = settle_plan(task, task.format.output, true); !status.ok()) return status;
+  if (options.diagnose) return {};
   if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
   if (task.output) task.output->settings += "; " + summary_of(task.format);
   return {};

@@ -39,6 +39,7 @@ struct ResolveOptions {
 
   bool dry_run = false;
   bool explain = false;
+  bool diagnose = false;  // every channel is then read, whatever the method
   bool list_devices = false;
   int threads = 1;
   std::string device;

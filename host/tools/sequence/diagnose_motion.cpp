@@ -1,0 +1,512 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/diagnose_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "tools/program/jitter.h"
+
+namespace quincunx::tools {
+namespace {
+
+// Motion: guesses of what the channels mean.
+
+enum class Unit : std::uint8_t { kStated, kUv, kPixels, kOutputPixels, kNdc, kNothing };
+
+struct MotionGuess {
+  Unit unit = Unit::kStated;
+  bool swapped = false;
+  bool flip_x = false;
+  bool flip_y = false;
+  int later = 0;  // frames by which the motion that fits was written too early
+
+  friend bool operator==(const MotionGuess&, const MotionGuess&) = default;
+};
+
+// Factors from channels to uv by the input's word.
+Vec2 stated_factors(const VelocityUnits& units, Extent extent) {
+  Vec2 one[] = {{1, 1}};
+  to_velocity(units, extent, one);
+  return one[0];
+}
+
+Vec2 factors_of(const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
+  const auto width = static_cast<float>(extent.width), height = static_cast<float>(extent.height);
+  const Vec2 stated = stated_factors(input.units, extent);
+  Vec2 sizes = {std::abs(stated.x) * width, std::abs(stated.y) * height};
+  switch (guess.unit) {
+    case Unit::kStated:
+      break;
+    case Unit::kUv:
+      sizes = {width, height};
+      break;
+    case Unit::kPixels:
+      sizes = {1, 1};
+      break;
+    case Unit::kOutputPixels:
+      sizes = {width / static_cast<float>(input.output.width),
+               height / static_cast<float>(input.output.height)};
+      break;
+    case Unit::kNdc:
+      sizes = {width / 2, height / 2};
+      break;
+    case Unit::kNothing:
+      sizes = {};
+      break;
+  }
+  return {std::copysign(sizes.x, stated.x) * (guess.flip_x ? -1.0f : 1.0f),
+          std::copysign(sizes.y, stated.y) * (guess.flip_y ? -1.0f : 1.0f)};
+}
+
+Motion motion_of(const Pair& pair, const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
+  const Vec2 factors = factors_of(input, guess, extent);
+  Motion motion;
+  for (const Place& place : pair.places) {
+    const Vec2 own = place.velocity[1];
+    Vec2 v = place.velocity[static_cast<std::size_t>(1 + guess.later)];
+    // Another surface has come here, which says nothing of when motion was written.
+    if (std::hypot(v.x - own.x, v.y - own.y) > .5f * std::hypot(own.x, own.y)) v = own;
+    if (guess.swapped) std::swap(v.x, v.y);
+    motion.push_back({v.x * factors.x, v.y * factors.y});
+  }
+  return motion;
+}
+
+// Whether two guesses say the same of frames of this size.
+bool same(const DiagnosedInput& input, const MotionGuess& a, const MotionGuess& b, Extent extent) {
+  const Vec2 x = factors_of(input, a, extent), y = factors_of(input, b, extent);
+  const auto near = [](float p, float q) { return std::abs(p - q) <= .01f * std::abs(p); };
+  return a.swapped == b.swapped && a.later == b.later && near(x.x, y.x) && near(x.y, y.y);
+}
+
+std::vector<MotionGuess> motion_guesses(const DiagnosedInput& input, Extent extent) {
+  std::vector<MotionGuess> guesses;
+  const auto add = [&](const MotionGuess& guess) {
+    const bool known = std::any_of(guesses.begin(), guesses.end(), [&](const MotionGuess& other) {
+      return same(input, guess, other, extent);
+    });
+    if (!known) guesses.push_back(guess);
+  };
+  for (const Unit unit : {Unit::kStated, Unit::kUv, Unit::kPixels, Unit::kNdc, Unit::kOutputPixels}) {
+    for (const bool swapped : {false, true}) {
+      for (const auto& [x, y] : {std::pair(false, false), {true, false}, {false, true}, {true, true}})
+        add({unit, swapped, x, y});
+    }
+  }
+  add({.later = -1});
+  add({.later = 1});
+  return guesses;
+}
+
+std::vector<std::string> faults_of(const MotionGuess& guess) {
+  std::vector<std::string> faults;
+  if (guess.unit == Unit::kNothing) return {"unit"};  // of values that are too small
+  if (guess.unit != Unit::kStated) faults.push_back("unit");
+  if (guess.swapped) faults.push_back("axes");
+  if (guess.flip_x && guess.flip_y) faults.push_back("direction");
+  if (guess.flip_x && !guess.flip_y) faults.push_back("sign of x");
+  if (guess.flip_y && !guess.flip_x) faults.push_back("sign of y");
+  if (guess.later != 0) faults.push_back("frame");
+  return faults;
+}
+
+const char* name_of(Unit unit) {
+  switch (unit) {
+    case Unit::kStated:
+      return "";
+    case Unit::kUv:
+      return "parts of the picture";
+    case Unit::kPixels:
+      return "pixels";
+    case Unit::kOutputPixels:
+      return "pixels of the output";
+    case Unit::kNdc:
+      return "normalised device coordinates";
+    case Unit::kNothing:
+      return "nothing that is known: none at all foretells better";
+  }
+  return "";
+}
+
+std::string text_of(const MotionGuess& guess) {
+  std::vector<std::string> parts;
+  if (guess.unit != Unit::kStated) parts.emplace_back(name_of(guess.unit));
+  if (guess.swapped) parts.emplace_back("axes swapped");
+  if (guess.flip_x && guess.flip_y) parts.emplace_back("the other direction");
+  if (guess.flip_x != guess.flip_y)
+    parts.push_back(fmt::format("{} the other way", guess.flip_x ? "x" : "y"));
+  if (guess.later != 0) parts.push_back(fmt::format("of the {} frame", guess.later > 0 ? "next" : "last"));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string option_of(const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
+  if (guess.unit == Unit::kNothing) return "--velocity none";
+  if (guess.later != 0) return "write each frame's own motion";
+  std::string text;
+  if (guess.swapped) text = fmt::format("--velocity {},{} ", input.channels[1], input.channels[0]);
+  const Vec2 factors = factors_of(input, guess, extent);
+  for (const auto convention :
+       {VelocityConvention::kNuke, VelocityConvention::kFsr2, VelocityConvention::kNdc}) {
+    const Vec2 known = stated_factors({convention}, extent);
+    const auto near = [](float p, float q) { return std::abs(p - q) <= 1e-4f * std::abs(p); };
+    if (near(known.x * static_cast<float>(extent.width), factors.x) &&
+        near(known.y * static_cast<float>(extent.height), factors.y))
+      return text + fmt::format("--velocity-convention {}", tools::name_of(convention));
+  }
+  return text + fmt::format("--velocity-scale {:.6g},{:.6g}", factors.x / static_cast<float>(extent.width),
+                            factors.y / static_cast<float>(extent.height));
+}
+
+// Jitter: guesses of what the frames were drawn with.
+
+struct JitterGuess {
+  bool swapped = false;
+  bool flip_x = false;
+  bool flip_y = false;
+  float factor = 1;  // 0: none
+  int later = 0;
+  std::optional<Jitter> pattern = {};  // in place of what the input says
+
+  friend bool operator==(const JitterGuess&, const JitterGuess&) = default;
+};
+
+using Frames = std::span<const DiagnosedFrame>;
+
+JitterMend mend_of(const JitterGuess& guess) {
+  return {guess.swapped,
+          {guess.factor * (guess.flip_x ? -1.0f : 1.0f), guess.factor * (guess.flip_y ? -1.0f : 1.0f)},
+          guess.later};
+}
+
+std::optional<Vec2> jitter_at(Frames frames, const DiagnosedInput& input, const JitterGuess& guess,
+                              std::size_t i) {
+  const auto from = static_cast<std::ptrdiff_t>(i) + guess.later;
+  if (from < 0 || from >= static_cast<std::ptrdiff_t>(frames.size())) return std::nullopt;
+  const DiagnosedFrame& frame = frames[static_cast<std::size_t>(from)];
+  if (frame.number != frames[i].number + guess.later) return std::nullopt;
+  if (guess.pattern) return jitter_of(*guess.pattern, frame.index, frame.render, input.output);
+  return mend_of(guess).of(frame.jitter);
+}
+
+std::vector<JitterGuess> jitter_guesses(Frames frames, const DiagnosedInput& input) {
+  std::vector<JitterGuess> guesses = {{}};
+  const bool told = std::any_of(frames.begin(), frames.end(), [&](const DiagnosedFrame& frame) {
+    return frame.jitter != frames[0].jitter;
+  });
+  if (told) {
+    for (const bool swapped : {false, true}) {
+      for (const auto& [x, y] : {std::pair(false, false), {true, false}, {false, true}, {true, true}})
+        if (swapped || x || y) guesses.push_back({swapped, x, y});
+    }
+    const float scale = static_cast<float>(frames[0].render.width) / static_cast<float>(input.output.width);
+    for (const float factor : {0.0f, .5f, 2.0f, scale})
+      if (std::abs(factor - 1) > .1f) guesses.push_back({.factor = factor});
+    guesses.push_back({.later = -1});
+    guesses.push_back({.later = 1});
+  }
+  for (const Jitter pattern : {Jitter::kHalton, Jitter::kQuincunx, Jitter::kQuincunxHalf})
+    guesses.push_back({.pattern = pattern});
+  return guesses;
+}
+
+std::vector<std::string> faults_of(const JitterGuess& guess) {
+  std::vector<std::string> faults;
+  if (guess.pattern) return {"pattern"};
+  if (guess.factor == 0) return {"none"};
+  if (guess.factor != 1) faults.push_back("scale");
+  if (guess.swapped) faults.push_back("axes");
+  if (guess.flip_x && guess.flip_y) faults.push_back("sign");
+  if (guess.flip_x && !guess.flip_y) faults.push_back("sign of x");
+  if (guess.flip_y && !guess.flip_x) faults.push_back("sign of y");
+  if (guess.later != 0) faults.push_back("frame");
+  return faults;
+}
+
+std::string text_of(const JitterGuess& guess) {
+  if (guess.pattern) return fmt::format("the pattern {}", tools::name_of(*guess.pattern));
+  if (guess.factor == 0) return "none in the frames";
+  std::vector<std::string> parts;
+  if (guess.factor != 1) parts.push_back(fmt::format("{:.3g} times as far", guess.factor));
+  if (guess.swapped) parts.emplace_back("axes swapped");
+  if (guess.flip_x && guess.flip_y) parts.emplace_back("the other sign");
+  if (guess.flip_x != guess.flip_y)
+    parts.push_back(fmt::format("{} the other way", guess.flip_x ? "x" : "y"));
+  if (guess.later != 0)
+    parts.push_back(fmt::format("that of the {} frame", guess.later > 0 ? "next" : "last"));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+// Both together.
+
+class Search {
+ public:
+  Search(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
+         const std::vector<Pair>& pairs)
+      : frames_(frames), input_(input), planes_(planes), pairs_(pairs) {}
+
+  std::vector<Motion> motion(const MotionGuess& guess) const {
+    std::vector<Motion> motion;
+    for (const Pair& pair : pairs_)
+      motion.push_back(motion_of(pair, input_, guess, frames_[pair.now].render));
+    return motion;
+  }
+
+  Foretold foretold(const std::vector<Motion>& motion, const JitterGuess& jitter, int later = 0) const {
+    Foretold result = {.motion = &motion,
+                       .shift = std::vector<Vec2>(pairs_.size()),
+                       .errors = std::vector<std::vector<float>>(pairs_.size())};
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const Pair& pair = pairs_[p];
+      const auto now = jitter_at(frames_, input_, jitter, pair.now);
+      const auto before = jitter_at(frames_, input_, jitter, pair.now - 1);
+      if (!now || !before || (later > 0 && !pair.has_next) || (later < 0 && !pair.has_second)) continue;
+      result.shift[p] = {now->x * pair.ratio.x - before->x, now->y * pair.ratio.y - before->y};
+      result.errors[p] = foretell(pair, planes_[pair.now - 1], motion[p], result.shift[p]);
+    }
+    return result;
+  }
+
+  // Errors with the shift that fits each pair best, whatever the jitter.
+  double least_error(const std::vector<Motion>& motion) const {
+    double sum = 0;
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+      const Plane& before = planes_[pairs_[p].now - 1];
+      for (const float error :
+           foretell(pairs_[p], before, motion[p], best_shift(pairs_[p], before, motion[p])))
+        sum += error;
+    }
+    return sum;
+  }
+
+  Comparison compared(const Foretold& one, const Foretold& other) const {
+    return compare(pairs_, frames_, one, other);
+  }
+
+ private:
+  Frames frames_;
+  const DiagnosedInput& input_;
+  const std::vector<Plane>& planes_;
+  const std::vector<Pair>& pairs_;
+};
+
+// Returns guesses of motion worth a second look: the input's own first, then those that foretell best with any shift.
+std::vector<MotionGuess> best_guesses(const Search& search, const std::vector<MotionGuess>& guesses) {
+  constexpr std::size_t kKept = 6;
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t g = 1; g < guesses.size(); ++g) {
+    // Where guesses come to the same, the simpler goes first.
+    const double handicap = 1 + .002 * static_cast<double>(faults_of(guesses[g]).size());
+    order.emplace_back(search.least_error(search.motion(guesses[g])) * handicap, g);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<MotionGuess> kept = {guesses[0]};
+  for (std::size_t i = 0; i < std::min(kKept, order.size()); ++i)
+    kept.push_back(guesses[order[i].second]);
+  return kept;
+}
+
+// Returns how much of the jitter's steps is in the motion: -1 where each position is that in its jittered picture, 1
+// where besides the jitter is told with the wrong sign, else 0. Motion itself changes smoothly, jitter does not.
+int jitter_in_motion(Frames frames, const DiagnosedInput& input, const MotionGuess& guess) {
+  constexpr int kAcross = 40;
+  constexpr double kRoom = .2;
+  std::vector<double> factors;
+  const Extent extent = frames[0].render;
+  const Vec2 scale = factors_of(input, guess, extent);
+  const auto step = [&](std::size_t i) {
+    return Vec2{frames[i].jitter.x - frames[i - 1].jitter.x, frames[i].jitter.y - frames[i - 1].jitter.y};
+  };
+  for (int cell = 0; cell < kAcross * kAcross; ++cell) {
+    const int x = (2 * (cell % kAcross) + 1) * extent.width / (2 * kAcross);
+    const int y = (2 * (cell / kAcross) + 1) * extent.height / (2 * kAcross);
+    const auto pixel =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(x);
+    const auto at = [&](std::size_t f) {
+      Vec2 v = frames[f].velocity[pixel];
+      if (guess.swapped) std::swap(v.x, v.y);
+      return Vec2{v.x * scale.x, v.y * scale.y};
+    };
+    const auto usable = [&](std::size_t f) {
+      if (frames[f].render != extent || frames[f].velocity.empty() || frames[f].reset) return false;
+      const Vec2 v = frames[f].velocity[pixel];
+      return std::isfinite(v.x) && std::isfinite(v.y) && v != Vec2{};
+    };
+    double product = 0, square = 0;
+    for (std::size_t f = 2; f + 1 < frames.size(); ++f) {
+      if (!usable(f - 1) || !usable(f) || !usable(f + 1)) continue;
+      const Vec2 a = at(f - 1), b = at(f), c = at(f + 1), p = step(f - 1), q = step(f), r = step(f + 1);
+      const double jx = r.x - 2 * q.x + p.x, jy = r.y - 2 * q.y + p.y;
+      const double mx = c.x - 2 * b.x + a.x, my = c.y - 2 * b.y + a.y;
+      if (std::hypot(mx, my) > 2 * std::hypot(jx, jy) + .5) continue;  // another surface has come here
+      product += mx * jx + my * jy;
+      square += jx * jx + jy * jy;
+    }
+    if (square > 0) factors.push_back(product / square);
+  }
+  // Where surfaces change the factor is any number.
+  const auto near = [&](double value) {
+    return std::count_if(factors.begin(), factors.end(),
+                         [&](double f) { return std::abs(f - value) < kRoom; });
+  };
+  if (factors.size() < 50) return 0;
+  for (const int sign : {-1, 1}) {
+    const auto votes = near(sign);
+    if (votes * 4 > static_cast<std::ptrdiff_t>(factors.size()) && votes > 4 * near(0) &&
+        votes > 4 * near(-sign))
+      return sign;
+  }
+  return 0;
+}
+
+// Returns what might be mistaken for a guess.
+std::vector<MotionGuess> toggled(const MotionGuess& guess) {
+  std::vector<MotionGuess> rivals(6, guess);
+  rivals[0].flip_x = !guess.flip_x;
+  rivals[1].flip_y = !guess.flip_y;
+  rivals[2].flip_x = !guess.flip_x, rivals[2].flip_y = !guess.flip_y;
+  rivals[3].swapped = !guess.swapped;
+  rivals[4].unit = Unit::kNothing;
+  rivals[5].unit = Unit::kOutputPixels;
+  for (const int later : {-1, 1}) {
+    rivals.push_back(guess);
+    rivals.back().later = guess.later == later ? 0 : later;
+  }
+  return rivals;
+}
+
+// All guesses, foretold, and the one to believe.
+struct Guesses {
+  std::vector<MotionGuess> motions;
+  std::vector<JitterGuess> jitters;
+  std::vector<std::vector<Motion>> fields;  // of the motions
+  std::vector<Candidate> candidates;        // every motion with every jitter
+  std::size_t chosen = 0;
+
+  std::size_t index(std::size_t m, std::size_t j) const { return m * jitters.size() + j; }
+  std::size_t chosen_motion() const { return chosen / jitters.size(); }
+  std::size_t chosen_jitter() const { return chosen % jitters.size(); }
+  const MotionGuess& motion() const { return motions[chosen_motion()]; }
+  const JitterGuess& jitter() const { return jitters[chosen_jitter()]; }
+  const Foretold& best() const { return candidates[chosen].foretold; }
+  bool told() const { return jitters.size() > 4; }  // of a jitter: guesses are more than none and patterns
+};
+
+void foretell_all(const Search& search, Guesses& guesses) {
+  for (const MotionGuess& guess : guesses.motions)
+    guesses.fields.push_back(search.motion(guess));
+  for (std::size_t m = 0; m < guesses.motions.size(); ++m) {
+    for (const JitterGuess& jitter : guesses.jitters) {
+      // A pattern in place of what is told is the last that one would think of.
+      const std::size_t strange = jitter.pattern && guesses.told() ? 1 : 0;
+      guesses.candidates.push_back({strange + faults_of(guesses.motions[m]).size() + faults_of(jitter).size(),
+                                    m, search.foretold(guesses.fields[m], jitter, guesses.motions[m].later)});
+    }
+  }
+}
+
+// Returns how the chosen motion compares with those that may be mistaken for it.
+Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses,
+                        Extent extent) {
+  const MotionGuess& motion = guesses.motion();
+  Rivals rivals;
+  for (const MotionGuess& rival : toggled(motion)) {
+    if (same(input, rival, motion, extent)) continue;
+    const std::vector<Motion> field = search.motion(rival);
+    MotionGuess change = rival;
+    change.flip_x ^= motion.flip_x, change.flip_y ^= motion.flip_y, change.swapped ^= motion.swapped;
+    if (rival.unit == motion.unit) change.unit = Unit::kStated;
+    if (rival.later == motion.later) change.later = 0;
+    const Comparison compared =
+        search.compared(guesses.best(), search.foretold(field, guesses.jitter(), rival.later));
+    // Whose motion it is says nothing of what it means.
+    if (change.later == 0 || !clear(compared)) rivals.add(compared, faults_of(change));
+  }
+  return rivals;
+}
+
+// `mixed`: as of jitter_in_motion().
+Finding judge_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses, int mixed,
+                     Extent extent) {
+  const MotionGuess& motion = guesses.motion();
+  Finding finding = {.subject = "velocity", .says = tools::name_of(input.units.convention)};
+  const Rivals rivals = rivals_of_motion(search, input, guesses, extent);
+  rivals.judge(finding);
+  if (motion == MotionGuess{} && mixed == 0) return finding;
+  finding.verdict = Verdict::kWrong;
+  finding.faults = faults_of(motion);
+  finding.fits = text_of(motion);
+  if (motion != MotionGuess{}) finding.option = option_of(input, motion, extent);
+  if (mixed != 0) {
+    finding.faults.emplace_back("jitter in it");
+    finding.fits += std::string(finding.fits.empty() ? "" : ", ") + "with the jitter in it";
+    finding.option +=
+        std::string(finding.option.empty() ? "" : " and ") + "conventions.velocity_jittered = true";
+  }
+  const std::size_t other = motion == MotionGuess{} ? 0 : guesses.index(0, guesses.chosen_jitter());
+  const Comparison compared = search.compared(guesses.best(), guesses.candidates[other].foretold);
+  finding.margin_db = compared.margin_db;
+  finding.share = compared.share;
+  return finding;
+}
+
+// `jitter`: the one that fits. Where the motion holds it, pictures cannot tell it from none: the motion's word counts.
+Finding judge_jitter(const Search& search, const Guesses& guesses, const JitterGuess& jitter, int mixed) {
+  Finding finding = {.subject = "jitter", .says = guesses.told() ? "told" : "none"};
+  if (jitter == JitterGuess{}) {
+    Rivals rivals;
+    for (std::size_t j = 1; j < guesses.jitters.size() && mixed == 0; ++j) {
+      if (guesses.jitters[j].pattern && guesses.told()) continue;
+      const Candidate& rival = guesses.candidates[guesses.index(guesses.chosen_motion(), j)];
+      rivals.add(search.compared(guesses.best(), rival.foretold), faults_of(guesses.jitters[j]));
+    }
+    rivals.judge(finding);
+    if (mixed != 0) finding.verdict = Verdict::kRight;
+    return finding;
+  }
+  finding.verdict = Verdict::kWrong;
+  finding.faults = faults_of(jitter);
+  finding.fits = text_of(jitter);
+  finding.option = jitter.pattern       ? fmt::format("--jitter {}", tools::name_of(*jitter.pattern))
+                   : jitter.factor == 0 ? "--jitter none"
+                                        : "--jitter FILE, with what --diagnose --json prints";
+  const Candidate& told = guesses.candidates[guesses.index(guesses.chosen_motion(), 0)];
+  const Comparison compared = search.compared(guesses.best(), told.foretold);
+  finding.margin_db = compared.margin_db;
+  finding.share = compared.share;
+  return finding;
+}
+
+}  // namespace
+
+MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
+                         const std::vector<Pair>& pairs) {
+  const Search search(frames, input, planes, pairs);
+  const bool has_motion = !frames[0].velocity.empty();
+  const Extent extent = frames[0].render;
+  Guesses guesses;
+  guesses.motions = {{}};
+  guesses.jitters = jitter_guesses(frames, input);
+  if (has_motion) guesses.motions = best_guesses(search, motion_guesses(input, extent));
+  foretell_all(search, guesses);
+  guesses.chosen = choose(pairs, frames, guesses.candidates);
+
+  MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
+  const int mixed = has_motion && guesses.told() ? jitter_in_motion(frames, input, guesses.motion()) : 0;
+  JitterGuess jitter = guesses.jitter();
+  if (mixed != 0) jitter = {.flip_x = mixed > 0, .flip_y = mixed > 0};
+  Finding motion = {.subject = "velocity", .says = "none"};
+  if (has_motion) motion = judge_motion(search, input, guesses, mixed, extent);
+  const Finding moved = judge_jitter(search, guesses, jitter, mixed);
+  answer.findings = {motion, moved};
+  answer.knows_motion = motion.verdict != Verdict::kUnknown;
+  answer.mend = mend_of(jitter);
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    answer.jitter.push_back(jitter_at(frames, input, jitter, i).value_or(frames[i].jitter));
+  return answer;
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: MIT
+#include "tools/sequence/foretelling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace quincunx::tools {
+namespace {
+
+constexpr float kCap = .15f;  // errors of light beyond this are all as wrong
+constexpr int kWantedPlaces = 6000;
+constexpr float kLeastGradient = .01f;  // of light in a pixel
+constexpr int kBlocks = 6;              // of a picture's side
+
+float clean(float value) {
+  return value > 0 && value < 1e6f ? value : 0;
+}
+
+// The middle luminance of what is not black.
+float middle(const DiagnosedFrame& frame) {
+  std::vector<float> lit;
+  for (std::size_t i = 0; i < frame.luminance.size(); i += 7)
+    if (clean(frame.luminance[i]) > 0) lit.push_back(frame.luminance[i]);
+  if (lit.empty()) return 1;
+  std::nth_element(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2), lit.end());
+  return lit[lit.size() / 2];
+}
+
+float at(const Plane& plane, int x, int y) {
+  const int cx = std::clamp(x, 0, plane.extent.width - 1), cy = std::clamp(y, 0, plane.extent.height - 1);
+  return plane.values[static_cast<std::size_t>(cy) * static_cast<std::size_t>(plane.extent.width) +
+                      static_cast<std::size_t>(cx)];
+}
+
+Plane plane_of(const DiagnosedFrame& frame, float scale) {
+  Plane sharp = {frame.render, std::vector<float>(frame.luminance.size())};
+  for (std::size_t i = 0; i < sharp.values.size(); ++i) {
+    const float value = clean(frame.luminance[i]) * scale;
+    sharp.values[i] = std::sqrt(value / (1 + value));
+  }
+  Plane across = sharp, soft = sharp;
+  std::size_t i = 0;
+  for (int y = 0; y < frame.render.height; ++y)
+    for (int x = 0; x < frame.render.width; ++x, ++i)
+      across.values[i] = .5f * at(sharp, x, y) + .25f * (at(sharp, x - 1, y) + at(sharp, x + 1, y));
+  i = 0;
+  for (int y = 0; y < frame.render.height; ++y)
+    for (int x = 0; x < frame.render.width; ++x, ++i)
+      soft.values[i] = .5f * at(across, x, y) + .25f * (at(across, x, y - 1) + at(across, x, y + 1));
+  return soft;
+}
+
+std::array<float, 4> catmull_rom(float t) {
+  const float t2 = t * t, t3 = t2 * t;
+  return {.5f * (-t + 2 * t2 - t3), .5f * (2 - 5 * t2 + 3 * t3), .5f * (t + 4 * t2 - 3 * t3),
+          .5f * (t3 - t2)};
+}
+
+// At texel coordinates within the plane.
+float sample(const Plane& plane, float x, float y) {
+  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const auto wx = catmull_rom(x - static_cast<float>(x0)), wy = catmull_rom(y - static_cast<float>(y0));
+  const bool inside = x0 >= 1 && y0 >= 1 && x0 + 2 < plane.extent.width && y0 + 2 < plane.extent.height;
+  float sum = 0;
+  for (int j = 0; j < 4; ++j) {
+    float row = 0;
+    if (inside) {
+      const float* texels =
+          &plane.values[static_cast<std::size_t>(y0 + j - 1) * static_cast<std::size_t>(plane.extent.width) +
+                        static_cast<std::size_t>(x0 - 1)];
+      for (int i = 0; i < 4; ++i)
+        row += wx[static_cast<std::size_t>(i)] * texels[i];
+    } else {
+      for (int i = 0; i < 4; ++i)
+        row += wx[static_cast<std::size_t>(i)] * at(plane, x0 + i - 1, y0 + j - 1);
+    }
+    sum += wy[static_cast<std::size_t>(j)] * row;
+  }
+  return sum;
+}
+
+float gradient(const Plane& plane, int x, int y) {
+  return std::max(std::abs(at(plane, x + 1, y) - at(plane, x - 1, y)),
+                  std::abs(at(plane, x, y + 1) - at(plane, x, y - 1))) /
+         2;
+}
+
+// Whether a pixel moves as its neighbours do, in whatever unit: at rims and on thin things colours of two surfaces are
+// mixed, and no motion foretells those.
+bool moves_alike(const DiagnosedFrame& frame, int x, int y) {
+  if (frame.velocity.empty()) return true;
+  const auto at = [&](int i, int j) {
+    return frame.velocity[static_cast<std::size_t>(j) * static_cast<std::size_t>(frame.render.width) +
+                          static_cast<std::size_t>(i)];
+  };
+  const Vec2 own = at(x, y);
+  const float room = .1f * std::max(std::abs(own.x), std::abs(own.y));
+  for (int j = y - 2; j <= y + 2; ++j) {
+    for (int i = x - 2; i <= x + 2; ++i) {
+      const Vec2 v = at(i, j);
+      if (!(std::abs(v.x - own.x) <= room && std::abs(v.y - own.y) <= room)) return false;
+    }
+  }
+  return true;
+}
+
+// The place with the largest gradient of each cell of the picture.
+std::vector<Place> places_of(const DiagnosedFrame& frame, const Plane& plane) {
+  const int cell =
+      std::max(2, static_cast<int>(std::sqrt(static_cast<double>(plane.extent.area()) / kWantedPlaces)));
+  std::vector<Place> places;
+  for (int top = 2; top + cell < plane.extent.height - 2; top += cell) {
+    for (int left = 2; left + cell < plane.extent.width - 2; left += cell) {
+      Place best;
+      float most = kLeastGradient;
+      for (int y = top; y < top + cell; ++y) {
+        for (int x = left; x < left + cell; ++x) {
+          const float here = gradient(plane, x, y);
+          if (here > most && moves_alike(frame, x, y))
+            most = here, best = {.x = x, .y = y, .light = at(plane, x, y)};
+        }
+      }
+      if (most > kLeastGradient) places.push_back(best);
+    }
+  }
+  return places;
+}
+
+Vec2 finite(Vec2 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) ? v : Vec2{};
+}
+
+}  // namespace
+
+std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames) {
+  std::vector<Plane> planes;
+  const float scale = frames.empty() ? 1 : .5f / middle(frames.front());
+  for (const DiagnosedFrame& frame : frames)
+    planes.push_back(plane_of(frame, scale));
+  return planes;
+}
+
+std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::vector<Plane>& planes) {
+  const auto follows = [&](std::size_t i) {
+    return i > 0 && i < frames.size() && frames[i].number == frames[i - 1].number + 1 && !frames[i].reset;
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!follows(i)) continue;
+    const Extent now = frames[i].render, before = frames[i - 1].render;
+    Pair pair = {.now = i,
+                 .ratio = {static_cast<float>(before.width) / static_cast<float>(now.width),
+                           static_cast<float>(before.height) / static_cast<float>(now.height)},
+                 .has_next = follows(i + 1),
+                 .has_second = follows(i - 1),
+                 .places = places_of(frames[i], planes[i])};
+    for (Place& place : pair.places) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t from = i + k - 1;
+        if (from >= frames.size() || frames[from].velocity.empty() || frames[from].render != now) continue;
+        place.velocity[k] = finite(
+            frames[from].velocity[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(now.width) +
+                                  static_cast<std::size_t>(place.x)]);
+      }
+    }
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
+                                  std::size_t stride) {
+  std::vector<float> light;
+  const float right = static_cast<float>(before.extent.width - 1);
+  const float bottom = static_cast<float>(before.extent.height - 1);
+  for (std::size_t i = 0; i < pair.places.size(); i += stride) {
+    const Place& place = pair.places[i];
+    const float x = (static_cast<float>(place.x) + .5f - motion[i].x) * pair.ratio.x - .5f + shift.x;
+    const float y = (static_cast<float>(place.y) + .5f - motion[i].y) * pair.ratio.y - .5f + shift.y;
+    const bool inside = x >= 0 && y >= 0 && x <= right && y <= bottom;
+    light.push_back(inside ? std::max(sample(before, x, y), 0.0f) : -1);
+  }
+  return light;
+}
+
+std::vector<float> foretell(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
+                            std::size_t stride) {
+  std::vector<float> errors = foretold_light(pair, before, motion, shift, stride);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    const float error =
+        errors[i] < 0 ? kCap : std::min(std::abs(errors[i] - pair.places[i * stride].light), kCap);
+    errors[i] = error * error;
+  }
+  return errors;
+}
+
+Vec2 best_shift(const Pair& pair, const Plane& before, const Motion& motion) {
+  const std::size_t stride = std::max<std::size_t>(pair.places.size() / 1200, 1);
+  Vec2 best;
+  double least = -1;
+  const auto search = [&](Vec2 centre, float step, int reach) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const Vec2 shift = {centre.x + step * static_cast<float>(i), centre.y + step * static_cast<float>(j)};
+        double sum = 0;
+        for (const float error : foretell(pair, before, motion, shift, stride))
+          sum += error;
+        if (least < 0 || sum < least) least = sum, best = shift;
+      }
+    }
+  };
+  search({}, .5f, 2);
+  search(best, .25f, 1);
+  return best;
+}
+
+Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames, const Foretold& one,
+                   const Foretold& other) {
+  Comparison result;
+  double sum_one = 0, sum_other = 0, sum = 0, squares = 0;
+  std::size_t blocks = 0, better = 0, counted = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (one.errors[p].empty() || other.errors[p].empty()) continue;
+    const Extent extent = frames[pairs[p].now].render;
+    struct Block {
+      double gain = 0;
+      int places = 0;
+    };
+    std::vector<Block> grid(kBlocks * kBlocks);
+    double pair_gain = 0;
+    std::size_t in_pair = 0;
+    for (std::size_t i = 0; i < pairs[p].places.size(); ++i) {
+      const Vec2 a = (*one.motion)[p][i], b = (*other.motion)[p][i];
+      const float x = (b.x - a.x) * pairs[p].ratio.x + one.shift[p].x - other.shift[p].x;
+      const float y = (b.y - a.y) * pairs[p].ratio.y + one.shift[p].y - other.shift[p].y;
+      if (std::abs(x) < one.apart && std::abs(y) < one.apart) continue;
+      const Place& place = pairs[p].places[i];
+      Block& block = grid[static_cast<std::size_t>(place.y * kBlocks / extent.height * kBlocks +
+                                                   place.x * kBlocks / extent.width)];
+      const double gain = other.errors[p][i] - one.errors[p][i];
+      block.gain += gain;
+      ++block.places;
+      pair_gain += gain;
+      ++in_pair;
+      sum_one += one.errors[p][i];
+      sum_other += other.errors[p][i];
+    }
+    for (const Block& block : grid) {
+      if (block.places < 3) continue;
+      const double gain = block.gain / block.places;
+      sum += gain;
+      squares += gain * gain;
+      ++blocks;
+    }
+    result.places += in_pair;
+    if (in_pair < 20) continue;
+    ++counted;
+    better += pair_gain > 0 ? 1 : 0;
+  }
+  constexpr double kFloor = 1e-9;  // of a squared error, so that perfect ones can be compared
+  const double floor = kFloor * static_cast<double>(result.places) + 1e-12;
+  result.margin_db = 10 * std::log10((sum_other + floor) / (sum_one + floor));
+  if (blocks > 1) {
+    const double mean = sum / static_cast<double>(blocks);
+    const double variance = std::max(squares / static_cast<double>(blocks) - mean * mean, 0.0);
+    result.certainty = mean / (std::sqrt(variance / static_cast<double>(blocks)) + 1e-12);
+  }
+  result.share = counted > 0 ? static_cast<double>(better) / static_cast<double>(counted) : 0;
+  return result;
+}
+
+bool clear(const Comparison& comparison, double least_db) {
+  if (comparison.places < 60) return false;
+  const double least = least_db + 100.0 / static_cast<double>(comparison.places);
+  return comparison.margin_db >= least && comparison.certainty >= 6 && comparison.share >= .75;
+}
+
+std::size_t choose(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames,
+                   const std::vector<Candidate>& candidates) {
+  constexpr std::size_t kMostFaults = 5;
+  std::size_t chosen = 0;
+  for (std::size_t faults = 1; faults <= kMostFaults; ++faults) {
+    double most = 0;
+    std::size_t best = chosen;
+    for (std::size_t c = 1; c < candidates.size(); ++c) {
+      if (candidates[c].faults != faults) continue;
+      const Comparison compared = compare(pairs, frames, candidates[c].foretold, candidates[chosen].foretold);
+      const double gain = compared.margin_db * static_cast<double>(compared.places);
+      const bool same = candidates[c].motion == candidates[chosen].motion;
+      if (clear(compared, same ? kLeastDb : kLeastMotionDb) && gain > most * 1.001) most = gain, best = c;
+    }
+    chosen = best;
+  }
+  return chosen;
+}
+
+void Rivals::add(const Comparison& compared, const std::vector<std::string>& faults) {
+  const std::string name = fmt::format("{}", fmt::join(faults, " and "));
+  if (!clear(compared)) {
+    if (std::find(open.begin(), open.end(), name) == open.end()) open.push_back(name);
+  } else if (beaten++ == 0 || compared.margin_db < nearest.margin_db) {
+    nearest = compared;
+  }
+}
+
+void Rivals::judge(Finding& finding) const {
+  finding.verdict = beaten > 0 ? Verdict::kRight : Verdict::kUnknown;
+  finding.margin_db = nearest.margin_db;
+  finding.share = nearest.share;
+  finding.open = open;
+}
+
+}  // namespace quincunx::tools
