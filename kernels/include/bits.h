@@ -4,6 +4,18 @@
 // isnan() and isinf().
 #pragma once
 
+// A CPU keeps vectors in registers where code is written out for each lane and each case. A compiler that makes code of
+// its own for every lane of a vector, as those of GPUs do, would need minutes for that.
+#if defined(__x86_64__) || defined(__aarch64__)
+#define ON_CPU 1
+#define UNROLL(count) __attribute__((opencl_unroll_hint(count)))  // stands before a loop of `count` rounds
+#define EIGHT_TIMES(call) call, call, call, call, call, call, call, call  // compiles faster than an unrolled loop
+#else
+#define ON_CPU 0
+#define UNROLL(count) __attribute__((opencl_unroll_hint(1)))
+#define EIGHT_TIMES(call) for (int lane = 0; lane < 8; ++lane) call
+#endif
+
 // The magnitude from which a value may count as infinite, as bits: 2^127. Half the largest float, so that a weighted
 // mean of smaller values never overflows.
 #define NON_FINITE_BITS 0x7f000000
@@ -54,6 +66,10 @@ static inline bool any_at_least_two(int4 bits) {
 static inline uint count_bits(uint bits, int count) {
   return popcount(bits & ((1u << min(count, 4)) - 1u));
 }
+
+// Eight lanes, the second first and the first last. Loops over lanes take the first and go on so: an array would lie
+// in memory, and Mesa unrolls every loop that has one.
+#define NEXT_LANES(lanes) ((lanes).s12345670)
 
 // Whether one of eight lanes, 0 or -1 each, is -1.
 static inline bool any_lane(int8 lanes) {

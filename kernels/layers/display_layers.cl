@@ -129,10 +129,17 @@ static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS dept
     return own;
   }
   const RowWindows windows = windows_from(known, x - display.step_x, y - display.step_y, 4, true);
-  return blend_rows(load_near_row12(known, depth, between, &windows, 0),
-                    load_near_row12(known, depth, between, &windows, 1),
-                    load_near_row12(known, depth, between, &windows, 2),
-                    load_near_row12(known, depth, between, &windows, 3), display.wx, display.wy);
+  const float16 none = (float16)(0.0f);
+  TwelveTexels row0, row1, row2, row3 = {none, none, none};
+  row0 = row1 = row2 = row3;
+  UNROLL(4)
+  for (int row = 0; row < 4; ++row) {
+    row0 = row1;
+    row1 = row2;
+    row2 = row3;
+    row3 = load_near_row12(known, depth, between, &windows, row);
+  }
+  return blend_rows(row0, row1, row2, row3, display.wx, display.wy);
 }
 
 __kernel void display_layers(const TemporalDisplayParams params, const HistorySamples now, DEPTH_TEXELS depth,

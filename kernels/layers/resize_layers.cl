@@ -67,17 +67,17 @@ static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, float b
 // Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
 static inline void add_near(const PastLayers* past, DEPTH_TEXELS depth, const NearestTexels* nearest,
                             SourcePlaces from, int count, float part, float4* sums) {
-  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
-  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
-  const float4 x_weights[8] = {wx.p0, wx.p1, wx.p2, wx.p3, wx.p4, wx.p5, wx.p6, wx.p7};
-  const float4 y_weights[8] = {wy.p0, wy.p1, wy.p2, wy.p3, wy.p4, wy.p5, wy.p6, wy.p7};
-  int x[8], y[8];
-  vstore8(from.x.texel, 0, x);
-  vstore8(from.y.texel, 0, y);
+  int8 x = from.x.texel, y = from.y.texel;
+  Cubic wx = cubic_weights(from.x.fraction, HISTORY_SHARPNESS), wy = cubic_weights(from.y.fraction, HISTORY_SHARPNESS);
   for (int i = 0; i < count; ++i) {
-    if (!nearest->is_split[i]) continue;
-    const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
-    sums[i] += near_at(past, depth, between, x[i], y[i], x_weights[i], y_weights[i]) * part;
+    if (nearest->is_split[i]) {
+      const float between = 0.5f * (nearest->far_depth[i] + nearest->near_depth[i]);
+      sums[i] += near_at(past, depth, between, x.s0, y.s0, first_weights(wx), first_weights(wy)) * part;
+    }
+    x = NEXT_LANES(x);
+    y = NEXT_LANES(y);
+    wx = next_weights(wx);
+    wy = next_weights(wy);
   }
 }
 

@@ -70,8 +70,9 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const NearestSamples nearest = find_nearest_samples(&params, positions, x, row, tile);
     const LayeredPixels pixels = find_layers(depth, depth_layout, &params, splits, open_trust, &nearest);
     EightReprojections motion = load_reprojections(&params, reprojection, &nearest);
-    float8 known_alpha;
-    const FetchedHistory fetched = fetch_far(&pixels, &past, depth1, tile, x, y, &motion, &known_alpha);
+    const BothLayers fetched_both = fetch_both(&pixels, &past, depth1, tile, layer, &motion, x, y);
+    float8 known_alpha = fetched_both.far.known.alpha;
+    const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion);
     Evidence evidence = limit_confidence(&fetched, &motion);
     const EdgeLight left = light_at_edge(light, &params, x, y);
     const EdgeLight right = light_at_edge(light, &params, x + kTemporalTile, y);
@@ -109,7 +110,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
     const float cut = light[tile_index].new_cut;
-    KnownLayers near = fetch_near(&pixels, &past, depth1, layer, x, y, left, right, cut);
+    KnownLayers near = known_near(&pixels, &fetched_both.near, left, right, cut);
     near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
     const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);

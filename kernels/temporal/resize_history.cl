@@ -32,26 +32,26 @@
 static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __global const int* positions,
                                                __global const TileReprojection* tiles, int x, Positions row) {
   ResizedPixels pixels = pixels_among_texels(params, positions, x, row);
-  float phase_x[8], phase_y[8];
-  int texel[8];
-  vstore8(pixels.x, 0, texel);
   for (int i = 0; i < 8; ++i) {
-    __global const TileReprojection* tile = tiles + previous_tile(params, texel[i], pixels.y);
-    phase_x[i] = tile->phase_x;
-    phase_y[i] = tile->phase_y;
+    __global const TileReprojection* tile = tiles + previous_tile(params, pixels.x.s0, pixels.y);
+    pixels.phase_x.s0 = tile->phase_x;
+    pixels.phase_y.s0 = tile->phase_y;
+    pixels.x = NEXT_LANES(pixels.x);
+    pixels.phase_x = NEXT_LANES(pixels.phase_x);
+    pixels.phase_y = NEXT_LANES(pixels.phase_y);
   }
-  pixels.phase_x = vload8(0, phase_x);
-  pixels.phase_y = vload8(0, phase_y);
   return pixels;
 }
 
 // Returns the confidence of the texels nearest to the pixels' centres, less what resizing takes, with their signs.
 static inline float8 confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
-  float known[8];
-  int texel[8];
-  vstore8(pixels->x, 0, texel);
-  for (int i = 0; i < 8; ++i) known[i] = load_confidence(layer, pixels->y * layer.width + texel[i]);
-  const float8 stored = vload8(0, known);
+  int8 texel = pixels->x;
+  float8 stored = (float8)(0.0f);
+  for (int i = 0; i < 8; ++i) {
+    stored.s0 = load_confidence(layer, pixels->y * layer.width + texel.s0);
+    stored = NEXT_LANES(stored);
+    texel = NEXT_LANES(texel);
+  }
   return copysign(min(fabs(stored) * params->share, params->most), stored);
 }
 

@@ -37,18 +37,16 @@ typedef struct Pixels {
 
 // Returns the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
 static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, int x, int y) {
-  float4 own[8], shown[8];
+  Pixels pixels = {no_texels(), no_texels()};
   for (int i = 0; i < 8; ++i) {
     const int column = min(x + i, layer.width - 1);
-    own[i] = load_history(layer, y * layer.width + column);
-    shown[i] = own[i];
-    if (display->has_phase) {
-      const int first_x = column - display->step_x, first_y = y - display->step_y;
-      shown[i] = sample_history(layer, first_x, first_y, false, display->wx, display->wy);
-    }
+    const float4 own = load_history(layer, y * layer.width + column);
+    float4 shown = own;
+    if (display->has_phase)
+      shown = sample_history(layer, column - display->step_x, y - display->step_y, false, display->wx, display->wy);
+    pixels.own = push_texel(pixels.own, own);
+    pixels.shown = push_texel(pixels.shown, shown);
   }
-  const Pixels pixels = {{vload16(0, (const float*)own), vload16(1, (const float*)own)},
-                         {vload16(0, (const float*)shown), vload16(1, (const float*)shown)}};
   return pixels;
 }
 
@@ -82,36 +80,32 @@ static inline float alpha_around(HistoryLayer layer, AlphaPlane plane, int x, in
 }
 
 // Finds the alpha that is shown of the first `count` pixels from (x, y) on.
-static inline void show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count,
-                              bool smooth, float8 confidence, float* shown) {
-  const SmoothParts parts = smooth_parts(confidence);
-  float own[8], other[8];
-  vstore8(parts.own, 0, own);
-  vstore8(parts.other, 0, other);
-  for (int i = 0; i < count; ++i) {
-    shown[i] = load_alpha(plane, y * plane.width + x + i);
-    if (display->has_phase)
-      shown[i] = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
-    if (smooth) shown[i] = shown[i] * own[i] + alpha_around(layer, plane, x + i, y) * other[i];
+static inline float8 show_alpha(HistoryLayer layer, AlphaPlane plane, const Display* display, int x, int y, int count,
+                                bool smooth, float8 confidence) {
+  SmoothParts parts = smooth_parts(confidence);
+  float8 shown = (float8)(1.0f);
+  for (int i = 0; i < 8; ++i) {
+    if (i < count) {
+      shown.s0 = load_alpha(plane, y * plane.width + x + i);
+      if (display->has_phase)
+        shown.s0 = sample_alpha(plane, x + i - display->step_x, y - display->step_y, display->wx, display->wy);
+      if (smooth) shown.s0 = shown.s0 * parts.own.s0 + alpha_around(layer, plane, x + i, y) * parts.other.s0;
+    }
+    shown = NEXT_LANES(shown);
+    parts.own = NEXT_LANES(parts.own);
+    parts.other = NEXT_LANES(parts.other);
   }
+  return shown;
 }
 
-// One pixel, if it lies before `end`.
-static inline void store_pixel(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, float4 texel,
-                               float alpha) {
-  if (x < end) store_output(output, layout, x, y, (float4)(texel.xyz, alpha));
-}
-
+// Those of eight pixels that lie before `end`.
 static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, EightTexels texels,
-                                const float* alphas) {
-  store_pixel(output, layout, x, y, end, texels.left.s0123, alphas[0]);
-  store_pixel(output, layout, x + 1, y, end, texels.left.s4567, alphas[1]);
-  store_pixel(output, layout, x + 2, y, end, texels.left.s89ab, alphas[2]);
-  store_pixel(output, layout, x + 3, y, end, texels.left.scdef, alphas[3]);
-  store_pixel(output, layout, x + 4, y, end, texels.right.s0123, alphas[4]);
-  store_pixel(output, layout, x + 5, y, end, texels.right.s4567, alphas[5]);
-  store_pixel(output, layout, x + 6, y, end, texels.right.s89ab, alphas[6]);
-  store_pixel(output, layout, x + 7, y, end, texels.right.scdef, alphas[7]);
+                                float8 alphas) {
+  for (int i = 0; i < min(end - x, 8); ++i) {
+    store_output(output, layout, x + i, y, (float4)(first_texel(texels).xyz, alphas.s0));
+    texels = push_texel(texels, first_texel(texels));
+    alphas = NEXT_LANES(alphas);
+  }
 }
 #else
 // Those of eight pixels that lie before `end`.
@@ -123,10 +117,11 @@ static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x,
     stream_output4(output, layout, x + 4, y, right);
     return;
   }
-  float4 texel[8];
-  vstore16(left, 0, (float*)texel);
-  vstore16(right, 1, (float*)texel);
-  for (int i = 0; x + i < end; ++i) store_output(output, layout, x + i, y, texel[i]);
+  EightTexels rest = {left, right};
+  for (int i = 0; x + i < end; ++i) {
+    store_output(output, layout, x + i, y, first_texel(rest));
+    rest = push_texel(rest, first_texel(rest));
+  }
 }
 #endif
 
@@ -171,9 +166,8 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
 
       // Store.
 #if ALPHA
-      float alphas[8] = {1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f, 1.0f};
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-      show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence, alphas);
+      const float8 alphas = show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence);
       store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
 #else
       store_opaque(output, params.output, x, y, end, pixels.shown);

@@ -51,52 +51,50 @@ static inline LayerRun find_run(const LayerSources* from, int8 lanes) {
   return run;
 }
 
+// Takes the layers of one texel of each pixel as they are.
+static inline BlendedLayers take_taps(const LayerTaps* taps) {
+  const BlendedLayers found = {taps->colours, taps->confidence};
+  BlendedLayers taken = nothing_blended();
+  replace_lanes(&taken, found, taps->valid);
+  return taken;
+}
+
 // Copies the layers of a run whose places lie on texels.
 static inline BlendedLayers copy_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
                                         const LayerSources* from, LayerRun run) {
   const RowWindows windows = windows_from(past, run.x + 1, run.y + 1, 1, false);
-  const LayerRow row = load_layer_row(past, depth, &windows, 0);
+  const LayerRow row = load_layer_row(past, depth, windows, 0);
   const LayerTaps taps = taps_of(&row, 0, wishes, from->was_split);
-  const BlendedLayers found = {taps.colours, taps.confidence};
-  BlendedLayers copied = nothing_blended();
-  replace_lanes(&copied, found, taps.valid);
-  return copied;
+  return take_taps(&taps);
 }
 
-// Adds a row of the 4x4 texels around each place, of weight wy in the cubic and, if it is one of the middle two,
-// linear_y in the bilinear blend.
-static inline void add_row(LayerSums* sums, const LayerRow* row, const LayerWishes* wishes, const LayerSources* from,
-                           Cubic wx, float8 wy, float8 linear_y, bool is_middle) {
-  const LayerTaps taps0 = taps_of(row, 0, wishes, from->was_split);
-  add_taps(sums, &taps0, wx.w0 * wy);
-  const LayerTaps taps1 = taps_of(row, 1, wishes, from->was_split);
-  add_taps(sums, &taps1, wx.w1 * wy);
-  if (is_middle) add_middle_taps(sums, &taps1, (1.0f - from->fraction_x) * linear_y);
-  const LayerTaps taps2 = taps_of(row, 2, wishes, from->was_split);
-  add_taps(sums, &taps2, wx.w2 * wy);
-  if (is_middle) add_middle_taps(sums, &taps2, from->fraction_x * linear_y);
-  const LayerTaps taps3 = taps_of(row, 3, wishes, from->was_split);
-  add_taps(sums, &taps3, wx.w3 * wy);
-}
-
-// Resamples the layers of a run.
+// Resamples the layers of a run, or copies them.
 static inline BlendedLayers sample_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
                                           const LayerSources* from, LayerRun run) {
   const float8 zero = (float8)(0.0f);
-  if (!any_lane(run.lanes & ((from->fraction_x > zero) | (from->fraction_y > zero))))
-    return copy_layers(past, depth, wishes, from, run);
-  const RowWindows windows = windows_from(past, run.x, run.y, 4, true);
-  const Cubic wx = cubic_weights(from->fraction_x, HISTORY_SHARPNESS);
-  const Cubic wy = cubic_weights(from->fraction_y, HISTORY_SHARPNESS);
+  bool copied = !any_lane(run.lanes & ((from->fraction_x > zero) | (from->fraction_y > zero)));
+  if (ON_CPU && copied) return copy_layers(past, depth, wishes, from, run);
+  if (ON_CPU) copied = false;
+  const RowWindows windows = windows_from(past, run.x + copied, run.y + copied, copied ? 1 : 4, !copied);
+  const Cubic across = cubic_weights(from->fraction_x, HISTORY_SHARPNESS);
+  Cubic wy = cubic_weights(from->fraction_y, HISTORY_SHARPNESS);
   LayerSums sums = no_taps();
-  const LayerRow row0 = load_layer_row(past, depth, &windows, 0);
-  add_row(&sums, &row0, wishes, from, wx, wy.w0, zero, false);
-  const LayerRow row1 = load_layer_row(past, depth, &windows, 1);
-  add_row(&sums, &row1, wishes, from, wx, wy.w1, 1.0f - from->fraction_y, true);
-  const LayerRow row2 = load_layer_row(past, depth, &windows, 2);
-  add_row(&sums, &row2, wishes, from, wx, wy.w2, from->fraction_y, true);
-  const LayerRow row3 = load_layer_row(past, depth, &windows, 3);
-  add_row(&sums, &row3, wishes, from, wx, wy.w3, zero, false);
+  UNROLL(4)
+  for (int y = 0; y < 4; ++y) {
+    const LayerRow row = load_layer_row(past, depth, windows, y);
+    const float8 linear_y = middle_weight(y, from->fraction_y);
+    Cubic wx = across;
+    UNROLL(4)
+    for (int x = 0; x < 4; ++x) {
+      const LayerTaps taps = taps_of(&row, x, wishes, from->was_split);
+      if (copied) return take_taps(&taps);
+      add_taps(&sums, &taps, wx.w0 * wy.w0);
+      if (is_middle_tap(x) && is_middle_tap(y))
+        add_middle_taps(&sums, &taps, middle_weight(x, from->fraction_x) * linear_y);
+      wx = next_taps(wx);
+    }
+    wy = next_taps(wy);
+  }
   const int8 is_alone = wishes->kind == kFarLayer ? ~wishes->is_split : (int8)(0);
   const BlendedLayers blended = {blend_colours(&sums), blend_confidence(&sums, is_alone)};
   return blended;

@@ -52,18 +52,17 @@ static inline int8 have_two(HistoryLayer layer, int8 at) {
 
 // Returns those of `lanes` whose surface was the near layer of texel (x, y).
 static inline int8 were_near(const PastLayers* past, DEPTH_TEXELS depth, float8 surface, int8 x, int8 y, int8 lanes) {
-  float near_depth[8];
-  int column[8], row[8], is_near[8];
-  vstore8(surface, 0, near_depth);
-  vstore8(x, 0, column);
-  vstore8(y, 0, row);
-  vstore8(lanes, 0, is_near);
   for (int i = 0; i < 8; ++i) {
-    if (is_near[i] == 0) continue;
-    const LayerState state = state_at(past, depth, column[i], row[i]);
-    is_near[i] = near_depth[i] > 0.5f * (state.far_depth + state.near_depth) ? -1 : 0;
+    if (lanes.s0 != 0) {
+      const LayerState state = state_at(past, depth, x.s0, y.s0);
+      lanes.s0 = surface.s0 > 0.5f * (state.far_depth + state.near_depth) ? -1 : 0;
+    }
+    lanes = NEXT_LANES(lanes);
+    surface = NEXT_LANES(surface);
+    x = NEXT_LANES(x);
+    y = NEXT_LANES(y);
   }
-  return vload8(0, is_near);
+  return lanes;
 }
 
 // Returns the lanes whose layer was of the other kind in texel (x, y): near layers where it has one layer, and surfaces

@@ -111,34 +111,31 @@ static inline Seed seed_of_layer(const SeedSamples* in, COLOUR_TEXELS colour, DE
 static inline float8 reseed_layer(LayerKind kind, int8 lanes, const LayeredPixels* pixels, COLOUR_TEXELS colour,
                                   DEPTH_TEXELS depth, TexelLayout layout, const SourceFrame* frame,
                                   const NearestSamples* nearest, EightTexels* history, float8* alpha, float8* known) {
-  float4 texel[8];
-  float confidence[8], inertia[8], between[8], from_x[8], alphas[8];
-  int is_reseeded[8], x[8];
-  vstore16(history->left, 0, (float*)texel);
-  vstore16(history->right, 1, (float*)texel);
-  vstore8(*known, 0, confidence);
-  vstore8((float8)(0.0f), 0, inertia);
-  vstore8(pixels->between, 0, between);
-  vstore8(nearest->from_x, 0, from_x);
-  vstore8(*alpha, 0, alphas);
-  vstore8(nearest->x, 0, x);
-  vstore8(lanes, 0, is_reseeded);
+  float8 inertia = (float8)(0.0f), between = pixels->between, from_x = nearest->from_x;
+  int8 x = nearest->x;
   for (int i = 0; i < 8; ++i) {
-    if (is_reseeded[i] == 0) continue;
-    const SeedSamples samples = {*frame, layout, x[i], nearest->y, from_x[i], nearest->from_y};
-    const Seed seed = seed_of_layer(&samples, colour, depth, kind, between[i]);
-    if (!seed.any && kind == kFarLayer) continue;
-    const float share = 1.0f - confidence[i] / CONFIDENCE_MIN;
-    texel[i] += (seed.mean - texel[i]) * share;
-    alphas[i] += (seed.mean.w - alphas[i]) * share;
-    inertia[i] = SEED_INERTIA * share;
-    confidence[i] = seed.any ? CONFIDENCE_MIN : 0.0f;
-  }
-  history->left = vload16(0, (const float*)texel);
-  history->right = vload16(1, (const float*)texel);
-  *known = vload8(0, confidence);
+    float4 texel = first_texel(*history);
+    if (lanes.s0 != 0) {
+      const SeedSamples samples = {*frame, layout, x.s0, nearest->y, from_x.s0, nearest->from_y};
+      const Seed seed = seed_of_layer(&samples, colour, depth, kind, between.s0);
+      if (seed.any || kind == kNearLayer) {
+        const float share = 1.0f - known->s0 / CONFIDENCE_MIN;
+        texel += (seed.mean - texel) * share;
 #if ALPHA
-  *alpha = vload8(0, alphas);
+        alpha->s0 += (seed.mean.w - alpha->s0) * share;
 #endif
-  return vload8(0, inertia);
+        inertia.s0 = SEED_INERTIA * share;
+        known->s0 = seed.any ? CONFIDENCE_MIN : 0.0f;
+      }
+    }
+    *history = push_texel(*history, texel);
+    *alpha = NEXT_LANES(*alpha);
+    *known = NEXT_LANES(*known);
+    inertia = NEXT_LANES(inertia);
+    lanes = NEXT_LANES(lanes);
+    between = NEXT_LANES(between);
+    from_x = NEXT_LANES(from_x);
+    x = NEXT_LANES(x);
+  }
+  return inertia;
 }

@@ -73,10 +73,11 @@ static inline void store_states(__global half* states, int index, int count, flo
     store_half_texels4(states, index + 4, right);
     return;
   }
-  float4 state[8];
-  vstore16(left, 0, (float*)state);
-  vstore16(right, 1, (float*)state);
-  for (int i = 0; i < count; ++i) vstore_half4_rte(state[i], index + i, states);
+  EightTexels rest = {left, right};
+  for (int i = 0; i < min(count, 8); ++i) {
+    vstore_half4_rte(first_texel(rest), index + i, states);
+    rest = push_texel(rest, first_texel(rest));
+  }
 }
 
 // Returns the tile of texel (x, y).
@@ -129,8 +130,8 @@ static inline TexelWindow window_at(const PastLayers* past, int x, int y, int ro
 
 // Loads four texels of a row of the window, counted from 0.
 static inline float16 load_row(HistoryLayer layer, TexelWindow window, int row) {
-  return window.is_inside ? load_history4(layer, (window.y + row) * layer.width + window.x)
-                          : load_clamped4(layer, window.x, window.y + row);
+  if (ON_CPU && window.is_inside) return load_history4(layer, (window.y + row) * layer.width + window.x);
+  return load_clamped4(layer, window.x, window.y + row);
 }
 
 // Loads their alphas; 1 without ALPHA.
@@ -148,7 +149,8 @@ typedef struct FourStates {
 } FourStates;
 
 static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth, TexelWindow window, int row) {
-  FourStates states;
+  const float4 none = (float4)(0.0f);
+  FourStates states = {none, none, none};
   const int x = window.x;
   const int y = window.is_inside ? window.y + row : clamp(window.y + row, 0, past->far.height - 1);
   if (window.has_states) {
@@ -159,12 +161,12 @@ static inline FourStates load_states(const PastLayers* past, DEPTH_TEXELS depth,
     states.near_confidence = stored.s26ae;
     return states;
   }
-  LayerState state[4];
-  for (int i = 0; i < 4; ++i) state[i] = state_at(past, depth, clamp(x + i, 0, past->far.width - 1), y);
-  states.far_depth = (float4)(state[0].far_depth, state[1].far_depth, state[2].far_depth, state[3].far_depth);
-  states.near_depth = (float4)(state[0].near_depth, state[1].near_depth, state[2].near_depth, state[3].near_depth);
-  states.near_confidence = (float4)(state[0].near_confidence, state[1].near_confidence, state[2].near_confidence,
-                                    state[3].near_confidence);
+  for (int i = 0; i < 4; ++i) {
+    const LayerState state = state_at(past, depth, clamp(x + i, 0, past->far.width - 1), y);
+    states.far_depth = (float4)(states.far_depth.yzw, state.far_depth);
+    states.near_depth = (float4)(states.near_depth.yzw, state.near_depth);
+    states.near_confidence = (float4)(states.near_confidence.yzw, state.near_confidence);
+  }
   return states;
 }
 
@@ -209,42 +211,44 @@ typedef struct LayerChannels {
 
 typedef struct LayerRow {
   LayerChannels far;   // or the only one; confidence as stored
-  LayerChannels near;  // coverage; 0 where none of the texels has two layers
+  LayerChannels near;  // coverage; 0 in fours of texels of which none has two layers
   float16 alpha;       // the far layer's; 1 without ALPHA
   float16 far_depth, near_depth, near_confidence;
 } LayerRow;
 
-static inline float16 join(float4 first, float4 second, float4 third) {
-  return (float16)(first, second, third, third);
+// Returns a row without its first four texels, and with four more after the others, which fill the rest.
+static inline float16 push_four(float16 row, float4 texels) {
+  return (float16)(row.s4567, row.s89ab, texels, texels);
 }
 
-static inline LayerChannels load_channels(HistoryLayer layer, const RowWindows* windows, int row) {
-  const float16 first = load_row(layer, windows->first, row), second = load_row(layer, windows->second, row);
-  const float16 third = windows->has_third ? load_row(layer, windows->third, row) : second;
-  const LayerChannels channels = {
-      join(first.s048c, second.s048c, third.s048c), join(first.s159d, second.s159d, third.s159d),
-      join(first.s26ae, second.s26ae, third.s26ae), join(first.s37bf, second.s37bf, third.s37bf)};
-  return channels;
+static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
+  const LayerChannels pushed = {push_four(row.red, texels.s048c), push_four(row.green, texels.s159d),
+                                push_four(row.blue, texels.s26ae), push_four(row.last, texels.s37bf)};
+  return pushed;
 }
 
-static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, const RowWindows* windows, int row) {
+static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row) {
   const float16 none = (float16)(0.0f);
-  LayerRow loaded = {load_channels(past->far, windows, row), {none, none, none, none}, none, none, none, none};
-  const int16 two = as_int16(loaded.far.last) >> 31;
-  if (any_lane(two.lo | two.hi)) loaded.near = load_channels(past->near, windows, row);
-  const FourStates first = load_states(past, depth, windows->first, row);
-  const FourStates second = load_states(past, depth, windows->second, row);
-  FourStates third = second;
-  float4 alpha = (float4)(1.0f);
-  if (windows->has_third) {
-    third = load_states(past, depth, windows->third, row);
-    alpha = load_alpha_row(past->alpha, windows->third, row);
+  LayerRow loaded = {{none, none, none, none}, {none, none, none, none}, none, none, none, none};
+  float16 far = none, near = none;
+  FourStates states = {none.s0123, none.s0123, none.s0123};
+  float4 alpha = none.s0123;
+  UNROLL(3)
+  for (int i = 0; i < 3; ++i) {
+    if (i < 2 || windows.has_third) {
+      const TexelWindow window = i == 0 ? windows.first : i == 1 ? windows.second : windows.third;
+      far = load_row(past->far, window, row);
+      near = any(as_int4(far.s37bf) < 0) ? load_row(past->near, window, row) : none;
+      states = load_states(past, depth, window, row);
+      alpha = load_alpha_row(past->alpha, window, row);
+    }
+    loaded.far = push_channels(loaded.far, far);
+    loaded.near = push_channels(loaded.near, near);
+    loaded.alpha = push_four(loaded.alpha, alpha);
+    loaded.far_depth = push_four(loaded.far_depth, states.far_depth);
+    loaded.near_depth = push_four(loaded.near_depth, states.near_depth);
+    loaded.near_confidence = push_four(loaded.near_confidence, states.near_confidence);
   }
-  loaded.far_depth = join(first.far_depth, second.far_depth, third.far_depth);
-  loaded.near_depth = join(first.near_depth, second.near_depth, third.near_depth);
-  loaded.near_confidence = join(first.near_confidence, second.near_confidence, third.near_confidence);
-  loaded.alpha = join(load_alpha_row(past->alpha, windows->first, row),
-                      load_alpha_row(past->alpha, windows->second, row), alpha);
   return loaded;
 }
 

@@ -12,18 +12,44 @@
 #include "temporal/reprojection.h"
 #include "temporal/reseed.h"
 
+// Layers of one kind, and where they were.
+typedef struct FetchedLayers {
+  KnownLayers known;
+  LayerSources from;
+} FetchedLayers;
+
+typedef struct BothLayers {
+  FetchedLayers far, near;  // far or only ones; the near ones only where a pixel has two
+} BothLayers;
+
+// Fetches the layers of the pixels from (x, y) on. One loop for both kinds, so that compilers meet its body once.
+static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
+                                    TileReprojection tile, LayerTile layer, const EightReprojections* motion, int x,
+                                    int y) {
+  BothLayers both;
+  UNROLL(2)
+  for (int kind = kFarLayer; kind <= kNearLayer; ++kind) {
+    const bool is_far = kind == kFarLayer;
+    if (!is_far && !any_lane(pixels->is_split)) break;
+    const LayerWishes wishes =
+        is_far ? far_wishes_of(pixels) : near_wishes_of(pixels, layer.motion_range > CROSSING_MOTION_MIN);
+    const LayerPlaces place =
+        is_far ? places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y)
+               : places_from(x, y, layer.phase_x, layer.phase_y, pixels->motion_x, pixels->motion_y);
+    both.near.from = find_sources(past, depth1, &wishes, place, is_far ? tile.is_rigid : layer.is_rigid);
+    both.near.known = fetch_layers(past, depth1, &wishes, &both.near.from, is_far ? (int8)(-1) : pixels->is_split);
+    if (is_far) both.far = both.near;
+  }
+  return both;
+}
+
 // ---- Far layers.
 
-// Fetches them as resolve_temporal does. Layers answer for depth, so trust is open where there are or were two.
-static inline FetchedHistory fetch_far(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
-                                       TileReprojection tile, int x, int y, EightReprojections* motion,
-                                       float8* alpha) {
-  const LayerWishes wishes = far_wishes_of(pixels);
-  const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, motion->x, motion->y);
-  const LayerSources from = find_sources(past, depth1, &wishes, place, tile.is_rigid);
-  const KnownLayers layers = fetch_layers(past, depth1, &wishes, &from, (int8)(-1));
-  motion->trust = select(motion->trust, pixels->open_trust, pixels->is_split | from.was_split);
-  *alpha = layers.alpha;
+// Returns them as resolve_temporal fetches them. Layers answer for depth, so trust is open where there are or were two.
+static inline FetchedHistory known_far(const LayeredPixels* pixels, const FetchedLayers* far,
+                                         EightReprojections* motion) {
+  const KnownLayers layers = far->known;
+  motion->trust = select(motion->trust, pixels->open_trust, pixels->is_split | far->from.was_split);
 
   const float8 coverage = confidences(layers.texels);
   const int8 is_surface = coverage > NEAR_COVERAGE_MIN;
@@ -31,8 +57,8 @@ static inline FetchedHistory fetch_far(const LayeredPixels* pixels, const PastLa
   const FetchedHistory fetched = {
       {layers.texels.left * to_four_texels(whole.lo), layers.texels.right * to_four_texels(whole.hi)},
       select((float8)(0.0f), layers.confidence, is_surface),
-      from.fraction_x,
-      from.fraction_y};
+      far->from.fraction_x,
+      far->from.fraction_y};
   return fetched;
 }
 
@@ -64,15 +90,12 @@ static inline void mark_split(EightTexels* texels, int8 is_split) {
 
 // ---- Near layers.
 
-// Fetches them in this frame's light, with their confidence limited. The tile's own rejection tells of the far layer
+// Returns them in this frame's light, with their confidence limited. The tile's own rejection tells of the far layer
 // alone; `cut`: how far the whole picture is another one.
-static inline KnownLayers fetch_near(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
-                                     LayerTile tile, int x, int y, EdgeLight left, EdgeLight right, float cut) {
-  const LayerWishes wishes = near_wishes_of(pixels, tile.motion_range > CROSSING_MOTION_MIN);
-  const LayerPlaces place = places_from(x, y, tile.phase_x, tile.phase_y, pixels->motion_x, pixels->motion_y);
-  const LayerSources from = find_sources(past, depth1, &wishes, place, tile.is_rigid);
-  KnownLayers near = fetch_layers(past, depth1, &wishes, &from, pixels->is_split);
-  const float8 between = between_texels(from.fraction_x, from.fraction_y);
+static inline KnownLayers known_near(const LayeredPixels* pixels, const FetchedLayers* fetched, EdgeLight left,
+                                       EdgeLight right, float cut) {
+  KnownLayers near = fetched->known;
+  const float8 between = between_texels(fetched->from.fraction_x, fetched->from.fraction_y);
   const float8 most = most_confidence(min(pixels->open_trust, 1.0f - cut));
   near.confidence = min(after_resampling(near.confidence, between), min(most, RESAMPLED_CONFIDENCE_MAX));
   const float8 coverage = confidences(near.texels);
@@ -130,12 +153,10 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
 
 // Stores those of `lanes`.
 static inline void store_near(STORED_HISTORY updated, int index, EightTexels texels, int8 lanes) {
-  float4 texel[8];
-  int is_stored[8];
-  vstore16(texels.left, 0, (float*)texel);
-  vstore16(texels.right, 1, (float*)texel);
-  vstore8(lanes, 0, is_stored);
   for (int i = 0; i < 8; ++i) {
-    if (is_stored[i] != 0) store_history(updated, index + i, texel[i]);
+    const float4 texel = first_texel(texels);
+    if (lanes.s0 != 0) store_history(updated, index + i, texel);
+    texels = push_texel(texels, texel);
+    lanes = NEXT_LANES(lanes);
   }
 }

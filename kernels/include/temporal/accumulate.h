@@ -36,32 +36,30 @@ static inline float luma_weight_or_none(float4* sample) {
 
 // Multiplies the weights of eight samples by their luma weights. Returns how many of the first `count` are not finite.
 static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count) {
-  float4 sample[8];
-  float luma[8];
   uint met = 0;
-  vstore16(samples->left, 0, (float*)sample);
-  vstore16(samples->right, 1, (float*)sample);
+  UNROLL(8)
   for (int i = 0; i < 8; ++i) {
-    if (i < count && any_non_finite4(sample[i])) met += 1;
-    luma[i] = luma_weight_or_none(&sample[i]);
+    float4 sample = first_texel(*samples);
+    if (i < count && any_non_finite4(sample)) met += 1;
+    weight->s0 *= luma_weight_or_none(&sample);
+    *weight = NEXT_LANES(*weight);
+    *samples = push_texel(*samples, sample);
   }
-  samples->left = vload16(0, (const float*)sample);
-  samples->right = vload16(1, (const float*)sample);
-  *weight *= vload8(0, luma);
   return met;
 }
 
 // Returns which samples are outliers, of those of pixels whose history is known.
 static inline int8 are_held_back(EightTexels history, float8 confidence, EightTexels samples) {
-  float4 known[8], sample[8];
-  int held[8];
-  vstore16(history.left, 0, (float*)known);
-  vstore16(history.right, 1, (float*)known);
-  vstore16(samples.left, 0, (float*)sample);
-  vstore16(samples.right, 1, (float*)sample);
-  for (int i = 0; i < 8; ++i)
-    held[i] = is_valid(sample[i]) && is_outlier(sample[i], outlier_range(known[i])) ? -1 : 0;
-  return vload8(0, held) & (confidence >= CONFIDENCE_MIN);
+  int8 held = confidence >= CONFIDENCE_MIN;
+  UNROLL(8)
+  for (int i = 0; i < 8; ++i) {
+    const float4 known = first_texel(history), sample = first_texel(samples);
+    if (!is_valid(sample) || !is_outlier(sample, outlier_range(known))) held.s0 = 0;
+    held = NEXT_LANES(held);
+    history = push_texel(history, known);
+    samples = push_texel(samples, sample);
+  }
+  return held;
 }
 
 // Returns m + (s - m) part, and in w their confidence.

@@ -64,18 +64,28 @@ typedef struct FilteredRows {
   FilteredRow row0, row1, row2, row3;
 } FilteredRows;
 
+static inline FilteredRows no_rows(void) {
+  const FilteredRow none = {no_texels(), no_texels(), no_texels()};
+  const FilteredRows rows = {none, none, none, none};
+  return rows;
+}
+
+static inline FilteredRows push_row(FilteredRows rows, FilteredRow row) {
+  const FilteredRows pushed = {rows.row1, rows.row2, rows.row3, row};
+  return pushed;
+}
+
 // The texel at `index` is the first of the first place's sixteen.
 static inline FilteredRows filter_rows(HistoryLayer layer, int index, float4 x) {
-  const int width = layer.width;
-  const FilteredRows rows = {filter_row(layer, index, x), filter_row(layer, index + width, x),
-                             filter_row(layer, index + 2 * width, x), filter_row(layer, index + 3 * width, x)};
+  FilteredRows rows = no_rows();
+  UNROLL(4)
+  for (int i = 0; i < 4; ++i) rows = push_row(rows, filter_row(layer, index + i * layer.width, x));
   return rows;
 }
 
 // The same a row further down, where the sixteen begin at `index`.
 static inline FilteredRows next_rows(FilteredRows rows, HistoryLayer layer, int index, float4 x) {
-  const FilteredRows next = {rows.row1, rows.row2, rows.row3, filter_row(layer, index + 3 * layer.width, x)};
-  return next;
+  return push_row(rows, filter_row(layer, index + 3 * layer.width, x));
 }
 
 static inline float16 blend_held(float16 row0, float16 row1, float16 row2, float16 row3, float16 least, float16 most,
@@ -105,18 +115,18 @@ static inline bool is_other_kind(float confidence, float own) {
 // The sums of each pixel's eight neighbours, anywhere, clamped to the edge; in place of those of the other kind it is
 // itself counted. The slow path.
 static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
-  float4 sums[8];
+  EightTexels around = no_texels();
   for (int i = 0; i < 8; ++i) {
     const float4 own = load_history(layer, y * layer.width + min(x + i, layer.width - 1));
-    sums[i] = (float4)(0.0f);
+    float4 sum = (float4)(0.0f);
     for (int j = 0; j < 9; ++j) {
       const int column = clamp(x + i + j % 3 - 1, 0, layer.width - 1);
       const int row = clamp(y + j / 3 - 1, 0, layer.height - 1);
       const float4 texel = load_history(layer, row * layer.width + column);
-      if (j != 4) sums[i] += is_other_kind(texel.w, own.w) ? own : texel;
+      if (j != 4) sum += is_other_kind(texel.w, own.w) ? own : texel;
     }
+    around = push_texel(around, sum);
   }
-  const EightTexels around = {vload16(0, (const float*)sums), vload16(1, (const float*)sums)};
   return around;
 }
 

@@ -81,36 +81,67 @@ static inline float8 held_confidence(EightTexels texels) {
   return clamp(confidences(texels), 0.0f, CONFIDENCE_MAX);
 }
 
+// A walk over eight places, whose first is the next.
+typedef struct CubicWalk {
+  int8 column, row;
+  Cubic x, y;
+} CubicWalk;
+
+static inline void walk_on(CubicWalk* at) {
+  at->column = NEXT_LANES(at->column);
+  at->row = NEXT_LANES(at->row);
+  at->x = next_weights(at->x);
+  at->y = next_weights(at->y);
+}
+
+static inline void sample_next(HistoryLayer layer, bool inside, CubicWalk* at, EightTexels* sampled) {
+  const float4 texel =
+      sample_history(layer, at->column.s0, at->row.s0, inside, first_weights(at->x), first_weights(at->y));
+  *sampled = push_texel(*sampled, texel);
+  walk_on(at);
+}
+
 // Returns a layer at eight places with weights x and y, held in the range of the middle four texels. `inside`: all
 // texels are.
 static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
-  const int8 column = from.x.texel, row = from.y.texel;
-  const EightWeights wx = weights_by_place(x), wy = weights_by_place(y);
-  return eight_texels(sample_history(layer, column.s0, row.s0, inside, wx.p0, wy.p0),
-                      sample_history(layer, column.s1, row.s1, inside, wx.p1, wy.p1),
-                      sample_history(layer, column.s2, row.s2, inside, wx.p2, wy.p2),
-                      sample_history(layer, column.s3, row.s3, inside, wx.p3, wy.p3),
-                      sample_history(layer, column.s4, row.s4, inside, wx.p4, wy.p4),
-                      sample_history(layer, column.s5, row.s5, inside, wx.p5, wy.p5),
-                      sample_history(layer, column.s6, row.s6, inside, wx.p6, wy.p6),
-                      sample_history(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
+  CubicWalk at = {from.x.texel, from.y.texel, x, y};
+  EightTexels sampled = no_texels();
+  EIGHT_TIMES(sample_next(layer, inside, &at, &sampled));
+  return sampled;
 }
 
 #if TAPS == 36
+typedef struct SixWalk {
+  int8 column, row;
+  SixWeights x, y;
+} SixWalk;
+
+static inline SixWalk walk_between_six(SourcePlaces from) {
+  const SixWalk walk = {from.x.texel - 1, from.y.texel - 1, six_weights(from.x.fraction),
+                        six_weights(from.y.fraction)};
+  return walk;
+}
+
+static inline void walk_on_six(SixWalk* at) {
+  at->column = NEXT_LANES(at->column);
+  at->row = NEXT_LANES(at->row);
+  at->x = next_six(at->x);
+  at->y = next_six(at->y);
+}
+
+static inline void sample_next_six(HistoryLayer layer, bool inside, SixWalk* at, EightTexels* sampled) {
+  const float4 texel = sample_six(layer, at->column.s0, at->row.s0, inside, first_six(at->x), first_six(at->y));
+  *sampled = push_texel(*sampled, texel);
+  walk_on_six(at);
+}
+
 // Returns a layer at eight places between 6x6 texels.
 static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from) {
-  const int8 column = from.x.texel - 1, row = from.y.texel - 1;
-  const bool inside = lie_inside(column, row, layer.width - 2, layer.height - 2);
-  const SixByPlace wx = six_by_place(six_weights(from.x.fraction));
-  const SixByPlace wy = six_by_place(six_weights(from.y.fraction));
-  return eight_texels(sample_six(layer, column.s0, row.s0, inside, wx.p0, wy.p0),
-                      sample_six(layer, column.s1, row.s1, inside, wx.p1, wy.p1),
-                      sample_six(layer, column.s2, row.s2, inside, wx.p2, wy.p2),
-                      sample_six(layer, column.s3, row.s3, inside, wx.p3, wy.p3),
-                      sample_six(layer, column.s4, row.s4, inside, wx.p4, wy.p4),
-                      sample_six(layer, column.s5, row.s5, inside, wx.p5, wy.p5),
-                      sample_six(layer, column.s6, row.s6, inside, wx.p6, wy.p6),
-                      sample_six(layer, column.s7, row.s7, inside, wx.p7, wy.p7));
+  SixWalk at = walk_between_six(from);
+  const bool inside = lie_inside(at.column, at.row, layer.width - 2, layer.height - 2);
+  EightTexels sampled = no_texels();
+  EIGHT_TIMES(sample_next_six(layer, inside, &at, &sampled));
+  return sampled;
 }
 #else
 // Returns a layer at eight places between 4x4 texels.
@@ -151,28 +182,24 @@ static inline FetchedHistory fetch_history(HistoryLayer layer, __global const Ti
 // ---- Alpha.
 
 // Returns alpha as resample_history() returns colour.
+static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
+  float8 sampled = (float8)(0.0f);
 #if TAPS == 36
-static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
-  const int8 i = from.x.texel - 1, j = from.y.texel - 1;
-  const SixByPlace wx = six_by_place(six_weights(from.x.fraction));
-  const SixByPlace wy = six_by_place(six_weights(from.y.fraction));
-  return (float8)(
-      sample_alpha_six(plane, i.s0, j.s0, wx.p0, wy.p0), sample_alpha_six(plane, i.s1, j.s1, wx.p1, wy.p1),
-      sample_alpha_six(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha_six(plane, i.s3, j.s3, wx.p3, wy.p3),
-      sample_alpha_six(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha_six(plane, i.s5, j.s5, wx.p5, wy.p5),
-      sample_alpha_six(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha_six(plane, i.s7, j.s7, wx.p7, wy.p7));
-}
+  SixWalk at = walk_between_six(from);
+  for (int i = 0; i < 8; ++i) {
+    sampled.s0 = sample_alpha_six(plane, at.column.s0, at.row.s0, first_six(at.x), first_six(at.y));
+    walk_on_six(&at);
 #else
-static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
-  const int8 i = from.x.texel, j = from.y.texel;
-  const EightWeights wx = weights_by_place(cubic_weights(from.x.fraction, HISTORY_SHARPNESS));
-  const EightWeights wy = weights_by_place(cubic_weights(from.y.fraction, HISTORY_SHARPNESS));
-  return (float8)(sample_alpha(plane, i.s0, j.s0, wx.p0, wy.p0), sample_alpha(plane, i.s1, j.s1, wx.p1, wy.p1),
-                  sample_alpha(plane, i.s2, j.s2, wx.p2, wy.p2), sample_alpha(plane, i.s3, j.s3, wx.p3, wy.p3),
-                  sample_alpha(plane, i.s4, j.s4, wx.p4, wy.p4), sample_alpha(plane, i.s5, j.s5, wx.p5, wy.p5),
-                  sample_alpha(plane, i.s6, j.s6, wx.p6, wy.p6), sample_alpha(plane, i.s7, j.s7, wx.p7, wy.p7));
-}
+  CubicWalk at = {from.x.texel, from.y.texel, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
+                  cubic_weights(from.y.fraction, HISTORY_SHARPNESS)};
+  for (int i = 0; i < 8; ++i) {
+    sampled.s0 = sample_alpha(plane, at.column.s0, at.row.s0, first_weights(at.x), first_weights(at.y));
+    walk_on(&at);
 #endif
+    sampled = NEXT_LANES(sampled);
+  }
+  return sampled;
+}
 
 // Returns alpha as fetch_history() returns colour.
 static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,

@@ -32,19 +32,22 @@ static inline float4 sample_at(COLOUR_TEXELS texels, const SourceFrame* frame, i
   return load_colour(texels, frame->colour, clamp(x, 0, frame->width - 1), clamp(y, 0, frame->height - 1));
 }
 
+static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, int8* x, int y, EightTexels* samples) {
+  *samples = push_texel(*samples, load_colour(texels, layout, x->s0, y));
+  *x = NEXT_LANES(*x);
+}
+
 // Loads the samples of a row nearest to eight pixels.
 static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, int8 x, int y) {
-#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF
+#if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && ON_CPU
   __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
   const EightTexels samples = {load_half_bits((ulong4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3])),
                                load_half_bits((ulong4)(row[x.s4], row[x.s5], row[x.s6], row[x.s7]))};
-  return samples;
 #else
-  return eight_texels(load_colour(texels, layout, x.s0, y), load_colour(texels, layout, x.s1, y),
-                      load_colour(texels, layout, x.s2, y), load_colour(texels, layout, x.s3, y),
-                      load_colour(texels, layout, x.s4, y), load_colour(texels, layout, x.s5, y),
-                      load_colour(texels, layout, x.s6, y), load_colour(texels, layout, x.s7, y));
+  EightTexels samples = no_texels();
+  EIGHT_TIMES(load_next_sample(texels, layout, &x, y, &samples));
 #endif
+  return samples;
 }
 
 // Returns the luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright

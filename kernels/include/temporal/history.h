@@ -60,10 +60,20 @@ typedef struct EightTexels {
   float16 left, right;
 } EightTexels;
 
-static inline EightTexels eight_texels(float4 t0, float4 t1, float4 t2, float4 t3, float4 t4, float4 t5, float4 t6,
-                                       float4 t7) {
-  const EightTexels texels = {(float16)(t0, t1, t2, t3), (float16)(t4, t5, t6, t7)};
-  return texels;
+static inline EightTexels no_texels(void) {
+  const EightTexels none = {(float16)(0.0f), (float16)(0.0f)};
+  return none;
+}
+
+static inline float4 first_texel(EightTexels texels) {
+  return texels.left.s0123;
+}
+
+// Returns the texels without the first, and `texel` as the last.
+static inline EightTexels push_texel(EightTexels texels, float4 texel) {
+  const EightTexels pushed = {(float16)(texels.left.s456789ab, texels.left.scdef, texels.right.s0123),
+                              (float16)(texels.right.s456789ab, texels.right.scdef, texel)};
+  return pushed;
 }
 
 // The texels index and index + 1.
@@ -134,10 +144,10 @@ static inline void store_history8(STORED_HISTORY texels, int index, int count, E
     store_history4(texels, index + 4, row.right);
     return;
   }
-  float4 texel[8];
-  vstore16(row.left, 0, (float*)texel);
-  vstore16(row.right, 1, (float*)texel);
-  for (int i = 0; i < count; ++i) store_history(texels, index + i, texel[i]);
+  for (int i = 0; i < count; ++i) {
+    store_history(texels, index + i, first_texel(row));
+    row = push_texel(row, first_texel(row));
+  }
 }
 
 // Alpha of a layer, to read: a plane of its own, one value for each texel, in the layer's format and order. It is read
@@ -168,14 +178,14 @@ static inline float8 load_alpha8(AlphaPlane plane, int index) {
 
 // The first `count` of eight.
 static inline void store_alpha8(STORED_HISTORY texels, int index, int count, float8 alpha) {
-  float value[8];
-  vstore8(clamp(alpha, -FINITE_HALF_MAX, FINITE_HALF_MAX), 0, value);
+  alpha = clamp(alpha, -FINITE_HALF_MAX, FINITE_HALF_MAX);
   for (int i = 0; i < min(count, 8); ++i) {
 #if HISTORY_FORMAT == HALF
-    vstore_half_rte(value[i], index + i, texels);
+    vstore_half_rte(alpha.s0, index + i, texels);
 #else
-    texels[index + i] = value[i];
+    texels[index + i] = alpha.s0;
 #endif
+    alpha = NEXT_LANES(alpha);
   }
 }
 

@@ -74,18 +74,30 @@ static inline Cubic cubic_weights(float8 f, float a) {
 #endif
 }
 
-// The same by place: the four weights of each.
-typedef struct EightWeights {
-  float4 p0, p1, p2, p3, p4, p5, p6, p7;
-} EightWeights;
+// Returns the four weights of the first place.
+static inline float4 first_weights(Cubic w) {
+  return (float4)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0);
+}
 
-static inline EightWeights weights_by_place(Cubic w) {
-  const EightWeights weights = {
-      (float4)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0), (float4)(w.w0.s1, w.w1.s1, w.w2.s1, w.w3.s1),
-      (float4)(w.w0.s2, w.w1.s2, w.w2.s2, w.w3.s2), (float4)(w.w0.s3, w.w1.s3, w.w2.s3, w.w3.s3),
-      (float4)(w.w0.s4, w.w1.s4, w.w2.s4, w.w3.s4), (float4)(w.w0.s5, w.w1.s5, w.w2.s5, w.w3.s5),
-      (float4)(w.w0.s6, w.w1.s6, w.w2.s6, w.w3.s6), (float4)(w.w0.s7, w.w1.s7, w.w2.s7, w.w3.s7)};
-  return weights;
+// Returns the weights with the second place as the first, and the first as the last.
+static inline Cubic next_weights(Cubic w) {
+  const Cubic next = {NEXT_LANES(w.w0), NEXT_LANES(w.w1), NEXT_LANES(w.w2), NEXT_LANES(w.w3)};
+  return next;
+}
+
+// Returns the weights with the second texel's as the first, and the first one's as the last.
+static inline Cubic next_taps(Cubic w) {
+  const Cubic next = {w.w1, w.w2, w.w3, w.w0};
+  return next;
+}
+
+static inline bool is_middle_tap(int i) {
+  return i == 1 || i == 2;
+}
+
+// Returns the weights of the middle taps, 1 and 2, in a bilinear blend at eight places.
+static inline float8 middle_weight(int i, float8 fraction) {
+  return i == 1 ? 1.0f - fraction : fraction;
 }
 
 static inline float4 blend_columns(float16 row, float4 w) {
@@ -114,12 +126,13 @@ static inline float4 sample_neighbourhood(Neighbourhood around, float4 x, float4
 static inline float4 sample_history(HistoryLayer layer, int x0, int y0, bool inside, float4 x, float4 y) {
 #if TAPS == 4
   const int index = (y0 + 1) * layer.width + x0 + 1;
-  if (inside) return blend_pairs(load_history2(layer, index), load_history2(layer, index + layer.width), x, y);
+  if (ON_CPU && inside)
+    return blend_pairs(load_history2(layer, index), load_history2(layer, index + layer.width), x, y);
   const Neighbourhood around = load_neighbourhood_clamped(layer, x0, y0);
   return blend_pairs(around.row1.s456789ab, around.row2.s456789ab, x, y);
 #else
   const Neighbourhood around =
-      inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
+      ON_CPU && inside ? load_neighbourhood(layer, x0, y0) : load_neighbourhood_clamped(layer, x0, y0);
   return sample_neighbourhood(around, x, y);
 #endif
 }

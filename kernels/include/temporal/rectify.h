@@ -80,16 +80,16 @@ typedef struct EightBoxes {
 
 static inline EightBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y) {
   const TexelLayout layout = frame->colour;
-  const int above = max(y - 1, 0), below = min(y + 1, frame->height - 1);
-  const int8 before = max(x - 1, (int8)(0)), after = min(x + 1, (int8)(frame->width - 1));
+  const int last_x = frame->width - 1, last_y = frame->height - 1;
   const float16 none = (float16)(0.0f);
   const CrossSums empty = {none, none, none, none};
   EightCrosses crosses = {empty, empty};
-  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, y));
-  crosses = add_to_crosses(crosses, load_samples(texels, layout, after, y));
-  crosses = add_to_crosses(crosses, load_samples(texels, layout, before, y));
-  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, below));
-  crosses = add_to_crosses(crosses, load_samples(texels, layout, x, above));
+  UNROLL(5)
+  for (int i = 0; i < 5; ++i) {
+    const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
+    const int8 columns = clamp(x + column, (int8)(0), (int8)(last_x));
+    crosses = add_to_crosses(crosses, load_samples(texels, layout, columns, clamp(y + row, 0, last_y)));
+  }
   const EightBoxes boxes = {boxes_of(crosses.left), boxes_of(crosses.right)};
   return boxes;
 }
@@ -137,13 +137,11 @@ static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame
 // Rectifies the alphas of eight pixels.
 static inline float8 rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y, float8 alphas,
                                     float8 rejection) {
-  float alpha[8], share[8];
-  int column[8];
-  vstore8(alphas, 0, alpha);
-  vstore8(rejection, 0, share);
-  vstore8(x, 0, column);
   for (int i = 0; i < 8; ++i) {
-    if (share[i] > 0.0f) alpha[i] = rectify_alpha(texels, frame, column[i], y, alpha[i], share[i]);
+    if (rejection.s0 > 0.0f) alphas.s0 = rectify_alpha(texels, frame, x.s0, y, alphas.s0, rejection.s0);
+    alphas = NEXT_LANES(alphas);
+    rejection = NEXT_LANES(rejection);
+    x = NEXT_LANES(x);
   }
-  return vload8(0, alpha);
+  return alphas;
 }

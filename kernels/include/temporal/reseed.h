@@ -78,17 +78,12 @@ static inline void add_to_seeds(EightTexels* sum, float8* weights, EightTexels s
 // Replaces the means of the pixels without a valid sample near. The slow path.
 static inline EightTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, EightTexels means,
                                           int8 known, int8 x, int y) {
-  float4 mean[8];
-  int is_known[8], column[8];
-  vstore16(means.left, 0, (float*)mean);
-  vstore16(means.right, 1, (float*)mean);
-  vstore8(known, 0, is_known);
-  vstore8(x, 0, column);
   for (int i = 0; i < 8; ++i) {
-    if (is_known[i] == 0) mean[i] = seed_from_afar(texels, frame, column[i], y);
+    means = push_texel(means, known.s0 == 0 ? seed_from_afar(texels, frame, x.s0, y) : first_texel(means));
+    known = NEXT_LANES(known);
+    x = NEXT_LANES(x);
   }
-  const EightTexels all = {vload16(0, (const float*)mean), vload16(1, (const float*)mean)};
-  return all;
+  return means;
 }
 
 // The means of the 3x3 samples around the nearest ones, each weighted by a Gaussian of its distance, its luma weight

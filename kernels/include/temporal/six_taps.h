@@ -27,21 +27,16 @@ static inline SixWeights six_weights(float8 f) {
   return w;
 }
 
-// The same by place: the six weights of each, and two that do not count.
-typedef struct SixByPlace {
-  float8 p0, p1, p2, p3, p4, p5, p6, p7;
-} SixByPlace;
+// Returns the six weights of the first place, and two that do not count.
+static inline float8 first_six(SixWeights w) {
+  return (float8)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0, w.w4.s0, w.w5.s0, 0.0f, 0.0f);
+}
 
-static inline SixByPlace six_by_place(SixWeights w) {
-  const SixByPlace weights = {(float8)(w.w0.s0, w.w1.s0, w.w2.s0, w.w3.s0, w.w4.s0, w.w5.s0, 0.0f, 0.0f),
-                              (float8)(w.w0.s1, w.w1.s1, w.w2.s1, w.w3.s1, w.w4.s1, w.w5.s1, 0.0f, 0.0f),
-                              (float8)(w.w0.s2, w.w1.s2, w.w2.s2, w.w3.s2, w.w4.s2, w.w5.s2, 0.0f, 0.0f),
-                              (float8)(w.w0.s3, w.w1.s3, w.w2.s3, w.w3.s3, w.w4.s3, w.w5.s3, 0.0f, 0.0f),
-                              (float8)(w.w0.s4, w.w1.s4, w.w2.s4, w.w3.s4, w.w4.s4, w.w5.s4, 0.0f, 0.0f),
-                              (float8)(w.w0.s5, w.w1.s5, w.w2.s5, w.w3.s5, w.w4.s5, w.w5.s5, 0.0f, 0.0f),
-                              (float8)(w.w0.s6, w.w1.s6, w.w2.s6, w.w3.s6, w.w4.s6, w.w5.s6, 0.0f, 0.0f),
-                              (float8)(w.w0.s7, w.w1.s7, w.w2.s7, w.w3.s7, w.w4.s7, w.w5.s7, 0.0f, 0.0f)};
-  return weights;
+// Returns the weights with the second place as the first, and the first as the last.
+static inline SixWeights next_six(SixWeights w) {
+  const SixWeights next = {NEXT_LANES(w.w0), NEXT_LANES(w.w1), NEXT_LANES(w.w2),
+                           NEXT_LANES(w.w3), NEXT_LANES(w.w4), NEXT_LANES(w.w5)};
+  return next;
 }
 
 // Six texels of a row.
@@ -52,7 +47,7 @@ typedef struct SixTexels {
 
 // Loads those from (x, y) on; `inside`: they are there, else they are clamped to the edge.
 static inline SixTexels load_six(HistoryLayer layer, int x, int y, bool inside) {
-  if (inside) {
+  if (ON_CPU && inside) {
     const int index = y * layer.width + x;
     const SixTexels row = {load_history4(layer, index), load_history2(layer, index + 4)};
     return row;
