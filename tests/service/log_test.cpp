@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "../tools/own_cache.h"
+#include "passes/pass_chain.h"
 #include "quincunx/device.h"
 #include "quincunx/quincunx.h"
 #include "service_fixture.h"
@@ -48,6 +50,16 @@ TEST_F(Log, WithoutACallbackWarningsAndWorseGoToStderrAsOneLineEach) {
       log_line(level, "first\nsecond");
   };
   EXPECT_EQ(stderr_of(all), "quincunx: warning: first second\nquincunx: error: first second\n");
+}
+
+TEST_F(Log, SaysOnceThatCompilingTakesLong) {
+  keep_lines();
+  CompileNotice patient(std::chrono::hours(1)), impatient(std::chrono::milliseconds(0));
+  for (int kernel = 0; kernel < 3; ++kernel) {
+    patient.before_kernel(14, "a GPU");
+    impatient.before_kernel(14, "a GPU");
+  }
+  EXPECT_EQ(lines_, (Lines{{LogLevel::kInfo, "compiling 14 kernels for 'a GPU', once"}}));
 }
 
 TEST_F(Log, ACallbackHasEveryLevelAndStderrNothing) {

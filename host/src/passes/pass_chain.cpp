@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "passes/pass_chain.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "device/opencl.h"
+#include "quincunx/advanced/log.h"
 
 namespace quincunx {
 namespace {
@@ -80,6 +83,12 @@ Image allocate_image(const Device& device, Extent extent, PixelFormat format, St
   return std::move(made).value();
 }
 
+void CompileNotice::before_kernel(std::size_t kernels, const std::string& device) {
+  if (said_ || std::chrono::steady_clock::now() - start_ < patience_) return;
+  said_ = true;
+  log_line(LogLevel::kInfo, fmt::format("compiling {} kernels for '{}', once", kernels, device));
+}
+
 PassChain::PassChain(const Device& device, const PlanFacts& facts)
     : device_(device),
       facts_(facts),
@@ -88,8 +97,10 @@ PassChain::PassChain(const Device& device, const PlanFacts& facts)
   const PassList list = list_passes(facts_);
   resources_ = resources_of(list.passes);
   const PassSetup setup{*device_.impl(), facts_, tables_};
-  for (const PassSpec& spec : list.passes)
+  for (const PassSpec& spec : list.passes) {
+    notice_.before_kernel(list.passes.size(), device.info().name);
     passes_.push_back(spec.make(setup, spec));
+  }
   needed_.resize(passes_.size());
   for (const ResourceUse& use : resources_) {
     if (use.written && !is_previous(use.resource) && use.resource != Resource::kPresented) allocate(use);
@@ -279,9 +290,11 @@ void PassChain::warm_up() {
         frame[use.resource] = scratch_view(device, use, storage_of(use.resource, facts_), kept);
     }
   }
-  for (const auto& pass : passes_)
+  for (const auto& pass : passes_) {
+    notice_.before_kernel(passes_.size(), device.info.name);
     enqueue(*pass, frame, nullptr);
-  device.queue.finish();
+    device.queue.finish();  // some drivers compile only here
+  }
 }
 
 }  // namespace quincunx

@@ -7,8 +7,10 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -33,6 +35,20 @@ class AllocationError : public std::runtime_error {
 // Throws AllocationError.
 Image allocate_image(const Device& device, Extent extent, PixelFormat format,
                      Storage storage = Storage::kBuffer);
+
+// Says once in the log that kernels are being compiled, where that takes longer than a user waits without asking.
+class CompileNotice {
+ public:
+  explicit CompileNotice(std::chrono::milliseconds patience = std::chrono::seconds(2))
+      : patience_(patience) {}
+  // To be called before each of `kernels` on that device.
+  void before_kernel(std::size_t kernels, const std::string& device);
+
+ private:
+  std::chrono::milliseconds patience_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  bool said_ = false;
+};
 
 class PassChain {
  public:
@@ -94,6 +110,7 @@ class PassChain {
 
   Device device_;
   PlanFacts facts_;
+  CompileNotice notice_;
   PassTables tables_;
   std::vector<ResourceUse> resources_;
   std::vector<std::unique_ptr<Pass>> passes_;
