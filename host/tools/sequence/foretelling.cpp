@@ -293,6 +293,17 @@ std::size_t choose(std::span<const Pair> pairs, std::span<const DiagnosedFrame> 
     }
     chosen = best;
   }
+  // A fault more that is not needed goes again: one with fewer may do almost as well, yet have been no clear gain.
+  constexpr double kAlmost = .7;
+  const auto over = [&](std::size_t one, std::size_t other) {
+    return compare(pairs, frames, candidates[one].foretold, candidates[other].foretold);
+  };
+  for (std::size_t faults = 1; faults < candidates[chosen].faults; ++faults) {
+    for (std::size_t c = 1; c < candidates.size(); ++c) {
+      if (candidates[c].faults != faults || clear(over(chosen, c))) continue;
+      if (over(c, 0).margin_db > kAlmost * over(chosen, 0).margin_db) return c;
+    }
+  }
   return chosen;
 }
 
