@@ -115,7 +115,7 @@ IN_REGISTERS static inline EightColours previous_colours(const CheckerboardParam
                                                          Places places) {
   const float8 column = places.column.fraction, row = places.row.fraction;
 #if SOURCE_STORAGE == BUFFER
-  if (places.are_a_run) {
+  if (ON_CPU && places.are_a_run) {
     const int x = places.column.low.s0, above = upper_row(params, places), below = lower_row(params, places);
     const TexelLayout layout = params->previous_colour;
     const ColourRun upper = load_colour_run(previous, layout, x, above);
