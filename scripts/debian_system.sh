@@ -27,9 +27,9 @@ mirror_of_this_machine() {
 # In the reverse order of mounting; also before a removal, which must never go through a mount.
 unmount_all() {
   local path
-  for path in dev/shm dev/pts dev sys proc; do
+  for path in dev/shm dev/pts dev sys/fs/cgroup sys proc; do
     if mountpoint -q "$root/$path"; then
-      umount "$root/$path" || umount -l "$root/$path"
+      umount -R "$root/$path" || umount -l "$root/$path"
     fi
   done
 }
@@ -67,6 +67,7 @@ enter_system() {
   fi
   mount -t proc proc "$root/proc"
   mount -t sysfs -o ro sysfs "$root/sys"  # PoCL learns from it how much memory and how many processors there are
+  mount --rbind --make-rslave /sys/fs/cgroup "$root/sys/fs/cgroup"  # Slurm 22.05 does not begin without
   mount -t tmpfs -o mode=755,size=1M tmpfs "$root/dev"
   mkdir "$root/dev/pts" "$root/dev/shm"
   local node
