@@ -2,13 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "device/opencl.h"
 #include "device/program_cache.h"
 #include "motion/blur_params.h"
-#include "passes/frame_advice.h"
 #include "passes/frame_ring.h"
 #include "passes/frame_stream.h"
 #include "passes/pass_clear_region.h"
@@ -63,6 +65,67 @@ void wait_in_queue(const cl::CommandQueue& queue, std::span<const cl_event> even
 cl_event retained(const cl::Event& event) {
   if (const cl_int code = clRetainEvent(event()); code != CL_SUCCESS) throw cl::Error(code, "clRetainEvent");
   return event();
+}
+
+// Faults that no frame shows by itself, because each is right for one frame: what the first ones have in common. Each
+// is said once, as a warning of the log.
+class FrameAdvice {
+ public:
+  static constexpr int kFrames = 32;  // looked at before anything is said
+
+  explicit FrameAdvice(const ResolvePlan& plan) : looks_at_camera_(plan.reads_camera()) {}
+
+  // Allocates only where it warns. `inputs`: a frame that was dispatched by `plan`.
+  void look_at(const ResolvePlan& plan, const FrameInputs& inputs);
+
+ private:
+  void look_at_camera(const CameraMotion& camera);
+  void look_at_jitter(Extent render, Extent output, Vec2 jitter);
+
+  bool looks_at_camera_;
+  int camera_frames_ = 0;
+  int jitter_frames_ = 0;
+  std::array<Vec2, 8> places_;  // of the jitter; more than fit are enough
+  std::size_t place_count_ = 0;
+};
+
+void FrameAdvice::look_at(const ResolvePlan& plan, const FrameInputs& inputs) {
+  if (inputs.reset) return;
+  if (looks_at_camera_) look_at_camera(inputs.camera);
+  const Extent output = inputs.output_extent == Extent{} ? plan.settings.output_extent : inputs.output_extent;
+  if (plan.accumulates() && plan.reads_history(inputs.render_extent, output))
+    look_at_jitter(inputs.render_extent, output, inputs.jitter);
+}
+
+void FrameAdvice::look_at_camera(const CameraMotion& camera) {
+  looks_at_camera_ = camera.clip_to_previous_clip == CameraMotion{}.clip_to_previous_clip;
+  if (!looks_at_camera_ || ++camera_frames_ < kFrames) return;
+  looks_at_camera_ = false;
+  log_line(
+      LogLevel::kWarning,
+      fmt::format("the plan reads the camera's motion, but in the first {} frames `camera` is the identity, "
+                  "as of one that stands still; where it moves, tell how",
+                  kFrames));
+}
+
+void FrameAdvice::look_at_jitter(Extent render, Extent output, Vec2 jitter) {
+  constexpr float kSamePlace = .01f;
+  if (place_count_ == places_.size() || jitter_frames_ == kFrames) return;
+  const auto end = places_.begin() + place_count_;
+  const bool is_known = std::any_of(places_.begin(), end, [&](Vec2 place) {
+    return std::abs(place.x - jitter.x) <= kSamePlace && std::abs(place.y - jitter.y) <= kSamePlace;
+  });
+  if (!is_known) places_[place_count_++] = jitter;
+  const int wanted = jitter_phases(render, output);
+  if (++jitter_frames_ < kFrames || 2 * place_count_ >= static_cast<std::size_t>(wanted) ||
+      place_count_ == places_.size())
+    return;
+  log_line(
+      LogLevel::kWarning,
+      fmt::format("the first {} frames have samples at {} {} of a pixel, where temporal wants {}: `jitter` "
+                  "is not as jitter(frame, {}x{}, {}x{}) gives it, and pictures stay coarse",
+                  kFrames, place_count_, place_count_ == 1 ? "place" : "places", wanted, render.width,
+                  render.height, output.width, output.height));
 }
 
 }  // namespace
