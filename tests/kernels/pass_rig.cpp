@@ -17,8 +17,7 @@ PassSpec spec_of(const PlanFacts& facts, std::string_view kernel) {
   std::abort();
 }
 
-PassRig::PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel)
-    : facts_(needs, settings) {
+PassRig::PassRig(const PlanFacts& facts, std::string_view kernel) : facts_(facts) {
   PassTables tables(impl(), {{1, 1}, {1, 1}, {1, 1}});
   const PassSpec spec = spec_of(facts_, kernel);
   pass_ = spec.make({impl(), facts_, tables}, spec);
@@ -33,6 +32,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .previous = previous,
                   .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,
+                  .merges = merges_,
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,
                   .output = output,

@@ -20,12 +20,17 @@ class PassRig {
   using Bound = std::initializer_list<std::pair<Resource, ImageView>>;
 
   // Ends the program where the plan has no pass of this kernel.
-  PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel);
+  PassRig(const SceneNeeds& needs, const ResolveSettings& settings, std::string_view kernel)
+      : PassRig(PlanFacts(needs, settings), kernel) {}
+  PassRig(const PlanFacts& facts, std::string_view kernel);
 
   const PlanFacts& facts() const { return facts_; }
 
   // Sets the focus for the next run(), until which it stays; null: none.
   void set_focus(const FocusInputs* focus) { focus_ = focus; }
+
+  // Sets whether the runs to come merge two histories.
+  void set_merges(bool merges) { merges_ = merges; }
 
   // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.
   // `previous_output`: of the history; {0, 0}: the output.
@@ -35,6 +40,7 @@ class PassRig {
  private:
   PlanFacts facts_;
   const FocusInputs* focus_ = nullptr;
+  bool merges_ = false;
   std::unique_ptr<Pass> pass_;
 };
 

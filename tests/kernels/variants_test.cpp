@@ -18,6 +18,7 @@
 #include "device/program_cache.h"
 #include "embedded_kernels.h"
 #include "kernel_fixture.h"
+#include "plan/pass_spec.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {
@@ -213,6 +214,10 @@ std::set<Row> planned_rows() {
     if (!plan.ok() || !is_listed(inputs.settings)) return;
     bool is_new = false;
     for (const PlannedPass& pass : plan->passes)
+      is_new |= all.insert({pass.kernel, pass.options}).second;
+    PlanFacts facts(inputs.needs, inputs.settings);
+    facts.two_way = facts.displays_history() && facts.shows_picture() && !facts.is_dual();  // two_way.h
+    for (const PassSpec& pass : list_passes(facts).passes)
       is_new |= all.insert({pass.kernel, pass.options}).second;
     if (is_new) left.push_back(inputs);
   };

@@ -211,12 +211,17 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
 
 struct DisplayOptions {
   bool smooth = true;
+  bool smooth_layered = true;  // pixels of two layers, too
 };
 
 // temporal_display: output pixel (x, y) of the picture that in.history holds.
 template <typename Real>
 PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
                                const DisplayOptions& options, int x, int y);
+
+// merge_histories: what two histories of a pixel, both at its centre, come to; `own` is that of the frame's service.
+template <typename Real>
+HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const HistoryTexel<double>& other);
 
 // (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
 template <typename Real>

@@ -122,7 +122,9 @@ class QUINCUNX_API ResolveService {
   const Device& device() const;
 
  private:
+  friend class TwoWay;
   struct QUINCUNX_HIDDEN Impl;
+  static Result<ResolveService> create(const Device& device, const ResolvePlan& plan, bool two_way);
   explicit ResolveService(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -7,8 +7,18 @@
 
 namespace quincunx {
 
-FrameStream::FrameStream(const Device& device, const ResolvePlan& plan)
-    : plan_(plan), chain_(device, PlanFacts(plan.needs, plan.settings)) {}
+namespace {
+
+PlanFacts facts_of(const ResolvePlan& plan, bool two_way) {
+  PlanFacts facts(plan.needs, plan.settings);
+  facts.two_way = two_way;
+  return facts;
+}
+
+}  // namespace
+
+FrameStream::FrameStream(const Device& device, const ResolvePlan& plan, bool two_way)
+    : plan_(plan), chain_(device, facts_of(plan, two_way)) {}
 
 // Looks at one of the images that change with every frame and are read again.
 Status FrameStream::check_history(const FrameInputs& inputs) const {

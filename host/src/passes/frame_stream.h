@@ -14,8 +14,8 @@ namespace quincunx {
 
 class FrameStream {
  public:
-  // The plan is one that plan_for() has made.
-  FrameStream(const Device& device, const ResolvePlan& plan);
+  // The plan is one that plan_for() has made. `two_way`: as PlanFacts has it.
+  FrameStream(const Device& device, const ResolvePlan& plan, bool two_way = false);
 
   const ResolvePlan& plan() const { return plan_; }
   PassChain& chain() { return chain_; }

@@ -224,15 +224,18 @@ void PassChain::forget(const PassFrame& frame) {
 }
 
 // Marks the passes whose results the outputs or the next frame need, from the last to the first.
-void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs) {
+void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs, std::size_t first) {
+  const bool shows = !facts_.two_way || outputs.linear || outputs.presented;
   std::array<bool, kResourceCount> wanted = kept_;
   wanted[index_of(Resource::kContentSums)] = true;
-  wanted[index_of(shown_of(facts_))] = true;
+  wanted[index_of(Resource::kMergedHistory)] = frame.keeps_merged;
+  wanted[index_of(shown_of(facts_))] = shows;
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);
-  if (!frame.scales_output) wanted[index_of(finished_of(facts_))] = true;
+  if (!frame.scales_output) wanted[index_of(finished_of(facts_))] = shows;
   for (std::size_t i = passes_.size(); i-- > 0;) {
     const std::vector<Use>& uses = passes_[i]->spec().uses;
-    needed_[i] = passes_[i]->takes_part(frame) && std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
+    needed_[i] = i >= first && passes_[i]->takes_part(frame) &&
+                 std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
                    return use.access != Access::kRead && wanted[index_of(use.resource)];
                  });
     if (!needed_[i]) continue;
@@ -249,7 +252,22 @@ void PassChain::enqueue(Pass& pass, const PassFrame& frame, cl::Event* event) {
 void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events) {
   if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render_extent, frame.output))
     forget(frame);
-  mark_needed(frame, outputs);
+  mark_needed(frame, outputs, 0);
+  run_needed(frame, report, events);
+  next_ = 1 - next_;
+}
+
+void PassChain::show(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report,
+                     cl::Event* events) {
+  const auto merge = std::find_if(passes_.begin(), passes_.end(), [](const auto& pass) {
+    return std::string_view(pass->spec().kernel) == "merge_histories";
+  });
+  mark_needed(frame, outputs, static_cast<std::size_t>(merge - passes_.begin()) + 1);
+  PassFrame shown = frame;
+  run_needed(shown, report, events);
+}
+
+void PassChain::run_needed(PassFrame& frame, FrameReport& report, cl::Event* events) {
   bool resizes = frame.resizes_history();
   QueueStopwatch stopwatch(waits_ ? &frame.queue : nullptr);
   for (std::size_t i = 0; i < passes_.size(); ++i) {
@@ -263,7 +281,6 @@ void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& r
     report.passes.push_back(
         {.kernel = spec.kernel, .ms = stopwatch.lap_ms(), .bytes = bytes_of(spec, frame.extents())});
   }
-  next_ = 1 - next_;
 }
 
 void PassChain::warm_up() {

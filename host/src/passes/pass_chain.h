@@ -75,6 +75,10 @@ class PassChain {
   // Afterwards the frame's resources are those of the previous frame.
   void run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
 
+  // Enqueues those that follow merge_histories alone: the picture of the merged history, which is bound. The previous
+  // frame's resources stay what they are.
+  void show(const PassFrame& frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events);
+
   // From now on run() waits for each pass, and its time in the report is the host clock's.
   void wait_for_each_pass(bool wait) { waits_ = wait; }
 
@@ -102,7 +106,9 @@ class PassChain {
   bool is_resampled(Resource resource) const;
   void take_resampled(PassFrame& frame);
   void forget(const PassFrame& frame);
-  void mark_needed(const PassFrame& frame, const FrameOutputs& outputs);
+  // Those from `first` on.
+  void mark_needed(const PassFrame& frame, const FrameOutputs& outputs, std::size_t first);
+  void run_needed(PassFrame& frame, FrameReport& report, cl::Event* events);
   // Whether a pass of the next frame reads it.
   bool keeps(Resource resource) const {
     return previous_of(resource) != resource && has(previous_of(resource));

@@ -249,7 +249,7 @@ class DisplayLayersPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Resource shown = shown_history_of(facts());
+    const Resource shown = centred_of(facts());
     const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     const HistorySamples now =
         history_samples(frame.current, frame.output, layout_of(frame[Resource::kDepth]));
@@ -277,7 +277,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
                 {Resource::kHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kNearHistory, Access::kRead, Area::kOutput, history},
                 {Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-                {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+                {centred_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The passes of kernels/temporal: temporal_tiles, temporal_light, resolve_temporal, temporal_display, temporal_refine.
+// The passes of kernels/temporal: temporal_tiles, temporal_light, resolve_temporal, temporal_display, merge_histories,
+// temporal_refine.
 #include <fmt/format.h>
 
 #include "layers/layer.h"
@@ -252,34 +253,94 @@ class TemporalDisplayPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Resource shown = shown_history_of(facts());
+    // The merged history, which has no phases, or this frame's.
+    const bool merged = uses(Resource::kMergedHistory);
+    const Resource shown = merged ? shown_history_of(facts()) : centred_of(facts());
+    const Resource history = merged ? Resource::kMergedHistory : Resource::kHistory;
     const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
-    bind(params, frame[Resource::kTileReprojection], frame[Resource::kHistory],
-         view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown]);
+    bind(params, frame[merged ? Resource::kCentredTiles : Resource::kTileReprojection], frame[history],
+         view_or(frame, merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, history), frame[shown]);
     launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
+
+PassSpec display_spec(const PlanFacts& facts, int smooths, Resource shown) {
+  const ResolveSettings& settings = facts.settings;
+  return {
+      .kernel = "temporal_display",
+      .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
+                             facts.accumulates_alpha() ? 1 : 0, smooths, precision_of(settings.output.linear),
+                             precision_of(settings.temporal.history)),
+      .reason = "the method: the history's picture",
+      .uses = {{shown, Access::kWrite, Area::kOutput, settings.output.linear}},
+      .make = make_pass<TemporalDisplayPass>,
+      .frames = Frames::kSparse};
+}
 
 }  // namespace
 
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.displays_history()) return;
   const ResolveSettings& settings = facts.settings;
-  const bool alpha = facts.accumulates_alpha();
-  PassSpec spec{
-      .kernel = "temporal_display",
-      .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             alpha ? 1 : 0, facts.smooths_history() ? 1 : 0,
-                             precision_of(settings.output.linear), precision_of(settings.temporal.history)),
-      .reason = "the method: the history's picture",
-      .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-               {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-               {shown_history_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
-      .make = make_pass<TemporalDisplayPass>,
-      .frames = Frames::kSparse};
-  if (alpha)
+  PassSpec spec = display_spec(facts, facts.smooths_history() && !facts.two_way ? 1 : 0, centred_of(facts));
+  spec.uses.push_back(
+      {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)});
+  spec.uses.push_back({Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history});
+  if (facts.accumulates_alpha())
     spec.uses.push_back({Resource::kHistoryAlpha, Access::kRead, Area::kOutput, {}, alpha_bytes(settings)});
   list.passes.push_back(std::move(spec));
+}
+
+// merge_histories: the histories of frames before and after, made one; its picture.
+
+namespace {
+
+class MergeHistoriesPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const MergeParams params{.width = frame.output.width,
+                             .height = frame.output.height,
+                             .centred = layout_of(frame[Resource::kCentred]),
+                             .columns_per_item = columns_per_item(shape(), frame.output.width),
+                             .has_other = frame.merges ? 1 : 0};
+    bind(params, frame[Resource::kCentred], frame[Resource::kHistory], frame[Resource::kOtherHistory],
+         view_or(frame, Resource::kOtherAlpha, Resource::kOtherHistory), frame[Resource::kMergedHistory],
+         view_or(frame, Resource::kMergedAlpha, Resource::kMergedHistory));
+    launch(frame, frame.output, params.columns_per_item, event);
+  }
+};
+
+}  // namespace
+
+void plan_merge_histories(const PlanFacts& facts, PassList& list) {
+  if (!facts.two_way) return;
+  const ResolveSettings& settings = facts.settings;
+  const PixelFormat history = settings.temporal.history;
+  const std::size_t alpha = alpha_bytes(settings);
+  PassSpec merge{.kernel = "merge_histories",
+                 .options = fmt::format("-D ALPHA={} -D SOURCE_FORMAT={} -D HISTORY_FORMAT={}",
+                                        facts.accumulates_alpha() ? 1 : 0,
+                                        precision_of(settings.output.linear), precision_of(history)),
+                 .reason = "both ways: the histories of frames before and after made one",
+                 .uses = {{Resource::kCentred, Access::kRead, Area::kOutput, settings.output.linear},
+                          {Resource::kHistory, Access::kRead, Area::kOutput, history},
+                          {Resource::kOtherHistory, Access::kUpdate, Area::kOutput, history},
+                          {Resource::kMergedHistory, Access::kWrite, Area::kOutput, history}},
+                 .make = make_pass<MergeHistoriesPass>,
+                 .frames = Frames::kSparse};
+  PassSpec shown = display_spec(facts, facts.smooths_history() ? 2 : 0, shown_history_of(facts));
+  shown.uses.push_back(
+      {Resource::kCentredTiles, Access::kAccumulate, Area::kTiles, {}, sizeof(TileReprojection)});
+  shown.uses.push_back({Resource::kMergedHistory, Access::kRead, Area::kOutput, history});
+  if (facts.accumulates_alpha()) {
+    merge.uses.push_back({Resource::kOtherAlpha, Access::kUpdate, Area::kOutput, {}, alpha});
+    merge.uses.push_back({Resource::kMergedAlpha, Access::kWrite, Area::kOutput, {}, alpha});
+    shown.uses.push_back({Resource::kMergedAlpha, Access::kRead, Area::kOutput, {}, alpha});
+  }
+  list.passes.push_back(std::move(merge));
+  list.passes.push_back(std::move(shown));
 }
 
 // temporal_refine: the history's picture sharpened, and smoothed along its edges.
@@ -299,7 +360,7 @@ class TemporalRefinePass : public Pass {
                               .height = frame.output.height,
                               .source = layout_of(frame[Resource::kUnrefined]),
                               .output = layout_of(frame[picture()])};
-    bind(params, frame[Resource::kUnrefined], frame[Resource::kHistory], frame[picture()]);
+    bind(params, frame[Resource::kUnrefined], frame[displayed_history_of(facts())], frame[picture()]);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -316,7 +377,7 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the preset: sharpened, and smoothed along edges where little is known",
        .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.output.linear},
-                {Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history},
+                {displayed_history_of(facts), Access::kRead, Area::kOutput, settings.temporal.history},
                 {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});

@@ -155,6 +155,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_resolve_layers,
     plan_temporal_display,
     plan_display_layers,
+    plan_merge_histories,
     plan_temporal_refine,
     plan_resolve_quincunx,
     plan_resolve_reprojected,

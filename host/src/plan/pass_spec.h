@@ -160,6 +160,7 @@ void plan_resolve_temporal(const PlanFacts& facts, PassList& list);
 void plan_resolve_layers(const PlanFacts& facts, PassList& list);
 void plan_temporal_display(const PlanFacts& facts, PassList& list);
 void plan_display_layers(const PlanFacts& facts, PassList& list);
+void plan_merge_histories(const PlanFacts& facts, PassList& list);
 void plan_resolve_quincunx(const PlanFacts& facts, PassList& list);
 void plan_resolve_reprojected(const PlanFacts& facts, PassList& list);
 void plan_scale(const PlanFacts& facts, PassList& list);

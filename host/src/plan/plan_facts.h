@@ -13,6 +13,7 @@ struct PlanFacts {
   SceneNeeds needs;
   ResolveSettings settings;
   VelocitySource velocity;  // where passes find it; kNone where no pass reads it
+  bool two_way = false;  // history is merged with that of later frames before it is shown (passes/two_way.h)
 
   bool has_velocity() const { return velocity != VelocitySource::kNone; }
   // Colour is what the screen shall show: the renderer has exposed, tone mapped and encoded it.

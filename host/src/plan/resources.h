@@ -79,6 +79,13 @@ enum class Resource : std::uint8_t {
   kPreviousLayerStates,
   kHistoryAlpha,
   kPreviousHistoryAlpha,
+  // Histories of both directions (facts.two_way): this one's picture, the other one, and both merged.
+  kCentred,
+  kCentredTiles,
+  kOtherHistory,
+  kOtherAlpha,
+  kMergedHistory,
+  kMergedAlpha,
   kUnrefined,
   kUnsharpened,
   kResolved,
@@ -186,6 +193,12 @@ inline constexpr ResourceInfo kResources[] = {
     {Resource::kPreviousLayerStates, "layer states of the previous frame"},
     {Resource::kHistoryAlpha, "history alpha", nullptr, Resource::kPreviousHistoryAlpha},
     {Resource::kPreviousHistoryAlpha, "history alpha of the previous frame"},
+    {Resource::kCentred, "centred"},
+    {Resource::kCentredTiles, "centred tiles"},
+    {Resource::kOtherHistory, "other history"},
+    {Resource::kOtherAlpha, "other history alpha"},
+    {Resource::kMergedHistory, "merged history"},
+    {Resource::kMergedAlpha, "merged history alpha"},
     {Resource::kUnrefined, "unrefined"},
     {Resource::kUnsharpened, "unsharpened"},
     {Resource::kResolved, "resolved"},
@@ -235,6 +248,14 @@ inline Resource picture_of(const PlanFacts& facts) {
 // The picture of the history, before the preset `quality` refines it.
 inline Resource shown_history_of(const PlanFacts& facts) {
   return facts.refines() ? Resource::kUnrefined : picture_of(facts);
+}
+
+// The picture of this direction's history alone, and the history that is shown.
+inline Resource centred_of(const PlanFacts& facts) {
+  return facts.two_way ? Resource::kCentred : shown_history_of(facts);
+}
+inline Resource displayed_history_of(const PlanFacts& facts) {
+  return facts.two_way ? Resource::kMergedHistory : Resource::kHistory;
 }
 
 // The picture with all that is made of it, in the output's size, and the one that is shown.

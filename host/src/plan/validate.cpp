@@ -278,6 +278,12 @@ Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const 
   return check.status();
 }
 
+Status validate_inputs(const ResolvePlan& plan, const FrameInputs& inputs) {
+  FrameCheck check(plan);
+  check_inputs(check, plan, inputs);
+  return check.status();
+}
+
 Status validate(const ResolvePlan& plan, const FrameInputs& inputs, const FrameOutputs& outputs) {
   FrameCheck check(plan);
   check_inputs(check, plan, inputs);

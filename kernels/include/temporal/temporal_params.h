@@ -55,6 +55,15 @@ typedef struct TemporalDisplayParams {
 } TemporalDisplayParams;
 QUINCUNX_CHECK_SIZE(TemporalDisplayParams, 8 + 8 + 16);
 
+typedef struct MergeParams {
+  int width;  // extent of the picture
+  int height;
+  TexelLayout centred;
+  int columns_per_item;  // pixels that a work-item makes
+  int has_other;         // 0: there is no other history
+} MergeParams;
+QUINCUNX_CHECK_SIZE(MergeParams, 8 + 8 + 8);
+
 // Parameters of the kernels that resize what is kept where the output has another size than in the previous frame.
 typedef struct ResizeParams {
   int width, height;                    // size of the output

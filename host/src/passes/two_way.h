@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// TwoWay: services whose histories are merged with those of other services, for frames that are all there already
+// (quincunx-resolve): one resolves them forwards, one backwards, as if time ran that way. Each frame is added to both,
+// without a picture; what both know of it is merged, and shown by the first.
+//
+// Plans accumulate, have one output size, and no focus. Not thread-safe; blocks.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "quincunx/advanced/export.h"
+#include "quincunx/resolve_service.h"
+
+namespace quincunx {
+
+// A frame's history in host memory, at the pixels' centres: colour and confidence of each pixel in the history's
+// format, and alpha where the plan accumulates it; the frame's velocity and depth where the plan blurs. Used again, it
+// keeps its memory.
+struct KeptHistory {
+  std::vector<std::byte> texels, alpha, velocity, depth;
+};
+
+class QUINCUNX_API TwoWay {
+ public:
+  // As ResolveService::create(). No dispatch() on it afterwards.
+  static Result<ResolveService> create(const Device& device, const ResolvePlan& plan);
+
+  // Adds a frame to the service's history, as dispatch() does. `kept`, if not null, becomes that history, or with
+  // `merge` what it and the history in `kept`, of the same frame, come to together.
+  static FrameReport add(ResolveService& service, const FrameInputs& inputs, bool merge, KeptHistory* kept);
+
+  // Turns round: gives `backward` the history of `forward` in place of its own. Both have added the same frame last,
+  // `backward` with `reset`, and have plans that differ in nothing but what follows history.
+  static Status turn(ResolveService& backward, const ResolveService& forward);
+
+  // Makes the picture of a history. `inputs`: the frame's, without images. `smooth`: whether pixels of which little is
+  // known are smoothed as the preset does.
+  static FrameReport show(ResolveService& service, const FrameInputs& inputs, bool smooth,
+                          const KeptHistory& kept, const FrameOutputs& outputs);
+};
+
+}  // namespace quincunx
