@@ -250,6 +250,20 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep) 
   return {};
 }
 
+Result<gl::TargetPixels> FrameSource::draw_relative_to(double seconds) {
+  const DrawnFrame& frame = drawn_.back();
+  Feed& feed = feeds_.front();
+  FrameView view = frame.view;
+  view.previous_seconds = seconds;
+  view.particles = {};  // with everything else: they write no velocity
+  auto targets = feed.bridge->begin_draw(feed.slot(frame), view.render);
+  if (!targets.ok()) return targets.status();
+  if (Status status = renderer().draw(*targets.value(), view); !status.ok()) return status;
+  gl::TargetPixels pixels = gl::read_targets(*targets.value(), view.render);
+  if (Status status = feed.bridge->submit(feed.slot(frame)); !status.ok()) return status;
+  return pixels;
+}
+
 void FrameSource::keep_targets(DrawnFrame& frame) const {
   for (const Feed& feed : feeds_) {
     if (feed.targets == nullptr) continue;

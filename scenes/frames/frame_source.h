@@ -97,6 +97,9 @@ class FrameSource {
   // Draws another view than the sequence's, within its target.
   Status draw(std::int64_t index, const FrameView& view, bool keep_targets = false);
 
+  // Draws the last drawn frame anew, with velocity relative to another scene time. Its targets.
+  Result<gl::TargetPixels> draw_relative_to(double seconds);
+
   // draw() in its two steps, for those who time them: into the slot; to OpenCL.
   Status begin(std::int64_t index, bool keep_targets = false);
   Status begin(std::int64_t index, const FrameView& view, bool keep_targets = false);

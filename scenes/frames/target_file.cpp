@@ -75,10 +75,10 @@ std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels) {
   return velocity;
 }
 
-std::vector<Vec2> backward_motion(const TargetFile& file) {
-  std::vector<Vec2> motion = velocity_of(file.pixels);
+std::vector<Vec2> backward_motion(const gl::TargetPixels& pixels) {
+  std::vector<Vec2> motion = velocity_of(pixels);
   for (Vec2& vector : motion)
-    vector = tools::backward_from_velocity(vector, file.pixels.render_extent);
+    vector = tools::backward_from_velocity(vector, pixels.render_extent);
   return motion;
 }
 
@@ -121,16 +121,20 @@ Status write_targets(const std::string& path, const TargetFile& file) {
                       .type = ChannelType::kFloat,
                       .data = z.data(),
                       .stored = ChannelType::kFloat});
-  const std::vector<Vec2> motion = backward_motion(file);
-  if (!motion.empty()) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      channels.push_back({.name = tools::kBackwardChannels[i],
+  const auto add_motion = [&channels](const std::array<std::string, 2>& names,
+                                      const std::vector<Vec2>& motion) {
+    for (std::size_t i = 0; i < 2 && !motion.empty(); ++i) {
+      channels.push_back({.name = names[i],
                           .type = ChannelType::kFloat,
                           .data = &motion.data()->x + i,
                           .pixel_stride = sizeof(Vec2),
                           .stored = ChannelType::kFloat});
     }
-  }
+  };
+  const std::vector<Vec2> backward = backward_motion(file.pixels);
+  const std::vector<Vec2> forward = backward_motion(file.relative_to_next);
+  add_motion(tools::kBackwardChannels, backward);
+  add_motion(tools::kForwardChannels, forward);
   const std::vector<float> mask = reactive_mask(file);
   if (!mask.empty()) {
     channels.push_back({.name = tools::kReactiveChannel, .type = ChannelType::kFloat, .data = mask.data()});

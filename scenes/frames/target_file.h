@@ -17,6 +17,8 @@ namespace quincunx::scenes {
 
 struct TargetFile {
   gl::TargetPixels pixels;
+  gl::TargetPixels relative_to_next =
+      {};  // the same with velocity = this position - the next one; may be empty
   FrameView view;
   Camera camera;
   Extent output;
@@ -30,13 +32,13 @@ struct TargetFile {
 std::vector<float> colour_of(const gl::TargetPixels& pixels);   // RGBA, linear
 std::vector<float> depth_of(const TargetFile& file);            // Z
 std::vector<Vec2> velocity_of(const gl::TargetPixels& pixels);  // uv, as drawn
-std::vector<Vec2> backward_motion(const TargetFile& file);
+std::vector<Vec2> backward_motion(const gl::TargetPixels& pixels);
 std::vector<float> reactive_mask(const TargetFile& file);
 
 // Gives each pixel the velocity of the nearest of its 3x3, as other renderers write it.
 void dilate_velocity(gl::TargetPixels& pixels);
 
-// R G B A and reactive.mask half, Z and backward.u/.v float, render extent. Errors: kIoFailure.
+// R G B A and reactive.mask half, Z, backward.u/.v and forward.u/.v float, render extent. Errors: kIoFailure.
 Status write_targets(const std::string& path, const TargetFile& file);
 
 // A resolved or true picture: linear RGBA floats, tightly packed, stored as half. Errors: kIoFailure.

@@ -250,7 +250,7 @@ Status DumpSession::collect_targets() {
   }
   planes_[Stage::kDepth] = {render, {"Z"}, {depth_of(file)}};
   StagePlanes motion{render, {"backward.u", "backward.v"}, {{}, {}}};
-  for (const Vec2 vector : backward_motion(file)) {
+  for (const Vec2 vector : backward_motion(file.pixels)) {
     motion.planes[0].push_back(vector.x);
     motion.planes[1].push_back(vector.y);
   }

@@ -55,8 +55,8 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
       {"Z", dump.linear_depth ? "distance along the view axis, 1e10 where nothing was seen"
                               : "near / distance, 0 where nothing was seen"},
       {"motion",
-       "backward.u, backward.v: previous - current position, pixels of that frame, +u right, +v up, jitter "
-       "excluded"},
+       "backward.u, backward.v: previous - current position; forward.u, forward.v: next - current position; "
+       "pixels of that frame, +u right, +v up, jitter excluded"},
       {"reactive",
        "reactive.mask: 0 trust history, 1 ignore it; of transparents, which have no motion of their own"},
   };
@@ -101,8 +101,17 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
   for (std::int64_t index = 0; index < options.frames; ++index) {
     if (Status status = frames.draw(index, true); !status.ok()) return status;
     DrawnFrame& frame = frames.oldest();
-    if (dump.dilates_velocity) dilate_velocity(frame.targets);
+    const double next = frame.view.seconds + 1 / options.fps;
+    // The last frame of a shot has no motion to the next one.
+    auto relative =
+        frames.draw_relative_to(is_cut(frames.scene(), frame.view.seconds, next) ? frame.view.seconds : next);
+    if (!relative.ok()) return relative.status();
+    if (dump.dilates_velocity) {
+      dilate_velocity(frame.targets);
+      dilate_velocity(relative.value());
+    }
     TargetFile file = {.pixels = std::move(frame.targets),
+                       .relative_to_next = std::move(relative).value(),
                        .view = frame.view,
                        .camera = frames.scene().camera(frame.view.seconds),
                        .output = options.output,

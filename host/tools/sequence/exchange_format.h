@@ -20,6 +20,8 @@ namespace quincunx::tools {
 // The format's channels.
 inline const std::array<std::string, 4> kColourChannels = {"R", "G", "B", "A"};
 inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
+// Motion to the next frame: next - this position, as Nuke has it.
+inline const std::array<std::string, 2> kForwardChannels = {"forward.u", "forward.v"};
 // Of recorded frames: velocity as it was given, in whatever unit.
 inline const std::array<std::string, 2> kVelocityChannels = {"velocity.u", "velocity.v"};
 inline const std::string kDepthChannel = "Z";
@@ -53,7 +55,8 @@ enum class VelocityConvention : std::uint8_t {
 
 struct VelocityUnits {
   VelocityConvention convention = VelocityConvention::kNuke;
-  Vec2 scale = {1, 1};  // factor of kScale
+  Vec2 scale = {1, 1};   // factor of kScale
+  bool to_next = false;  // earlier - later is from this frame to the next, not from the previous one to this
 };
 
 enum class DepthKind : std::uint8_t {
@@ -66,7 +69,8 @@ const char* name_of(VelocityConvention convention);  // "nuke"
 const char* name_of(DepthKind kind);                 // "device-reversed"
 std::optional<DepthKind> depth_kind_named(std::string_view name);
 
-// In place, to uv velocity (this position - previous position, +y down) of an image of this extent. Each
+// In place, to uv velocity (this position - previous position, or with `to_next` this - next, +y down) of an image of
+// this extent. Each
 // value meets one rounding: a division by the extent where pixels are meant.
 void to_velocity(const VelocityUnits& units, Extent extent, std::span<Vec2> motion);
 
