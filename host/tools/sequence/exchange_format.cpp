@@ -66,6 +66,10 @@ std::optional<DepthKind> depth_kind_named(std::string_view name) {
 void to_velocity(const VelocityUnits& units, Extent extent, std::span<Vec2> motion) {
   const auto width = static_cast<float>(extent.width);
   const auto height = static_cast<float>(extent.height);
+  if (units.to_next) {
+    for (Vec2& m : motion)
+      m = {-m.x, -m.y};
+  }
   switch (units.convention) {
     case VelocityConvention::kNuke:
     case VelocityConvention::kBlender:

@@ -59,6 +59,14 @@ void add_motion_options(CommandLine& app, ResolveOptions& options) {
          "Motion's channels; camera: from depth and worldToNDC; none (default: backward.u,backward.v, if "
          "any)")
       .type_name("U,V");
+  app.add_option_function<std::string>(
+         "--velocity-next",
+         [&input](const std::string& text) {
+           input.next_velocity = split_pair("--velocity-next", text, "write U,V");
+         },
+         "Channels of the motion from each frame to the next, for --two-way, in the same sense: earlier - "
+         "later where --velocity has previous - current (default: forward.u,forward.v, if any)")
+      .type_name("U,V");
   add_choice(
       app, "--velocity-convention", kConventions,
       "What motion means: nuke and blender (previous - current, pixels, up), fsr2 (the same, down), ndc "
@@ -178,6 +186,11 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
          "Frames to read before the first, for its history (default: as many as the method looks back)")
       .in_range(0, 100000)
       .type_name("N");
+  app.add_option_function<int>(
+         "--two-way", [&options](int count) { options.sequence.two_way = count; },
+         "temporal: each frame knows so many later ones, too; 0: none (default: 0)")
+      .in_range(0, 64)
+      .type_name("K");
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
   app.add_flag("-n,--dry-run", options.dry_run, "Only list what would be read and made, and what is missing");
@@ -215,7 +228,7 @@ void check_recorded(const CommandLine& app, const std::string& folder) {
     throw wrong("--diagnose", fmt::format("looks at EXR sequences alone, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
-        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up"}) {
+        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next"}) {
     if (app.has(option))
       throw wrong(option, fmt::format("is what the recording in '{}' says itself", folder));
   }

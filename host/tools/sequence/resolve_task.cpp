@@ -120,10 +120,13 @@ std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTa
   const int warm_up = options.warm_up.value_or(history);
   const std::int64_t first = first_in_reach(task.input, task.asked.front(), warm_up);
   std::vector<std::int64_t> read = with_history(task.asked, warm_up, first);
-  const int reach = std::max(warm_up, history);
+  const int reach = std::max(warm_up, history), ahead = task.format.two_way;
+  if (ahead > 0) read = with_future(task.input, task.asked, read, ahead);
   std::erase_if(read, [&](std::int64_t number) {
     const auto next = std::lower_bound(left.begin(), left.end(), number);
-    return next == left.end() || *next - reach > number;
+    if (next != left.end() && *next - reach <= number) return false;
+    if (ahead == 0 || next == left.begin()) return true;
+    return number >= (*std::prev(next) / kWindowFrames + 1) * kWindowFrames + ahead;
   });
   return read;
 }
@@ -162,6 +165,7 @@ Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
   if (Status status = settle_plan(task, task.format.output, true); !status.ok()) return status;
   if (options.diagnose) return {};
   if (Status status = keep_what_is_read(task.format, task.plan); !status.ok()) return status;
+  if (Status status = settle_two_way(options.sequence, task.plan, task.format); !status.ok()) return status;
   if (task.output) task.output->settings += "; " + summary_of(task.format);
   return {};
 }
@@ -236,6 +240,17 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   const std::vector<std::int64_t> read = to_read(options, task, left, history);
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
   task.format.background = task.scan.background();
+  for (const ScannedFrame& frame : task.scan.frames) {
+    if (task.format.two_way == 0 || !frame.problem.empty() || task.plan.reads_history(frame.render)) continue;
+    if (options.sequence.two_way) {
+      return Status::invalid(
+          fmt::format("--two-way merges histories, but frame {} has {}x{} pixels for {}x{} and so none; say "
+                      "--two-way 0",
+                      frame.number, frame.render.width, frame.render.height, task.format.output.width,
+                      task.format.output.height));
+    }
+    task.format.two_way = 0;
+  }
   if (const Extent target = task.scan.target(); target != Extent{} && !recorded) {
     if (Status status = settle_plan(task, target, task.scan.half_colour()); !status.ok()) return status;
   }

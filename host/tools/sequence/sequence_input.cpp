@@ -183,6 +183,8 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
     return status;
   format.channels.depth = optional_channel(input.depth, kDepthChannel, first);
   format.channels.reactive = optional_channel(input.reactive, kReactiveChannel, first);
+  const bool goes_on = first.find(kForwardChannels[0]) && first.find(kForwardChannels[1]);
+  format.next_velocity = input.next_velocity.value_or(goes_on ? kForwardChannels : format.next_velocity);
   format.depth_kind = input.depth_kind.value_or(attributes.depth_kind.value_or(DepthKind::kLinear));
   format.near_plane = input.near_plane.value_or(attributes.near_plane.value_or(kUnknownNear));
   format.jitter = input.jitter;
@@ -223,6 +225,53 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   return {};
 }
 
+Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, SequenceFormat& format) {
+  format.next_units = format.units;
+  if (plan.velocity == VelocitySource::kNone) {
+    format.next_motion = NextMotion::kNothing;
+  } else if (plan.velocity == VelocitySource::kCamera) {
+    format.next_motion = NextMotion::kCamera;
+  } else if (!format.next_velocity[0].empty()) {
+    format.next_motion = NextMotion::kChannels;
+    // The format's own channels say where a surface goes, others where it comes from, as those of velocity do.
+    if (format.next_velocity == kForwardChannels)
+      format.next_units = {};
+    else
+      format.next_units.to_next = true;
+  }
+  const bool known = format.next_motion != NextMotion::kUnknown;
+  format.two_way = input.two_way.value_or(0);
+  if (format.two_way == 0) return {};
+  if (!plan.accumulates() || plan.settings.temporal.view != TemporalView::kPicture) {
+    return Status::invalid(
+        fmt::format("--two-way merges the histories of method temporal, and this is {}; say --two-way 0",
+                    plan.accumulates() ? "a view of one" : name_of(plan.settings.method)));
+  }
+  if (!known) {
+    return Status::invalid(
+        "--two-way needs motion to the next frame; say --velocity-next, or --velocity camera if only the "
+        "camera moves");
+  }
+  return {};
+}
+
+SequenceFormat backward_format(const SequenceFormat& format) {
+  SequenceFormat backward = format;
+  backward.units = format.next_units;
+  if (format.next_motion == NextMotion::kChannels) backward.channels.velocity = format.next_velocity;
+  return backward;
+}
+
+namespace {
+
+std::string two_way_text(const SequenceFormat& format) {
+  const std::string ahead = fmt::format("; both ways, {} frames ahead", format.two_way);
+  if (format.next_motion != NextMotion::kChannels) return ahead;
+  return ahead + fmt::format(" by {},{}", format.next_velocity[0], format.next_velocity[1]);
+}
+
+}  // namespace
+
 std::string summary_of(const SequenceFormat& format) {
   if (!format.recording.empty()) return "a recording, by its settings";
   const ChannelNames& channels = format.channels;
@@ -240,6 +289,7 @@ std::string summary_of(const SequenceFormat& format) {
     if (format.depth_kind == DepthKind::kLinear) text += fmt::format(", near {}", format.near_plane);
   }
   if (channels.has_reactive()) text += fmt::format("; reactive {}", channels.reactive);
+  if (format.two_way > 0) text += two_way_text(format);
   return text + fmt::format("; jitter {}", format.jitter.text());
 }
 

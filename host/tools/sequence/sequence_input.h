@@ -71,14 +71,25 @@ enum class MotionSource : std::uint8_t {
 struct SequenceInput {
   std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
   MotionSource motion = MotionSource::kAutomatic;
-  std::array<std::string, 2> velocity;  // names of kChannels
-  std::optional<VelocityUnits> units;   // needed for other channels than backward.u/.v
-  std::optional<std::string> depth;     // absent: Z where there is one; empty: none
-  std::optional<DepthKind> depth_kind;  // absent: the attribute depthKind, else linear
-  std::optional<float> near_plane;      // absent: the attribute near, else kUnknownNear
+  std::array<std::string, 2> velocity;                      // names of kChannels
+  std::optional<std::array<std::string, 2>> next_velocity;  // channels of motion to the next frame
+  std::optional<VelocityUnits> units;                       // needed for other channels than backward.u/.v
+  std::optional<std::string> depth;                         // absent: Z where there is one; empty: none
+  std::optional<DepthKind> depth_kind;                      // absent: the attribute depthKind, else linear
+  std::optional<float> near_plane;                          // absent: the attribute near, else kUnknownNear
   std::optional<std::string> reactive;  // absent: reactive.mask where there is one; empty: none
   JitterSource jitter;
   std::optional<Extent> output;  // absent: the attribute outputSize
+  std::optional<int> two_way;    // frames to look ahead; 0: none; absent: as settle_two_way() has it
+};
+
+// Where motion to the next frame comes from, for resolving both ways.
+enum class NextMotion : std::uint8_t {
+  kUnknown,
+  kChannels,
+  kCamera,   // as kCamera of MotionSource
+  kNothing,  // nothing moves
+  kTurned,   // the next frame's own motion, turned round
 };
 
 // Nothing is left open.
@@ -88,6 +99,10 @@ struct SequenceFormat {
   MotionSource motion = MotionSource::kNone;  // never kAutomatic
   bool needs_camera = false;                  // the attribute worldToNDC of each frame is read
   VelocityUnits units;
+  int two_way = 0;                                // frames to look ahead; 0: only earlier frames count
+  NextMotion next_motion = NextMotion::kUnknown;  // told where the plan accumulates
+  std::array<std::string, 2> next_velocity;  // channels of kChannels, if the frames have such; else empty
+  VelocityUnits next_units;
   bool background = true;  // each frame's colour covers it, without alpha: known when all headers were read
   DepthKind depth_kind = DepthKind::kLinear;
   float near_plane = kUnknownNear;
@@ -106,6 +121,13 @@ SceneNeeds needs_of(const SequenceFormat& format);
 // Forgets the channels that the plan does not read. Errors: kIoFailure where the plan reads depth, but the
 // frames have none.
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan);
+
+// Settles how far each frame looks ahead, once it is known what the plan reads. Errors: kInvalidArgument where `input`
+// asks for what the plan or the frames cannot give.
+Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, SequenceFormat& format);
+
+// Returns how the frames are read by who resolves them backwards: their motion is that to the next frame.
+SequenceFormat backward_format(const SequenceFormat& format);
 
 // Text that tells two formats apart, for people too: "velocity motion.X,motion.Y fsr2, jitter attribute".
 std::string summary_of(const SequenceFormat& format);

@@ -43,45 +43,73 @@ void turn_rows(std::vector<Value>& picture, Extent extent) {
 
 SequenceResolver::SequenceResolver(const Device& device, ResolveService service, SequenceJob job)
     : device_(device),
-      service_(std::move(service)),
+      forward_{std::move(service)},
       job_(std::move(job)),
-      watch_(service_.plan(), job_.format.near_plane),
-      writers_(writing_threads(job_.threads), 1) {}
+      watch_(forward_.service.plan(), job_.format.near_plane),
+      writers_(writing_threads(job_.threads), 1) {
+  for (const ScannedFrame& frame : job_.scan.frames) {
+    if (frame.problem.empty()) {
+      good_.push_back(frame);
+    } else if (frame.wanted) {
+      outcome_.skipped.push_back(frame.number);
+    }
+  }
+}
 
 Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device& device,
                                                                    const ResolvePlan& plan, SequenceJob job) {
-  auto service = ResolveService::create(device, plan);
+  const bool two_way = job.format.two_way > 0;
+  auto service = two_way ? TwoWay::create(device, plan) : ResolveService::create(device, plan);
   if (!service.ok()) return service.status();
   service->allow_timing_waits(true);
   auto resolver = std::unique_ptr<SequenceResolver>(
       new SequenceResolver(device, std::move(service).value(), std::move(job)));
+  if (two_way) {
+    ResolveSettings settings = plan.settings;  // of history alone
+    settings.blur.shutter = settings.sharpness = 0;
+    settings.output.present = false;
+    const auto backward_plan = plan_for(plan.needs, settings);
+    if (!backward_plan.ok()) return backward_plan.status();
+    auto backward = TwoWay::create(device, backward_plan.value());
+    if (!backward.ok()) return backward.status();
+    resolver->backward_.emplace(Stream{std::move(backward).value()});
+  }
   if (Status status = resolver->allocate(); !status.ok()) return status;
   return resolver;
 }
 
-Status SequenceResolver::allocate() {
-  const ResolvePlan& plan = service_.plan();
-  const auto make = [&](Image& image, Extent extent, PixelFormat format) -> Status {
-    auto made = device_.allocate(extent, format);
+Status SequenceResolver::allocate(Stream& stream) const {
+  const ResolvePlan& plan = stream.service.plan();
+  const auto make = [&](Image& image, PixelFormat format) -> Status {
+    auto made = device_.allocate(plan.settings.target_extent, format);
     if (made.ok()) image = std::move(made).value();
     return made.status();
   };
-  const Extent target = plan.settings.target_extent;
-  for (DeviceFrame& frame : ring_) {
+  for (DeviceFrame& frame : stream.ring) {
     if (!job_.format.recording.empty()) break;
-    if (Status status = make(frame.colour, target, plan.settings.colour); !status.ok()) return status;
+    if (Status status = make(frame.colour, plan.settings.colour); !status.ok()) return status;
     if (plan.velocity == VelocitySource::kTarget) {
-      if (Status status = make(frame.velocity, target, plan.settings.velocity); !status.ok()) return status;
+      if (Status status = make(frame.velocity, plan.settings.velocity); !status.ok()) return status;
     }
     if (plan.reads_depth) {
-      if (Status status = make(frame.depth, target, PixelFormat::kR32F); !status.ok()) return status;
+      if (Status status = make(frame.depth, PixelFormat::kR32F); !status.ok()) return status;
     }
     if (plan.reads_reactive) {
-      if (Status status = make(frame.reactive, target, PixelFormat::kR8); !status.ok()) return status;
+      if (Status status = make(frame.reactive, PixelFormat::kR8); !status.ok()) return status;
     }
   }
-  if (Status status = make(linear_, plan.settings.output_extent, plan.settings.output.linear); !status.ok())
-    return status;
+  return {};
+}
+
+Status SequenceResolver::allocate() {
+  if (Status status = allocate(forward_); !status.ok()) return status;
+  if (backward_) {
+    if (Status status = allocate(*backward_); !status.ok()) return status;
+  }
+  const ResolvePlan& plan = forward_.service.plan();
+  auto linear = device_.allocate(plan.settings.output_extent, plan.settings.output.linear);
+  if (!linear.ok()) return linear.status();
+  linear_ = std::move(linear).value();
   if (!presents()) return {};
   auto made = device_.allocate(plan.settings.output_extent, PixelFormat::kRGBA8, plan.presented_storage());
   if (made.ok()) presented_ = std::move(made).value();
@@ -98,11 +126,12 @@ Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& t
   return copy(to.reactive, frame.reactive.data());
 }
 
-Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inputs) const {
-  const ResolvePlan& plan = service_.plan();
+Status SequenceResolver::camera_of(const Stream& stream, const SequenceFrame& frame,
+                                   FrameInputs& inputs) const {
+  const ResolvePlan& plan = stream.service.plan();
   const bool moves = (plan.reads_camera() || plan.keeps_previous_frame()) && !inputs.reset;
-  if (!moves || !frame.world_to_ndc || !last_world_to_ndc_) return {};
-  const auto motion = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, job_.format.near_plane);
+  if (!moves || !frame.world_to_ndc || !stream.last_world_to_ndc) return {};
+  const auto motion = camera_motion(*frame.world_to_ndc, *stream.last_world_to_ndc, job_.format.near_plane);
   if (!motion) {
     if (!plan.reads_camera()) return {};  // it would only have bettered the picture
     return Status::io(fmt::format("'{}' has an attribute 'worldToNDC' that cannot be inverted",
@@ -114,26 +143,29 @@ Status SequenceResolver::camera_of(const SequenceFrame& frame, FrameInputs& inpu
 
 Result<FrameReport> SequenceResolver::dispatch_recorded(const SequenceFrame& frame) {
   const Clock::time_point start = Clock::now();
-  auto uploaded = quincunx::tools::upload(device_, service_.plan(), *frame.recorded);
+  ResolveService& service = forward_.service;
+  auto uploaded = quincunx::tools::upload(device_, service.plan(), *frame.recorded);
   if (!uploaded.ok()) return uploaded.status();
   outcome_.upload_ms.push_back(ms_since(start));
   FrameInputs& inputs = uploaded->inputs;
   if (job_.exposure > 0) inputs.exposure = job_.exposure;
-  inputs.reset |= last_ + 1 != frame.number;
+  inputs.reset |= forward_.last + 1 != frame.number;
   const FrameOutputs outputs = {linear_.view(), presented_.view()};
-  FrameReport report = uploaded->focus ? service_.dispatch(inputs, *uploaded->focus, outputs)
-                                       : service_.dispatch(inputs, outputs);
+  FrameReport report = uploaded->focus ? service.dispatch(inputs, *uploaded->focus, outputs)
+                                       : service.dispatch(inputs, outputs);
   if (!report.ok())
     return Status(report.status.code(), fmt::format("frame {}: {}", frame.number, report.status.message()));
-  played_[static_cast<std::size_t>(count_ % 2)] = std::move(uploaded).value();
-  last_ = frame.number;
-  ++count_;
+  forward_.played[static_cast<std::size_t>(forward_.count % 2)] = std::move(uploaded).value();
+  forward_.last = frame.number;
+  ++forward_.count;
   return report;
 }
 
-Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const ScannedFrame& scanned) {
-  if (frame.recorded) return dispatch_recorded(frame);
-  const DeviceFrame& device_frame = ring_[static_cast<std::size_t>(count_ % 2)];
+// Uploads the frame as the stream's next one.
+Result<FrameInputs> SequenceResolver::inputs_of(Stream& stream, const SequenceFrame& frame,
+                                                const ScannedFrame& scanned) {
+  const bool backward = &stream != &forward_;
+  const DeviceFrame& device_frame = stream.ring[static_cast<std::size_t>(stream.count % 2)];
   const Clock::time_point start = Clock::now();
   if (Status status = upload(frame, device_frame); !status.ok()) return status;
   outcome_.upload_ms.push_back(ms_since(start));
@@ -146,26 +178,35 @@ Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const
   inputs.jitter = scanned.jitter;
   inputs.exposure = job_.exposure;
   // A frame that turned out bad while it was read may be missing here, too.
-  inputs.reset = scanned.reset || last_ + 1 != frame.number;
+  inputs.reset =
+      backward ? stream.last - 1 != frame.number : scanned.reset || stream.last + 1 != frame.number;
   inputs.frame_index = static_cast<std::uint64_t>(frame.number);
+  if (Status status = camera_of(stream, frame, inputs); !status.ok()) return status;
+  stream.last = frame.number;
+  stream.last_world_to_ndc = frame.world_to_ndc;
+  ++stream.count;
+  if (backward) return inputs;
   for (std::string& warning : watch_.see(frame, inputs.reset)) {
     spdlog::warn("{}", warning);
     outcome_.warnings.push_back(std::move(warning));
   }
-  if (Status status = camera_of(frame, inputs); !status.ok()) return status;
-  FrameReport report = service_.dispatch(inputs, {linear_.view(), presented_.view()});
+  return inputs;
+}
+
+Result<FrameReport> SequenceResolver::dispatch(const SequenceFrame& frame, const ScannedFrame& scanned) {
+  if (frame.recorded) return dispatch_recorded(frame);
+  const auto inputs = inputs_of(forward_, frame, scanned);
+  if (!inputs.ok()) return inputs.status();
+  FrameReport report = forward_.service.dispatch(inputs.value(), {linear_.view(), presented_.view()});
   if (!report.ok()) return report.status;
-  last_ = frame.number;
-  last_world_to_ndc_ = frame.world_to_ndc;
-  ++count_;
   return report;
 }
 
 Status SequenceResolver::download(Picture& picture) const {
-  const Extent output = service_.plan().settings.output_extent;
+  const Extent output = forward_.service.plan().settings.output_extent;
   const auto texels = static_cast<std::size_t>(output.area()) * 4;
   const bool turns =
-      service_.plan().settings.conventions.origin == Origin::kBottom;  // files begin at the top
+      forward_.service.plan().settings.conventions.origin == Origin::kBottom;  // files begin at the top
   if (!presents() || job_.scores != nullptr) {
     auto pixels = std::make_shared<std::vector<float>>(texels);
     if (linear_.view().format == PixelFormat::kRGBA32F) {
@@ -206,41 +247,120 @@ Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) 
              : Status();
 }
 
-Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
+// The next frame that was read; null where it is bad and may be: it is released then.
+Result<SequenceFrame*> SequenceResolver::take(const ScannedFrame& scanned, bool backward) {
   auto frame = ahead_->take();
-  if (!frame.ok()) {
-    if (!job_.skip_bad_frames) return frame.status();
+  if (frame.ok()) return frame.value();
+  if (!job_.skip_bad_frames) return frame.status();
+  if (!backward) {
     spdlog::warn("{}; it is skipped", frame.status().message());
     if (scanned.wanted) outcome_.skipped.push_back(scanned.number);
-    ahead_->release();
-    return {};
   }
+  ahead_->release();
+  return nullptr;
+}
+
+Status SequenceResolver::resolve_frame(const ScannedFrame& scanned) {
+  const auto frame = take(scanned, false);
+  if (!frame.ok() || frame.value() == nullptr) return frame.status();
   const Clock::time_point start = Clock::now();
   const auto report = dispatch(*frame.value(), scanned);
   if (!report.ok()) return report.status();
-  Picture picture;
   if (scanned.wanted) {
-    if (Status status = download(picture); !status.ok()) return status;
+    if (Status status = deliver(*frame.value(), scanned, report.value()); !status.ok()) return status;
   }
   outcome_.resolve_ms.push_back(ms_since(start));
-  if (scanned.wanted) {
-    if (Status status = hand_over(*frame.value(), std::move(picture)); !status.ok()) return status;
-    outcome_.resolved.push_back(scanned.number);
-    outcome_.rows.push_back({.index = scanned.number,
-                             .render = scanned.render,
-                             .ratio = report->ratio,
-                             .jitter = scanned.jitter,
-                             .frame_ms = ms_since(last_delivery_),
-                             .used_previous = report->used_previous});
-    last_delivery_ = Clock::now();
-  }
   ahead_->release();
   collect_reports();
   return {};
 }
 
+// Takes the picture of a frame that is wanted to where it goes.
+Status SequenceResolver::deliver(const SequenceFrame& frame, const ScannedFrame& scanned,
+                                 const FrameReport& report) {
+  Picture picture;
+  if (Status status = download(picture); !status.ok()) return status;
+  if (Status status = hand_over(frame, std::move(picture)); !status.ok()) return status;
+  outcome_.resolved.push_back(scanned.number);
+  outcome_.rows.push_back({.index = scanned.number,
+                           .render = scanned.render,
+                           .ratio = report.ratio,
+                           .jitter = scanned.jitter,
+                           .frame_ms = ms_since(last_delivery_),
+                           .used_previous = report.used_previous});
+  last_delivery_ = Clock::now();
+  return {};
+}
+
+Status SequenceResolver::add_forward(std::size_t index) {
+  const ScannedFrame& scanned = good_[index];
+  const auto taken = take(scanned, false);
+  if (!taken.ok() || taken.value() == nullptr) return taken.status();
+  const Clock::time_point start = Clock::now();
+  SequenceFrame& frame = *taken.value();
+  const auto inputs = inputs_of(forward_, frame, scanned);
+  if (!inputs.ok()) return inputs.status();
+  KeptFrame kept;
+  KeptHistory* const history = scanned.wanted ? &kept.history : nullptr;
+  kept.report = TwoWay::add(forward_.service, inputs.value(), false, history);
+  if (!kept.report.ok()) return kept.report.status;
+  if (scanned.wanted) {
+    kept.frame.number = frame.number;
+    kept.frame.render = frame.render;
+    kept.frame.kept = frame.kept;
+    if (job_.scores != nullptr) kept.frame.velocity = frame.velocity;
+    kept.inputs = inputs.value();
+    kept.inputs.colour = kept.inputs.velocity = kept.inputs.depth = kept.inputs.reactive = {};
+    kept.is_lone = inputs->reset;
+    kept_.emplace(index, std::move(kept));
+  }
+  outcome_.resolve_ms.push_back(ms_since(start));
+  ahead_->release();
+  collect_reports();
+  return {};
+}
+
+Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& window) {
+  const ScannedFrame& scanned = good_[index];
+  const auto taken = take(scanned, true);
+  if (!taken.ok() || taken.value() == nullptr) return taken.status();
+  const Clock::time_point start = Clock::now();
+  if (index == window.turn) backward_->last = -1;
+  const auto inputs = inputs_of(*backward_, *taken.value(), scanned);
+  if (!inputs.ok()) return inputs.status();
+  const auto kept = kept_.find(index);
+  // The frame where the run begins knows nothing of later ones; those ahead of the window wait for their own run.
+  const bool merges = !inputs->reset && index <= window.last && kept != kept_.end();
+  const FrameReport report =
+      TwoWay::add(backward_->service, inputs.value(), merges, merges ? &kept->second.history : nullptr);
+  if (!report.ok()) return report.status;
+  if (merges) kept->second.is_lone = false;
+  if (index == window.turn && forward_.last == scanned.number) {
+    if (Status status = TwoWay::turn(backward_->service, forward_.service); !status.ok()) return status;
+  }
+  outcome_.resolve_ms.push_back(ms_since(start));
+  ahead_->release();
+  collect_reports();
+  return {};
+}
+
+Status SequenceResolver::show(std::size_t index) {
+  const auto found = kept_.find(index);
+  if (found == kept_.end()) return {};  // it turned out bad
+  const KeptFrame& kept = found->second;
+  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, !kept.is_lone, kept.history,
+                                          {linear_.view(), presented_.view()});
+  if (!report.ok()) return report.status;
+  if (Status status = deliver(kept.frame, good_[index], kept.report); !status.ok()) return status;
+  kept_.erase(found);
+  collect_reports();
+  return {};
+}
+
 void SequenceResolver::collect_reports() {
-  while (auto report = service_.next_completed())
+  while (auto report = forward_.service.next_completed())
+    outcome_.reports.push_back(*report);
+  while (auto report = backward_ ? backward_->service.next_completed() : std::nullopt)
     outcome_.reports.push_back(*report);
 }
 
@@ -250,47 +370,78 @@ Status SequenceResolver::finish() {
     Status scored = job_.scores->finish();
     if (first.ok()) first = scored;
   }
-  Status done = service_.finish();
+  Status done = forward_.service.finish();
   collect_reports();
+  std::stable_sort(outcome_.reports.begin(), outcome_.reports.end(),
+                   [](const FrameReport& a, const FrameReport& b) { return a.frame_index < b.frame_index; });
   return first.ok() ? done : first;
+}
+
+std::vector<SequenceResolver::Step> SequenceResolver::steps_of(
+    const std::vector<TwoWayWindow>& windows) const {
+  std::vector<Step> steps;
+  std::size_t next = 0;
+  for (const TwoWayWindow& window : windows) {
+    while (next <= window.turn)
+      steps.push_back({next++});
+    for (std::size_t i = window.turn + 1; i-- > window.first;)
+      steps.push_back({i, true});
+  }
+  while (windows.empty() && next < good_.size())
+    steps.push_back({next++});
+  return steps;
+}
+
+Status SequenceResolver::run_steps(const std::vector<TwoWayWindow>& windows,
+                                   const std::function<void(std::int64_t)>& progress,
+                                   const std::atomic<bool>& stop) {
+  const std::vector<Step> steps = steps_of(windows);
+  const int readers = reading_threads(job_.threads);
+  ahead_ = std::make_unique<ReadAhead<SequenceFrame>>(
+      steps.size(), readers, readers + 1,
+      [this, &steps, backward = backward_format(job_.format)](std::size_t index, SequenceFrame& frame) {
+        const ScannedFrame& scanned = good_[steps[index].frame];
+        const ResolvePlan& plan = forward_.service.plan();
+        if (const std::string& folder = job_.format.recording; !folder.empty())
+          return read_recorded(folder, scanned, plan, frame);
+        return read_frame(job_.input.expand(scanned.number), steps[index].backward ? backward : job_.format,
+                          scanned, plan.settings.colour, frame);
+      });
+  auto window = windows.begin();
+  Status status;
+  for (std::size_t i = 0; i < steps.size() && status.ok(); ++i) {
+    const auto [frame, backward] = steps[i];
+    status = stop              ? Status::io("stopped by a signal; the files are whole, and --resume goes on")
+             : backward        ? add_backward(frame, *window)
+             : windows.empty() ? resolve_frame(good_[frame])
+                               : add_forward(frame);
+    if (backward && frame == window->first) {
+      for (std::size_t shown = window->first; shown <= window->last && status.ok(); ++shown)
+        status = show(shown);
+      ++window;
+    }
+    progress(static_cast<std::int64_t>((i + 1) * job_.scan.frames.size() / steps.size()));
+  }
+  const Status finished = finish();
+  outcome_.busy = {{"reading", ahead_->busy_seconds()}};
+  ahead_.reset();  // it refers to `steps`
+  return status.ok() ? finished : status;
 }
 
 Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
                              const std::atomic<bool>& stop) {
-  std::vector<ScannedFrame> good;
-  for (const ScannedFrame& frame : job_.scan.frames) {
-    if (frame.problem.empty()) {
-      good.push_back(frame);
-    } else if (frame.wanted) {
-      outcome_.skipped.push_back(frame.number);
-    }
-  }
   const Clock::time_point start = Clock::now();
   last_delivery_ = start;
-  const int readers = reading_threads(job_.threads);
-  ahead_ = std::make_unique<ReadAhead<SequenceFrame>>(
-      good.size(), readers, readers + 1, [this, &good](std::size_t index, SequenceFrame& frame) {
-        if (const std::string& folder = job_.format.recording; !folder.empty())
-          return read_recorded(folder, good[index], service_.plan(), frame);
-        return read_frame(job_.input.expand(good[index].number), job_.format, good[index],
-                          service_.plan().settings.colour, frame);
-      });
-  Status status;
-  for (std::size_t i = 0; i < good.size() && status.ok(); ++i) {
-    status = stop ? Status::io("stopped by a signal; the files are whole, and --resume goes on")
-                  : resolve_frame(good[i]);
-    progress(static_cast<std::int64_t>(i) + 1);
-  }
-  const Status finished = finish();
+  const Status status = run_steps(
+      backward_ ? two_way_windows(good_, job_.format.two_way) : std::vector<TwoWayWindow>(), progress, stop);
   double resolving = 0;
   for (const double ms : outcome_.resolve_ms)
     resolving += ms / 1000;
-  outcome_.busy = {
-      {"reading", ahead_->busy_seconds()}, {"resolving", resolving}, {"writing", writers_.busy_seconds()}};
+  outcome_.busy.push_back({"resolving", resolving});
+  outcome_.busy.push_back({"writing", writers_.busy_seconds()});
   if (job_.scores != nullptr) outcome_.busy.push_back({"measuring", job_.scores->busy_seconds()});
   outcome_.wall_seconds = ms_since(start) / 1000;
-  ahead_.reset();  // it refers to `good`
-  return status.ok() ? finished : status;
+  return status;
 }
 
 }  // namespace quincunx::tools

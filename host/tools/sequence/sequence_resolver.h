@@ -8,12 +8,14 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "quincunx/resolve_service.h"
+#include "src/passes/two_way.h"
 #include "tools/program/run_report.h"
 #include "tools/program/work_queue.h"
 #include "tools/sequence/sequence_output.h"
@@ -68,30 +70,64 @@ class SequenceResolver {
     std::vector<std::uint8_t> presented;
   };
 
+  // Frames one after another, forwards or backwards.
+  struct Stream {
+    ResolveService service;
+    std::array<DeviceFrame, 2> ring = {};      // this frame and the one before
+    std::array<UploadedFrame, 2> played = {};  // the same, where they are recorded
+    std::int64_t last = -1;                    // the frame that was resolved before; -1: none
+    std::optional<Matrix> last_world_to_ndc = {};
+    std::int64_t count = 0;  // dispatched
+  };
+
+  // A frame that was resolved forwards and is not shown yet.
+  struct KeptFrame {
+    SequenceFrame frame;  // without images, but velocity where scores ask for it
+    FrameInputs inputs;   // without images
+    FrameReport report;
+    KeptHistory history;
+    bool is_lone = true;  // no other frame's history is in it
+  };
+
+  // One file read, and added to a stream.
+  struct Step {
+    std::size_t frame;
+    bool backward = false;
+  };
+
   SequenceResolver(const Device& device, ResolveService service, SequenceJob job);
+  Status allocate(Stream& stream) const;
   Status allocate();
   Status upload(const SequenceFrame& frame, const DeviceFrame& to) const;
+  Result<FrameInputs> inputs_of(Stream& stream, const SequenceFrame& frame, const ScannedFrame& scanned);
   Result<FrameReport> dispatch(const SequenceFrame& frame, const ScannedFrame& scanned);
   Result<FrameReport> dispatch_recorded(const SequenceFrame& frame);
-  Status camera_of(const SequenceFrame& frame, FrameInputs& inputs) const;
+  Status camera_of(const Stream& stream, const SequenceFrame& frame, FrameInputs& inputs) const;
+  Result<SequenceFrame*> take(const ScannedFrame& scanned, bool backward);
   Status resolve_frame(const ScannedFrame& scanned);
+  Status add_forward(std::size_t index);
+  Status add_backward(std::size_t index, const TwoWayWindow& window);
+  Status show(std::size_t index);
+  Status deliver(const SequenceFrame& frame, const ScannedFrame& scanned, const FrameReport& report);
   Status download(Picture& picture) const;
   Status hand_over(const SequenceFrame& frame, Picture picture);
   Status finish();
   void collect_reports();
+  // Steps of the run, and the windows that end after some of them.
+  std::vector<Step> steps_of(const std::vector<TwoWayWindow>& windows) const;
+  Status run_steps(const std::vector<TwoWayWindow>& windows,
+                   const std::function<void(std::int64_t)>& progress, const std::atomic<bool>& stop);
   bool presents() const { return job_.output && job_.output->pattern.format() == FileFormat::kPng; }
 
   Device device_;
-  ResolveService service_;
+  Stream forward_;
+  std::optional<Stream> backward_;  // where the job looks ahead
   SequenceJob job_;
-  std::array<DeviceFrame, 2> ring_;      // this frame and the one before
-  std::array<UploadedFrame, 2> played_;  // the same, where they are recorded
-  Image linear_;                         // the resolved picture, blurred where the plan blurs
+  std::vector<ScannedFrame> good_;
+  std::map<std::size_t, KeptFrame> kept_;
+  Image linear_;  // the resolved picture, blurred where the plan blurs
   Image presented_;
-  std::int64_t last_ = -1;  // the frame that was resolved before; -1: none
-  std::optional<Matrix> last_world_to_ndc_;
   SequenceWatch watch_;
-  std::int64_t count_ = 0;  // dispatched
   std::chrono::steady_clock::time_point last_delivery_;
   SequenceOutcome outcome_;
   WorkQueue writers_;

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <iterator>
+#include <optional>
+#include <set>
 #include <thread>
 
 #include "tools/image/image_reader.h"
@@ -46,6 +49,10 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   if (!reader.ok()) return reader.status();
   const auto places = find_channels(path, reader->header(), format.channels);
   if (!places.ok()) return places.status();
+  if (format.two_way > 0) {
+    const auto next = find_channels(path, reader->header(), backward_format(format).channels);
+    if (!next.ok()) return next.status();
+  }
   const auto attributes = frame_attributes(path, reader->header());
   if (!attributes.ok()) return attributes.status();
   frame.render = places->display.extent;
@@ -155,6 +162,18 @@ std::vector<std::int64_t> with_history(std::span<const std::int64_t> wanted, int
   return read;
 }
 
+std::vector<std::int64_t> with_future(const FramePattern& pattern, std::span<const std::int64_t> asked,
+                                      std::span<const std::int64_t> read, int ahead) {
+  std::set<std::int64_t> all(read.begin(), read.end());
+  for (const std::int64_t frame : asked) {
+    for (std::int64_t number = frame + 1; number <= frame + ahead; ++number) {
+      if (!all.contains(number) && !exists(pattern.expand(number))) break;
+      all.insert(number);
+    }
+  }
+  return {all.begin(), all.end()};
+}
+
 std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up) {
   const std::int64_t farthest = std::max<std::int64_t>(wanted - warm_up, 0);
   const auto found = pattern.frames_on_disk();
@@ -163,6 +182,26 @@ std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, in
   while (first < wanted && !exists(pattern.expand(first)))
     ++first;
   return first;
+}
+
+std::vector<TwoWayWindow> two_way_windows(std::span<const ScannedFrame> good, int ahead) {
+  std::vector<TwoWayWindow> windows;
+  const auto window_of = [&](std::size_t i) { return good[i].number / kWindowFrames; };
+  for (std::size_t begin = 0, end; begin < good.size(); begin = end) {
+    const auto follows = [&](std::size_t i) { return i < good.size() && !good[i].reset; };
+    std::optional<TwoWayWindow> window;
+    for (end = begin; end == begin || (follows(end) && window_of(end) == window_of(begin)); ++end) {
+      if (!good[end].wanted) continue;
+      if (!window) window = TwoWayWindow{end, end, end};
+      window->last = end;
+    }
+    if (!window) continue;
+    const std::int64_t farthest = (window_of(begin) + 1) * kWindowFrames - 1 + ahead;
+    for (window->turn = end - 1; follows(window->turn + 1) && good[window->turn + 1].number <= farthest;)
+      ++window->turn;
+    windows.push_back(*window);
+  }
+  return windows;
 }
 
 SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& format,

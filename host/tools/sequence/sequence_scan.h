@@ -28,6 +28,19 @@ struct ScannedFrame {
   std::string problem = {};  // empty: none; else one sentence that names the file
 };
 
+// Frames that are resolved both ways come in windows of this many, by their numbers: any chunks of a sequence
+// have the same ones. A backward run adds what it looks ahead, so a larger window costs less time, and more memory.
+inline constexpr std::int64_t kWindowFrames = 24;
+
+// A window of frames, as indices of the good ones.
+struct TwoWayWindow {
+  std::size_t first = 0;  // the first and the last that are wanted
+  std::size_t last = 0;
+  std::size_t turn = 0;  // where the backward run begins
+
+  friend bool operator==(const TwoWayWindow&, const TwoWayWindow&) = default;
+};
+
 struct SequenceScan {
   std::vector<ScannedFrame> frames;  // to be read, ascending
 
@@ -49,8 +62,16 @@ Result<std::vector<std::int64_t>> all_frames(const FramePattern& pattern);
 // Ascending. Pure.
 std::vector<std::int64_t> with_history(std::span<const std::int64_t> wanted, int warm_up, std::int64_t first);
 
+// `read` and, after each of `asked`, up to `ahead` frames as far as there are files. Ascending.
+std::vector<std::int64_t> with_future(const FramePattern& pattern, std::span<const std::int64_t> asked,
+                                      std::span<const std::int64_t> read, int ahead);
+
 // The first frame of the sequence at or before `wanted`, which reaches back at most `warm_up` frames.
 std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up);
+
+// The windows with wanted frames, in order. None reaches over a reset, and none looks further ahead than `ahead` frames
+// beyond its last place. Pure.
+std::vector<TwoWayWindow> two_way_windows(std::span<const ScannedFrame> good, int ahead);
 
 // Reads the headers of `read`, and where their pixels lie, with so many threads. `wanted`: those to be resolved,
 // ascending.

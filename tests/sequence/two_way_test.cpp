@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+// --two-way: frames that know later ones, on a disc before a wall, both moving, with exact motion and truth.
+#include <cmath>
+
+#include "sequence_fixture.h"
+#include "tools/sequence/sequence_scan.h"
+
+namespace quincunx {
+namespace {
+
+using tools::ScannedFrame;
+using tools::two_way_windows;
+using tools::TwoWayWindow;
+
+std::vector<ScannedFrame> scanned(std::int64_t first, std::int64_t last, std::int64_t wanted_from = 0) {
+  std::vector<ScannedFrame> frames;
+  for (std::int64_t number = first; number <= last; ++number)
+    frames.push_back({.number = number, .wanted = number >= wanted_from, .reset = number == first});
+  return frames;
+}
+
+TEST(TwoWayWindows, FollowTheNumbersAndLookAheadWithinAShot) {
+  using Windows = std::vector<TwoWayWindow>;
+  static_assert(tools::kWindowFrames == 24);
+  EXPECT_EQ(two_way_windows({}, 8), Windows());
+  EXPECT_EQ(two_way_windows(scanned(5, 5), 8), (Windows{{0, 0, 0}}));
+  EXPECT_EQ(two_way_windows(scanned(0, 59), 8), (Windows{{0, 23, 31}, {24, 47, 55}, {48, 59, 59}}));
+  EXPECT_EQ(two_way_windows(scanned(20, 30), 2), (Windows{{0, 3, 5}, {4, 10, 10}}));
+  EXPECT_EQ(two_way_windows(scanned(0, 40, 30), 4), (Windows{{30, 40, 40}}));  // the rest is history
+  auto frames = scanned(0, 30);
+  frames[10].reset = true;  // a cut
+  EXPECT_EQ(two_way_windows(frames, 8), (Windows{{0, 9, 9}, {10, 23, 30}, {24, 30, 30}}));
+  for (std::size_t i = 21; i < frames.size(); ++i)
+    frames[i].wanted = false;  // they are looked ahead to
+  EXPECT_EQ(two_way_windows(frames, 8), (Windows{{0, 9, 9}, {10, 20, 30}}));
+}
+
+class BothWays : public testing::SequenceTest {
+ protected:
+  static constexpr Extent kRender = {48, 30};
+  static constexpr Extent kPicture = {96, 60};
+
+  struct Seen {
+    float light[3], distance, speed_x, speed_y;  // output pixels a frame
+  };
+
+  // Value noise of two sizes.
+  static float texture(double x, double y, std::uint32_t salt) {
+    const auto cell = [salt](double u, double v) {
+      const auto i = static_cast<std::uint32_t>(std::floor(u) + 4096);
+      return testing::noise(salt, 0, static_cast<std::uint32_t>(std::floor(v) + 4096) * 8192 + i);
+    };
+    return .6f * cell(x / 5, y / 5) + .4f * cell(x / 1.7, y / 1.7);
+  }
+
+  static Seen seen_at(double x, double y, int time) {
+    const double disc_x = x - (70 - 1.3 * time), disc_y = y - (26 + .2 * time);
+    const bool disc = disc_x * disc_x + disc_y * disc_y < 14 * 14;
+    const double u = disc ? disc_x : x - .7 * time, v = disc ? disc_y : y;
+    const float value = texture(u, v, disc ? 2 : 1);
+    return {{value, disc ? .2f : value, 1 - value}, disc ? 4.f : 9.f, disc ? -1.3f : .7f, disc ? .2f : 0.f};
+  }
+
+  static double halton(int index, int base) {
+    double value = 0, part = 1;
+    for (int i = index + 1; i > 0; i /= base)
+      value += (part /= base) * (i % base);
+    return value - .5;
+  }
+
+  // One file; `next`: names of the channels of motion to the next frame, as next - this or the other way.
+  void write(int number, const std::vector<std::string>& next = {"forward.u", "forward.v"}, float sign = 1,
+             float alpha = 1) {
+    const Vec2 jitter = {static_cast<float>(halton(number % 16, 2)),
+                         static_cast<float>(halton(number % 16, 3))};
+    std::vector<std::string> names = {"R", "G", "B", "A", "Z", "backward.u", "backward.v"};
+    names.insert(names.end(), next.begin(), next.end());
+    std::vector<std::vector<float>> planes(names.size());
+    for (int y = 0; y < kRender.height; ++y) {
+      for (int x = 0; x < kRender.width; ++x) {
+        const Seen seen = seen_at(2 * (x + .5 + jitter.x), 2 * (y + .5 + jitter.y), number);
+        const float u = seen.speed_x / 2, v = -seen.speed_y / 2;
+        const float values[] = {alpha * seen.light[0],
+                                alpha * seen.light[1],
+                                alpha * seen.light[2],
+                                alpha,
+                                seen.distance,
+                                -u,
+                                -v,
+                                sign * u,
+                                sign * v};
+        for (std::size_t c = 0; c < planes.size(); ++c)
+          planes[c].push_back(values[c]);
+      }
+    }
+    std::vector<tools::Channel> channels;
+    for (std::size_t c = 0; c < planes.size(); ++c) {
+      channels.push_back({.name = names[c],
+                          .type = tools::ChannelType::kFloat,
+                          .data = planes[c].data(),
+                          .stored = tools::ChannelType::kFloat});
+    }
+    const std::vector<tools::Attribute> attributes = {
+        {"quincunx:jitter", jitter}, {"quincunx:outputSize", Vec2{kPicture.width, kPicture.height}}};
+    const Status status = tools::write_exr(input(number), kRender, channels, attributes);
+    ASSERT_TRUE(status.ok()) << status.message();
+  }
+
+  void write_all(int first, int last) {
+    for (int number = first; number <= last; ++number)
+      write(number);
+  }
+
+  std::vector<float> colours(const std::string& path) const {
+    const tools::LoadedImage picture = image(path);
+    std::vector<float> values;
+    for (int y = 0; y < kPicture.height; ++y) {
+      for (int x = 0; x < kPicture.width; ++x) {
+        for (const char* channel : {"R", "G", "B", "A"})
+          values.push_back(picture.at(x, y, picture.channel(channel)));
+      }
+    }
+    return values;
+  }
+
+  static double psnr(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+      sum += (a[i] - b[i]) * (a[i] - b[i]) / static_cast<double>(a.size());
+    return -10 * std::log10(sum);
+  }
+
+  double psnr_of(const std::string& name, int number) const {
+    constexpr int kSide = 4;
+    std::vector<float> truth;
+    for (int y = 0; y < kPicture.height; ++y) {
+      for (int x = 0; x < kPicture.width; ++x) {
+        float sum[3] = {};
+        for (int i = 0; i < kSide * kSide; ++i) {
+          const Seen seen =
+              seen_at(x + (i % kSide + .5) / kSide, y + (std::floor(i / kSide) + .5) / kSide, number);
+          for (int c = 0; c < 3; ++c)
+            sum[c] += seen.light[c] / (kSide * kSide);
+        }
+        truth.insert(truth.end(), {sum[0], sum[1], sum[2], 1});
+      }
+    }
+    return psnr(colours(output(number, name)), truth);
+  }
+};
+
+TEST_F(BothWays, TheFirstFrameIsAsGoodAsLaterOnesAndNoneIsWorse) {
+  write_all(1, 30);
+  for (const char* method : {"temporal:fast", "temporal", "temporal:quality"}) {
+    resolve_to("one", fmt::format("--method {} --two-way 0", method));
+    resolve_to("two", fmt::format("--method {} --two-way 8", method));
+    double gain = 0;
+    for (int number = 1; number <= 30; ++number) {
+      const double one = psnr_of("one", number), two = psnr_of("two", number);
+      EXPECT_GT(two, one - .1) << method << " " << number;
+      if (number > 10 && number < 24) gain += (two - one) / 13;
+    }
+    EXPECT_GT(psnr_of("two", 1), psnr_of("one", 1) + 2) << method;
+    EXPECT_GT(psnr_of("two", 1), psnr_of("one", 20) - .3) << method;
+    EXPECT_GT(gain, .3) << method;
+  }
+}
+
+TEST_F(BothWays, WithoutFramesAheadNothingChanges) {
+  write_all(1, 5);
+  resolve_to("u", "--method temporal");
+  resolve_to("zero", "--method temporal --two-way 0");
+  for (int number = 1; number <= 5; ++number)
+    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "zero")));
+}
+
+TEST_F(BothWays, MotionFromOtherRenderersIsReadInTheSenseOfTheirVelocity) {
+  write_all(1, 12);
+  resolve_to("u", "--two-way 4");
+  for (int number = 1; number <= 12; ++number)
+    write(number, {"Vector.Z", "Vector.W"}, -1);
+  resolve_to("blender", "--two-way 4 --velocity-next Vector.Z,Vector.W");
+  resolve_to("named",
+             "--two-way 4 --velocity-next Vector.Z,Vector.W --velocity backward.u,backward.v "
+             "--velocity-convention blender");
+  for (int number = 1; number <= 12; ++number) {
+    EXPECT_TRUE(colours(output(number)) == colours(output(number, "blender"))) << number;
+    EXPECT_TRUE(colours(output(number)) == colours(output(number, "named"))) << number;
+  }
+}
+
+TEST_F(BothWays, NothingIsSeenBeyondACutAndOneFrameStandsAlone) {
+  write_all(1, 12);
+  resolve_to("u", "--two-way 8");
+  write(14);
+  resolve_to("gap", "--two-way 8 --skip-bad-frames");
+  for (int number = 1; number <= 12; ++number)
+    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "gap"))) << number;
+  resolve_to("one", "--frames 14 --warm-up 0");
+  // But for a rounding to halves.
+  EXPECT_GT(psnr(colours(output(14, "gap")), colours(output(14, "one"))), 70);
+}
+
+TEST_F(BothWays, ChunksOfWholeWindowsAndResumedRunsGiveTheSameBytes) {
+  write_all(1, 36);
+  resolve_to("u", "--two-way 6");
+  resolve_to("chunk", "--two-way 6 --frames 1-23");
+  resolve_to("chunk", "--two-way 6 --frames 24-36");
+  const auto expect_same = [this](const std::string& name) {
+    for (int number = 1; number <= 36; ++number)
+      EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, name))) << number;
+  };
+  expect_same("chunk");
+  for (const int number : {1, 7, 8, 23, 30})
+    std::filesystem::remove(output(number, "chunk"));
+  resolve_to("chunk", "--two-way 6 --resume");
+  expect_same("chunk");
+}
+
+TEST_F(BothWays, AlphaBlurAndPresentedPicturesFollow) {
+  for (int number = 1; number <= 12; ++number)
+    write(number, {"forward.u", "forward.v"}, 1, .5f);
+  resolve_to("flat", "--two-way 6 --method temporal:fast");  // of one layer
+  resolve_to("u", "--two-way 6");
+  for (int number = 1; number <= 12; ++number) {
+    const std::vector<float> values = colours(output(number, "flat"));
+    for (std::size_t i = 3; i < values.size(); i += 4)
+      ASSERT_NEAR(values[i], .5, 2e-3) << number;
+  }
+  resolve_to("blurred", "--two-way 6 --blur 2");
+  resolve_to("one", "--blur 2");
+  for (int number = 6; number <= 12; ++number) {
+    const std::vector<float> both = colours(output(number, "blurred")), one = colours(output(number, "one"));
+    EXPECT_GT(psnr(both, one), 28) << number;
+    EXPECT_LT(psnr(both, colours(output(number))), psnr(both, one)) << number;
+  }
+  const auto result = resolve("'{}/f.%04d.exr' --out '{}/p.%04d.png' -q --two-way 6");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_.file("p.0012.png")));
+}
+
+TEST_F(BothWays, WhatCannotBeIsRefusedInASentence) {
+  write_all(1, 3);
+  const auto refused = [this](const std::string& arguments, int code, const std::string& part) {
+    expect_refused("'{}/f.%04d.exr' --out '{}/o/u.%04d.exr' " + arguments, code, part);
+  };
+  refused("--two-way 8 --method bilinear", 2, "--two-way merges the histories of method temporal");
+  refused("--two-way 65", 2, "--two-way");
+  refused("--two-way 8 --velocity-next Z", 2, "--velocity-next");
+  refused("--two-way 8 --velocity-next no.u,no.v", 1, "has no channel 'no.u'");
+  refused("--two-way 8 --output 30x20", 2, "--two-way merges histories, but frame 1 has 48x30 pixels");
+  for (int number = 1; number <= 3; ++number)
+    write(number, {});
+  refused("--two-way 8", 2, "--two-way needs motion to the next frame; say --velocity-next");
+  const auto listing = resolve("'{}/f.%04d.exr' -n --two-way 8 --velocity-next backward.u,backward.v");
+  EXPECT_NE(listing.out.find("both ways, 8 frames ahead by backward.u,backward.v"), std::string::npos)
+      << listing.out;
+}
+
+}  // namespace
+}  // namespace quincunx
