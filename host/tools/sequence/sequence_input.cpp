@@ -238,19 +238,15 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
       format.next_units = {};
     else
       format.next_units.to_next = true;
+  } else {
+    format.next_motion = NextMotion::kTurned;
   }
-  const bool known = format.next_motion != NextMotion::kUnknown;
   format.two_way = input.two_way.value_or(0);
   if (format.two_way == 0) return {};
   if (!plan.accumulates() || plan.settings.temporal.view != TemporalView::kPicture) {
     return Status::invalid(
         fmt::format("--two-way merges the histories of method temporal, and this is {}; say --two-way 0",
                     plan.accumulates() ? "a view of one" : name_of(plan.settings.method)));
-  }
-  if (!known) {
-    return Status::invalid(
-        "--two-way needs motion to the next frame; say --velocity-next, or --velocity camera if only the "
-        "camera moves");
   }
   return {};
 }
@@ -266,6 +262,7 @@ namespace {
 
 std::string two_way_text(const SequenceFormat& format) {
   const std::string ahead = fmt::format("; both ways, {} frames ahead", format.two_way);
+  if (format.next_motion == NextMotion::kTurned) return ahead + " by their own motion, turned round";
   if (format.next_motion != NextMotion::kChannels) return ahead;
   return ahead + fmt::format(" by {},{}", format.next_velocity[0], format.next_velocity[1]);
 }

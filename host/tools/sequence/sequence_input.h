@@ -85,7 +85,6 @@ struct SequenceInput {
 
 // Where motion to the next frame comes from, for resolving both ways.
 enum class NextMotion : std::uint8_t {
-  kUnknown,
   kChannels,
   kCamera,   // as kCamera of MotionSource
   kNothing,  // nothing moves
@@ -100,7 +99,7 @@ struct SequenceFormat {
   bool needs_camera = false;                  // the attribute worldToNDC of each frame is read
   VelocityUnits units;
   int two_way = 0;                                // frames to look ahead; 0: only earlier frames count
-  NextMotion next_motion = NextMotion::kUnknown;  // told where the plan accumulates
+  NextMotion next_motion = NextMotion::kNothing;  // told where the plan accumulates
   std::array<std::string, 2> next_velocity;  // channels of kChannels, if the frames have such; else empty
   VelocityUnits next_units;
   bool background = true;  // each frame's colour covers it, without alpha: known when all headers were read

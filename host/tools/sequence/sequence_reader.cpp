@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "tools/sequence/exchange_format.h"
@@ -196,6 +197,47 @@ Status read_frame(const std::string& path, const SequenceFormat& format, const S
   } catch (const std::exception& problem) {  // no memory
     return Status::io(fmt::format("'{}' cannot be read: {}", path, problem.what()));
   }
+}
+
+std::vector<Vec2> turned_motion(const MotionSamples& now, const MotionSamples& next) {
+  constexpr float kDepthsApart = .2f;    // of the larger: other surfaces
+  constexpr float kSamplesApart = 20.f;  // as bad as depths that differ by all
+  constexpr float kReach = .75f;         // samples: more than half, as surfaces may come nearer
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  const Extent to = now.render, from = next.render;
+  std::vector<Vec2> turned(static_cast<std::size_t>(to.area()), {kUnknown, kUnknown});
+  std::vector<float> worst(turned.size(), std::numeric_limits<float>::max());  // of what was found so far
+  for (int y = 0; y < from.height; ++y) {
+    for (int x = 0; x < from.width; ++x) {
+      const auto source = static_cast<std::size_t>(y) * from.width + static_cast<std::size_t>(x);
+      const Vec2 velocity = next.velocity[source];
+      const float u =
+          (static_cast<float>(x) + .5f + next.jitter.x) / static_cast<float>(from.width) - velocity.x;
+      const float v =
+          (static_cast<float>(y) + .5f + next.jitter.y) / static_cast<float>(from.height) - velocity.y;
+      const float at_x = u * static_cast<float>(to.width) - .5f - now.jitter.x;
+      const float at_y = v * static_cast<float>(to.height) - .5f - now.jitter.y;
+      if (!(at_x > -1 && at_x < static_cast<float>(to.width) && at_y > -1 &&
+            at_y < static_cast<float>(to.height)))
+        continue;
+      for (int i = 0; i < 4; ++i) {
+        const int column = static_cast<int>(std::floor(at_x)) + i % 2,
+                  row = static_cast<int>(std::floor(at_y)) + i / 2;
+        if (column < 0 || row < 0 || column >= to.width || row >= to.height) continue;
+        const auto target = static_cast<std::size_t>(row) * to.width + static_cast<std::size_t>(column);
+        const float here = now.depth[target], there = next.depth[source];
+        const float larger = std::max(here, there);
+        const float apart = larger > 0 ? std::abs(here - there) / larger : 0;
+        const float dx = at_x - static_cast<float>(column), dy = at_y - static_cast<float>(row);
+        const float bad = dx * dx + dy * dy + kSamplesApart * kSamplesApart * apart * apart;
+        const bool reaches = std::abs(dx) <= kReach && std::abs(dy) <= kReach;
+        if (!(reaches && apart <= kDepthsApart && bad < worst[target])) continue;
+        worst[target] = bad;
+        turned[target] = {-velocity.x, -velocity.y};
+      }
+    }
+  }
+  return turned;
 }
 
 std::vector<std::string> SequenceWatch::see(const SequenceFrame& frame, bool reset) {

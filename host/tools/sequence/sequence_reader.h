@@ -36,6 +36,18 @@ struct SequenceFrame {
 Status read_frame(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
                   PixelFormat colour, SequenceFrame& frame);
 
+// A frame's motion, and what tells which surface a sample of it shows.
+struct MotionSamples {
+  Extent render;
+  Vec2 jitter;
+  std::vector<Vec2> velocity;  // as SequenceFrame has it
+  std::vector<float> depth;
+};
+
+// Returns motion to the next frame, this - next position, for the samples of `now` (whose velocity does not count): that
+// of `next`, turned round. Not a number where `next` shows nothing of a sample's surface. Pure.
+std::vector<Vec2> turned_motion(const MotionSamples& now, const MotionSamples& next);
+
 // Reads a recorded frame of the plan. Errors: kIoFailure, naming the file.
 Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
                      SequenceFrame& frame);

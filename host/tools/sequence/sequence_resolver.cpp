@@ -320,12 +320,25 @@ Status SequenceResolver::add_forward(std::size_t index) {
   return {};
 }
 
+// Gives a frame that was read backwards motion to the next one, which was read before it.
+void SequenceResolver::turn_motion(SequenceFrame& frame, const ScannedFrame& scanned) {
+  MotionSamples own = {frame.render, scanned.jitter, frame.velocity, frame.depth};
+  if (backward_->last - 1 == frame.number) {
+    frame.velocity = turned_motion(own, later_);
+  } else {
+    for (Vec2& velocity : frame.velocity)
+      velocity = {-velocity.x, -velocity.y};  // as if it went on
+  }
+  later_ = std::move(own);
+}
+
 Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& window) {
   const ScannedFrame& scanned = good_[index];
   const auto taken = take(scanned, true);
   if (!taken.ok() || taken.value() == nullptr) return taken.status();
   const Clock::time_point start = Clock::now();
   if (index == window.turn) backward_->last = -1;
+  if (job_.format.next_motion == NextMotion::kTurned) turn_motion(*taken.value(), scanned);
   const auto inputs = inputs_of(*backward_, *taken.value(), scanned);
   if (!inputs.ok()) return inputs.status();
   const auto kept = kept_.find(index);

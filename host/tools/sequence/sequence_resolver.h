@@ -107,6 +107,7 @@ class SequenceResolver {
   Status resolve_frame(const ScannedFrame& scanned);
   Status add_forward(std::size_t index);
   Status add_backward(std::size_t index, const TwoWayWindow& window);
+  void turn_motion(SequenceFrame& frame, const ScannedFrame& scanned);
   Status show(std::size_t index);
   Status deliver(const SequenceFrame& frame, const ScannedFrame& scanned, const FrameReport& report);
   Status download(Picture& picture) const;
@@ -125,7 +126,8 @@ class SequenceResolver {
   SequenceJob job_;
   std::vector<ScannedFrame> good_;
   std::map<std::size_t, KeptFrame> kept_;
-  Image linear_;  // the resolved picture, blurred where the plan blurs
+  MotionSamples later_;  // of the frame that was read before, backwards, where its motion is turned
+  Image linear_;         // the resolved picture, blurred where the plan blurs
   Image presented_;
   SequenceWatch watch_;
   std::chrono::steady_clock::time_point last_delivery_;
