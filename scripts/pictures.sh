@@ -153,7 +153,7 @@ draw_parts() {
 draw_sky() {
   local sun=96x72+430+120 wheel=288x216+340+50 far  # the places of the picture and of the errors
   local run=(--scene backdrop --scale 0.5 --start 1 --frames 25) truth=$work/frame.0024.truth.png
-  local resolve=(build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 24 -q)
+  local resolve=(build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 24 --two-way 0 -q)
   build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
   dump . "${run[@]}" --frame 24 --stages truth --truth 8 --exposure 1
   for far in as-drawn camera evidence; do

@@ -38,9 +38,10 @@ class BlenderAddOn : public testing::SequenceTest {
 
   // Frames as Cycles writes them.
   void write_small_frames() const {
-    const std::array<const char*, 7> names = {
-        "ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B", "ViewLayer.Combined.A",
-        "ViewLayer.Depth.Z",    "ViewLayer.Vector.X",   "ViewLayer.Vector.Y"};
+    const std::array<const char*, 9> names = {
+        "ViewLayer.Combined.R", "ViewLayer.Combined.G", "ViewLayer.Combined.B",
+        "ViewLayer.Combined.A", "ViewLayer.Depth.Z",    "ViewLayer.Vector.X",
+        "ViewLayer.Vector.Y",   "ViewLayer.Vector.Z",   "ViewLayer.Vector.W"};
     std::filesystem::create_directories(folder_.file("shot_small"));
     const std::vector<float> values(static_cast<std::size_t>(kSmall.area()), .5f);
     std::vector<tools::Channel> channels;
@@ -99,7 +100,7 @@ TEST_F(BlenderAddOn, OptionsAreThoseOfTheProgram) {
       listing["format"],
       "colour ViewLayer.Combined.R,ViewLayer.Combined.G,ViewLayer.Combined.B,ViewLayer.Combined.A; velocity "
       "ViewLayer.Vector.X,ViewLayer.Vector.Y blender; depth ViewLayer.Depth.Z linear, near 0.0009765625; "
-      "jitter halton");
+      "both ways, 8 frames ahead by ViewLayer.Vector.Z,ViewLayer.Vector.W; jitter halton");
   const auto made = run_in_shot(words + " -q");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   for (int frame = 1; frame <= kFrames; ++frame)

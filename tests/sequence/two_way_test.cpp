@@ -167,12 +167,27 @@ TEST_F(BothWays, TheFirstFrameIsAsGoodAsLaterOnesAndNoneIsWorse) {
   }
 }
 
-TEST_F(BothWays, WithoutFramesAheadNothingChanges) {
+TEST_F(BothWays, EightFramesAheadAreTheDefaultWhereMotionToThemIsKnown) {
   write_all(1, 5);
-  resolve_to("u", "--method temporal");
-  resolve_to("zero", "--method temporal --two-way 0");
+  resolve_to("u", "");
+  resolve_to("eight", "--two-way 8");
+  resolve_to("zero", "--two-way 0");
+  for (int number = 1; number <= 5; ++number) {
+    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "eight")));
+    write(number, {});
+  }
+  resolve_to("u", "");
   for (int number = 1; number <= 5; ++number)
     EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "zero")));
+}
+
+// What is read without history is a shot of its own: the frames after it may be another.
+TEST_F(BothWays, WithoutHistoryThereIsNoFuture) {
+  write_all(1, 12);
+  const auto listing = resolve("'{}/f.%04d.exr' -n --frames 1-6 --warm-up 0 --json");
+  EXPECT_NE(listing.out.find("\"history_only\": []"), std::string::npos) << listing.out;
+  EXPECT_NE(resolve("'{}/f.%04d.exr' -n --frames 1-3").out.find("Read      11 frames: 1-11"),
+            std::string::npos);
 }
 
 TEST_F(BothWays, MotionFromOtherRenderersIsReadInTheSenseOfTheirVelocity) {
@@ -240,7 +255,7 @@ TEST_F(BothWays, NothingIsSeenBeyondACutAndOneFrameStandsAlone) {
   resolve_to("gap", "--two-way 8 --skip-bad-frames");
   for (int number = 1; number <= 12; ++number)
     EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "gap"))) << number;
-  resolve_to("one", "--frames 14 --warm-up 0");
+  resolve_to("one", "--two-way 0 --frames 14 --warm-up 0");
   // But for a rounding to halves.
   EXPECT_GT(psnr(colours(output(14, "gap")), colours(output(14, "one"))), 70);
 }
@@ -272,7 +287,7 @@ TEST_F(BothWays, AlphaBlurAndPresentedPicturesFollow) {
       ASSERT_NEAR(values[i], .5, 2e-3) << number;
   }
   resolve_to("blurred", "--two-way 6 --blur 2");
-  resolve_to("one", "--blur 2");
+  resolve_to("one", "--two-way 0 --blur 2");
   for (int number = 6; number <= 12; ++number) {
     const std::vector<float> both = colours(output(number, "blurred")), one = colours(output(number, "one"));
     EXPECT_GT(psnr(both, one), 28) << number;

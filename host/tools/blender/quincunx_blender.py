@@ -137,7 +137,8 @@ class Shot:
                  "--output", f"{self.full[0]}x{self.full[1]}", "--frames", f"{take[0]}-{take[1]}", "--warm-up", "0",
                  "--method", self.choices.method, "--jitter", "halton", "--sky-motion", "evidence",
                  "--colour", f"{name}.Combined", "--velocity", f"{name}.Vector.X,{name}.Vector.Y",
-                 "--velocity-convention", "blender", "--depth", f"{name}.Depth.Z"]
+                 "--velocity-next", f"{name}.Vector.Z,{name}.Vector.W", "--velocity-convention", "blender",
+                 "--depth", f"{name}.Depth.Z"]
         if self.blur > 0:
             words += ["--blur", f"{self.blur:g}"]
         try:

@@ -183,12 +183,16 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
       .type_name("RANGES");
   app.add_option_function<int>(
          "--warm-up", [&options](int count) { options.warm_up = count; },
-         "Frames to read before the first, for its history (default: as many as the method looks back)")
+         "Frames to read before the first, for its history, and at most after the last (default: as many as "
+         "the "
+         "method looks back)")
       .in_range(0, 100000)
       .type_name("N");
   app.add_option_function<int>(
          "--two-way", [&options](int count) { options.sequence.two_way = count; },
-         "temporal: each frame knows so many later ones, too; 0: none (default: 0)")
+         "temporal: each frame knows so many later ones, too; 0: none (default: 8 where --velocity-next or "
+         "the "
+         "camera tells motion to the next frame, else 0)")
       .in_range(0, 64)
       .type_name("K");
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");

@@ -121,7 +121,8 @@ std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTa
   const std::int64_t first = first_in_reach(task.input, task.asked.front(), warm_up);
   std::vector<std::int64_t> read = with_history(task.asked, warm_up, first);
   const int reach = std::max(warm_up, history), ahead = task.format.two_way;
-  if (ahead > 0) read = with_future(task.input, task.asked, read, ahead);
+  // What begins without history ends without future: it may be another shot.
+  if (ahead > 0) read = with_future(task.input, task.asked, read, std::min(ahead, warm_up));
   std::erase_if(read, [&](std::int64_t number) {
     const auto next = std::lower_bound(left.begin(), left.end(), number);
     if (next != left.end() && *next - reach <= number) return false;

@@ -241,9 +241,10 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
   } else {
     format.next_motion = NextMotion::kTurned;
   }
-  format.two_way = input.two_way.value_or(0);
-  if (format.two_way == 0) return {};
-  if (!plan.accumulates() || plan.settings.temporal.view != TemporalView::kPicture) {
+  const bool possible = plan.accumulates() && plan.settings.temporal.view == TemporalView::kPicture;
+  const bool known = format.next_motion == NextMotion::kChannels || format.next_motion == NextMotion::kCamera;
+  format.two_way = input.two_way.value_or(possible && known ? kDefaultAhead : 0);
+  if (format.two_way > 0 && !possible) {
     return Status::invalid(
         fmt::format("--two-way merges the histories of method temporal, and this is {}; say --two-way 0",
                     plan.accumulates() ? "a view of one" : name_of(plan.settings.method)));

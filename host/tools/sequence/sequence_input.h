@@ -121,6 +121,9 @@ SceneNeeds needs_of(const SequenceFormat& format);
 // frames have none.
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan);
 
+// Frames to look ahead by default, where motion to the next frame is known: more are not better.
+inline constexpr int kDefaultAhead = 8;
+
 // Settles how far each frame looks ahead, once it is known what the plan reads. Errors: kInvalidArgument where `input`
 // asks for what the plan or the frames cannot give.
 Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, SequenceFormat& format);

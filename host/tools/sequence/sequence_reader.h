@@ -44,7 +44,7 @@ struct MotionSamples {
   std::vector<float> depth;
 };
 
-// Returns motion to the next frame, this - next position, for the samples of `now` (whose velocity does not count): that
+// Returns motion to the next frame, this - next position, for the samples of `now`, whose velocity does not count: that
 // of `next`, turned round. Not a number where `next` shows nothing of a sample's surface. Pure.
 std::vector<Vec2> turned_motion(const MotionSamples& now, const MotionSamples& next);
 
