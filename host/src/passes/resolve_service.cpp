@@ -2,23 +2,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
-#include "device/opencl.h"
 #include "device/program_cache.h"
 #include "motion/blur_params.h"
-#include "passes/frame_ring.h"
-#include "passes/frame_stream.h"
-#include "passes/pass_clear_region.h"
-#include "passes/two_way.h"
+#include "passes/resolve_service_impl.h"
 #include "plan/native_frame.h"
 #include "plan/validate.h"
 #include "quincunx/advanced/log.h"
-#include "quincunx/resolve_service.h"
 
 namespace quincunx {
 namespace {
@@ -68,27 +61,7 @@ cl_event retained(const cl::Event& event) {
   return event();
 }
 
-// Faults that no frame shows by itself, because each is right for one frame: what the first ones have in common. Each
-// is said once, as a warning of the log.
-class FrameAdvice {
- public:
-  static constexpr int kFrames = 32;  // looked at before anything is said
-
-  explicit FrameAdvice(const ResolvePlan& plan) : looks_at_camera_(plan.reads_camera()) {}
-
-  // Allocates only where it warns. `inputs`: a frame that was dispatched by `plan`.
-  void look_at(const ResolvePlan& plan, const FrameInputs& inputs);
-
- private:
-  void look_at_camera(const CameraMotion& camera);
-  void look_at_jitter(Extent render, Extent output, Vec2 jitter);
-
-  bool looks_at_camera_;
-  int camera_frames_ = 0;
-  int jitter_frames_ = 0;
-  std::array<Vec2, 8> places_;  // of the jitter; more than fit are enough
-  std::size_t place_count_ = 0;
-};
+}  // namespace
 
 void FrameAdvice::look_at(const ResolvePlan& plan, const FrameInputs& inputs) {
   if (inputs.reset) return;
@@ -128,42 +101,6 @@ void FrameAdvice::look_at_jitter(Extent render, Extent output, Vec2 jitter) {
                   kFrames, place_count_, place_count_ == 1 ? "place" : "places", wanted, render.width,
                   render.height, output.width, output.height));
 }
-
-}  // namespace
-
-struct ResolveService::Impl {
-  Impl(const Device& on, const ResolvePlan& to_do, bool two_way = false)
-      : device(on),
-        picture(on, to_do, two_way),
-        advice(to_do),
-        counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
-        ring(pass_timer(on) == PassTimer::kEvents) {
-    if (const auto of_focus = to_do.focus_plan()) focus.emplace(on, *of_focus);
-  }
-
-  void warm_up();
-  Status check(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs) const;
-  void enqueue(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
-               FrameRing::Slot& slot);
-  void forget();
-  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
-                       const FrameSync& sync);
-  FrameReport show(const FrameInputs& inputs, bool smooth, const FrameOutputs& outputs);
-  Status write(const KeptHistory& kept, Resource texels, Resource alpha);
-  Status read_merged(KeptHistory& kept);
-  ClearRegionPass* clear_pass(const ImageView& image) const;
-
-  Device device;
-  FrameStream picture;
-  FrameAdvice advice;
-  std::optional<FocusStream> focus;  // where the plan has one
-  cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
-  FrameRing ring;
-  FrameObserver observer;  // may be empty
-  // For TwoWay: whether the next frame is merged with the other history, and kept; the inputs of blur, where there is.
-  bool merges = false, keeps = false;
-  Image shown_velocity, shown_depth;
-};
 
 void ResolveService::Impl::warm_up() {
   picture.chain().warm_up();
@@ -407,132 +344,6 @@ const ResolvePlan& ResolveService::plan() const {
 
 const Device& ResolveService::device() const {
   return impl_->device;
-}
-
-// Histories of both directions.
-
-namespace {
-
-void write_bytes(const cl::CommandQueue& queue, const ImageView& to, const std::vector<std::byte>& bytes) {
-  if (to) queue.enqueueWriteBuffer(borrow<cl::Buffer>(to.memory), CL_TRUE, 0, bytes.size(), bytes.data());
-}
-
-void read_bytes(const cl::CommandQueue& queue, const ImageView& from, std::size_t count,
-                std::vector<std::byte>& bytes) {
-  if (!from) return;
-  bytes.resize(count);
-  queue.enqueueReadBuffer(borrow<cl::Buffer>(from.memory), CL_TRUE, 0, count, bytes.data());
-}
-
-}  // namespace
-
-Status ResolveService::Impl::write(const KeptHistory& kept, Resource texels, Resource alpha) {
-  try {
-    write_bytes(device.impl()->queue, picture.chain().newest(texels), kept.texels);
-    write_bytes(device.impl()->queue, picture.chain().newest(alpha), kept.alpha);
-    return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "writing a history", device.info().name);
-  }
-}
-
-Status ResolveService::Impl::read_merged(KeptHistory& kept) {
-  const ResolveSettings& settings = picture.plan().settings;
-  const auto pixels = static_cast<std::size_t>(settings.output_extent.area());
-  const PassChain& chain = picture.chain();
-  try {
-    read_bytes(device.impl()->queue, chain.newest(Resource::kMergedHistory),
-               pixels * bytes_per_pixel(settings.temporal.history), kept.texels);
-    read_bytes(device.impl()->queue, chain.newest(Resource::kMergedAlpha), pixels * alpha_bytes(settings),
-               kept.alpha);
-    return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "reading a history", device.info().name);
-  }
-}
-
-FrameReport ResolveService::Impl::show(const FrameInputs& inputs, bool smooth, const FrameOutputs& outputs) {
-  FrameReport refused;
-  try {
-    const cl::CommandQueue& queue = device.impl()->queue;
-    FrameRing::Slot& slot = ring.begin();
-    slot.report.frame_index = inputs.frame_index;
-    slot.report.render_extent = inputs.render_extent;
-    slot.report.output_extent = picture.plan().settings.output_extent;
-    const Counter counted = {counter(), ring.index_of(slot)};
-    const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(cl_uint);
-    queue.enqueueFillBuffer(counter, cl_uint{0}, at, sizeof(cl_uint));
-    PassFrame frame = picture.chain().frame(inputs, smooth ? &inputs : nullptr, outputs, counted);
-    frame[Resource::kVelocity] = shown_velocity.view();
-    frame[Resource::kDepth] = shown_depth.view();
-    picture.chain().show(frame, outputs, slot.report, slot.passes.data());
-    queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
-                            &slot.done);
-    queue.flush();
-    ring.commit();
-    return slot.report;
-  } catch (const cl::Error& error) {
-    refused.status = describe(error, "showing a history", device.info().name);
-    return refused;
-  }
-}
-
-Result<ResolveService> TwoWay::create(const Device& device, const ResolvePlan& plan) {
-  return ResolveService::create(device, plan, true);
-}
-
-FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, bool merge, KeptHistory* kept) {
-  ResolveService::Impl& impl = *service.impl_;
-  FrameReport report;
-  if (merge) report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
-  if (!report.ok()) return report;
-  impl.merges = merge;
-  impl.keeps = kept != nullptr;
-  report = impl.dispatch(inputs, nullptr, {}, {});
-  if (!report.ok() || kept == nullptr) return report;
-  report.status = impl.read_merged(*kept);
-  if (!report.ok() || !service.plan().blurs()) return report;
-  const auto texels = static_cast<std::size_t>(inputs.render_extent.area());
-  const ImageView made = impl.picture.chain().newest(Resource::kVelocity);
-  kept->velocity.resize(texels * bytes_per_pixel(service.plan().settings.velocity));
-  kept->depth.resize(texels * sizeof(float));
-  report.status =
-      impl.device.download(made ? made : inputs.velocity, inputs.render_extent, kept->velocity.data());
-  if (report.ok())
-    report.status = impl.device.download(inputs.depth, inputs.render_extent, kept->depth.data());
-  return report;
-}
-
-Status TwoWay::turn(ResolveService& backward, const ResolveService& forward) {
-  const PassChain& from = forward.impl_->picture.chain();
-  const PassChain& to = backward.impl_->picture.chain();
-  try {
-    for (const Resource kept : {Resource::kHistory, Resource::kHistoryAlpha, Resource::kTileReprojection,
-                                Resource::kLayerTiles, Resource::kNearHistory, Resource::kLayerStates}) {
-      const ImageView source = from.newest(kept);
-      if (!source) continue;
-      const auto memory = borrow<cl::Buffer>(source.memory);
-      backward.impl_->device.impl()->queue.enqueueCopyBuffer(
-          memory, borrow<cl::Buffer>(to.newest(kept).memory), 0, 0, memory.getInfo<CL_MEM_SIZE>());
-    }
-    return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "turning round", backward.device().info().name);
-  }
-}
-
-FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, bool smooth,
-                         const KeptHistory& kept, const FrameOutputs& outputs) {
-  ResolveService::Impl& impl = *service.impl_;
-  FrameReport report;
-  report.status = impl.write(kept, Resource::kMergedHistory, Resource::kMergedAlpha);
-  if (report.ok() && !kept.velocity.empty()) {
-    report.status =
-        impl.device.upload(impl.shown_velocity.view(), inputs.render_extent, kept.velocity.data());
-    if (report.ok())
-      report.status = impl.device.upload(impl.shown_depth.view(), inputs.render_extent, kept.depth.data());
-  }
-  return report.ok() ? impl.show(inputs, smooth, outputs) : report;
 }
 
 }  // namespace quincunx
