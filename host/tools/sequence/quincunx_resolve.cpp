@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <system_error>
 
+#include "tools/diagnose/resolve_diagnosis.h"
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
 #include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_advice.h"
-#include "tools/sequence/resolve_diagnosis.h"
 #include "tools/sequence/resolve_report.h"
 
 namespace quincunx::tools {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "diagnose_faults.h"
-#include "sequence_fixture.h"
+#include "sequence/sequence_fixture.h"
 #include "tools/program/jitter.h"
 
 namespace quincunx {

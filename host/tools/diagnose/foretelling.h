@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/sequence/diagnose.h"
+#include "tools/diagnose/diagnose.h"
 
 namespace quincunx::tools {
 

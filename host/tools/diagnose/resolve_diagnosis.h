@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/sequence/diagnose.h"
+#include "tools/diagnose/diagnose.h"
 #include "tools/sequence/resolve_task.h"
 
 namespace quincunx::tools {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "tools/sequence/diagnose.h"
+#include "tools/diagnose/diagnose.h"
 
 namespace quincunx::testing {
 

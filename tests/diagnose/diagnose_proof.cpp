@@ -13,7 +13,7 @@
 #include <set>
 
 #include "diagnose_faults.h"
-#include "tools/sequence/resolve_diagnosis.h"
+#include "tools/diagnose/resolve_diagnosis.h"
 
 namespace quincunx::tools {
 namespace {

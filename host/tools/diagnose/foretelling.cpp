@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/foretelling.h"
+#include "tools/diagnose/foretelling.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/resolve_diagnosis.h"
+#include "tools/diagnose/resolve_diagnosis.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// Depth and camera: guesses of both, against motion where that is known, else against colour.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/diagnose/findings.h"
+
+namespace quincunx::tools {
+namespace {
+
+using Frames = std::span<const DiagnosedFrame>;
+
+const DiagnosedFrame* beside(Frames frames, std::size_t i, int later) {
+  const auto from = static_cast<std::ptrdiff_t>(i) + later;
+  if (from < 0 || from >= static_cast<std::ptrdiff_t>(frames.size())) return nullptr;
+  const DiagnosedFrame& frame = frames[static_cast<std::size_t>(from)];
+  return frame.number == frames[i].number + later && frame.world_to_ndc ? &frame : nullptr;
+}
+
+std::optional<Matrix> matrix_at(Frames frames, std::size_t i, Camera camera) {
+  const int later = camera == Camera::kLast ? -1 : camera == Camera::kNext ? 1 : 0;
+  const DiagnosedFrame* frame = beside(frames, i, later);
+  if (frame == nullptr) return std::nullopt;
+  Matrix matrix = *frame->world_to_ndc;
+  if (camera == Camera::kTransposed) {
+    for (std::size_t row = 0; row < 4; ++row)
+      for (std::size_t column = 0; column < row; ++column)
+        std::swap(matrix[4 * row + column], matrix[4 * column + row]);
+  }
+  return matrix;
+}
+
+// Motion of a guess at all pairs; empty for a pair that it says nothing of.
+std::vector<Motion> camera_motion_of(const Scene& scene, const DepthGuess& guess) {
+  std::vector<Motion> motion(scene.pairs.size());
+  for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+    const Pair& pair = scene.pairs[p];
+    const DiagnosedFrame& frame = scene.frames[pair.now];
+    const auto camera = camera_of(scene, pair, guess);
+    if (!camera || frame.depth.empty()) continue;
+    const Vec2 jitter = scene.motion.jitter[pair.now];
+    for (const Place& place : pair.places) {
+      float depth[] = {frame.depth[pixel_of(frame, place.x, place.y)]};
+      to_reversed_depth(guess.kind, scene.input.near_plane, depth);
+      const Vec2 at = {static_cast<float>(place.x) + .5f + jitter.x,
+                       static_cast<float>(place.y) + .5f + jitter.y};
+      const Vec2 moved = camera_moves(*camera, at, depth[0], frame.render);
+      motion[p].push_back(std::isfinite(moved.x) && std::isfinite(moved.y) ? moved : Vec2{1e6f, 1e6f});
+    }
+  }
+  return motion;
+}
+
+Foretold foretold(const Scene& scene, const std::vector<Motion>& motion) {
+  Foretold result = {.motion = &motion,
+                     .shift = scene.motion.shift,
+                     .errors = std::vector<std::vector<float>>(motion.size())};
+  if (scene.motion.knows_motion) result.apart = .02f;
+  for (std::size_t p = 0; p < motion.size(); ++p) {
+    if (motion[p].empty()) continue;
+    const Pair& pair = scene.pairs[p];
+    if (!scene.motion.knows_motion) {
+      result.errors[p] = foretell(pair, scene.planes[pair.now - 1], motion[p], result.shift[p]);
+      continue;
+    }
+    for (std::size_t i = 0; i < motion[p].size(); ++i) {
+      const Vec2 a = motion[p][i], b = scene.motion.motion[p][i];
+      const float apart = std::min(std::hypot(a.x - b.x, a.y - b.y), 1.0f);
+      result.errors[p].push_back(apart * apart);
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
+  std::vector<std::string> faults;
+  if (guess.kind != input.depth_kind) faults.emplace_back("depth kind");
+  if (guess.camera == Camera::kTransposed) faults.emplace_back("transposed");
+  if (guess.camera == Camera::kLast || guess.camera == Camera::kNext) faults.emplace_back("frame");
+  return faults;
+}
+
+// The input's word first.
+std::vector<DepthGuess> depth_guesses(DepthKind stated) {
+  std::vector<DepthGuess> guesses = {{stated}};
+  for (const DepthKind kind : {DepthKind::kLinear, DepthKind::kDevice, DepthKind::kDeviceReversed}) {
+    for (const Camera camera : {Camera::kStated, Camera::kTransposed, Camera::kLast, Camera::kNext}) {
+      if (kind != stated || camera != Camera::kStated) guesses.push_back({kind, camera});
+    }
+  }
+  return guesses;
+}
+
+void find_wrong(Finding& finding, const std::string& fault, const std::string& fits,
+                const std::string& option, const Comparison& against) {
+  finding.verdict = Verdict::kWrong;
+  finding.faults = {fault};
+  finding.fits = fits;
+  finding.option = option;
+  finding.margin_db = against.margin_db;
+  finding.share = against.share;
+}
+
+}  // namespace
+
+std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess) {
+  const auto now = matrix_at(scene.frames, pair.now, guess.camera);
+  const auto before = matrix_at(scene.frames, pair.now - 1, guess.camera);
+  if (!now || !before) return std::nullopt;
+  return camera_motion(*now, *before, scene.input.near_plane);
+}
+
+Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent extent) {
+  const auto& m = camera.clip_to_previous_clip;
+  const auto width = static_cast<float>(extent.width), height = static_cast<float>(extent.height);
+  const float x = 2 * at.x / width - 1, y = 1 - 2 * at.y / height;
+  const auto row = [&](std::size_t r) { return m[r] * x + m[4 + r] * y + m[8 + r] * depth + m[12 + r]; };
+  const float w = row(3);
+  return {(x - row(0) / w) * width / 2, (row(1) / w - y) * height / 2};
+}
+
+DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
+  const DiagnosedInput& input = scene.input;
+  Finding depth = {.subject = "depth",
+                   .says = scene.frames[0].depth.empty() ? "none" : name_of(input.depth_kind)};
+  Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
+  const std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind);
+  std::vector<std::vector<Motion>> motions;
+  for (const DepthGuess& guess : guesses)
+    motions.push_back(camera_motion_of(scene, guess));
+  std::vector<Candidate> candidates;
+  for (std::size_t g = 0; g < guesses.size(); ++g)
+    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold(scene, motions[g])});
+  const std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
+  const DepthGuess best = guesses[chosen];
+  Rivals kinds, cameras;
+  for (std::size_t g = 0; g < guesses.size(); ++g) {
+    const Comparison compared =
+        compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[g].foretold);
+    if (guesses[g].camera == best.camera && guesses[g].kind != best.kind)
+      kinds.add(compared, {name_of(guesses[g].kind)});
+    if (guesses[g].kind == best.kind && guesses[g].camera != best.camera)
+      cameras.add(compared, {guesses[g].camera == Camera::kTransposed ? "transposed" : "frame"});
+  }
+  kinds.judge(depth);
+  cameras.judge(camera);
+  const Comparison against =
+      compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
+  if (best.kind != input.depth_kind) {
+    const char* kind = name_of(best.kind);
+    find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), against);
+  }
+  if (best.camera == Camera::kTransposed)
+    find_wrong(camera, "transposed", "its transpose", "write it for row vectors", against);
+  if (best.camera == Camera::kLast || best.camera == Camera::kNext) {
+    find_wrong(camera, "frame", best.camera == Camera::kLast ? "the last frame's" : "the next frame's",
+               "write the camera and the motion of one frame", against);
+  }
+  findings.push_back(depth);
+  findings.push_back(camera);
+  return best;
+}
+
+}  // namespace quincunx::tools

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Findings: the parts of diagnose(), each of which looks at one kind of mistake, in the order of their calls. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/diagnose/foretelling.h"
+
+namespace quincunx::tools {
+
+inline std::size_t pixel_of(const DiagnosedFrame& frame, int x, int y) {
+  return static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.render.width) +
+         static_cast<std::size_t>(x);
+}
+
+// What motion and jitter are, looked at together, because each hides the other's mistakes.
+struct MotionAnswer {
+  std::vector<Finding> findings = {};
+  bool knows_motion = false;
+  std::vector<Motion> motion = {};  // of each pair, as it fits best
+  std::vector<Vec2> shift = {};     // the same, of the jitter
+  std::vector<Vec2> jitter = {};    // of each frame
+  JitterMend mend = {};
+};
+
+MotionAnswer find_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
+                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
+
+// What the other parts look at.
+struct Scene {
+  std::span<const DiagnosedFrame> frames;
+  const DiagnosedInput& input;
+  const std::vector<Plane>& planes;
+  const std::vector<Pair>& pairs;
+  const MotionAnswer& motion;
+};
+
+enum class Camera : std::uint8_t { kStated, kTransposed, kLast, kNext };
+
+struct DepthGuess {
+  DepthKind kind;
+  Camera camera = Camera::kStated;
+};
+
+// Judges depth and camera; returns the guess to believe.
+DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);
+
+// Returns how the camera moved to the later frame of a pair; nothing where that is not known.
+std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess);
+
+// Returns the pixels by which that moves a point at rest, which a frame of this size has at `at`.
+Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent extent);
+
+// Where a nearer surface ends, does the pixel beyond it move as that does, or as its own surface?
+Finding find_dilation(const Scene& scene, DepthKind kind);
+
+// Is motion of half the size, enlarged?
+Finding find_resolution(const Scene& scene);
+
+// Does the sky stand still in the picture although the camera moves it?
+Finding find_sky(const Scene& scene, const DepthGuess& guess);
+
+// Judges whether frames follow from each other in brightness, and whether they do at all. `cuts`: frames before which
+// cuts are missing; that finding is the last.
+void find_light(const Scene& scene, std::vector<Finding>& findings, std::vector<std::int64_t>& cuts);
+
+}  // namespace quincunx::tools
