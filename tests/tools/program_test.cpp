@@ -49,6 +49,21 @@ TEST(AtomicFile, LeavesNothingWithoutCommit) {
   EXPECT_EQ(content(folder.file("a.txt")), "before");
 }
 
+// That a killed process leaves such a file behind is tested with quincunx-resolve, in resume_test.cpp.
+TEST(AtomicFile, IsAbandonedWhereNobodyHoldsIt) {
+  const testing::TemporaryFolder folder;
+  Result<AtomicFile> file = AtomicFile::create(folder.file("a.0001.exr"));
+  ASSERT_TRUE(file.ok());
+  const std::filesystem::path part = file->temporary_path();
+  std::ofstream(part) << "half";
+  EXPECT_EQ(abandoned_target(part), std::nullopt);
+  const std::filesystem::path copy = folder.file(part.filename().string().replace(0, 2, ".b"));
+  std::filesystem::copy_file(part, copy);
+  EXPECT_EQ(abandoned_target(copy), "b.0001.exr");
+  std::ofstream(folder.file(".b.part")) << "another program's";
+  EXPECT_EQ(abandoned_target(folder.file(".b.part")), std::nullopt);
+}
+
 TEST(AtomicFile, MakesMissingFolders) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.file("one/two/a.txt");

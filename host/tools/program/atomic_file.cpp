@@ -2,7 +2,7 @@
 #include "tools/program/atomic_file.h"
 
 #include <fcntl.h>
-#include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -54,25 +54,28 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   std::string temporary = temporary_name(target);
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) return cannot_write(path, std::strerror(errno));
-  ::close(descriptor);
-  return AtomicFile(path, std::move(temporary));
+  ::flock(descriptor, LOCK_EX | LOCK_NB);  // where files cannot be locked, none is taken for abandoned
+  return AtomicFile(path, std::move(temporary), descriptor);
 }
 
-AtomicFile::AtomicFile(std::string path, std::string temporary)
-    : path_(std::move(path)), temporary_(std::move(temporary)) {}
+AtomicFile::AtomicFile(std::string path, std::string temporary, int lock)
+    : path_(std::move(path)), temporary_(std::move(temporary)), lock_(lock) {}
 
 AtomicFile::~AtomicFile() {
   discard();
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
-    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, std::string())) {}
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, std::string())),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   if (this != &other) {
     discard();
     path_ = std::move(other.path_);
     temporary_ = std::exchange(other.temporary_, std::string());
+    lock_ = std::exchange(other.lock_, -1);
   }
   return *this;
 }
@@ -85,17 +88,21 @@ Status AtomicFile::commit() {
     return cannot_write(path_, error.message());
   }
   temporary_.clear();
+  discard();
   return {};
 }
 
 void AtomicFile::discard() noexcept {
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
   temporary_.clear();
+  if (lock_ >= 0) ::close(lock_);
+  lock_ = -1;
 }
 
-std::optional<std::string> abandoned_target(const std::string& name) {
+std::optional<std::string> abandoned_target(const std::filesystem::path& file) {
   // As temporary_name() makes it: ".TARGET.PROCESS-COUNT.part". By hand, because <regex> compiles for seconds.
   constexpr std::string_view kEnd = ".part";
+  const std::string name = file.filename().string();
   if (!name.starts_with('.') || !name.ends_with(kEnd)) return std::nullopt;
   const std::string_view text = std::string_view(name).substr(1, name.size() - 1 - kEnd.size());
   const std::size_t dot = text.rfind('.');
@@ -103,10 +110,12 @@ std::optional<std::string> abandoned_target(const std::string& name) {
   const std::string_view numbers = text.substr(dot + 1);
   const std::size_t dash = numbers.find('-');
   if (dash == std::string_view::npos) return std::nullopt;
-  const std::string_view process = numbers.substr(0, dash);
-  if (process.size() > 9 || !is_number(process) || !is_number(numbers.substr(dash + 1))) return std::nullopt;
-  const bool lives = ::kill(static_cast<pid_t>(std::stol(std::string(process))), 0) == 0 || errno != ESRCH;
-  return lives ? std::nullopt : std::optional(std::string(text.substr(0, dot)));
+  if (!is_number(numbers.substr(0, dash)) || !is_number(numbers.substr(dash + 1))) return std::nullopt;
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  if (descriptor < 0) return std::nullopt;
+  const bool locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  ::close(descriptor);
+  return locked ? std::optional(std::string(text.substr(0, dot))) : std::nullopt;
 }
 
 Status write_text(const std::string& path, std::string_view text) {

@@ -2,6 +2,7 @@
 // AtomicFile: a file that appears under its name only when it is whole.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,16 +28,17 @@ class AtomicFile {
   Status commit();  // errors: kIoFailure; the temporary file is then gone
 
  private:
-  AtomicFile(std::string path, std::string temporary);
+  AtomicFile(std::string path, std::string temporary, int lock);
   void discard() noexcept;
 
   std::string path_;
   std::string temporary_;  // empty: nothing to remove
+  int lock_;  // descriptor that holds the temporary file's lock, which ends with the process; -1: none
 };
 
-// Returns the name that a temporary file (`name`, without folder) was meant to get, if the process that left it behind
-// is no longer there. Nothing for any other name. Processes of other machines that share the folder cannot be seen.
-std::optional<std::string> abandoned_target(const std::string& name);
+// Returns the name that a temporary file was meant to get, if the process that left it behind is no longer there: it
+// had the file locked. Nothing for a file of any other name. Sees other machines' processes where locks are shared.
+std::optional<std::string> abandoned_target(const std::filesystem::path& file);
 
 // Writes a text file whole or not at all. Errors: kIoFailure.
 Status write_text(const std::string& path, std::string_view text);

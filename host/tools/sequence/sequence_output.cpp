@@ -128,7 +128,7 @@ void SequenceOutput::remove_leftovers(std::span<const std::int64_t> frames) cons
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
-    const auto target = abandoned_target(entry->path().filename().string());
+    const auto target = abandoned_target(entry->path());
     if (!target) continue;
     const auto number = pattern.number_in(folder + *target);
     if (!number || !std::binary_search(frames.begin(), frames.end(), *number)) continue;
