@@ -71,16 +71,18 @@ class BothWays : public testing::SequenceTest {
 
   // One file; `next`: names of the channels of motion to the next frame, as next - this or the other way.
   void write(int number, const std::vector<std::string>& next = {"forward.u", "forward.v"}, float sign = 1,
-             float alpha = 1) {
+             float alpha = 1, Extent render = kRender, bool cut = false) {
     const Vec2 jitter = {static_cast<float>(halton(number % 16, 2)),
                          static_cast<float>(halton(number % 16, 3))};
     std::vector<std::string> names = {"R", "G", "B", "A", "Z", "backward.u", "backward.v"};
     names.insert(names.end(), next.begin(), next.end());
     std::vector<std::vector<float>> planes(names.size());
-    for (int y = 0; y < kRender.height; ++y) {
-      for (int x = 0; x < kRender.width; ++x) {
-        const Seen seen = seen_at(2 * (x + .5 + jitter.x), 2 * (y + .5 + jitter.y), number);
-        const float u = seen.speed_x / 2, v = -seen.speed_y / 2;
+    const double step_x = 1. * kPicture.width / render.width, step_y = 1. * kPicture.height / render.height;
+    for (int y = 0; y < render.height; ++y) {
+      for (int x = 0; x < render.width; ++x) {
+        const Seen seen = seen_at(step_x * (x + .5 + jitter.x), step_y * (y + .5 + jitter.y), number);
+        const auto u = static_cast<float>(seen.speed_x / step_x),
+                   v = static_cast<float>(-seen.speed_y / step_y);
         const float values[] = {alpha * seen.light[0],
                                 alpha * seen.light[1],
                                 alpha * seen.light[2],
@@ -101,15 +103,21 @@ class BothWays : public testing::SequenceTest {
                           .data = planes[c].data(),
                           .stored = tools::ChannelType::kFloat});
     }
-    const std::vector<tools::Attribute> attributes = {
+    std::vector<tools::Attribute> attributes = {
         {"quincunx:jitter", jitter}, {"quincunx:outputSize", Vec2{kPicture.width, kPicture.height}}};
-    const Status status = tools::write_exr(input(number), kRender, channels, attributes);
+    if (cut) attributes.push_back({"quincunx:reset", 1});
+    const Status status = tools::write_exr(input(number), render, channels, attributes);
     ASSERT_TRUE(status.ok()) << status.message();
   }
 
   void write_all(int first, int last) {
     for (int number = first; number <= last; ++number)
       write(number);
+  }
+
+  void expect_same_files(int first, int last, const std::string& name) const {
+    for (int number = first; number <= last; ++number)
+      EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, name))) << number;
   }
 
   std::vector<float> colours(const std::string& path) const {
@@ -151,16 +159,19 @@ class BothWays : public testing::SequenceTest {
 };
 
 TEST_F(BothWays, TheFirstFrameIsAsGoodAsLaterOnesAndNoneIsWorse) {
-  write_all(1, 30);
+  write_all(1, 26);
   for (const char* method : {"temporal:fast", "temporal", "temporal:quality"}) {
     resolve_to("one", fmt::format("--method {} --two-way 0", method));
     resolve_to("two", fmt::format("--method {} --two-way 8", method));
     double gain = 0;
-    for (int number = 1; number <= 30; ++number) {
+    for (int number = 1; number <= 26; ++number) {
       const double one = psnr_of("one", number), two = psnr_of("two", number);
       EXPECT_GT(two, one - .1) << method << " " << number;
-      if (number > 10 && number < 24) gain += (two - one) / 13;
+      if (number > 10 && number < 20) gain += (two - one) / 9;
     }
+    // The last one knows no more: it is the same but for a rounding to halves, which files have, too.
+    const std::vector<float> one = colours(output(26, "one")), two = colours(output(26, "two"));
+    EXPECT_TRUE(std::string(method) == "temporal:quality" ? psnr(one, two) > 70 : one == two) << method;
     EXPECT_GT(psnr_of("two", 1), psnr_of("one", 1) + 2) << method;
     EXPECT_GT(psnr_of("two", 1), psnr_of("one", 20) - .3) << method;
     EXPECT_GT(gain, .3) << method;
@@ -172,13 +183,16 @@ TEST_F(BothWays, EightFramesAheadAreTheDefaultWhereMotionToThemIsKnown) {
   resolve_to("u", "");
   resolve_to("eight", "--two-way 8");
   resolve_to("zero", "--two-way 0");
-  for (int number = 1; number <= 5; ++number) {
-    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "eight")));
-    write(number, {});
-  }
-  resolve_to("u", "");
+  expect_same_files(1, 5, "eight");
+  const std::string explained = resolve("'{}/f.%04d.exr' --explain").out;
+  EXPECT_NE(explained.find("Both ways      8 frames ahead"), std::string::npos) << explained;
+  EXPECT_NE(explained.find("\n  merge_histories "), std::string::npos) << explained;
+  EXPECT_NE(explained.find("\n  merged history "), std::string::npos) << explained;
   for (int number = 1; number <= 5; ++number)
-    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "zero")));
+    write(number, {});
+  resolve_to("u", "");
+  expect_same_files(1, 5, "zero");
+  EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain").out.find("merge"), std::string::npos);
 }
 
 // What is read without history is a shot of its own: the frames after it may be another.
@@ -253,11 +267,84 @@ TEST_F(BothWays, NothingIsSeenBeyondACutAndOneFrameStandsAlone) {
   resolve_to("u", "--two-way 8");
   write(14);
   resolve_to("gap", "--two-way 8 --skip-bad-frames");
-  for (int number = 1; number <= 12; ++number)
-    EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, "gap"))) << number;
+  expect_same_files(1, 12, "gap");
   resolve_to("one", "--two-way 0 --frames 14 --warm-up 0");
   // But for a rounding to halves.
   EXPECT_GT(psnr(colours(output(14, "gap")), colours(output(14, "one"))), 70);
+  write(13, {"forward.u", "forward.v"}, 1, 1, kRender, true);
+  resolve_to("cut", "--two-way 8");
+  expect_same_files(1, 12, "cut");
+}
+
+TEST_F(BothWays, FramesThatAreOnlyLookedAheadToCountAsInAWholeRun) {
+  write_all(1, 18);
+  resolve_to("u", "--two-way 8");
+  resolve_to("ten", "--two-way 8 --frames 1-10");
+  expect_same_files(1, 10, "ten");
+  EXPECT_FALSE(std::filesystem::exists(output(11, "ten")));
+  resolve_to("third", "--two-way 8 --frames 3-18x3");
+  for (int number = 3; number <= 18; number += 3)
+    expect_same_files(number, number, "third");
+  EXPECT_FALSE(std::filesystem::exists(output(4, "third")));
+}
+
+TEST_F(BothWays, FramesMayHaveOtherSizes) {
+  const auto write_sizes = [this](const std::vector<std::string>& next) {
+    for (int number = 1; number <= 20; ++number)
+      write(number, next, 1, 1,
+            number % 3 == 0   ? Extent{60, 36}
+            : number % 3 == 1 ? kRender
+                              : Extent{40, 34});
+  };
+  write_sizes({"forward.u", "forward.v"});
+  resolve_to("one", "--two-way 0");
+  resolve_to("two", "--two-way 8");
+  write_sizes({});
+  resolve_to("made", "--two-way 8");
+  for (const char* name : {"two", "made"}) {
+    double gain = 0;
+    for (int number = 1; number <= 20; ++number) {
+      const double difference = psnr_of(name, number) - psnr_of("one", number);
+      EXPECT_GT(difference, -.1) << name << " " << number;
+      gain += difference / 20;
+    }
+    EXPECT_GT(gain, .5) << name;
+  }
+}
+
+// Its header is whole, so it shows where it is read: forwards, before those that know it are shown.
+TEST_F(BothWays, AFrameAheadThatCannotBeReadIsNamedOnce) {
+  write_all(1, 36);
+  resolve_to("u", "--two-way 8");
+  const std::string whole = testing::read_file(input(34));
+  std::string broken = whole;
+  std::fill(broken.end() - 800, broken.end() - 200, '\0');
+  std::ofstream(input(34), std::ios::binary) << broken;
+  const auto times_named = [this](const std::string& text) {
+    const std::string complaint = "'" + input(34) + "' cannot be read";
+    int times = 0;
+    for (std::size_t at = 0; (at = text.find(complaint, at)) != std::string::npos; ++at)
+      ++times;
+    return times;
+  };
+  const std::string run = "'{}/f.%04d.exr' --out '{}/b.%04d.exr' --two-way 8";
+  const auto stopped = resolve(run);
+  EXPECT_EQ(stopped.exit_code, 1);
+  EXPECT_EQ(times_named(stopped.err), 1) << stopped.err;
+  expect_same_files(1, 23, "b");  // their window looks ahead to 31
+  EXPECT_FALSE(std::filesystem::exists(output(24, "b")));
+  const auto skipped = resolve(run + " --resume --skip-bad-frames");
+  EXPECT_EQ(skipped.exit_code, 0) << skipped.err;
+  EXPECT_EQ(times_named(skipped.err), 1) << skipped.err;
+  for (int number = 24; number <= 36; ++number)
+    EXPECT_EQ(std::filesystem::exists(output(number, "b")), number != 34) << number;
+  for (int number = 24; number <= 33; ++number)
+    std::filesystem::remove(output(number, "b"));
+  for (const int number : {35, 36})
+    std::filesystem::remove(output(number, "b"));
+  std::ofstream(input(34), std::ios::binary) << whole;
+  EXPECT_EQ(resolve(run + " --resume").exit_code, 0);
+  expect_same_files(1, 36, "b");
 }
 
 TEST_F(BothWays, ChunksOfWholeWindowsAndResumedRunsGiveTheSameBytes) {
@@ -265,15 +352,11 @@ TEST_F(BothWays, ChunksOfWholeWindowsAndResumedRunsGiveTheSameBytes) {
   resolve_to("u", "--two-way 6");
   resolve_to("chunk", "--two-way 6 --frames 1-23");
   resolve_to("chunk", "--two-way 6 --frames 24-36");
-  const auto expect_same = [this](const std::string& name) {
-    for (int number = 1; number <= 36; ++number)
-      EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, name))) << number;
-  };
-  expect_same("chunk");
+  expect_same_files(1, 36, "chunk");
   for (const int number : {1, 7, 8, 23, 30})
     std::filesystem::remove(output(number, "chunk"));
   resolve_to("chunk", "--two-way 6 --resume");
-  expect_same("chunk");
+  expect_same_files(1, 36, "chunk");
 }
 
 TEST_F(BothWays, AlphaBlurAndPresentedPicturesFollow) {
@@ -293,9 +376,24 @@ TEST_F(BothWays, AlphaBlurAndPresentedPicturesFollow) {
     EXPECT_GT(psnr(both, one), 28) << number;
     EXPECT_LT(psnr(both, colours(output(number))), psnr(both, one)) << number;
   }
-  const auto result = resolve("'{}/f.%04d.exr' --out '{}/p.%04d.png' -q --two-way 6");
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(std::filesystem::exists(folder_.file("p.0012.png")));
+  // The last frame knows as much either way, but history's halves may round to the next code.
+  for (const char* arguments :
+       {"--out '{}/two.%04d.png' --two-way 6", "--out '{}/one.%04d.png' --two-way 0"}) {
+    const auto result = resolve(std::string("'{}/f.%04d.exr' -q ") + arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+  }
+  const auto farthest_code = [this](int number) {
+    const tools::LoadedImage one = image(folder_.file(fmt::format("one.{:04}.png", number)));
+    const tools::LoadedImage two = image(folder_.file(fmt::format("two.{:04}.png", number)));
+    double farthest = 0;
+    for (int i = 0; i < 3 * kPicture.area(); ++i) {
+      const int x = i / 3 % kPicture.width, y = i / 3 / kPicture.width, channel = i % 3;
+      farthest = std::max(farthest, 255. * std::abs(one.at(x, y, channel) - two.at(x, y, channel)));
+    }
+    return farthest;
+  };
+  EXPECT_LT(farthest_code(12), 1.01);
+  EXPECT_GT(farthest_code(1), 20);
 }
 
 TEST_F(BothWays, WhatCannotBeIsRefusedInASentence) {

@@ -16,13 +16,6 @@ using testing::TemporalScene;
 
 constexpr Extent kRender = {80, 48};
 
-// A still picture, so that no tile has a phase: what is kept is what is shown.
-TemporalScene still_scene() {
-  TemporalScene scene;
-  scene.surfaces.push_back({.texture = testing::noise_texture(12)});
-  return scene;
-}
-
 HostFrame frame_of(const TemporalScene& scene, int index) {
   return scene.render(index, kRender, testing::halton_jitter(index, 32));
 }
@@ -33,7 +26,7 @@ FrameInputs without_images(FrameInputs inputs) {
 }
 
 TEST(TwoWay, AHistoryThatIsKeptAndShownIsThePictureOfDispatch) {
-  const TemporalScene scene = still_scene();
+  const TemporalScene scene = testing::wires_before_a_wall();  // of two layers, and at no pixels' centres
   for (const TemporalPreset preset :
        {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
     const ResolveSettings settings = {
@@ -48,10 +41,10 @@ TEST(TwoWay, AHistoryThatIsKeptAndShownIsThePictureOfDispatch) {
       const FrameInputs inputs = rig.upload(frame_of(scene, index));
       ASSERT_TRUE(rig.dispatch(inputs).ok());
       const std::vector<Pixel> expected = rig.resolved();
-      const FrameReport added = TwoWay::add(created.value(), inputs, false, &kept);
+      const FrameReport added = TwoWay::add(created.value(), inputs, Merging::kNever, &kept);
       ASSERT_TRUE(added.ok()) << added.status.message();
       EXPECT_EQ(added.used_previous, index > 0);
-      const FrameReport shown = TwoWay::show(created.value(), without_images(inputs), index > 0, kept,
+      const FrameReport shown = TwoWay::show(created.value(), without_images(inputs), false, kept,
                                              {rig.resolved_view(), rig.presented_view()});
       ASSERT_TRUE(shown.ok()) << shown.status.message();
       EXPECT_TRUE(rig.resolved() == expected) << name_of(preset) << " " << index;
@@ -71,7 +64,8 @@ TEST(TwoWay, ATurnedServiceGoesOnFromTheOtherHistory) {
   constexpr int kLast = 12;
   KeptHistory kept, alone;
   for (int index = 0; index <= kLast; ++index)
-    ASSERT_TRUE(TwoWay::add(forward.value(), rig.upload(frame_of(scene, index)), false, &kept).ok());
+    ASSERT_TRUE(
+        TwoWay::add(forward.value(), rig.upload(frame_of(scene, index)), Merging::kLater, &kept).ok());
   const auto error_of = [&](const KeptHistory& history, const FrameInputs& inputs, int index) {
     EXPECT_TRUE(TwoWay::show(forward.value(), without_images(inputs), true, history,
                              {rig.resolved_view(), rig.presented_view()})
@@ -87,23 +81,23 @@ TEST(TwoWay, ATurnedServiceGoesOnFromTheOtherHistory) {
   const auto error_backwards = [&](bool turns) {
     FrameInputs inputs = rig.upload(frame_of(scene, kLast));
     inputs.reset = true;
-    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, false, nullptr).ok());
+    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, Merging::kLater, nullptr).ok());
     EXPECT_TRUE(!turns || TwoWay::turn(backward.value(), forward.value()).ok());
     inputs = rig.upload(before);
-    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, false, &alone).ok());
+    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, Merging::kLater, &alone).ok());
     return error_of(alone, inputs, kLast - 1);
   };
   EXPECT_LT(error_backwards(true), .7 * error_backwards(false));
 }
 
 TEST(TwoWay, ABadFrameIsRefusedAsByDispatch) {
-  const TemporalScene scene = still_scene();
+  const TemporalScene scene = testing::wires_before_a_wall();
   ServiceRig rig({}, ResolveSettings{.method = Method::kTemporal}, scene.output, kRender);
   auto service = TwoWay::create(rig.device(), rig.service().plan());
   ASSERT_TRUE(service.ok());
   FrameInputs inputs = rig.upload(frame_of(scene, 0));
   inputs.jitter.x = 2;
-  const FrameReport report = TwoWay::add(service.value(), inputs, false, nullptr);
+  const FrameReport report = TwoWay::add(service.value(), inputs, Merging::kLater, nullptr);
   EXPECT_EQ(report.status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(report.status.message().find("jitter.x is 2"), std::string::npos) << report.status.message();
 }

@@ -15,6 +15,7 @@
 #include "device/device_impl.h"
 #include "params.h"
 #include "passes/tables.h"
+#include "passes/two_way.h"
 #include "plan/pass_spec.h"
 #include "quincunx/advanced/focus.h"
 #include "quincunx/frame.h"
@@ -44,13 +45,14 @@ struct PassFrame {
   FrameInputs previous = {};  // the current one where there is no history
   Vec2 jitter_motion = {};    // jitter_motion() since the last frame, whether or not that counts as history
   bool has_history = false;
-  bool merges = false, keeps_merged = false;  // facts.two_way: merged with another one, and read
-  const FocusInputs* focus = nullptr;         // null: the frame has none
-  Extent focus_extent = {};                   // the plan's
-  Extent output = {};                         // this frame's
-  Extent previous_output = {};                // the history's
-  Extent display = {};                        // size of the picture that is shown: the largest output
-  bool scales_output = false;                 // the picture is scaled to the display by a pass of its own
+  Merging merging = Merging::kLater;   // facts.two_way
+  bool keeps_merged = false;           // the same: read afterwards
+  const FocusInputs* focus = nullptr;  // null: the frame has none
+  Extent focus_extent = {};            // the plan's
+  Extent output = {};                  // this frame's
+  Extent previous_output = {};         // the history's
+  Extent display = {};                 // size of the picture that is shown: the largest output
+  bool scales_output = false;          // the picture is scaled to the display by a pass of its own
   Counter counter = {};
   std::array<ImageView, kResourceCount> views = {};  // views of the resources that the plan has
 

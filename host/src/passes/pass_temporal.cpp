@@ -257,7 +257,8 @@ class TemporalDisplayPass : public Pass {
     const bool merged = uses(Resource::kMergedHistory);
     const Resource shown = merged ? shown_history_of(facts()) : centred_of(facts());
     const Resource history = merged ? Resource::kMergedHistory : Resource::kHistory;
-    const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
+    TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
+    if (facts().two_way && !merged && frame.merging != Merging::kNever) params.first = 1;  // not smoothed
     bind(params, frame[merged ? Resource::kCentredTiles : Resource::kTileReprojection], frame[history],
          view_or(frame, merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, history), frame[shown]);
     launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
@@ -282,7 +283,7 @@ PassSpec display_spec(const PlanFacts& facts, int smooths, Resource shown) {
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.displays_history()) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec = display_spec(facts, facts.smooths_history() && !facts.two_way ? 1 : 0, centred_of(facts));
+  PassSpec spec = display_spec(facts, facts.smooths_history() ? 1 : 0, centred_of(facts));
   spec.uses.push_back(
       {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)});
   spec.uses.push_back({Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history});
@@ -304,7 +305,7 @@ class MergeHistoriesPass : public Pass {
                              .height = frame.output.height,
                              .centred = layout_of(frame[Resource::kCentred]),
                              .columns_per_item = columns_per_item(shape(), frame.output.width),
-                             .has_other = frame.merges ? 1 : 0};
+                             .has_other = frame.merging == Merging::kNow ? 1 : 0};
     bind(params, frame[Resource::kCentred], frame[Resource::kHistory], frame[Resource::kOtherHistory],
          view_or(frame, Resource::kOtherAlpha, Resource::kOtherHistory), frame[Resource::kMergedHistory],
          view_or(frame, Resource::kMergedAlpha, Resource::kMergedHistory));

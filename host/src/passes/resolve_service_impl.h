@@ -68,8 +68,9 @@ struct ResolveService::Impl {
   cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
   FrameObserver observer;  // may be empty
-  // For TwoWay: whether the next frame is merged with the other history, and kept; the inputs of blur, where there is.
-  bool merges = false, keeps = false;
+  // For TwoWay: what becomes of the next frame's history, and whether it is read; the inputs of blur, where there is.
+  Merging merging = Merging::kLater;
+  bool keeps = false;
   Image shown_velocity, shown_depth;
 };
 

@@ -5,6 +5,7 @@
 
 #include "device/opencl.h"
 #include "passes/resolve_service_impl.h"
+#include "plan/native_frame.h"
 
 namespace quincunx {
 namespace {
@@ -58,10 +59,12 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, bool smooth, c
     const Counter counted = {counter(), ring.index_of(slot)};
     const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(cl_uint);
     queue.enqueueFillBuffer(counter, cl_uint{0}, at, sizeof(cl_uint));
-    PassFrame frame = picture.chain().frame(inputs, smooth ? &inputs : nullptr, outputs, counted);
+    const FrameInputs current = native_inputs(picture.plan().settings, inputs);
+    const FrameOutputs made = native_outputs(picture.plan().settings, outputs);
+    PassFrame frame = picture.chain().frame(current, smooth ? &current : nullptr, made, counted);
     frame[Resource::kVelocity] = shown_velocity.view();
     frame[Resource::kDepth] = shown_depth.view();
-    picture.chain().show(frame, outputs, slot.report, slot.passes.data());
+    picture.chain().show(frame, made, slot.report, slot.passes.data());
     queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
                             &slot.done);
     queue.flush();
@@ -77,12 +80,20 @@ Result<ResolveService> TwoWay::create(const Device& device, const ResolvePlan& p
   return ResolveService::create(device, plan, true);
 }
 
-FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, bool merge, KeptHistory* kept) {
+ResolvePlan TwoWay::planned(const ResolvePlan& plan) {
+  PlanFacts facts(plan.needs, plan.settings);
+  facts.two_way = true;
+  return plan_of(facts);
+}
+
+FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, Merging merging,
+                        KeptHistory* kept) {
   ResolveService::Impl& impl = *service.impl_;
   FrameReport report;
-  if (merge) report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
+  if (merging == Merging::kNow)
+    report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
   if (!report.ok()) return report;
-  impl.merges = merge;
+  impl.merging = merging;
   impl.keeps = kept != nullptr;
   report = impl.dispatch(inputs, nullptr, {}, {});
   if (!report.ok() || kept == nullptr) return report;

@@ -121,6 +121,9 @@ struct PassList {
 };
 PassList list_passes(const PlanFacts& facts);
 
+// Returns the plan in the caller's words. `facts` are those of needs and settings that plan_for() takes. Pure.
+ResolvePlan plan_of(const PlanFacts& facts);
+
 // A resource of a plan, over all passes that use it.
 struct ResourceUse {
   Resource resource;

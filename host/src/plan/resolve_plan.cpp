@@ -195,15 +195,19 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
         "quality where something moves and nothing is transparent",
         name_of(settings.temporal.view)));
   }
-  PassList list = list_passes(facts);
-  if (const auto kept = facts.is_dual() ? unresized(list.passes) : std::nullopt) {
+  if (const auto kept = facts.is_dual() ? unresized(list_passes(facts).passes) : std::nullopt) {
     return Status::unsupported(
         fmt::format("{} is read, but no pass resizes it where the output is dynamic", name_of(*kept)));
   }
-  const FrameExtents largest = largest_extents(settings);
+  return plan_of(facts);
+}
+
+ResolvePlan plan_of(const PlanFacts& facts) {
+  PassList list = list_passes(facts);
+  const FrameExtents largest = largest_extents(facts.settings);
   ResolvePlan plan;
-  plan.needs = needs;
-  plan.settings = settings;
+  plan.needs = facts.needs;
+  plan.settings = facts.settings;
   plan.velocity = facts.velocity;
   for (const PassSpec& spec : list.passes)
     plan.passes.push_back({spec.kernel, spec.options, spec.reason, bytes_of(spec, largest)});

@@ -124,6 +124,13 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
                        scores ? scores->pictures() : ReportPictures());
 }
 
+std::string explanation_of(const ResolveTask& task) {
+  if (task.format.two_way == 0) return task.plan.explain();
+  return fmt::format(
+      "Both ways      {} frames ahead; a second service goes backwards, as far as merge_histories\n{}",
+      task.format.two_way, TwoWay::planned(task.plan).explain());
+}
+
 int run(int argc, char** argv) {
   ResolveOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
@@ -144,7 +151,7 @@ int run(int argc, char** argv) {
   if (options.diagnose) return print_diagnosis(options, task.value());
   if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
   if (options.explain) {
-    fmt::print("{}{}", device_lines(Device::open(options.device)), task->plan.explain());
+    fmt::print("{}{}", device_lines(Device::open(options.device)), explanation_of(task.value()));
     return kDone;
   }
   if (task->scan.frames.empty()) {

@@ -301,8 +301,10 @@ Status SequenceResolver::add_forward(std::size_t index) {
   const auto inputs = inputs_of(forward_, frame, scanned);
   if (!inputs.ok()) return inputs.status();
   KeptFrame kept;
+  const bool is_last = index + 1 == good_.size() || good_[index + 1].reset;  // of its shot
   KeptHistory* const history = scanned.wanted ? &kept.history : nullptr;
-  kept.report = TwoWay::add(forward_.service, inputs.value(), false, history);
+  kept.report =
+      TwoWay::add(forward_.service, inputs.value(), is_last ? Merging::kNever : Merging::kLater, history);
   if (!kept.report.ok()) return kept.report.status;
   if (scanned.wanted) {
     kept.frame.number = frame.number;
@@ -311,7 +313,7 @@ Status SequenceResolver::add_forward(std::size_t index) {
     if (job_.scores != nullptr) kept.frame.velocity = frame.velocity;
     kept.inputs = inputs.value();
     kept.inputs.colour = kept.inputs.velocity = kept.inputs.depth = kept.inputs.reactive = {};
-    kept.is_lone = inputs->reset;
+    kept.smooths = !is_last && !inputs->reset;
     kept_.emplace(index, std::move(kept));
   }
   outcome_.resolve_ms.push_back(ms_since(start));
@@ -345,10 +347,11 @@ Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& win
   // The frame where the run begins knows nothing of later ones; those ahead of the window wait for their own run.
   const bool merges = !inputs->reset && index <= window.last && kept != kept_.end();
   const FrameReport report =
-      TwoWay::add(backward_->service, inputs.value(), merges, merges ? &kept->second.history : nullptr);
+      TwoWay::add(backward_->service, inputs.value(), merges ? Merging::kNow : Merging::kLater,
+                  merges ? &kept->second.history : nullptr);
   if (!report.ok()) return report.status;
-  if (merges) kept->second.is_lone = false;
-  if (index == window.turn && forward_.last == scanned.number) {
+  if (merges) kept->second.smooths = true;
+  if (forward_.last == scanned.number) {
     if (Status status = TwoWay::turn(backward_->service, forward_.service); !status.ok()) return status;
   }
   outcome_.resolve_ms.push_back(ms_since(start));
@@ -361,7 +364,7 @@ Status SequenceResolver::show(std::size_t index) {
   const auto found = kept_.find(index);
   if (found == kept_.end()) return {};  // it turned out bad
   const KeptFrame& kept = found->second;
-  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, !kept.is_lone, kept.history,
+  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, kept.smooths, kept.history,
                                           {linear_.view(), presented_.view()});
   if (!report.ok()) return report.status;
   if (Status status = deliver(kept.frame, good_[index], kept.report); !status.ok()) return status;

@@ -86,7 +86,8 @@ class SequenceResolver {
     FrameInputs inputs;   // without images
     FrameReport report;
     KeptHistory history;
-    bool is_lone = true;  // no other frame's history is in it
+    bool smooths =
+        false;  // it is smoothed where it is shown: neither a first frame alone, nor what already is
   };
 
   // One file read, and added to a stream.
