@@ -34,6 +34,7 @@ struct Shot {
   bool only_across = false;
   tools::Jitter jitter = tools::Jitter::kHalton;
   float noise = 0;
+  bool plate = false;  // coloured; the columns are plain, and so is a plate that moves by itself before them
 };
 
 // A smooth pattern with waves from some four pixels on.
@@ -60,7 +61,8 @@ class Stage {
 
  private:
   static constexpr double kFocal = 1.4;  // half the picture's width, at distance 1
-  static constexpr double kWall = 10, kColumns = 5;
+  static constexpr double kWall = 10, kColumns = 5, kPlate = 3;
+  static constexpr double kPlateMoves = .2;  // a frame
 
   // Slides, slower and faster.
   Vec2 camera(int n) const {
@@ -83,18 +85,28 @@ class Stage {
       for (int x = 0; x < kRender.width; ++x) {
         const double u = across(x + .5 + frame.jitter.x), v = down(y + .5 + frame.jitter.y);
         const bool column = std::sin(2.2 * (u * kColumns + now.x)) > .3;
-        const double z = column ? kColumns : kWall;
+        const double plate_x = u * kPlate + now.x - kPlateMoves * n + 1.5;
+        const bool plate = shot_.plate && plate_x > 0 && plate_x < 1.2 && std::abs(v) < .3;
+        const double z = plate ? kPlate : column ? kColumns : kWall;
         const double size = z / pixels(1);  // of a pixel there
         float light = .3f;
-        if (shot_.textured)
+        if (shot_.plate && (plate || column)) {
+          light = plate ? .9f : .05f;
+        } else if (shot_.textured)
           light = texture(shot_.seed + (column ? 7 : 0), u * z + now.x, v * z + now.y, 4 * size);
         light += shot_.noise * (testing::noise(static_cast<std::uint32_t>(n), 5,
                                                static_cast<std::uint32_t>(y * kRender.width + x)) -
                                 .5f);
         frame.luminance.push_back(std::max(light, 0.0f));
+        if (shot_.plate) {
+          const float blue = std::clamp(light, 0.0f, 1.0f);
+          frame.colour.push_back({.9f - .8f * blue, blue, blue});
+          frame.luminance.back() = .2126f * (.9f - .8f * blue) + .7874f * blue;
+        }
         frame.depth.push_back(static_cast<float>(z));
         // Things move against the camera. As nuke has it: previous - this place, v up.
-        frame.velocity.push_back({static_cast<float>(pixels((now.x - before.x) / z)),
+        const double own = plate ? kPlateMoves : 0;
+        frame.velocity.push_back({static_cast<float>(pixels((now.x - before.x - own) / z)),
                                   static_cast<float>(-pixels((now.y - before.y) / z))});
       }
     }
@@ -108,8 +120,10 @@ class Stage {
   Shot shot_;
 };
 
+const DiagnosedInput kInput = {.near_plane = kNear, .output = kOutput};
+
 Diagnosis diagnosis_of(const Frames& frames) {
-  return tools::diagnose(frames, {.near_plane = kNear, .output = kOutput});
+  return tools::diagnose(frames, kInput);
 }
 
 const Finding& finding(const Diagnosis& diagnosis, const std::string& subject) {
@@ -140,12 +154,19 @@ TEST(Diagnose, FindsNothingWrongWithWholeFrames) {
 }
 
 TEST(Diagnose, NamesEveryFault) {
-  const Frames whole = Stage({}).frames();
+  const Frames textured = Stage({}).frames(), coloured = Stage({.plate = true}).frames();
+  EXPECT_EQ(testing::named(diagnosis_of(coloured)), "none");
+  for (const char* subject : {"objects", "colour", "picture"})
+    EXPECT_EQ(finding(diagnosis_of(coloured), subject).verdict, Verdict::kRight) << subject;
   for (const Fault& fault : testing::faults(kNear)) {
     if (fault.name == "sky: at rest") continue;  // this stage has none
-    Frames frames = whole;
+    const bool pixels = fault.name.starts_with("objects") || fault.name.starts_with("colour") ||
+                        fault.name.starts_with("picture");
+    Frames frames = pixels ? coloured : textured;
     fault.apply(frames);
-    const Diagnosis diagnosis = diagnosis_of(frames);
+    DiagnosedInput input = kInput;
+    fault.say(input);
+    const Diagnosis diagnosis = tools::diagnose(frames, input);
     // Motion of another frame is told from the camera's, which does not say which of both is late.
     const bool late = fault.name == "velocity: frame" && testing::named(diagnosis) == "camera: frame";
     if (!late) {
@@ -276,6 +297,23 @@ TEST_F(DiagnoseProgram, NamesTheOptionThatMends) {
   result = diagnose("--drawn-velocity dilated");
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_NE(result.out.find("mends it: --drawn-velocity own"), std::string::npos) << result.out;
+}
+
+TEST_F(DiagnoseProgram, JitterInMotionIsMended) {
+  Frames frames = Stage({.frames = 9}).frames();
+  testing::jitter_into_velocity(frames);
+  write(frames);
+  auto result = diagnose("");
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_NE(result.out.find("mends it: --velocity-jittered\n"), std::string::npos) << result.out;
+  result = diagnose("--velocity-jittered");
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  EXPECT_NE(result.out.find("velocity         right"), std::string::npos) << result.out;
+
+  write(Stage({.frames = 9}).frames());
+  result = diagnose("--velocity-jittered");
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_NE(result.out.find("mends it: no --velocity-jittered\n"), std::string::npos) << result.out;
 }
 
 TEST_F(DiagnoseProgram, ItsJsonIsAFileOfJitter) {

@@ -90,6 +90,29 @@ TEST_F(ReadFrame, EachKindOfValueGoesToItsPlane) {
   }
 }
 
+TEST_F(ReadFrame, JitterIsTakenOutOfMotion) {
+  testing::FrameFile file = frame(1);
+  write_frame(input(1), file);
+  SequenceFormat format;
+  format.motion = MotionSource::kChannels;
+  format.channels.velocity = kBackwardChannels;
+  const std::vector<Vec2> jittered = read(format, file.extent).velocity;
+  format.units.jittered = true;
+  SequenceFrame got;
+  const ScannedFrame scanned = {
+      .number = 1, .render = file.extent, .jitter_since = {.25f, -.125f}, .jitter_until = {-.5f, .0625f}};
+  for (const bool to_next : {false, true}) {
+    format.units.to_next = to_next;
+    const Vec2 step = to_next ? scanned.jitter_until : scanned.jitter_since;
+    const float turned = to_next ? -1 : 1;
+    ASSERT_TRUE(read_frame(input(1), format, scanned, PixelFormat::kRGBA16F, got).ok());
+    for (std::size_t i = 0; i < jittered.size(); ++i) {
+      const Vec2 v = {turned * jittered[i].x, turned * jittered[i].y};
+      ASSERT_EQ(got.velocity[i], (Vec2{v.x + step.x, v.y + step.y})) << i;
+    }
+  }
+}
+
 // R8 values are written as k / 255 in half and must come back as k.
 TEST_F(ReadFrame, ReactiveCodesReturn) {
   const Extent extent{16, 16};

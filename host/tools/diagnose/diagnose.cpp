@@ -18,13 +18,16 @@ bool has_fault(const Finding& finding, const std::string& fault) {
 Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
                   const std::vector<Pair>& pairs, std::vector<std::int64_t>& cuts) {
   const MotionAnswer motion = find_motion(frames, input, planes, pairs);
-  const Scene scene = {frames, input, planes, pairs, motion};
+  const Scene scene = {frames, input, planes, pairs, motion, light_scale(frames)};
   Diagnosis diagnosis = {motion.findings, motion.mend};
   const DepthGuess depth = find_depth(scene, diagnosis.findings);
   if (!has_fault(motion.findings.front(), "frame"))  // which lies beside its surfaces
     diagnosis.findings.push_back(find_dilation(scene, depth.kind));
   diagnosis.findings.push_back(find_resolution(scene));
   diagnosis.findings.push_back(find_sky(scene, depth));
+  diagnosis.findings.push_back(find_objects(scene, depth));
+  diagnosis.findings.push_back(find_encoding(scene));
+  diagnosis.findings.push_back(find_filter(scene, depth.kind));
   find_light(scene, diagnosis.findings, cuts);
   return diagnosis;
 }

@@ -23,8 +23,10 @@ struct DiagnosedFrame {
   bool reset = false;                 // a cut is marked
   Vec2 jitter = {};                   // as the input says
   std::vector<float> luminance = {};  // linear
-  std::vector<Vec2> velocity = {};    // values of the channels, whatever they mean
-  std::vector<float> depth = {};      // the same
+  std::vector<std::array<float, 3>> colour =
+      {};                           // the same in R, G and B; a few frames of a sequence suffice
+  std::vector<Vec2> velocity = {};  // values of the channels, whatever they mean
+  std::vector<float> depth = {};    // the same
   std::optional<Matrix> world_to_ndc = {};
 };
 

@@ -76,6 +76,7 @@ Foretold foretold(const Scene& scene, const std::vector<Motion>& motion) {
 
 std::vector<std::string> faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
   std::vector<std::string> faults;
+  if (guess.near_factor != 1) faults.emplace_back("near plane");
   if (guess.kind != input.depth_kind) faults.emplace_back("depth kind");
   if (guess.camera == Camera::kTransposed) faults.emplace_back("transposed");
   if (guess.camera == Camera::kLast || guess.camera == Camera::kNext) faults.emplace_back("frame");
@@ -91,6 +92,47 @@ std::vector<DepthGuess> depth_guesses(DepthKind stated) {
     }
   }
   return guesses;
+}
+
+// Returns the factor of the near plane with which depth of this kind tells the motion best: that of linear depth has
+// no effect.
+float fitting_near(const Scene& scene, DepthKind kind) {
+  constexpr std::size_t kEnough = 300;  // places of a pair
+  const auto error = [&](float factor) {
+    double sum = 0;
+    for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+      const Pair& pair = scene.pairs[p];
+      const DiagnosedFrame& frame = scene.frames[pair.now];
+      const auto camera = camera_of(scene, pair, {kind, Camera::kStated, factor});
+      if (!camera || frame.depth.empty()) continue;
+      const Vec2 jitter = scene.motion.jitter[pair.now];
+      const std::size_t stride = std::max<std::size_t>(pair.places.size() / kEnough, 1);
+      for (std::size_t i = 0; i < pair.places.size(); i += stride) {
+        const Place& place = pair.places[i];
+        const float depth = frame.depth[pixel_of(frame, place.x, place.y)];
+        const Vec2 moved = camera_moves(
+            *camera,
+            {static_cast<float>(place.x) + .5f + jitter.x, static_cast<float>(place.y) + .5f + jitter.y},
+            kind == DepthKind::kDevice ? 1 - depth : depth, frame.render);
+        const Vec2 is = scene.motion.motion[p][i];
+        const float apart = std::hypot(moved.x - is.x, moved.y - is.y);
+        sum += apart < 1 ? apart : 1;  // not a number counts in full
+      }
+    }
+    return sum;
+  };
+  float best = 1;
+  double least = error(best);
+  const auto search = [&](float centre, float step, int reach) {
+    for (int i = -reach; i <= reach; ++i) {
+      const float factor = centre * std::exp2(step * static_cast<float>(i));
+      if (const double here = error(factor); here < least) least = here, best = factor;
+    }
+  };
+  search(1, .5f, 28);
+  for (const float step : {.125f, .03f, .008f})
+    search(best, step, 4);
+  return best;
 }
 
 void find_wrong(Finding& finding, const std::string& fault, const std::string& fits,
@@ -109,7 +151,7 @@ std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, cons
   const auto now = matrix_at(scene.frames, pair.now, guess.camera);
   const auto before = matrix_at(scene.frames, pair.now - 1, guess.camera);
   if (!now || !before) return std::nullopt;
-  return camera_motion(*now, *before, scene.input.near_plane);
+  return camera_motion(*now, *before, scene.input.near_plane * guess.near_factor);
 }
 
 Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent extent) {
@@ -126,7 +168,13 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   Finding depth = {.subject = "depth",
                    .says = scene.frames[0].depth.empty() ? "none" : name_of(input.depth_kind)};
   Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
-  const std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind);
+  std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind);
+  if (scene.motion.knows_motion && input.depth_kind != DepthKind::kLinear) {
+    constexpr float kLeast = 1.1f;
+    const float factor = fitting_near(scene, input.depth_kind);
+    if (factor > kLeast || factor * kLeast < 1)
+      guesses.push_back({input.depth_kind, Camera::kStated, factor});
+  }
   std::vector<std::vector<Motion>> motions;
   for (const DepthGuess& guess : guesses)
     motions.push_back(camera_motion_of(scene, guess));
@@ -139,10 +187,15 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   for (std::size_t g = 0; g < guesses.size(); ++g) {
     const Comparison compared =
         compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[g].foretold);
-    if (guesses[g].camera == best.camera && guesses[g].kind != best.kind)
-      kinds.add(compared, {name_of(guesses[g].kind)});
-    if (guesses[g].kind == best.kind && guesses[g].camera != best.camera)
+    if (guesses[g].camera == best.camera && guesses[g].kind != best.kind) kinds.add(compared, {"kind"});
+    if (guesses[g].kind == best.kind && guesses[g].camera != best.camera && guesses[g].near_factor == 1)
       cameras.add(compared, {guesses[g].camera == Camera::kTransposed ? "transposed" : "frame"});
+  }
+  for (const float factor : {.5f, 2.0f}) {
+    if (best.kind == DepthKind::kLinear) break;
+    const auto motion = camera_motion_of(scene, {best.kind, best.camera, best.near_factor * factor});
+    kinds.add(compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold(scene, motion)),
+              {"near plane"});
   }
   kinds.judge(depth);
   cameras.judge(camera);
@@ -151,6 +204,10 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   if (best.kind != input.depth_kind) {
     const char* kind = name_of(best.kind);
     find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), against);
+  }
+  if (best.near_factor != 1) {
+    const std::string near_plane = fmt::format("{:.4g}", input.near_plane * best.near_factor);
+    find_wrong(depth, "near plane", "a near plane at " + near_plane, "--near " + near_plane, against);
   }
   if (best.camera == Camera::kTransposed)
     find_wrong(camera, "transposed", "its transpose", "write it for row vectors", against);

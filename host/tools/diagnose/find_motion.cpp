@@ -42,8 +42,10 @@ class Search {
 
   // Errors with the shift that fits each pair best, whatever the jitter.
   double least_error(const std::vector<Motion>& motion) const {
+    constexpr std::size_t kEnough = 5;  // pairs, spread over all
+    const std::size_t stride = std::max<std::size_t>(pairs_.size() / kEnough, 1);
     double sum = 0;
-    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+    for (std::size_t p = 0; p < pairs_.size(); p += stride) {
       const Plane& before = planes_[pairs_[p].now - 1];
       for (const float error :
            foretell(pairs_[p], before, motion[p], best_shift(pairs_[p], before, motion[p])))
@@ -211,10 +213,15 @@ Finding judge_motion(const Search& search, const DiagnosedInput& input, const Gu
   finding.fits = text_of(motion);
   if (motion != MotionGuess{}) finding.option = option_of(input, motion, extent);
   if (mixed != 0) {
-    finding.faults.emplace_back("jitter in it");
-    finding.fits += std::string(finding.fits.empty() ? "" : ", ") + "with the jitter in it";
-    finding.option +=
-        std::string(finding.option.empty() ? "" : " and ") + "conventions.velocity_jittered = true";
+    const bool said = input.units.jittered;
+    finding.faults.emplace_back(said ? "no jitter in it" : "jitter in it");
+    finding.fits +=
+        fmt::format("{}{} the jitter in it", finding.fits.empty() ? "" : ", ", said ? "without" : "with");
+    finding.option += fmt::format("{}{}",
+                                  finding.option.empty() ? ""
+                                  : said                 ? ", "
+                                                         : " ",
+                                  said ? "no --velocity-jittered" : "--velocity-jittered");
   }
   const std::size_t other = motion == MotionGuess{} ? 0 : guesses.index(0, guesses.chosen_jitter());
   const Comparison compared = search.compared(guesses.best(), guesses.candidates[other].foretold);
@@ -267,16 +274,31 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
   const int mixed = has_motion && guesses.told() ? jitter_in_motion(frames, input, guesses.motion()) : 0;
   JitterGuess jitter = guesses.jitter();
-  if (mixed != 0) jitter = {.flip_x = mixed > 0, .flip_y = mixed > 0};
+  const bool said = input.units.jittered;  // and so taken out before
+  if (mixed != 0) jitter = {.flip_x = mixed > 0 && !said, .flip_y = mixed > 0 && !said};
   Finding motion = {.subject = "velocity", .says = "none"};
   if (has_motion) motion = judge_motion(search, input, guesses, mixed, extent);
   const Finding moved = judge_jitter(search, guesses, jitter, mixed);
   answer.findings = {motion, moved};
   answer.knows_motion = motion.verdict != Verdict::kUnknown;
   answer.mend = mend_of(jitter);
+  answer.guess = guesses.motion();
+  answer.jitters = mixed == 0 ? 0 : said ? -1 : 1;
   for (std::size_t i = 0; i < frames.size(); ++i)
     answer.jitter.push_back(jitter_at(frames, input, jitter, i).value_or(frames[i].jitter));
   return answer;
+}
+
+Vec2 own_motion(const Scene& scene, const Pair& pair, int x, int y) {
+  const DiagnosedFrame& frame = scene.frames[pair.now];
+  const MotionGuess& guess = scene.motion.guess;
+  Vec2 v = frame.velocity[pixel_of(frame, x, y)];
+  if (guess.swapped) std::swap(v.x, v.y);
+  const Vec2 factors = factors_of(scene.input, guess, frame.render);
+  const Vec2 moved = {v.x * factors.x, v.y * factors.y};
+  const Vec2 now = scene.motion.jitter[pair.now], before = scene.motion.jitter[pair.now - 1];
+  return {moved.x + scene.motion.jitters * (now.x - before.x),
+          moved.y + scene.motion.jitters * (now.y - before.y)};
 }
 
 }  // namespace quincunx::tools

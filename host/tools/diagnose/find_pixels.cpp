@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What single pixels tell of motion: dilated, of half the size, at rest.
+// What single pixels tell of motion: dilated, of half the size, at rest where something moves.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tools/diagnose/findings.h"
 
@@ -15,6 +16,68 @@ struct Votes {
 
   double share() const { return all > 0 ? static_cast<double>(yes) / static_cast<double>(all) : 0; }
 };
+
+// Depths of a frame, reversed.
+std::vector<float> reversed(const Scene& scene, std::size_t frame, DepthKind kind) {
+  std::vector<float> depth = scene.frames[frame].depth;
+  to_reversed_depth(kind, scene.input.near_plane, depth);
+  return depth;
+}
+
+// The least and the most of the 3x3 pixels about one that is not at the border.
+std::pair<float, float> range_about(const std::vector<float>& values, int width, int x, int y) {
+  float least = values[static_cast<std::size_t>(y * width + x)], most = least;
+  for (int j = y - 1; j <= y + 1; ++j) {
+    for (int i = x - 1; i <= x + 1; ++i) {
+      const float value = values[static_cast<std::size_t>(j * width + i)];
+      least = std::min(least, value), most = std::max(most, value);
+    }
+  }
+  return {least, most};
+}
+
+// Pixels of one pair's later frame.
+struct Rest {
+  std::size_t moving = 0;  // by themselves
+  std::size_t sudden =
+      0;  // at rest by their motion, yet not there before: all depths about that place were farther
+};
+
+// Looks at pixels whose motion is that of what is at rest: the camera's, or exactly 0.
+Rest rest_of(const Scene& scene, const Pair& pair, const CameraMotion& camera, DepthKind kind) {
+  constexpr float kApart = .1f, kMoves = .5f;  // pixels
+  constexpr float kAlike = 1.05f, kFarther = .85f;
+  const DiagnosedFrame& frame = scene.frames[pair.now];
+  const std::vector<float> now = reversed(scene, pair.now, kind);
+  const std::vector<float> before = reversed(scene, pair.now - 1, kind);
+  const int width = frame.render.width, height = frame.render.height;
+  const Vec2 jitter = scene.motion.jitter[pair.now], last = scene.motion.jitter[pair.now - 1];
+  const auto& m = camera.clip_to_previous_clip;
+  Rest rest;
+  for (int y = 1; y + 1 < height; ++y) {
+    for (int x = 1; x + 1 < width; ++x) {
+      const auto [least, most] = range_about(now, width, x, y);
+      if (!(least > 0 && most <= kAlike * least)) continue;
+      const float depth = now[pixel_of(frame, x, y)];
+      const Vec2 at = {static_cast<float>(x) + .5f + jitter.x, static_cast<float>(y) + .5f + jitter.y};
+      const Vec2 moved = camera_moves(camera, at, depth, frame.render);
+      const Vec2 own = own_motion(scene, pair, x, y);
+      const bool zero = frame.velocity[pixel_of(frame, x, y)] == Vec2{};
+      const float apart = std::hypot(own.x - moved.x, own.y - moved.y);
+      rest.moving += apart > kMoves && !zero ? 1 : 0;
+      if (!zero && !(scene.motion.knows_motion && apart < kApart)) continue;
+      const int px = static_cast<int>(std::floor(at.x - own.x - last.x));
+      const int py = static_cast<int>(std::floor(at.y - own.y - last.y));
+      if (px < 1 || py < 1 || px + 1 >= width || py + 1 >= height) continue;
+      const float cx = 2 * at.x / static_cast<float>(width) - 1,
+                  cy = 1 - 2 * at.y / static_cast<float>(height);
+      const float w = m[3] * cx + m[7] * cy + m[11] * depth + m[15];
+      const float expected = zero ? depth : (m[2] * cx + m[6] * cy + m[10] * depth + m[14]) / w;
+      rest.sudden += range_about(before, width, px, py).second < kFarther * expected ? 1 : 0;
+    }
+  }
+  return rest;
+}
 
 }  // namespace
 
@@ -114,6 +177,40 @@ Finding find_sky(const Scene& scene, const DepthGuess& guess) {
   finding.faults = {"at rest"};
   finding.fits = "0, although the camera turns";
   finding.option = "--sky-motion camera";
+  return finding;
+}
+
+Finding find_objects(const Scene& scene, const DepthGuess& guess) {
+  constexpr double kLeastPart = 2e-4, kFew = 2e-5;  // of a picture's pixels
+  Finding finding = {.subject = "objects", .says = "as drawn"};
+  if (scene.motion.guess.later != 0) return finding;
+  double moving = 0, sudden = 0, pixels = 0;
+  Votes votes;
+  for (const Pair& pair : scene.pairs) {
+    const DiagnosedFrame& frame = scene.frames[pair.now];
+    const auto camera = camera_of(scene, pair, guess);
+    if (!camera || frame.depth.empty() || frame.velocity.empty() ||
+        scene.frames[pair.now - 1].render != frame.render)
+      continue;
+    const Rest rest = rest_of(scene, pair, *camera, guess.kind);
+    const auto area = static_cast<double>(frame.render.area());
+    moving += static_cast<double>(rest.moving);
+    sudden += static_cast<double>(rest.sudden);
+    pixels += area;
+    ++votes.all;
+    votes.yes += static_cast<double>(rest.sudden) > kLeastPart * area ? 1 : 0;
+  }
+  if (votes.all < 2) return finding;
+  if (votes.share() > .6) {
+    finding.verdict = Verdict::kWrong;
+    finding.share = votes.share();
+    finding.faults = {"at rest"};
+    finding.fits = "some move by themselves, with the motion of what is at rest";
+    finding.option = "write the motion of everything that moves";
+  } else if (moving > .005 * pixels && sudden < kFew * pixels) {
+    finding.verdict = Verdict::kRight;
+    finding.share = 1 - votes.share();
+  }
   return finding;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/diagnose/foretelling.h"
+#include "tools/diagnose/motion_guesses.h"
 
 namespace quincunx::tools {
 
@@ -25,6 +26,8 @@ struct MotionAnswer {
   std::vector<Vec2> shift = {};     // the same, of the jitter
   std::vector<Vec2> jitter = {};    // of each frame
   JitterMend mend = {};
+  MotionGuess guess = {};  // what the channels mean
+  float jitters = 0;       // how much of its steps is missing in them: 1 where the jitter is in them
 };
 
 MotionAnswer find_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
@@ -37,13 +40,18 @@ struct Scene {
   const std::vector<Plane>& planes;
   const std::vector<Pair>& pairs;
   const MotionAnswer& motion;
+  float light_scale = 1;  // as of light_scale()
 };
+
+// Returns the pixels by which what a pixel of a pair's later frame shows has moved, by its own channels as they fit.
+Vec2 own_motion(const Scene& scene, const Pair& pair, int x, int y);
 
 enum class Camera : std::uint8_t { kStated, kTransposed, kLast, kNext };
 
 struct DepthGuess {
   DepthKind kind;
   Camera camera = Camera::kStated;
+  float near_factor = 1;  // the near plane's distance, over what the input says; counts for device depth
 };
 
 // Judges depth and camera; returns the guess to believe.
@@ -63,6 +71,13 @@ Finding find_resolution(const Scene& scene);
 
 // Does the sky stand still in the picture although the camera moves it?
 Finding find_sky(const Scene& scene, const DepthGuess& guess);
+
+// Are there things that move by themselves, yet have the motion of what is at rest?
+Finding find_objects(const Scene& scene, const DepthGuess& guess);
+
+// Is the picture encoded for a screen, and was it filtered already?
+Finding find_encoding(const Scene& scene);
+Finding find_filter(const Scene& scene, DepthKind kind);
 
 // Judges whether frames follow from each other in brightness, and whether they do at all. `cuts`: frames before which
 // cuts are missing; that finding is the last.

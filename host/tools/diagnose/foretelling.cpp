@@ -134,9 +134,13 @@ Vec2 finite(Vec2 v) {
 
 }  // namespace
 
+float light_scale(std::span<const DiagnosedFrame> frames) {
+  return frames.empty() ? 1 : .5f / middle(frames.front());
+}
+
 std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames) {
   std::vector<Plane> planes;
-  const float scale = frames.empty() ? 1 : .5f / middle(frames.front());
+  const float scale = light_scale(frames);
   for (const DiagnosedFrame& frame : frames)
     planes.push_back(plane_of(frame, scale));
   return planes;
@@ -197,7 +201,7 @@ std::vector<float> foretell(const Pair& pair, const Plane& before, const Motion&
 }
 
 Vec2 best_shift(const Pair& pair, const Plane& before, const Motion& motion) {
-  const std::size_t stride = std::max<std::size_t>(pair.places.size() / 1200, 1);
+  const std::size_t stride = std::max<std::size_t>(pair.places.size() / 500, 1);
   Vec2 best;
   double least = -1;
   const auto search = [&](Vec2 centre, float step, int reach) {

@@ -40,6 +40,9 @@ struct Pair {
 // Pixels of the later frame by which each place has moved since the earlier one.
 using Motion = std::vector<Vec2>;
 
+// Returns the factor of luminance before it is tone mapped.
+float light_scale(std::span<const DiagnosedFrame> frames);
+
 std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames);
 
 // Pairs of the frames, with places.

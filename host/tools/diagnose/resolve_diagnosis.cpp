@@ -12,6 +12,20 @@
 
 namespace quincunx::tools {
 
+namespace {
+
+// As it is taken from motion that is read, but in the channels' units.
+void take_jitter(std::vector<Vec2>& velocity, const VelocityUnits& units, const ScannedFrame& scanned) {
+  Vec2 factors[] = {{1, 1}};
+  to_velocity(units, scanned.render, factors);
+  for (Vec2& v : velocity) {
+    if (v != Vec2{})
+      v = {v.x + scanned.jitter_since.x / factors[0].x, v.y + scanned.jitter_since.y / factors[0].y};
+  }
+}
+
+}  // namespace
+
 DiagnosedInput diagnosed_input(const ResolveTask& task) {
   const InputConventions& conventions = task.resolve.conventions;
   return {.units = task.format.units,
@@ -24,7 +38,7 @@ DiagnosedInput diagnosed_input(const ResolveTask& task) {
 }
 
 Result<std::vector<DiagnosedFrame>> read_for_diagnosis(const ResolveTask& task) {
-  constexpr std::size_t kEnoughFrames = 16;
+  constexpr std::size_t kEnoughFrames = 16, kColourEvery = 4;
   constexpr std::int64_t kMostPixels = 24'000'000;  // of all frames, in memory at once
   SequenceFormat format = task.format;              // the values as they are in the files
   format.units = {VelocityConvention::kScale, {1, 1}};
@@ -52,9 +66,12 @@ Result<std::vector<DiagnosedFrame>> read_for_diagnosis(const ResolveTask& task) 
                             .velocity = read.velocity,
                             .depth = read.depth,
                             .world_to_ndc = read.world_to_ndc};
+    if (frames.size() % kColourEvery == 0) frame.colour.resize(frame.luminance.size());
+    if (task.format.units.jittered) take_jitter(frame.velocity, task.format.units, scanned);
     for (std::size_t i = 0; i < frame.luminance.size(); ++i) {
       float rgba[4];
       std::memcpy(rgba, read.colour.data() + i * sizeof rgba, sizeof rgba);
+      if (!frame.colour.empty()) frame.colour[i] = {rgba[0], rgba[1], rgba[2]};
       frame.luminance[i] = .2126f * rgba[0] + .7152f * rgba[1] + .0722f * rgba[2];
     }
     frames.push_back(std::move(frame));

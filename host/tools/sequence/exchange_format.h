@@ -57,6 +57,8 @@ struct VelocityUnits {
   VelocityConvention convention = VelocityConvention::kNuke;
   Vec2 scale = {1, 1};   // factor of kScale
   bool to_next = false;  // earlier - later is from this frame to the next, not from the previous one to this
+  bool jittered =
+      false;  // both positions are those in the jittered pictures; to_velocity() leaves that as it is
 };
 
 enum class DepthKind : std::uint8_t {

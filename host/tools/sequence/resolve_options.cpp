@@ -85,6 +85,7 @@ void add_motion_options(CommandLine& app, ResolveOptions& options) {
          "Or: what makes motion current - previous in parts of the image, y down")
       .type_name("X,Y")
       .excludes("--velocity-convention");
+  app.add_flag("--velocity-jittered", input.velocity_jittered, "The jitter is in the motion");
   add_choice(app, "--drawn-velocity", options.resolve.conventions.drawn_velocity, choices<DrawnVelocity>(),
              "Whose motion a pixel has: its own surface's, or dilated, that of the nearest of its 3x3 "
              "(default: own)");
@@ -232,7 +233,8 @@ void check_recorded(const CommandLine& app, const std::string& folder) {
     throw wrong("--diagnose", fmt::format("looks at EXR sequences alone, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
-        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next"}) {
+        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next",
+        "--velocity-jittered"}) {
     if (app.has(option))
       throw wrong(option, fmt::format("is what the recording in '{}' says itself", folder));
   }

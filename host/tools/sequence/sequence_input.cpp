@@ -114,6 +114,7 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
                       format.channels.velocity[0], format.channels.velocity[1]));
     }
     format.units = input.units.value_or(VelocityUnits{});
+    format.units.jittered = input.velocity_jittered;
   }
   if (format.motion == MotionSource::kCamera && !attributes.world_to_ndc) {
     return Status::io(fmt::format("'{}' has no attribute 'worldToNDC', which --velocity camera needs", path));
@@ -235,7 +236,7 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
     format.next_motion = NextMotion::kChannels;
     // The format's own channels say where a surface goes, others where it comes from, as those of velocity do.
     if (format.next_velocity == kForwardChannels)
-      format.next_units = {};
+      format.next_units = {.jittered = format.units.jittered};
     else
       format.next_units.to_next = true;
   } else {
@@ -279,6 +280,7 @@ std::string summary_of(const SequenceFormat& format) {
                         name_of(format.units.convention));
     if (format.units.convention == VelocityConvention::kScale)
       text += fmt::format(" {},{}", format.units.scale.x, format.units.scale.y);
+    if (format.units.jittered) text += ", jittered";
   } else if (format.motion == MotionSource::kCamera && channels.has_depth()) {
     text += "; velocity from depth and worldToNDC";
   }

@@ -74,6 +74,7 @@ struct SequenceInput {
   std::array<std::string, 2> velocity;                      // names of kChannels
   std::optional<std::array<std::string, 2>> next_velocity;  // channels of motion to the next frame
   std::optional<VelocityUnits> units;                       // needed for other channels than backward.u/.v
+  bool velocity_jittered = false;                           // as VelocityUnits has it
   std::optional<std::string> depth;                         // absent: Z where there is one; empty: none
   std::optional<DepthKind> depth_kind;                      // absent: the attribute depthKind, else linear
   std::optional<float> near_plane;                          // absent: the attribute near, else kUnknownNear

@@ -79,6 +79,13 @@ void clear(SequenceFrame& frame, DepthKind depth_kind, std::vector<float>& mask)
   std::fill(mask.begin(), mask.end(), 0.0f);
 }
 
+// As InputConventions::velocity_jittered has it: a motion of exactly 0 is none that was drawn.
+void take_jitter(std::vector<Vec2>& velocity, Vec2 step) {
+  for (Vec2& v : velocity) {
+    if (v != Vec2{}) v = {v.x + step.x, v.y + step.y};
+  }
+}
+
 Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const SequenceFormat& format,
                    ChannelType colour_type, SequenceFrame& frame) {
   const std::size_t texel = colour_type == ChannelType::kHalf ? 2 : 4;
@@ -127,6 +134,8 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
     }
   }
   to_velocity(format.units, frame.render, frame.velocity);
+  if (format.units.jittered)
+    take_jitter(frame.velocity, format.units.to_next ? expected.jitter_until : expected.jitter_since);
   to_reversed_depth(format.depth_kind, format.near_plane, frame.depth);
   return {};
 }

@@ -234,6 +234,14 @@ SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& fo
     const ScannedFrame* before = i > 0 ? &scan.frames[i - 1] : nullptr;
     const bool follows = before != nullptr && before->number + 1 == frame.number && before->problem.empty();
     frame.reset = frame.reset || !follows;
+    if (frame.reset) continue;
+    const auto parts = [](const ScannedFrame& one) {
+      return Vec2{one.jitter.x / static_cast<float>(one.render.width),
+                  one.jitter.y / static_cast<float>(one.render.height)};
+    };
+    const Vec2 now = parts(frame), last = parts(*before);
+    frame.jitter_since = {now.x - last.x, now.y - last.y};
+    scan.frames[i - 1].jitter_until = {last.x - now.x, last.y - now.y};
   }
   return scan;
 }

@@ -24,6 +24,8 @@ struct ScannedFrame {
   bool has_matrix = false;            // the attribute worldToNDC
   std::optional<Extent> output = {};  // the attribute outputSize
   Vec2 jitter = {};
+  Vec2 jitter_since = {};    // less that of the frame before, in parts of the picture; 0 after a reset
+  Vec2 jitter_until = {};    // the same, less that of the next frame
   bool reset = false;        // nothing of the frame before may be used: a cut, or it is not there
   std::string problem = {};  // empty: none; else one sentence that names the file
 };
