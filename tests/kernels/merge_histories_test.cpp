@@ -131,6 +131,14 @@ TEST_P(MergeHistories, MatchesTheReferenceOnEveryPatternAndSize) {
   }
 }
 
+TEST_P(MergeHistories, WithItselfItIsTwiceAsSure_small) {
+  const Extent extent{33, 9};
+  const Texels own = texels(Pattern::kNoise, extent, 3, GetParam().history);
+  const Texels made = merge(own, own, extent);
+  for (std::size_t i = 0; i < made.size(); ++i)
+    ASSERT_EQ(made[i].texel[3], 2 * own[i].texel[3]) << i;
+}
+
 TEST_P(MergeHistories, WithoutAnotherHistoryItStaysWhatItIs) {
   const Extent extent{33, 9};
   const Texels own = texels(Pattern::kNoise, extent, 3, GetParam().picture);

@@ -3,6 +3,7 @@
 """quincunx.py: its structs are those of the headers, its pictures those of a reference, its errors sentences."""
 import os
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -302,6 +303,76 @@ class Example(unittest.TestCase):
         truth = sampled(*size)
         self.assertLess(rms(pictures[-1], truth), rms(bilinear(sampled(64, 36), *size), truth) / 4)
         self.assertLess(rms(pictures[-1], truth), rms(pictures[0], truth) / 2)
+
+
+def write_exr(path, channels, attributes=()):
+    """A plain OpenEXR file of float32: {name: plane}, and attributes as (name, type, bytes)."""
+    def text(*words):
+        return b"".join(word.encode() + b"\0" for word in words)
+
+    height, width = next(iter(channels.values())).shape
+    box = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    names = b"".join(text(name) + struct.pack("<4i", 2, 0, 1, 1) for name in sorted(channels)) + b"\0"
+    header = b"".join(text(name, kind) + struct.pack("<i", len(value)) + value for name, kind, value in (
+        ("channels", "chlist", names), ("compression", "compression", b"\0"), ("dataWindow", "box2i", box),
+        ("displayWindow", "box2i", box), ("lineOrder", "lineOrder", b"\0"),
+        ("pixelAspectRatio", "float", struct.pack("<f", 1)), ("screenWindowCenter", "v2f", bytes(8)),
+        ("screenWindowWidth", "float", struct.pack("<f", 1)), *attributes)) + b"\0"
+    planes = np.stack([channels[name] for name in sorted(channels)], axis=1).astype("<f4")  # a row's, side by side
+    start, size = 8 + len(header) + 8 * height, planes[0].nbytes
+    with open(path, "wb") as file:
+        file.write(struct.pack("<2i", 20000630, 2) + header)
+        file.write(struct.pack(f"<{height}Q", *(start + y * (size + 8) for y in range(height))))
+        for y in range(height):
+            file.write(struct.pack("<2i", y, size) + planes[y].tobytes())
+
+
+@unittest.skipUnless(os.environ.get("QUINCUNX_RESOLVE"), "it was built without the programs")
+class Sequence(unittest.TestCase):
+    """resolve_sequence(): nine still frames, with their truth, one way and both."""
+
+    SIZE, FRAME, COUNT = (128, 72), (64, 36), 9
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.pattern = lambda name: os.path.join(folder.name, name + ".%04d.exr")
+        zeros = np.zeros(self.FRAME[::-1])
+        still = {"Z": zeros + 4, **{name: zeros for name in ("backward.u", "backward.v", "forward.u", "forward.v")}}
+        truth = dict(zip("RGB", np.moveaxis(sampled(*self.SIZE), 2, 0)))
+        for number in range(self.COUNT):
+            jitter = quincunx.jitter(number, self.FRAME, self.SIZE)
+            colour = dict(zip("RGB", np.moveaxis(sampled(*self.FRAME, jitter), 2, 0)))
+            write_exr(self.pattern("f") % number, {**colour, **still},
+                      [("quincunx:jitter", "v2f", struct.pack("<2f", *jitter))])
+            write_exr(self.pattern("truth") % number, truth)
+
+    def resolve(self, *out, **options):
+        return quincunx.resolve_sequence(self.pattern("f"), *out, program=os.environ["QUINCUNX_RESOLVE"],
+                                         **{"output": self.SIZE, **options})
+
+    def test_both_ways_are_better_than_one(self):
+        def first_score(report):
+            self.assertEqual(len(report["frames"]), self.COUNT)
+            return report["scores"]["frames"][0]["psnr_tone_mapped"]
+
+        one, two = (self.resolve(truth=self.pattern("truth"), two_way=two_way) for two_way in (0, 8))
+        self.assertGreater(first_score(two), first_score(one) + 2)
+        written = self.resolve(self.pattern("u"), two_way=8, frames="2-4", resume=True, sharpen=None)
+        self.assertEqual([row["index"] for row in written["frames"]], [2, 3, 4])
+        self.assertTrue(os.path.exists(self.pattern("u") % 4))
+        self.assertEqual(self.resolve(self.pattern("u"), two_way=8, frames="2-4", resume=True), {})
+
+    def test_errors_are_the_programs_sentences(self):
+        with self.assertRaisesRegex(quincunx.Error, "--two-way") as refused:
+            self.resolve(self.pattern("u"), two_way=65)
+        self.assertEqual(refused.exception.code, 1)
+        os.remove(self.pattern("f") % 3)
+        with self.assertRaisesRegex(quincunx.Error, "^frame 3 is missing: ") as failed:
+            self.resolve(self.pattern("u"))
+        self.assertEqual(failed.exception.code, 4)
+        with self.assertRaises(OSError):
+            quincunx.resolve_sequence("f.%04d.exr", program="no-such-program")
 
 
 class Errors(unittest.TestCase):

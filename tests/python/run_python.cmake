@@ -1,5 +1,5 @@
 # Runs quincunx_test.py with a Python that has NumPy: the one in the path, or the system's own.
-# Run as: cmake -D LIBRARY=libquincunx.so -D ROOT=FOLDER -P run_python.cmake
+# Run as: cmake -D LIBRARY=libquincunx.so -D RESOLVE=quincunx-resolve -D ROOT=FOLDER -P run_python.cmake
 foreach(candidate python3 /usr/bin/python3)
   execute_process(COMMAND ${candidate} -c "import numpy" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
   if(result EQUAL 0)
@@ -15,7 +15,7 @@ if(NOT python)
   return()
 endif()
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -E env QUINCUNX_LIBRARY=${LIBRARY} PYTHONPATH=${ROOT}/host/tools/python
+  COMMAND ${CMAKE_COMMAND} -E env QUINCUNX_LIBRARY=${LIBRARY} QUINCUNX_RESOLVE=${RESOLVE} PYTHONPATH=${ROOT}/host/tools/python
           PYTHONDONTWRITEBYTECODE=1 ${python} ${ROOT}/tests/python/quincunx_test.py
   RESULT_VARIABLE result)
 if(NOT result EQUAL 0)

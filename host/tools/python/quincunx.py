@@ -13,9 +13,11 @@ conventions. Errors are quincunx.Error with the library's sentence; its log goes
 """
 import atexit
 import ctypes
+import json
 import logging
 import os
 import re
+import subprocess
 import textwrap
 from ctypes import POINTER, Structure, byref, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint64, c_void_p
 
@@ -414,6 +416,33 @@ class Resolver:
 Resolver.__doc__ = (Resolver.__doc__ or "") + "\n" + textwrap.fill(", ".join(
     f"{name} ({' | '.join(CHOICES[name])})" if name in CHOICES else name for name in Settings.names()), 118,
     initial_indent="    ", subsequent_indent="    ", break_on_hyphens=False)
+
+
+def resolve_sequence(pattern, out=None, *, program="quincunx-resolve", **options):
+    """Resolves an EXR sequence by the program quincunx-resolve, as docs/sequences.md says, and returns its report.
+
+        report = quincunx.resolve_sequence("shot/shot.%04d.exr", "up/up.%04d.exr", output=(3840, 2160), two_way=8)
+
+    `pattern` and `out` name the files as the program wants them, or `pattern` a recording's folder. The program's
+    options are keywords: numbers and text as they are, pairs as tuples, True for one without a value; None and False
+    leave it out. two_way=8 looks eight frames ahead, 0 none. The report is that of --json, a dict: settings, frames,
+    passes, scores (with truth), files and more; {} where nothing was left to do. Blocks; any thread may call it. Raises
+    OSError where there is no program, and Error with the program's sentence: code 1 for wrong options, 4 for frames
+    that cannot be read, written or resolved.
+    """
+    words = [program, pattern, "--json", "--quiet"] + (["--out", out] if out is not None else [])
+    for name, value in options.items():
+        if value is None or value is False:
+            continue
+        words.append("--" + name.replace("_", "-"))
+        if isinstance(value, (tuple, list)):
+            value = ("x" if name == "output" else ",").join(map(str, value))
+        if value is not True:
+            words.append(str(value))
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Error(1 if done.returncode == 2 else 4, done.stderr.strip().removeprefix("error: "))
+    return json.loads(done.stdout or "{}")
 
 
 class Handle:
