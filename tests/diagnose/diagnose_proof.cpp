@@ -83,8 +83,8 @@ Result<Sequence> read(const std::string& argument, const Mode& mode) {
   if (!task.ok()) return task.status();
   auto whole = read_for_diagnosis(task.value());
   if (!whole.ok()) return whole.status();
-  sequence.frames = std::move(whole).value();
-  sequence.input = diagnosed_input(task.value());
+  sequence.frames = std::move(whole->frames);
+  sequence.input = whole->input;
   if (mode.noise) add_noise(sequence.frames);
   if (mode.eight_bit) round_velocity(sequence.frames);
   return sequence;

@@ -10,6 +10,8 @@
 #include "diagnose_faults.h"
 #include "sequence/sequence_fixture.h"
 #include "tools/program/jitter.h"
+#include "tools/record/recorded_frame.h"
+#include "tools/record/recorded_settings.h"
 
 namespace quincunx {
 namespace {
@@ -276,6 +278,41 @@ class DiagnoseProgram : public testing::SequenceTest {
     }
   }
 
+  // As an engine gives them that has velocity as nuke does, and linear depth.
+  void record(const Frames& frames, const InputConventions& conventions) {
+    ResolveSettings settings = {.output_extent = kOutput, .target_extent = kRender};
+    settings.method = Method::kTemporal;
+    settings.colour = PixelFormat::kRGBA32F;
+    settings.velocity = PixelFormat::kRG32F;
+    settings.conventions = conventions;
+    const auto plan = plan_for({}, settings);
+    ASSERT_TRUE(plan.ok()) << plan.status().message();
+    const auto image = [](PixelFormat format, const auto& values) {
+      const auto bytes = std::as_bytes(std::span(values));
+      return tools::RecordedImage{format, {bytes.begin(), bytes.end()}};
+    };
+    for (const DiagnosedFrame& frame : frames) {
+      std::vector<std::array<float, 4>> colour;
+      for (const float light : frame.luminance)
+        colour.push_back({light, light, light, 1});
+      tools::RecordedFrame recorded;
+      recorded.inputs.render_extent = kRender;
+      recorded.inputs.jitter = frame.jitter;
+      recorded.inputs.near_plane = kNear;
+      recorded.inputs.frame_index = static_cast<std::uint64_t>(frame.index);
+      tools::RecordedPart& part = recorded[tools::FramePart::kPicture];
+      part.extent = kRender;
+      part.images = {image(PixelFormat::kRGBA32F, colour), image(PixelFormat::kRG32F, frame.velocity),
+                     image(PixelFormat::kR32F, frame.depth)};
+      if (plan->reads_reactive)
+        part.images.push_back(image(PixelFormat::kR8, std::vector<std::uint8_t>(frame.depth.size())));
+      const Status status = tools::write_frame(folder_.file("seen"), frame.number, plan.value(), recorded);
+      ASSERT_TRUE(status.ok()) << status.message();
+    }
+    std::ofstream(folder_.file("seen/sequence.json"))
+        << tools::to_json({.device = "none", .needs = {}, .settings = settings});
+  }
+
   testing::ProgramResult diagnose(const std::string& arguments) {
     return resolve("'{}/f.%04d.exr' --diagnose " + arguments);
   }
@@ -314,6 +351,33 @@ TEST_F(DiagnoseProgram, JitterInMotionIsMended) {
   result = diagnose("--velocity-jittered");
   EXPECT_EQ(result.exit_code, 3) << result.err;
   EXPECT_NE(result.out.find("mends it: no --velocity-jittered\n"), std::string::npos) << result.out;
+}
+
+TEST_F(DiagnoseProgram, LooksAtRecordings) {
+  InputConventions conventions = {.depth = DepthConvention::kLinear,
+                                  .velocity_unit = VelocityUnit::kPixels,
+                                  .velocity_backward = true,
+                                  .velocity_up = true};
+  record(Stage({.frames = 7}).frames(), conventions);
+  auto result = resolve("'{}/seen' --diagnose");
+  EXPECT_EQ(result.exit_code, 0) << result.err << result.out;
+  EXPECT_NE(result.out.find("velocity         right"), std::string::npos) << result.out;
+  conventions.velocity_up = false;
+  record(Stage({.frames = 7}).frames(), conventions);
+  result = resolve("'{}/seen' --diagnose");
+  EXPECT_EQ(result.exit_code, 3) << result.err << result.out;
+  EXPECT_NE(result.out.find("fits: y the other way"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("mends it: conventions.velocity"), std::string::npos) << result.out;
+}
+
+TEST_F(DiagnoseProgram, AListingHasALineOfIt) {
+  write(Stage({.frames = 8}).frames());
+  const std::string listing = "'{}/f.%04d.exr' --out '{}/u.%04d.exr' -n ";
+  EXPECT_NE(resolve(listing).out.find("Diagnosis nothing wrong in frames 1 to 5\n"), std::string::npos);
+  const auto result = resolve(listing + "--velocity backward.u,backward.v --velocity-convention fsr2");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("Diagnosis velocity sign of y (--velocity-convention nuke)"), std::string::npos)
+      << result.out;
 }
 
 TEST_F(DiagnoseProgram, ItsJsonIsAFileOfJitter) {

@@ -383,7 +383,6 @@ TEST_F(RecordingFolder, WhatCannotBeReplayedIsSaid) {
   record_all(2);
   expect_refused(replay + " --velocity none", 2, "--velocity: is what the recording in");
   expect_refused(replay + " --output 30x20", 2, "--output: is what the recording in");
-  expect_refused("'{}/seen' --diagnose", 2, "--diagnose: looks at EXR sequences alone");
   expect_refused(replay + " --method temporal", 1, "has no channel");
   expect_refused(replay + " --frames 1-3", 1, "frame 2 is missing");
   edit("\"grain\"", "\"grian\"");

@@ -5,18 +5,15 @@
 #include <cmath>
 
 #include "tools/diagnose/findings.h"
+#include "tools/image/display_light.h"
 
 namespace quincunx::tools {
 namespace {
 
 using Colour = std::array<float, 3>;
 
-float decoded(float value) {
-  return value <= .04045f ? value / 12.92f : std::pow((value + .055f) / 1.055f, 2.4f);
-}
-
 Colour decoded(const Colour& colour) {
-  return {decoded(colour[0]), decoded(colour[1]), decoded(colour[2])};
+  return {linear_of_srgb(colour[0]), linear_of_srgb(colour[1]), linear_of_srgb(colour[2])};
 }
 
 // How far `b` lies from the line from `a` to `c`, in lengths of that line; nothing where it lies beyond its middle.

@@ -5,28 +5,181 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/image/display_light.h"
 #include "tools/sequence/sequence_reader.h"
 
 namespace quincunx::tools {
 
 namespace {
 
+constexpr std::size_t kColourEvery = 4;
+constexpr std::int64_t kMostPixels = 24'000'000;  // of all frames, in memory at once
+
 // As it is taken from motion that is read, but in the channels' units.
-void take_jitter(std::vector<Vec2>& velocity, const VelocityUnits& units, const ScannedFrame& scanned) {
+void take_jitter(std::vector<Vec2>& velocity, const VelocityUnits& units, Extent render, Vec2 step) {
   Vec2 factors[] = {{1, 1}};
-  to_velocity(units, scanned.render, factors);
+  to_velocity(units, render, factors);
   for (Vec2& v : velocity) {
-    if (v != Vec2{})
-      v = {v.x + scanned.jitter_since.x / factors[0].x, v.y + scanned.jitter_since.y / factors[0].y};
+    if (v != Vec2{}) v = {v.x + step.x / factors[0].x, v.y + step.y / factors[0].y};
   }
 }
 
-}  // namespace
+// `rgba`: four floats a pixel.
+void set_colour(DiagnosedFrame& frame, std::span<const std::byte> rgba, bool keeps_colour) {
+  frame.luminance.resize(static_cast<std::size_t>(frame.render.area()));
+  if (keeps_colour) frame.colour.resize(frame.luminance.size());
+  for (std::size_t i = 0; i < frame.luminance.size(); ++i) {
+    float c[4];
+    std::memcpy(c, rgba.data() + i * sizeof c, sizeof c);
+    if (keeps_colour) frame.colour[i] = {c[0], c[1], c[2]};
+    frame.luminance[i] = .2126f * c[0] + .7152f * c[1] + .0722f * c[2];
+  }
+}
 
-DiagnosedInput diagnosed_input(const ResolveTask& task) {
+Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& scanned, bool keeps_colour) {
+  SequenceFormat format = task.format;  // the values as they are in the files
+  format.units = {VelocityConvention::kScale, {1, 1}};
+  format.depth_kind = DepthKind::kDeviceReversed;
+  const std::string path = task.input.expand(scanned.number);
+  SequenceFrame read;
+  if (Status status = read_frame(path, format, scanned, PixelFormat::kRGBA32F, read); !status.ok())
+    return status;
+  const auto reader = ImageReader::open(path);
+  if (!reader.ok()) return reader.status();
+  const auto attributes = frame_attributes(path, reader->header());
+  if (!attributes.ok()) return attributes.status();
+  DiagnosedFrame frame = {.number = scanned.number,
+                          .index = std::max<std::int64_t>(attributes->index.value_or(scanned.number), 0),
+                          .render = scanned.render,
+                          .reset = scanned.reset,
+                          .jitter = scanned.jitter,
+                          .velocity = std::move(read.velocity),
+                          .depth = std::move(read.depth),
+                          .world_to_ndc = read.world_to_ndc};
+  set_colour(frame, read.colour, keeps_colour);
+  if (task.format.units.jittered)
+    take_jitter(frame.velocity, task.format.units, frame.render, scanned.jitter_since);
+  return frame;
+}
+
+// Recordings: an engine's inputs, whatever its conventions.
+
+// What makes its velocity that of the library.
+VelocityUnits recorded_units(const InputConventions& given, const FrameInputs& inputs) {
+  Vec2 scale = inputs.velocity_scale == Vec2{} ? Vec2{1, 1} : inputs.velocity_scale;
+  const float sign = given.velocity_backward ? -1.0f : 1.0f;
+  Vec2 unit = {1, 1};
+  if (given.velocity_unit == VelocityUnit::kNdc) unit = {.5f, .5f};
+  if (given.velocity_unit == VelocityUnit::kPixels) {
+    unit = {1 / static_cast<float>(inputs.render_extent.width),
+            1 / static_cast<float>(inputs.render_extent.height)};
+  }
+  return {.convention = VelocityConvention::kScale,
+          .scale = {scale.x * unit.x * sign, scale.y * unit.y * sign * (given.velocity_up ? -1.0f : 1.0f)},
+          .jittered = given.velocity_jittered};
+}
+
+bool is_reversed(DepthConvention depth) {
+  return depth == DepthConvention::kReversedInfinite || depth == DepthConvention::kReversed;
+}
+
+DepthKind recorded_kind(DepthConvention depth) {
+  if (depth == DepthConvention::kLinear) return DepthKind::kLinear;
+  return is_reversed(depth) ? DepthKind::kDeviceReversed : DepthKind::kDevice;
+}
+
+// Depth with a far plane as if it had none.
+void take_far_plane(std::vector<float>& depth, DepthConvention convention, const FrameInputs& inputs) {
+  if (!needs_far_plane(convention)) return;
+  const float part = inputs.near_plane / inputs.far_plane;
+  for (float& d : depth) {
+    const float v = is_reversed(convention) ? d : 1 - d;
+    const float endless = v > 0 ? v * (1 - part) + part : 0;
+    d = is_reversed(convention) ? endless : 1 - endless;
+  }
+}
+
+// Returns up to four channels of a texel.
+std::array<float, 4> texel_of(const RecordedImage& image, std::size_t index) {
+  const auto get = [&](auto sample, std::size_t count, auto&& value_of) {
+    std::array<float, 4> values = {};
+    for (std::size_t c = 0; c < count; ++c) {
+      std::memcpy(&sample, image.texels.data() + (index * count + c) * sizeof sample, sizeof sample);
+      values[c] = value_of(sample);
+    }
+    return values;
+  };
+  const auto same = [](float value) { return value; };
+  switch (image.format) {
+    case PixelFormat::kRGBA16F:
+      return get(std::uint16_t{}, 4, from_half);
+    case PixelFormat::kRGBA32F:
+      return get(0.0f, 4, same);
+    case PixelFormat::kRGBA8:
+      return get(std::uint8_t{}, 4,
+                 [](std::uint8_t code) { return linear_of_srgb(static_cast<float>(code) / 255); });
+    case PixelFormat::kRG16F:
+      return get(std::uint16_t{}, 2, from_half);
+    case PixelFormat::kRG32F:
+      return get(0.0f, 2, same);
+    case PixelFormat::kR32F:
+      return get(0.0f, 1, same);
+    default:
+      return {};
+  }
+}
+
+DiagnosedFrame recorded_frame(const ResolveTask& task, const ScannedFrame& scanned, RecordedFrame recorded,
+                              bool keeps_colour) {
+  const InputConventions& given = task.resolve.conventions;
+  const FrameInputs& inputs = recorded.inputs;
+  DiagnosedFrame frame = {.number = scanned.number,
+                          .index = static_cast<std::int64_t>(inputs.frame_index),
+                          .render = inputs.render_extent,
+                          .reset = inputs.reset,
+                          .jitter = inputs.jitter};
+  if (given.origin == Origin::kBottom) frame.jitter.y = -frame.jitter.y;
+  const auto pixels = static_cast<std::size_t>(frame.render.area());
+  for (const RecordedImage& image : recorded[FramePart::kPicture].images) {
+    if (image.format == PixelFormat::kR8) continue;
+    std::vector<std::array<float, 4>> texels(pixels);
+    for (std::size_t i = 0; i < pixels; ++i)
+      texels[i] = texel_of(image, i);
+    if (image.format == PixelFormat::kR32F) {
+      for (const auto& texel : texels)
+        frame.depth.push_back(texel[0]);
+      take_far_plane(frame.depth, given.depth, inputs);
+    } else if (image.format == PixelFormat::kRG16F || image.format == PixelFormat::kRG32F) {
+      for (const auto& texel : texels)
+        frame.velocity.push_back({texel[0], texel[1]});
+    } else {
+      set_colour(frame, std::as_bytes(std::span(texels)),
+                 keeps_colour && image.format != PixelFormat::kRGBA8);
+    }
+  }
+  return frame;
+}
+
+// Parts of the picture.
+Vec2 jitter_of(const DiagnosedFrame& frame) {
+  return {frame.jitter.x / static_cast<float>(frame.render.width),
+          frame.jitter.y / static_cast<float>(frame.render.height)};
+}
+
+std::string mend_of_recorded(const Finding& finding) {
+  static const std::map<std::string, std::string> kMends = {
+      {"velocity", "conventions.velocity_unit, _backward, _up or _jittered, or velocity_scale"},
+      {"jitter", "the jitter of FrameInputs"},
+      {"dilation", "conventions.drawn_velocity"}};
+  const auto found = kMends.find(finding.subject);
+  return found == kMends.end() ? finding.option : found->second;
+}
+
+DiagnosedInput input_of(const ResolveTask& task) {
   const InputConventions& conventions = task.resolve.conventions;
   return {.units = task.format.units,
           .depth_kind = task.format.depth_kind,
@@ -37,46 +190,62 @@ DiagnosedInput diagnosed_input(const ResolveTask& task) {
           .channels = task.format.channels.velocity};
 }
 
-Result<std::vector<DiagnosedFrame>> read_for_diagnosis(const ResolveTask& task) {
-  constexpr std::size_t kEnoughFrames = 16, kColourEvery = 4;
-  constexpr std::int64_t kMostPixels = 24'000'000;  // of all frames, in memory at once
-  SequenceFormat format = task.format;              // the values as they are in the files
-  format.units = {VelocityConvention::kScale, {1, 1}};
-  format.depth_kind = DepthKind::kDeviceReversed;
-  std::vector<DiagnosedFrame> frames;
-  std::int64_t pixels = 0;
+// What the recording says of its first frame holds for all: `inputs`.
+DiagnosedInput input_of_recording(const ResolveTask& task, const FrameInputs& inputs) {
+  const InputConventions& given = task.resolve.conventions;
+  DiagnosedInput input = input_of(task);
+  input.units = recorded_units(given, inputs);
+  input.depth_kind = recorded_kind(given.depth);
+  if (inputs.near_plane > 0) input.near_plane = inputs.near_plane;
+  return input;
+}
+
+Status read_recording(const ResolveTask& task, const ScannedFrame& scanned, bool keeps_colour,
+                      DiagnosedSequence& sequence) {
   SequenceFrame read;
+  if (Status status = read_recorded(task.format.recording, scanned, task.plan, read); !status.ok())
+    return status;
+  if (sequence.frames.empty()) sequence.input = input_of_recording(task, read.recorded->inputs);
+  DiagnosedFrame frame = recorded_frame(task, scanned, std::move(*read.recorded), keeps_colour);
+  if (sequence.input.units.jittered && !sequence.frames.empty()) {
+    const Vec2 now = jitter_of(frame), before = jitter_of(sequence.frames.back());
+    take_jitter(frame.velocity, sequence.input.units, frame.render, {now.x - before.x, now.y - before.y});
+  }
+  sequence.frames.push_back(std::move(frame));
+  return {};
+}
+
+}  // namespace
+
+Result<DiagnosedSequence> read_for_diagnosis(const ResolveTask& task, std::size_t most) {
+  if (task.resolve.targets.shading == Shading::kCheckerboard)
+    return Status::invalid("frames whose pixels are shaded by halves cannot be diagnosed");
+  DiagnosedSequence sequence = {.input = input_of(task)};
+  std::int64_t pixels = 0;
   for (const ScannedFrame& scanned : task.scan.frames) {
     if (!scanned.problem.empty() || !scanned.wanted) continue;
+    const std::size_t read = sequence.frames.size();
     pixels += scanned.render.area();
-    if (frames.size() >= kEnoughFrames || (pixels > kMostPixels && frames.size() >= 4)) break;
-    const std::string path = task.input.expand(scanned.number);
-    if (Status status = read_frame(path, format, scanned, PixelFormat::kRGBA32F, read); !status.ok())
-      return status;
-    const auto reader = ImageReader::open(path);
-    if (!reader.ok()) return reader.status();
-    const auto attributes = frame_attributes(path, reader->header());
-    if (!attributes.ok()) return attributes.status();
-    DiagnosedFrame frame = {.number = scanned.number,
-                            .index = std::max<std::int64_t>(attributes->index.value_or(scanned.number), 0),
-                            .render = scanned.render,
-                            .reset = scanned.reset,
-                            .jitter = scanned.jitter,
-                            .luminance = std::vector<float>(static_cast<std::size_t>(scanned.render.area())),
-                            .velocity = read.velocity,
-                            .depth = read.depth,
-                            .world_to_ndc = read.world_to_ndc};
-    if (frames.size() % kColourEvery == 0) frame.colour.resize(frame.luminance.size());
-    if (task.format.units.jittered) take_jitter(frame.velocity, task.format.units, scanned);
-    for (std::size_t i = 0; i < frame.luminance.size(); ++i) {
-      float rgba[4];
-      std::memcpy(rgba, read.colour.data() + i * sizeof rgba, sizeof rgba);
-      if (!frame.colour.empty()) frame.colour[i] = {rgba[0], rgba[1], rgba[2]};
-      frame.luminance[i] = .2126f * rgba[0] + .7152f * rgba[1] + .0722f * rgba[2];
+    if (read >= most || (pixels > kMostPixels && read >= 4)) break;
+    const bool keeps_colour = read % kColourEvery == 0;
+    if (!task.format.recording.empty()) {
+      if (Status status = read_recording(task, scanned, keeps_colour, sequence); !status.ok()) return status;
+      continue;
     }
-    frames.push_back(std::move(frame));
+    auto frame = read_file(task, scanned, keeps_colour);
+    if (!frame.ok()) return frame.status();
+    sequence.frames.push_back(std::move(frame).value());
   }
-  return frames;
+  return sequence;
+}
+
+Diagnosis diagnose(const ResolveTask& task, const DiagnosedSequence& sequence) {
+  Diagnosis diagnosis = diagnose(sequence.frames, sequence.input);
+  for (Finding& finding : diagnosis.findings) {
+    if (!task.format.recording.empty() && finding.verdict == Verdict::kWrong)
+      finding.option = mend_of_recorded(finding);
+  }
+  return diagnosis;
 }
 
 std::string diagnosis_text(std::span<const DiagnosedFrame> frames, const Diagnosis& diagnosis) {
@@ -99,6 +268,27 @@ std::string diagnosis_text(std::span<const DiagnosedFrame> frames, const Diagnos
       text += fmt::format("{:<16} not shown by these frames: {}\n", "", fmt::join(finding.open, ", "));
   }
   return text;
+}
+
+std::string diagnosis_line(const ResolveTask& task) {
+  constexpr std::size_t kFew = 5;
+  constexpr std::int64_t kSmall = 400'000;  // pixels
+  if (task.scan.frames.size() < kFew || task.scan.target().area() > kSmall) return {};
+  const auto sequence = read_for_diagnosis(task, kFew);
+  if (!sequence.ok() || sequence->frames.size() < kFew) return {};
+  const Diagnosis diagnosis = diagnose(task, sequence.value());
+  std::vector<std::string> wrong;
+  bool told = false;
+  for (const Finding& finding : diagnosis.findings) {
+    told |= finding.verdict == Verdict::kRight;
+    if (finding.verdict == Verdict::kWrong)
+      wrong.push_back(
+          fmt::format("{} {} ({})", finding.subject, fmt::join(finding.faults, ", "), finding.option));
+  }
+  if (!told && wrong.empty()) return {};
+  return fmt::format("{:<9} {} in frames {} to {}\n", "Diagnosis",
+                     wrong.empty() ? "nothing wrong" : fmt::format("{}", fmt::join(wrong, "; ")),
+                     sequence->frames.front().number, sequence->frames.back().number);
 }
 
 std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis) {

@@ -11,13 +11,25 @@
 
 namespace quincunx::tools {
 
-DiagnosedInput diagnosed_input(const ResolveTask& task);
+// Frames to look at, and what the input says of them.
+struct DiagnosedSequence {
+  std::vector<DiagnosedFrame> frames = {};
+  DiagnosedInput input = {};
+};
 
-// Reads the first frames of the task, as many as tell enough. Errors: kIoFailure, naming a file.
-Result<std::vector<DiagnosedFrame>> read_for_diagnosis(const ResolveTask& task);
+// Reads the task's first frames, files or a recording's: those that tell enough, at most so many. Of a recording the
+// camera is not looked at. Errors: kIoFailure, naming a file; kInvalidArgument for half shaded frames.
+Result<DiagnosedSequence> read_for_diagnosis(const ResolveTask& task, std::size_t most = 16);
+
+// Looks at them; what mends a recording is told in the terms of the library.
+Diagnosis diagnose(const ResolveTask& task, const DiagnosedSequence& sequence);
 
 // Returns a table for a person.
 std::string diagnosis_text(std::span<const DiagnosedFrame> frames, const Diagnosis& diagnosis);
+
+// Returns a line for a listing, by the first frames; empty where looking at them takes more than a moment, or where they
+// cannot be read.
+std::string diagnosis_line(const ResolveTask& task);
 
 // Returns JSON with the jitter that fits of every frame of the task, as --jitter takes it for a file; a frame whose
 // jitter nobody told keeps its own.

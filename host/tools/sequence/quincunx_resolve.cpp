@@ -36,17 +36,18 @@ int print_listing(const ResolveOptions& options, const ResolveTask& task) {
   const bool listed = !task.scan.problem().ok();
   if (!status.ok() && !listed) return fail(status);
   fmt::print("{}", options.json ? listing_json(task) : listing_text(task, options.verbosity > 0));
+  if (!options.json) fmt::print("{}", diagnosis_line(task));
   return status.ok() ? kDone : kFailed;
 }
 
 int print_diagnosis(const ResolveOptions& options, const ResolveTask& task) {
   constexpr int kFoundWrong = 3;
   if (const Status status = task.check(options.skip_bad_frames); !status.ok()) return fail(status);
-  const auto frames = read_for_diagnosis(task);
-  if (!frames.ok()) return fail(frames.status());
-  const Diagnosis diagnosis = diagnose(frames.value(), diagnosed_input(task));
+  const auto sequence = read_for_diagnosis(task);
+  if (!sequence.ok()) return fail(sequence.status());
+  const Diagnosis diagnosis = diagnose(task, sequence.value());
   fmt::print("{}",
-             options.json ? diagnosis_json(task, diagnosis) : diagnosis_text(frames.value(), diagnosis));
+             options.json ? diagnosis_json(task, diagnosis) : diagnosis_text(sequence->frames, diagnosis));
   return diagnosis.wrong() ? kFoundWrong : kDone;
 }
 

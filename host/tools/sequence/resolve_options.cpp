@@ -229,8 +229,6 @@ void check_needs(const ResolveOptions& options) {
 
 // Refuses options of frames that nobody explains.
 void check_recorded(const CommandLine& app, const std::string& folder) {
-  if (app.has("--diagnose"))
-    throw wrong("--diagnose", fmt::format("looks at EXR sequences alone, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
         "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next",

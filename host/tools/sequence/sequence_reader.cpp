@@ -149,12 +149,6 @@ constexpr float kMostByJitter = 2.0f / kCell;
 // As far_velocity.cl has it: depths up to this are infinitely far away.
 constexpr float kFarDepth = 1e-9f;
 
-// Infinity and what is no number become some large number.
-float from_half(std::uint16_t half) {
-  const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(half & 0x7fffu) << 13) * 0x1p112f;
-  return (half & 0x8000u) != 0 ? -value : value;
-}
-
 float tone_mapped(float value) {
   return value > 0 ? 1 - 1 / (1 + value) : 0;  // NaN is 0
 }
@@ -183,6 +177,11 @@ float sky_motion(const CameraMotion& motion, Extent render) {
 }
 
 }  // namespace
+
+float from_half(std::uint16_t half) {
+  const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(half & 0x7fffu) << 13) * 0x1p112f;
+  return (half & 0x8000u) != 0 ? -value : value;
+}
 
 Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
                      SequenceFrame& frame) {
