@@ -380,6 +380,48 @@ TEST_F(DiagnoseProgram, AListingHasALineOfIt) {
       << result.out;
 }
 
+TEST_F(DiagnoseProgram, AReportShowsWhere) {
+  write(Stage({.frames = 6}).frames());
+  const std::string arguments = "--report '{}/seen' --velocity backward.u,backward.v --velocity-convention ";
+  EXPECT_EQ(diagnose(arguments + "fsr2").exit_code, 3);
+  EXPECT_NE(testing::read_file(folder_.file("seen.txt")).find("fits: y the other way"), std::string::npos);
+  EXPECT_EQ(nlohmann::json::parse(testing::read_file(folder_.file("seen.json")))["wrong"], true);
+  const std::string page = testing::read_file(folder_.file("seen.html"));
+  const std::string open = "id=\"data\">";
+  const std::size_t from = page.find(open) + open.size();
+  const auto data = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+  EXPECT_EQ(data["diagnosis"]["findings"][0]["fits"], "y the other way");
+  ASSERT_EQ(data["pictures"]["frames"].size(), 3u);
+  const double worst = data["pictures"]["frames"][0]["mean"];
+  EXPECT_GE(worst, data["pictures"]["frames"][2]["mean"].get<double>());
+  // The same frames, understood rightly, fail less.
+  EXPECT_EQ(diagnose(arguments + "nuke").exit_code, 0);
+  const std::string right = testing::read_file(folder_.file("seen.html"));
+  const std::size_t begin = right.find(open) + open.size();
+  const auto less = nlohmann::json::parse(right.substr(begin, right.find("</script>", begin) - begin));
+  EXPECT_LT(less["pictures"]["frames"][0]["mean"].get<double>(), worst / 2);
+}
+
+TEST(FailureMaps, LieWhereMotionIsMissing) {
+  Frames frames = Stage({.frames = 4, .plate = true}).frames();
+  const auto mean_of_wall = [&](const std::vector<tools::FailureMap>& maps) {
+    double sum = 0, count = 0;
+    for (const tools::FailureMap& map : maps) {
+      const DiagnosedFrame& frame = frames[static_cast<std::size_t>(map.number - 1)];
+      for (std::size_t i = 0; i < map.error.size(); ++i)
+        if (frame.depth[i] == 10) sum += map.error[i], count += 1;
+    }
+    return sum / count;
+  };
+  EXPECT_EQ(tools::failure_maps(frames, kInput, 2).size(), 2u);
+  EXPECT_TRUE(tools::failure_maps({}, kInput).empty());
+  const double whole = mean_of_wall(tools::failure_maps(frames, kInput));
+  for (DiagnosedFrame& frame : frames)
+    for (std::size_t i = 0; i < frame.velocity.size(); ++i)
+      if (frame.depth[i] == 10) frame.velocity[i] = {};
+  EXPECT_GT(mean_of_wall(tools::failure_maps(frames, kInput)), 2 * whole);
+}
+
 TEST_F(DiagnoseProgram, ItsJsonIsAFileOfJitter) {
   Frames frames = Stage({.frames = 18}).frames();
   for (DiagnosedFrame& frame : frames)

@@ -2,6 +2,7 @@
 #include "tools/diagnose/diagnose.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/diagnose/findings.h"
 
@@ -12,6 +13,30 @@ using Frames = std::span<const DiagnosedFrame>;
 
 bool has_fault(const Finding& finding, const std::string& fault) {
   return std::find(finding.faults.begin(), finding.faults.end(), fault) != finding.faults.end();
+}
+
+FailureMap failure_map(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
+                       std::size_t now) {
+  const DiagnosedFrame &frame = frames[now], &last = frames[now - 1];
+  FailureMap map = {frame.number, frame.render, planes[now].values};
+  Pair row = pair_of(frames, now);  // of a picture's rows, one after another
+  const Vec2 shift = {frame.jitter.x * row.ratio.x - last.jitter.x,
+                      frame.jitter.y * row.ratio.y - last.jitter.y};
+  for (int y = 0; y < frame.render.height; ++y) {
+    row.places.clear();
+    for (int x = 0; x < frame.render.width; ++x) {
+      const std::size_t at = pixel_of(frame, x, y);
+      Place place = {.x = x, .y = y, .light = map.light[at]};
+      if (!frame.velocity.empty()) place.velocity[1] = frame.velocity[at];
+      row.places.push_back(place);
+    }
+    const Motion motion = motion_of(row, input, {}, frame.render);
+    for (const float square : foretell(row, planes[now - 1], motion, shift)) {
+      map.error.push_back(std::sqrt(square) / kMostError);
+      map.mean += map.error.back() / static_cast<double>(frame.render.area());
+    }
+  }
+  return map;
 }
 
 // `cuts`: frames before which cuts are missing; that finding is the last.
@@ -54,6 +79,18 @@ Vec2 JitterMend::of(Vec2 told) const {
 bool Diagnosis::wrong() const {
   return std::any_of(findings.begin(), findings.end(),
                      [](const Finding& finding) { return finding.verdict == Verdict::kWrong; });
+}
+
+std::vector<FailureMap> failure_maps(Frames frames, const DiagnosedInput& input, std::size_t most) {
+  std::vector<FailureMap> maps;
+  const std::vector<Plane> planes = planes_of(frames);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (!follows(frames, i)) continue;
+    maps.push_back(failure_map(frames, input, planes, i));
+    std::sort(maps.begin(), maps.end(), [](const auto& a, const auto& b) { return a.mean > b.mean; });
+    if (maps.size() > most) maps.pop_back();
+  }
+  return maps;
 }
 
 Diagnosis diagnose(Frames frames, const DiagnosedInput& input) {

@@ -77,6 +77,20 @@ struct Diagnosis {
   bool wrong() const;  // some finding is
 };
 
+// Where the input's word fails: pictures of a frame's size, tightly packed, both from 0 to 1.
+struct FailureMap {
+  std::int64_t number = 0;  // the frame's
+  Extent extent = {};
+  std::vector<float> light = {};  // as it is seen, tone mapped
+  std::vector<float> error = {};  // of what the frame before foretold; 1: by .15 or more of that light
+  double mean = 0;                // of the errors
+};
+
+// Returns the maps of those frames, at most so many, that their input's word foretells worst; the worst first.
+// Takes some 0.1 s a frame of 1280x720 on one core.
+std::vector<FailureMap> failure_maps(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
+                                     std::size_t most = 3);
+
 // Looks at consecutive frames, of which a dozen are enough and three the least; those after a gap in the numbers begin
 // anew. Takes some 0.2 s a frame of 1280x720 on one core.
 Diagnosis diagnose(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input);

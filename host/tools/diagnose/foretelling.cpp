@@ -9,7 +9,6 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr float kCap = .15f;  // errors of light beyond this are all as wrong
 constexpr int kWantedPlaces = 6000;
 constexpr float kLeastGradient = .01f;  // of light in a pixel
 constexpr int kBlocks = 6;              // of a picture's side
@@ -146,20 +145,27 @@ std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames) {
   return planes;
 }
 
+bool follows(std::span<const DiagnosedFrame> frames, std::size_t i) {
+  return i > 0 && i < frames.size() && frames[i].number == frames[i - 1].number + 1 && !frames[i].reset;
+}
+
+Pair pair_of(std::span<const DiagnosedFrame> frames, std::size_t now) {
+  const Extent extent = frames[now].render, before = frames[now - 1].render;
+  return {.now = now,
+          .ratio = {static_cast<float>(before.width) / static_cast<float>(extent.width),
+                    static_cast<float>(before.height) / static_cast<float>(extent.height)},
+          .has_next = follows(frames, now + 1),
+          .has_second = follows(frames, now - 1),
+          .places = {}};
+}
+
 std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::vector<Plane>& planes) {
-  const auto follows = [&](std::size_t i) {
-    return i > 0 && i < frames.size() && frames[i].number == frames[i - 1].number + 1 && !frames[i].reset;
-  };
   std::vector<Pair> pairs;
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    if (!follows(i)) continue;
-    const Extent now = frames[i].render, before = frames[i - 1].render;
-    Pair pair = {.now = i,
-                 .ratio = {static_cast<float>(before.width) / static_cast<float>(now.width),
-                           static_cast<float>(before.height) / static_cast<float>(now.height)},
-                 .has_next = follows(i + 1),
-                 .has_second = follows(i - 1),
-                 .places = places_of(frames[i], planes[i])};
+    if (!follows(frames, i)) continue;
+    const Extent now = frames[i].render;
+    Pair pair = pair_of(frames, i);
+    pair.places = places_of(frames[i], planes[i]);
     for (Place& place : pair.places) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t from = i + k - 1;
@@ -193,8 +199,9 @@ std::vector<float> foretell(const Pair& pair, const Plane& before, const Motion&
                             std::size_t stride) {
   std::vector<float> errors = foretold_light(pair, before, motion, shift, stride);
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    const float error =
-        errors[i] < 0 ? kCap : std::min(std::abs(errors[i] - pair.places[i * stride].light), kCap);
+    const float error = errors[i] < 0
+                            ? kMostError
+                            : std::min(std::abs(errors[i] - pair.places[i * stride].light), kMostError);
     errors[i] = error * error;
   }
   return errors;

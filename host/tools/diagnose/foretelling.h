@@ -12,6 +12,8 @@
 
 namespace quincunx::tools {
 
+inline constexpr float kMostError = .15f;  // of light: errors beyond this are all as wrong
+
 // A frame's luminance, tone mapped into [0, 1] and softened, so that a sample between texels is no noisier than one on
 // a texel: else guesses that fall between would win.
 struct Plane {
@@ -44,6 +46,12 @@ using Motion = std::vector<Vec2>;
 float light_scale(std::span<const DiagnosedFrame> frames);
 
 std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames);
+
+// Whether a frame comes directly after the one before it in the list, without a cut.
+bool follows(std::span<const DiagnosedFrame> frames, std::size_t i);
+
+// The pair of a frame that follows, without places.
+Pair pair_of(std::span<const DiagnosedFrame> frames, std::size_t now);
 
 // Pairs of the frames, with places.
 std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::vector<Plane>& planes);

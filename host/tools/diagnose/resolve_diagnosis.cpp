@@ -9,7 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/diagnose/diagnosis_page.h"
 #include "tools/image/display_light.h"
+#include "tools/program/atomic_file.h"
 #include "tools/sequence/sequence_reader.h"
 
 namespace quincunx::tools {
@@ -315,6 +317,17 @@ std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis) 
   }
   const Json json = {{"wrong", diagnosis.wrong()}, {"findings", findings}, {"per_frame", jitter}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Status write_diagnosis(const std::string& base, const ResolveTask& task, const DiagnosedSequence& sequence,
+                       const Diagnosis& diagnosis) {
+  const std::string json = diagnosis_json(task, diagnosis);
+  const auto page = diagnosis_page(task.input.text(), json, failure_maps(sequence.frames, sequence.input));
+  if (!page.ok()) return page.status();
+  if (Status status = write_text(base + ".txt", diagnosis_text(sequence.frames, diagnosis)); !status.ok())
+    return status;
+  if (Status status = write_text(base + ".json", json); !status.ok()) return status;
+  return write_text(base + ".html", page.value());
 }
 
 }  // namespace quincunx::tools

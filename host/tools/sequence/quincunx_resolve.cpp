@@ -48,6 +48,10 @@ int print_diagnosis(const ResolveOptions& options, const ResolveTask& task) {
   const Diagnosis diagnosis = diagnose(task, sequence.value());
   fmt::print("{}",
              options.json ? diagnosis_json(task, diagnosis) : diagnosis_text(sequence->frames, diagnosis));
+  if (!options.report.empty()) {
+    const Status status = write_diagnosis(options.report, task, sequence.value(), diagnosis);
+    if (!status.ok()) return fail(status);
+  }
   return diagnosis.wrong() ? kFoundWrong : kDone;
 }
 

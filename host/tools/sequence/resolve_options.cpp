@@ -209,7 +209,9 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
   app.add_option("--device", options.device,
                  "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices");
-  app.add_option("--report", options.report, "Write BASE.html, .txt and .json: scores, times, passes")
+  app.add_option(
+         "--report", options.report,
+         "Write BASE.html, .txt and .json: scores, times, passes; or what --diagnose finds, and where")
       .type_name("BASE");
   app.add_flag("--json", options.json, "Print the report as JSON on standard output");
   app.add_flag("-q,--quiet", options.quiet, "Say nothing but errors");
