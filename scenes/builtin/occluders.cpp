@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Objects and shadows that pass over a wall which stands still: `occluders` and `shadows`.
+// Objects and shadows that pass over what stands still: `occluders`, `shadows` and `runners`.
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -159,6 +159,64 @@ Scene make_shadows(std::uint64_t seed) {
 
   Scene& scene = assembly.scene;
   hold_camera(scene, kDuration, 0.75f, {0.2f, 1.9f, 5.2f}, {0, 1.65f, -1});
+  return assembly.finish();
+}
+
+namespace {
+
+constexpr double kStride = kDuration / 12;
+
+// Runs round in a circle on the paving; each leg and arm swings about its joint.
+void add_runner(SceneAssembly& assembly, int cloth, float start) {
+  const auto at = [=](double seconds) {
+    const float step = kTau * static_cast<float>(seconds / kStride) + start;
+    return moved_to({0, 0.03f * std::abs(std::sin(step)), 0.4f}) *
+           turned(start + phase_at(seconds, kDuration, 1), {0, 1, 0}) * moved_to({0, 0, -2.6f});
+  };
+  MeshBuilder body(cloth);
+  body.pen.uv_per_metre = 2;
+  body.rod({0.02f, 0.92f, 0}, {-0.08f, 1.45f, 0}, 0.15f, 16);
+  body.sphere({-0.12f, 1.66f, 0}, 0.12f, 24);
+  assembly.move(assembly.add(body.take()), at);
+
+  // From its joint down, and from the knee or elbow on to one side.
+  const auto limb = [&](float upper, float lower, float bend, float thickness) {
+    MeshBuilder mesh(cloth);
+    mesh.rod({0, 0, 0}, {0, -upper, 0}, thickness, 12);
+    mesh.rod({0, -upper, 0}, {lower * std::sin(bend), -upper - lower * std::cos(bend), 0}, 0.75f * thickness,
+             12);
+    return assembly.add(mesh.take());
+  };
+  const int leg = limb(0.45f, 0.45f, 0.5f, 0.075f);
+  const int arm = limb(0.28f, 0.26f, -1.3f, 0.05f);
+  for (const float side : {-1.0f, 1.0f}) {
+    const auto swung = [=](glm::vec3 joint, float most) {
+      return [=](double seconds) {
+        const float angle = most * side * std::sin(kTau * static_cast<float>(seconds / kStride) + start);
+        return at(seconds) * moved_to(joint) * turned(angle, {0, 0, 1});
+      };
+    };
+    assembly.move(leg, swung({0.02f, 0.92f, 0.1f * side}, 0.8f));
+    assembly.move(arm, swung({-0.07f, 1.4f, 0.22f * side}, -0.9f));
+  }
+}
+
+}  // namespace
+
+Scene make_runners(std::uint64_t seed) {
+  constexpr int kRunners = 7;
+  SceneAssembly assembly;
+  add_poster_wall(assembly, 20, 5.2f, kWall, seed);
+  add_paving(assembly, 24, 12, 15, seed + 2);
+  for (int i = 0; i < kRunners; ++i) {
+    const int cloth = assembly.add(plain_material(
+        "cloth", i % 2 == 0 ? glm::vec3(0.5f, 0.1f, 0.06f) : glm::vec3(0.08f, 0.2f, 0.4f), 0.8f));
+    add_runner(assembly, cloth, kTau * static_cast<float>(i) / kRunners);
+  }
+  Scene& scene = assembly.scene;
+  set_daylight(scene);
+  scene.sun.direction = glm::normalize(glm::vec3(0.5f, -0.6f, -0.62f));  // shadows reach the wall
+  hold_camera(scene, kDuration, 0.75f, {0.2f, 1.9f, 6.2f}, {0, 1.05f, -1});
   return assembly.finish();
 }
 

@@ -37,6 +37,7 @@ Scene make_spokes(std::uint64_t seed);
 // occluders.cpp
 Scene make_occluders(std::uint64_t seed);
 Scene make_shadows(std::uint64_t seed);
+Scene make_runners(std::uint64_t seed);
 
 // background.cpp
 Scene make_backdrop(std::uint64_t seed);

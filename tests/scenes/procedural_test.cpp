@@ -216,7 +216,7 @@ constexpr std::array kExpectedNeeds = std::to_array<ExpectedNeeds>(
      {"shadows", true, false, false}, {"cables", true, true, false},   {"spokes", true, false, false},
      {"twigs", false, true, false},   {"fence", false, true, false},   {"crossings", true, false, false},
      {"jolts", true, true, false},    {"backdrop", true, true, false}, {"cutout", true, true, false},
-     {"faults", true, false, false}});
+     {"faults", true, false, false},  {"runners", true, false, false}});
 
 // The motion within a frame, found by looking, must be the motion that the scene declares.
 TEST_P(BuiltInScene, NeedsAreWhatMovesAndWhatItsReasonSays) {
