@@ -53,11 +53,38 @@ std::vector<Motion> camera_motion_of(const Scene& scene, const DepthGuess& guess
   return motion;
 }
 
-Foretold foretold(const Scene& scene, const std::vector<Motion>& motion) {
+// Returns the pixels between neighbouring values of motion, where that is stored in steps, as with 8 bits; else 0.
+float step_of(const Scene& scene) {
+  constexpr float kRoom = .02f;
+  float least = 0;
+  std::vector<float> values;
+  for (const Pair& pair : scene.pairs) {
+    for (std::size_t i = 0; i < pair.places.size(); i += 7) {
+      for (const float v : {std::abs(pair.places[i].velocity[1].x), std::abs(pair.places[i].velocity[1].y)}) {
+        if (v == 0) continue;
+        values.push_back(v);
+        least = least > 0 ? std::min(least, v) : v;
+      }
+    }
+  }
+  for (const float part : {1.0f, 2.0f, 3.0f}) {
+    const float step = least / part;
+    const auto off = std::count_if(values.begin(), values.end(), [&](float v) {
+      return std::abs(v / step - std::round(v / step)) > kRoom;
+    });
+    const Vec2 factors = factors_of(scene.input, scene.motion.guess, scene.frames[0].render);
+    if (!values.empty() && static_cast<double>(off) < .01 * static_cast<double>(values.size()))
+      return step * std::max(std::abs(factors.x), std::abs(factors.y));
+  }
+  return 0;
+}
+
+// `step`: as of step_of().
+Foretold foretold(const Scene& scene, const std::vector<Motion>& motion, float step) {
   Foretold result = {.motion = &motion,
                      .shift = scene.motion.shift,
                      .errors = std::vector<std::vector<float>>(motion.size())};
-  if (scene.motion.knows_motion) result.apart = .02f;
+  if (scene.motion.knows_motion) result.apart = std::max(.02f, step);
   for (std::size_t p = 0; p < motion.size(); ++p) {
     if (motion[p].empty()) continue;
     const Pair& pair = scene.pairs[p];
@@ -68,7 +95,9 @@ Foretold foretold(const Scene& scene, const std::vector<Motion>& motion) {
     for (std::size_t i = 0; i < motion[p].size(); ++i) {
       const Vec2 a = motion[p][i], b = scene.motion.motion[p][i];
       const float apart = std::min(std::hypot(a.x - b.x, a.y - b.y), 1.0f);
-      result.errors[p].push_back(apart * apart);
+      // A motion of exactly 0 was not drawn, as that of many a sky: it tells nothing of the camera.
+      const bool drawn = pair.places[i].velocity[1] != Vec2{};
+      result.errors[p].push_back(drawn ? apart * apart + step * step : 0);
     }
   }
   return result;
@@ -178,9 +207,10 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   std::vector<std::vector<Motion>> motions;
   for (const DepthGuess& guess : guesses)
     motions.push_back(camera_motion_of(scene, guess));
+  const float step = step_of(scene);
   std::vector<Candidate> candidates;
   for (std::size_t g = 0; g < guesses.size(); ++g)
-    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold(scene, motions[g])});
+    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold(scene, motions[g], step)});
   const std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
   const DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
@@ -194,7 +224,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   for (const float factor : {.5f, 2.0f}) {
     if (best.kind == DepthKind::kLinear) break;
     const auto motion = camera_motion_of(scene, {best.kind, best.camera, best.near_factor * factor});
-    kinds.add(compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold(scene, motion)),
+    kinds.add(compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold(scene, motion, step)),
               {"near plane"});
   }
   kinds.judge(depth);

@@ -35,7 +35,8 @@ std::string diagnosis_line(const ResolveTask& task);
 // jitter nobody told keeps its own.
 std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis);
 
-// Writes BASE.txt, BASE.json and BASE.html, which shows where in the picture the input's word fails. Errors: kIoFailure.
+// Writes BASE.txt, BASE.json and BASE.html, which shows where in the picture the input's word fails. Errors:
+// kIoFailure.
 Status write_diagnosis(const std::string& base, const ResolveTask& task, const DiagnosedSequence& sequence,
                        const Diagnosis& diagnosis);
 
