@@ -193,10 +193,12 @@ FrameView FrameSequence::at(std::int64_t index, Extent render) {
   static_cast<void>(viewport_.set_render(render));  // one that does not fit leaves the last one
   FrameView view;
   view.render = viewport_.render();
-  view.jitter = jitter_of(settings_.jitter, jitter_index(settings_, index), view.render, settings_.output);
+  const std::int64_t at = settings_.backwards ? settings_.frames - 1 - index : index;
+  const std::int64_t before = settings_.backwards ? at + 1 : at - 1;
+  view.jitter = jitter_of(settings_.jitter, jitter_index(settings_, at), view.render, settings_.output);
   if (settings_.shading == Shading::kCheckerboard) view.parity = static_cast<int>(index & 1);
-  view.seconds = settings_.start_seconds + static_cast<double>(index) / settings_.fps;
-  view.previous_seconds = settings_.start_seconds + static_cast<double>(index - 1) / settings_.fps;
+  view.seconds = settings_.start_seconds + static_cast<double>(at) / settings_.fps;
+  view.previous_seconds = settings_.start_seconds + static_cast<double>(before) / settings_.fps;
   view.aspect = static_cast<float>(settings_.output.width) / static_cast<float>(settings_.output.height);
   view.lod_bias = settings_.detail.lod_bias +
                   settings_.detail.follows_scale * texture_lod_bias(view.render, settings_.output);

@@ -87,6 +87,8 @@ struct SequenceSettings {
   double fps = 60;
   double start_seconds = 0;  // scene time of frame 0
   TextureDetail detail = {};
+  bool backwards =
+      false;  // frame 0 is the last one, and time runs back from there; one scale, no checkerboard
 };
 
 // Pure but for the viewport it holds; one thread.
@@ -105,7 +107,7 @@ class FrameSequence {
     settings_.detail = detail;
   }
 
-  // Frame `index` in [0, size()). Its previous_seconds is one frame earlier, also for frame 0.
+  // Frame `index` in [0, size()). Its previous_seconds is one frame earlier (backwards: later), also for frame 0.
   FrameView at(std::int64_t index);
 
   // Returns the same at another viewport than the path's, within the target, and for any index that is not negative.

@@ -76,6 +76,12 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   ASSERT_TRUE(focused.ok()) << focused.status().message();
   EXPECT_EQ(focused->methods[0].dual, "0.8");
   EXPECT_TRUE(focused->methods[0].focuses);
+  const auto two_way = plan_from(parsed({"--methods", "two-way/temporal@rgba8"}));
+  ASSERT_TRUE(two_way.ok()) << two_way.status().message();
+  EXPECT_EQ(two_way->methods[0].name, "two-way/temporal:balanced@rgba8");
+  EXPECT_TRUE(two_way->methods[0].two_way);
+  expect_refused({"--methods", "two-way/quincunx"}, "'two-way/quincunx:velocity' has no history to merge");
+  expect_refused({"--methods", "dual0.8/two-way/temporal"}, "both ways there is one output");
   expect_refused({"--methods", "dual1.5/temporal"}, "is no resolution of the output");
   expect_refused({"--methods", "quincunx@rgba4"}, "no method 'quincunx@rgba4'");
 }

@@ -27,6 +27,20 @@ TEST(FrameSequence, TimeGoesByTheFrameRate) {
   EXPECT_DOUBLE_EQ(sequence.at(0).previous_seconds, -1.0 / 60);
 }
 
+TEST(FrameSequence, BackwardsItHasTheSameFramesFromTheLastOneOn) {
+  SequenceSettings both = settings("ramp:0.5,0.5");
+  both.jitter = Jitter::kHalton;
+  FrameSequence forwards = FrameSequence::create(both).value();
+  both.backwards = true;
+  FrameSequence backwards = FrameSequence::create(both).value();
+  for (const int index : {0, 1, 100, 239}) {
+    const FrameView view = backwards.at(index), same = forwards.at(239 - index);
+    EXPECT_DOUBLE_EQ(view.seconds, same.seconds);
+    EXPECT_EQ(view.jitter, same.jitter);
+    EXPECT_DOUBLE_EQ(view.previous_seconds, same.seconds + 1.0 / 60);
+  }
+}
+
 TEST(FrameSequence, ACheckerboardAlternatesAndItsPairsShareALongJitter) {
   SequenceSettings whole = settings();
   whole.scale_path = ScalePath::fixed({1, 1}).value();

@@ -97,6 +97,19 @@ BenchMethod at_smaller_output(BenchMethod method, const std::string& scale) {
   return method;
 }
 
+// The twin of a method that accumulates, with the histories of both directions.
+constexpr std::string_view kTwoWay = "two-way/";
+
+Result<BenchMethod> both_ways(BenchMethod method) {
+  if (!method.accumulates)
+    return Status::invalid(fmt::format("--methods: '{}{}' has no history to merge", kTwoWay, method.name));
+  method.name = std::string(kTwoWay) + method.name;
+  method.summary += ", both ways";
+  method.two_way = true;
+  method.is_default = false;
+  return method;
+}
+
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
@@ -107,13 +120,17 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
         return Status::invalid(fmt::format("--methods: '{}': {}", name, outputs.status().message()));
       auto method = chosen_methods({dual->method});
       if (!method.ok()) return method.status();
+      if (method->front().two_way)
+        return Status::invalid(fmt::format("--methods: '{}': both ways there is one output", name));
       chosen.push_back(at_smaller_output(method->front(), dual->scale));
       continue;
     }
     const bool encoded = name.ends_with(kEncoded);
     const bool focuses = name.starts_with(kFocus);
     const bool checkerboard = name.starts_with(kCheckerboard);
+    const bool two_way = name.starts_with(kTwoWay);
     std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
+    if (two_way) plain.erase(0, kTwoWay.size());
     if (checkerboard) plain.erase(0, kCheckerboard.size());
     if (focuses) plain.erase(0, kFocus.size());
     const std::string longest = longest_name(plain);
@@ -125,12 +142,17 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
         known += (known.empty() ? "" : ", ") + method.name;
       return Status::invalid(
           fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it, or {}, "
-                      "{} or {}S/ before it",
-                      name, known, kEncoded, kCheckerboard, kFocus, kDual));
+                      "{}, {} or {}S/ before it",
+                      name, known, kEncoded, kCheckerboard, kFocus, kTwoWay, kDual));
     }
     BenchMethod method = *found;
     if (encoded) method = in_eight_bits(std::move(method));
     if (checkerboard) method = on_checkerboard(std::move(method));
+    if (two_way) {
+      auto twin = both_ways(std::move(method));
+      if (!twin.ok()) return twin.status();
+      method = std::move(twin).value();
+    }
     chosen.push_back(focuses ? with_focus(std::move(method)) : std::move(method));
   }
   return chosen;

@@ -24,6 +24,7 @@ struct BenchMethod {
   bool accumulates = false;  // all frames so far: it takes many until its picture is what it will be
   bool focuses = false;      // its frames have the focus of the conditions
   bool is_default = false;   // what the programs take where no --method is given
+  bool two_way = false;      // its pictures know later frames, too; its times follow from the method without
   std::string dual = {};     // as --dual; empty: its output is the picture's size
 };
 

@@ -74,7 +74,7 @@ class Runner {
     auto made = CaseRun::create(stage, plan, truth, scale);
     if (!made.ok()) return made.status();
     CaseRun& run = *made.value();
-    if (Status status = run.run_quality(); !status.ok()) return status;
+    if (Status status = run.run_quality(stage); !status.ok()) return status;
     step(fmt::format("{} at {}", scene, scale));
     for (int round = 0; round < plan_.conditions.rounds; ++round) {
       if (Status status = run.run_timed(); !status.ok()) return status;

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "bench/speed_error/two_way_run.h"
 #include "tools/image/display_light.h"
 
 namespace quincunx::bench {
@@ -29,6 +30,17 @@ void for_each_in_parallel(std::size_t count, const Task& task) {
     worker = std::async(std::launch::async, work);
   for (auto& worker : workers)
     worker.get();
+}
+
+// What a frame takes in both directions, by what it takes in one: each is added forwards once, and each window of 24
+// backwards with eight more, as quincunx-resolve does.
+DispatchTime both_ways(DispatchTime time) {
+  constexpr double kFrames = 1 + (24. + 8) / 24;
+  time.step.ms *= kFrames;
+  time.step.processor_ms *= kFrames;
+  time.resolve_ms *= kFrames;
+  time.bytes = static_cast<std::uint64_t>(static_cast<double>(time.bytes) * kFrames);
+  return time;
 }
 
 }  // namespace
@@ -133,16 +145,35 @@ Status CaseRun::measure_frame(int frame) {
   }
   if (frame < plan_.conditions.warm_up) return {};
   const auto at = static_cast<std::size_t>(frame - plan_.conditions.warm_up);
-  const tools::MeasuredPicture* previous = at > 0 ? &truth_.pictures[at - 1] : nullptr;
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
-    entries_[i]->tally.add(tools::measured(plan_.conditions.output, std::move(pictures[i]),
-                                           entries_[i]->is_encoded ? 1 : inputs_[entries_[i]->feed].exposure),
-                           truth_.pictures[at], previous, truth_.masks[at]);
+    if (!plan_.methods[i].two_way) tally(i, at, std::move(pictures[i]));
   });
   return {};
 }
 
-Status CaseRun::run_quality() {
+// Adds the picture of measured frame `at` to what is known of a method.
+void CaseRun::tally(std::size_t entry, std::size_t at, std::vector<float> picture) {
+  Entry& to = *entries_[entry];
+  const tools::MeasuredPicture* previous = at > 0 ? &truth_.pictures[at - 1] : nullptr;
+  to.tally.add(tools::measured(plan_.conditions.output, std::move(picture),
+                               to.is_encoded ? 1 : inputs_[to.feed].exposure),
+               truth_.pictures[at], previous, truth_.masks[at]);
+}
+
+Status CaseRun::measure_two_way(const scenes::FrameSource& stage) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (!plan_.methods[i].two_way) continue;
+    auto pictures = two_way_pictures(stage, plan_, scale_, plan_.methods[i]);
+    if (!pictures.ok()) return pictures.status();
+    for (std::size_t at = 0; at < pictures->size(); ++at) {
+      std::vector<float>& picture = pictures.value()[at];
+      tally(i, at, entries_[i]->is_encoded ? tools::light_before_reinhard(picture) : std::move(picture));
+    }
+  }
+  return {};
+}
+
+Status CaseRun::run_quality(const scenes::FrameSource& stage) {
   int first = 0;
   for (const Feed& feed : feeds_)
     first = std::min(first, feed.first_frame);
@@ -156,6 +187,7 @@ Status CaseRun::run_quality() {
     if (Status status = time_copy(false); !status.ok()) return status;
     release(frame);
   }
+  if (Status status = measure_two_way(stage); !status.ok()) return status;
   // Refills the caches, which the work on errors may have emptied.
   return time_frames(plan_.conditions.warm_up, false);
 }
@@ -185,11 +217,12 @@ Status CaseRun::time_frames(int count, bool keep) {
 Status CaseRun::time_frame(int frame, bool keep) {
   if (Status status = time_copy(keep); !status.ok()) return status;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
-    Entry& entry = *entries_[(i + static_cast<std::size_t>(frame)) % entries_.size()];
+    const std::size_t method = (i + static_cast<std::size_t>(frame)) % entries_.size();
+    Entry& entry = *entries_[method];
     auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
                                          {.linear = resolved_.view()});
     if (!time.ok()) return time.status();
-    if (keep) entry.contender.keep(time.value());
+    if (keep) entry.contender.keep(plan_.methods[method].two_way ? both_ways(time.value()) : time.value());
   }
   return time_whole_frame(keep);
 }

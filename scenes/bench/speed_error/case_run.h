@@ -22,7 +22,7 @@ class CaseRun {
                                                  const SceneTruth& truth, double scale);
 
   // The frames whose pictures are measured, and those that warm up everything before and after them. First.
-  Status run_quality();
+  Status run_quality(const scenes::FrameSource& stage);
 
   // A round whose times count.
   Status run_timed();
@@ -63,6 +63,8 @@ class CaseRun {
   void release(int frame);
   Result<std::vector<float>> resolve_and_read(Entry& entry);
   Status measure_frame(int frame);
+  void tally(std::size_t entry, std::size_t at, std::vector<float> picture);
+  Status measure_two_way(const scenes::FrameSource& stage);
   Status time_frames(int count, bool keep);
   Status time_frame(int frame, bool keep);
   Status time_copy(bool keep);
