@@ -12,6 +12,7 @@
 #   parts         frames whose shadow map or particles have a scale of their own
 #   sky           what --sky-motion makes of a sky without motion
 #   temporal      what each stage of the temporal upscaler sees, and its two layers
+#   two_way       a shot's first frame, by itself and knowing those that follow
 #   wires         the moving picture of the README
 #
 # scripts/blender_pictures.sh and the two *_diagram.py draw the others.
@@ -19,7 +20,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-all=(checkerboard dual filters focus mobile parts sky temporal wires)
+all=(checkerboard dual filters focus mobile parts sky temporal two_way wires)
 tiles=()  # of the sheet that is being made: labels and files, as montage takes them
 tile_count=0
 
@@ -169,6 +170,19 @@ draw_sky() {
   "${resolve[@]}" --out "$work/point.%04d.png" --method point
   add_tile "one frame" "$work/point.0024.png" "$sun" 300
   sheet far_motion.png 4
+}
+
+draw_two_way() {
+  local place=120x80+250+140 ahead
+  local run=(--scene courtyard --scale 0.5 --start 1 --frames 9)
+  build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --jitter halton --sequence "$work/frame.%04d.exr"
+  dump . "${run[@]}" --frame 0 --stages truth --truth 8 --exposure 1
+  for ahead in 0 8; do
+    build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 0 --two-way "$ahead" -q --out "$work/$ahead.%04d.png"
+    add_tile "--two-way $ahead" "$work/$ahead.0000.png" "$place" 200
+  done
+  add_tile "truth, 64 samples" "$work/frame.0000.truth.png" "$place" 200
+  sheet two_way.png 3
 }
 
 # dump_view SCENE VIEW: what --view shows of frame 39, into $work/SCENE-VIEW.
