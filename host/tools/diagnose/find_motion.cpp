@@ -81,17 +81,19 @@ std::vector<MotionGuess> best_guesses(const Search& search, const std::vector<Mo
   return kept;
 }
 
-// Returns how much of the jitter's steps is in the motion: -1 where each position is that in its jittered picture, 1
-// where besides the jitter is told with the wrong sign, else 0. Motion itself changes smoothly, jitter does not.
-int jitter_in_motion(Frames frames, const DiagnosedInput& input, const MotionGuess& guess) {
+// How much of a jitter's steps is in the motion, at places all over the picture: -1 where each position is that in its
+// jittered picture. Motion itself changes smoothly, jitter does not. Where surfaces change it is any number.
+std::vector<double> jitter_factors(Frames frames, const DiagnosedInput& input, const MotionGuess& guess,
+                                   const JitterGuess& jitter) {
   constexpr int kAcross = 40;
-  constexpr double kRoom = .2;
   std::vector<double> factors;
   const Extent extent = frames[0].render;
   const Vec2 scale = factors_of(input, guess, extent);
-  const auto step = [&](std::size_t i) {
-    return Vec2{frames[i].jitter.x - frames[i - 1].jitter.x, frames[i].jitter.y - frames[i - 1].jitter.y};
-  };
+  std::vector<std::optional<Vec2>> steps(frames.size());
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const auto now = jitter_at(frames, input, jitter, i), before = jitter_at(frames, input, jitter, i - 1);
+    if (now && before) steps[i] = Vec2{now->x - before->x, now->y - before->y};
+  }
   for (int cell = 0; cell < kAcross * kAcross; ++cell) {
     const int x = (2 * (cell % kAcross) + 1) * extent.width / (2 * kAcross);
     const int y = (2 * (cell / kAcross) + 1) * extent.height / (2 * kAcross);
@@ -103,14 +105,15 @@ int jitter_in_motion(Frames frames, const DiagnosedInput& input, const MotionGue
       return Vec2{v.x * scale.x, v.y * scale.y};
     };
     const auto usable = [&](std::size_t f) {
-      if (frames[f].render != extent || frames[f].velocity.empty() || frames[f].reset) return false;
+      if (!steps[f] || frames[f].render != extent || frames[f].velocity.empty() || frames[f].reset)
+        return false;
       const Vec2 v = frames[f].velocity[pixel];
       return std::isfinite(v.x) && std::isfinite(v.y) && v != Vec2{};
     };
     double product = 0, square = 0;
     for (std::size_t f = 2; f + 1 < frames.size(); ++f) {
       if (!usable(f - 1) || !usable(f) || !usable(f + 1)) continue;
-      const Vec2 a = at(f - 1), b = at(f), c = at(f + 1), p = step(f - 1), q = step(f), r = step(f + 1);
+      const Vec2 a = at(f - 1), b = at(f), c = at(f + 1), p = *steps[f - 1], q = *steps[f], r = *steps[f + 1];
       const double jx = r.x - 2 * q.x + p.x, jy = r.y - 2 * q.y + p.y;
       const double mx = c.x - 2 * b.x + a.x, my = c.y - 2 * b.y + a.y;
       if (std::hypot(mx, my) > 2 * std::hypot(jx, jy) + .5) continue;  // another surface has come here
@@ -119,19 +122,31 @@ int jitter_in_motion(Frames frames, const DiagnosedInput& input, const MotionGue
     }
     if (square > 0) factors.push_back(product / square);
   }
-  // Where surfaces change the factor is any number.
-  const auto near = [&](double value) {
-    return std::count_if(factors.begin(), factors.end(),
-                         [&](double f) { return std::abs(f - value) < kRoom; });
-  };
-  if (factors.size() < 50) return 0;
-  for (const int sign : {-1, 1}) {
-    const auto votes = near(sign);
-    if (votes * 4 > static_cast<std::ptrdiff_t>(factors.size()) && votes > 4 * near(0) &&
-        votes > 4 * near(-sign))
-      return sign;
+  return factors;
+}
+
+// Returns the jitter whose steps are in the motion, if one is: as told, or else the one that most places tell.
+std::optional<JitterGuess> jitter_in_motion(Frames frames, const DiagnosedInput& input,
+                                            const MotionGuess& guess,
+                                            const std::vector<JitterGuess>& jitters) {
+  std::optional<JitterGuess> found;
+  std::ptrdiff_t most = 0;
+  for (const JitterGuess& jitter : jitters) {
+    if (jitter.factor == 0) continue;
+    const std::vector<double> factors = jitter_factors(frames, input, guess, jitter);
+    const auto near = [&](double value) {
+      constexpr double kRoom = .2;
+      return std::count_if(factors.begin(), factors.end(),
+                           [&](double f) { return std::abs(f - value) < kRoom; });
+    };
+    const auto votes = near(-1);
+    if (factors.size() < 50 || votes * 4 <= static_cast<std::ptrdiff_t>(factors.size()) ||
+        votes <= 4 * near(0) || votes <= 4 * near(1))
+      continue;
+    if (jitter == JitterGuess{}) return jitter;
+    if (votes > most) most = votes, found = jitter;
   }
-  return 0;
+  return found;
 }
 
 // Returns what might be mistaken for a guess.
@@ -200,19 +215,19 @@ Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const
   return rivals;
 }
 
-// `mixed`: as of jitter_in_motion().
-Finding judge_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses, int mixed,
+// `mixed`: the jitter is in the motion though that is not said, or is not though it is.
+Finding judge_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses, bool mixed,
                      Extent extent) {
   const MotionGuess& motion = guesses.motion();
   Finding finding = {.subject = "velocity", .says = tools::name_of(input.units.convention)};
   const Rivals rivals = rivals_of_motion(search, input, guesses, extent);
   rivals.judge(finding);
-  if (motion == MotionGuess{} && mixed == 0) return finding;
+  if (motion == MotionGuess{} && !mixed) return finding;
   finding.verdict = Verdict::kWrong;
   finding.faults = faults_of(motion);
   finding.fits = text_of(motion);
   if (motion != MotionGuess{}) finding.option = option_of(input, motion, extent);
-  if (mixed != 0) {
+  if (mixed) {
     const bool said = input.units.jittered;
     finding.faults.emplace_back(said ? "no jitter in it" : "jitter in it");
     finding.fits +=
@@ -231,17 +246,17 @@ Finding judge_motion(const Search& search, const DiagnosedInput& input, const Gu
 }
 
 // `jitter`: the one that fits. Where the motion holds it, pictures cannot tell it from none: the motion's word counts.
-Finding judge_jitter(const Search& search, const Guesses& guesses, const JitterGuess& jitter, int mixed) {
+Finding judge_jitter(const Search& search, const Guesses& guesses, const JitterGuess& jitter, bool mixed) {
   Finding finding = {.subject = "jitter", .says = guesses.told() ? "told" : "none"};
   if (jitter == JitterGuess{}) {
     Rivals rivals;
-    for (std::size_t j = 1; j < guesses.jitters.size() && mixed == 0; ++j) {
+    for (std::size_t j = 1; j < guesses.jitters.size() && !mixed; ++j) {
       if (guesses.jitters[j].pattern && guesses.told()) continue;
       const Candidate& rival = guesses.candidates[guesses.index(guesses.chosen_motion(), j)];
       rivals.add(search.compared(guesses.best(), rival.foretold), faults_of(guesses.jitters[j]));
     }
     rivals.judge(finding);
-    if (mixed != 0) finding.verdict = Verdict::kRight;
+    if (mixed) finding.verdict = Verdict::kRight;
     return finding;
   }
   finding.verdict = Verdict::kWrong;
@@ -272,10 +287,15 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   guesses.chosen = choose(pairs, frames, guesses.candidates);
 
   MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
-  const int mixed = has_motion && guesses.told() ? jitter_in_motion(frames, input, guesses.motion()) : 0;
   JitterGuess jitter = guesses.jitter();
-  const bool said = input.units.jittered;  // and so taken out before
-  if (mixed != 0) jitter = {.flip_x = mixed > 0 && !said, .flip_y = mixed > 0 && !said};
+  bool mixed = false;
+  if (has_motion) {
+    const auto within = jitter_in_motion(frames, input, guesses.motion(), guesses.jitters);
+    // What was said to be in it was taken out before: of motion without it that leaves the opposite.
+    const bool said = input.units.jittered;
+    mixed = within && (!said || *within == JitterGuess{.flip_x = true, .flip_y = true});
+    if (mixed) jitter = said ? JitterGuess{} : *within;
+  }
   Finding motion = {.subject = "velocity", .says = "none"};
   if (has_motion) motion = judge_motion(search, input, guesses, mixed, extent);
   const Finding moved = judge_jitter(search, guesses, jitter, mixed);
@@ -283,7 +303,7 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   answer.knows_motion = motion.verdict != Verdict::kUnknown;
   answer.mend = mend_of(jitter);
   answer.guess = guesses.motion();
-  answer.jitters = mixed == 0 ? 0 : said ? -1 : 1;
+  answer.jitters = !mixed ? 0 : input.units.jittered ? -1.0f : 1.0f;
   for (std::size_t i = 0; i < frames.size(); ++i)
     answer.jitter.push_back(jitter_at(frames, input, jitter, i).value_or(frames[i].jitter));
   return answer;
