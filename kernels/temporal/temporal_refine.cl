@@ -19,85 +19,15 @@
 // Beyond the picture its outermost pixels repeat.
 // Source: the structure tensor after Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987.
 // Reference: tests/reference/temporal_refine.cpp
-#include "bits.h"
 #include "temporal/constants.h"
 #include "temporal/history.h"
 #include "temporal/temporal_params.h"
+#include "temporal/tone_rows.h"
 #include "texel.h"
 
 #if SOURCE_FORMAT != OUTPUT_FORMAT
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
-
-enum { kRowMargin = 4 };  // texels before the eight pixels of a row, and after them
-
-// Sixteen texels of a row; the pixels are the middle eight.
-typedef struct ToneRow {
-  float16 red, green, blue, luma;
-} ToneRow;
-
-static inline float8 at_pixels(float16 row) {
-  return row.s456789ab;
-}
-
-static inline float8 on_the_left(float16 row) {
-  return row.s3456789a;
-}
-
-static inline float8 on_the_right(float16 row) {
-  return row.s56789abc;
-}
-
-// Each texel's left and right neighbour; the outermost texel stands in for what lies beyond.
-static inline float16 to_the_left(float16 row) {
-  return row.s00123456789abcde;
-}
-
-static inline float16 to_the_right(float16 row) {
-  return row.s123456789abcdeff;
-}
-
-// The four texels from (x, y) on, clamped to the edge.
-static inline float16 load_clamped_texels4(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
-  const int last = params->width - 1;
-  if (x >= 0 && x + 3 <= last) return load_resolved4(source, params->source, x, y);
-  return (float16)(load_resolved(source, params->source, clamp(x, 0, last), y),
-                   load_resolved(source, params->source, clamp(x + 1, 0, last), y),
-                   load_resolved(source, params->source, clamp(x + 2, 0, last), y),
-                   load_resolved(source, params->source, clamp(x + 3, 0, last), y));
-}
-
-// NaN becomes 0; the rest is held within the largest half.
-static inline float16 cleaned(float16 values) {
-  const int16 is_nan = (as_int16(values) & 0x7fffffff) > 0x7f800000;
-  const float16 known = as_float16(as_int16(values) & ~is_nan);
-  return min(max(known, -FINITE_HALF_MAX), FINITE_HALF_MAX);
-}
-
-// Sixteen texels as they were drawn, cleaned.
-typedef struct LightRow {
-  float16 red, green, blue;
-} LightRow;
-
-// Those around the pixels from (x, y) on; the row clamped to the edge, too.
-static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
-  const int row = clamp(y, 0, params->height - 1);
-  const float16 t0 = load_clamped_texels4(source, params, x - kRowMargin, row);
-  const float16 t1 = load_clamped_texels4(source, params, x, row);
-  const float16 t2 = load_clamped_texels4(source, params, x + 4, row);
-  const float16 t3 = load_clamped_texels4(source, params, x + 8, row);
-  const LightRow light = {cleaned((float16)(t0.s048c, t1.s048c, t2.s048c, t3.s048c)),
-                          cleaned((float16)(t0.s159d, t1.s159d, t2.s159d, t3.s159d)),
-                          cleaned((float16)(t0.s26ae, t1.s26ae, t2.s26ae, t3.s26ae))};
-  return light;
-}
-
-static inline ToneRow tone_of(LightRow light) {
-  const float16 scale = 1.0f / (1.0f + max(max(max(light.red, light.green), light.blue), 0.0f));
-  ToneRow tone = {light.red * scale, light.green * scale, light.blue * scale, (float16)(0.0f)};
-  tone.luma = 0.25f * (tone.red + tone.blue) + 0.5f * tone.green;
-  return tone;
-}
 
 // Found by least squares against truth, and by search, on the development scenes (docs/temporal.md).
 
@@ -159,7 +89,8 @@ static inline EightEdges edges_of(const ToneRow* rows) {
 }
 
 // One channel of the pixels.
-static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges, EightStrengths by) {
+static inline float8 refined(float16 above, float16 same, float16 below, EightEdges edges,
+                             EightStrengths by) {
   const float16 beside = above + below, apart = below - above, column = beside + same;
   const float16 low = min(min(above, below), same), high = max(max(above, below), same);
   const float8 own = at_pixels(same);
@@ -177,24 +108,6 @@ static inline float8 refined(float16 above, float16 same, float16 below, EightEd
   return min(max(moved, least), most);
 }
 
-// Light of eight values in tone space; of those that stay, as it was.
-static inline float8 light_of(float8 tone, float8 scale, float8 before, int8 stays) {
-  return select(min(max(tone * scale, -FINITE_HALF_MAX), FINITE_HALF_MAX), before, stays);
-}
-
-// The first `count` pixels of a row.
-static inline void store_refined(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
-                                 int x, int y, int count, float8 red, float8 green, float8 blue) {
-  float reds[8], greens[8], blues[8];
-  vstore8(red, 0, reds);
-  vstore8(green, 0, greens);
-  vstore8(blue, 0, blues);
-  for (int i = 0; i < count; ++i) {
-    const float alpha = load_resolved(source, params->source, x + i, y).w;
-    store_output(output, params->output, x + i, y, (float4)(reds[i], greens[i], blues[i], alpha));
-  }
-}
-
 // Refines the pixels from (x, y) on, with the five rows around theirs.
 static inline void refine_row(const ToneRow* rows, LightRow light, EightStrengths by, RESOLVED_TEXELS source,
                               OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
@@ -202,14 +115,7 @@ static inline void refine_row(const ToneRow* rows, LightRow light, EightStrength
   const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
   const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
   const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
-  const int8 stays = (red == at_pixels(rows[2].red)) & (green == at_pixels(rows[2].green)) &
-                     (blue == at_pixels(rows[2].blue));
-  const float8 brightest = max(max(max(red, green), blue), 0.0f);
-  const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
-  store_refined(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
-                light_of(red, scale, at_pixels(light.red), stays),
-                light_of(green, scale, at_pixels(light.green), stays),
-                light_of(blue, scale, at_pixels(light.blue), stays));
+  store_tone8(output, source, params, x, y, light, rows[2], red, green, blue);
 }
 
 __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, HISTORY_TEXELS history,

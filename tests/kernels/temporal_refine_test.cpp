@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// temporal_refine against its reference. The bound follows from running error analysis beside the reference.
+// temporal_refine and temporal_denoise against their references. The bounds follow from running error analysis beside
+// them.
 #include "../reference/temporal_refine.h"
 
 #include <fmt/format.h>
@@ -30,13 +31,15 @@ std::size_t index_of(Extent extent, int x, int y) {
                                   std::clamp(x, 0, extent.width - 1));
 }
 
-struct Formats {
+struct Case {
   PixelFormat picture, history;
+  float noise = 0;  // 0: temporal_refine
 };
 
-class TemporalRefine : public ::testing::TestWithParam<Formats> {
+class TemporalPicture : public ::testing::TestWithParam<Case> {
  protected:
   static PixelFormat format() { return GetParam().picture; }
+  static bool denoises() { return GetParam().noise > 0; }
 
   // Refines with `confidences` for the pixels, or if there are none with every kind, side by side; history's colours
   // are NaN.
@@ -47,8 +50,10 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
     const ResolveSettings settings = {
         .method = Method::kTemporal,
         .output = {.linear = format()},
-        .temporal = {.preset = TemporalPreset::kQuality, .history = GetParam().history}};
-    PassRig pass({}, settings, "temporal_refine");
+        .temporal = {.preset = denoises() ? TemporalPreset::kBalanced : TemporalPreset::kQuality,
+                     .history = GetParam().history,
+                     .noise = GetParam().noise}};
+    PassRig pass({}, settings, denoises() ? "temporal_denoise" : "temporal_refine");
     std::vector<Pixel> known;
     for (const double confidence : confidences.empty() ? every_kind(extent) : confidences)
       known.push_back({kNan, kNan, kNan, confidence});
@@ -58,7 +63,7 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
     const ImageView source = rig.image(format(), Storage::kBuffer, extent, pixels, outside, tight);
     const ImageView view = rig.output(format(), extent);
     pass.run({}, {}, extent, {},
-             {{Resource::kUnrefined, source},
+             {{denoises() ? Resource::kNoisy : Resource::kUnrefined, source},
               {Resource::kHistory, {.memory = history()}},
               {Resource::kResolved, view}});
     return rig.bytes(view, extent);
@@ -93,6 +98,8 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
     const std::vector<double> confidences = every_kind(extent);
     const auto expected =
         testing::expected_pixels(extent.width, extent.height, [&]<typename Real>(Real, int x, int y) {
+          if (denoises())
+            return reference::temporal_denoise<Real>(picture, confidences, GetParam().noise, x, y);
           return reference::temporal_refine<Real>(picture, confidences, x, y);
         });
     const std::vector<Pixel> actual = refined(pixels, extent);
@@ -107,8 +114,12 @@ class TemporalRefine : public ::testing::TestWithParam<Formats> {
   }
 };
 
-TEST_P(TemporalRefine, MatchesTheReferenceOnEveryPatternAndSize) {
-  for (const Extent extent : {Extent{1, 1}, {7, 5}, {8, 8}, {9, 17}, {67, 41}}) {
+class TemporalRefine : public TemporalPicture {};
+class TemporalDenoise : public TemporalPicture {};
+
+TEST_P(TemporalPicture, MatchesTheReferenceOnEveryPatternAndSize) {
+  const Extent largest = denoises() ? Extent{13, 9} : Extent{67, 41};  // the reference takes a while
+  for (const Extent extent : {Extent{1, 1}, {7, 5}, {8, 8}, {9, 17}, largest}) {
     for (const Pattern pattern : testing::all_patterns()) {
       const std::string what =
           fmt::format("{} {}x{}", testing::name_of(pattern), extent.width, extent.height);
@@ -122,7 +133,7 @@ TEST_P(TemporalRefine, MatchesTheReferenceOnEveryPatternAndSize) {
   }
 }
 
-TEST_P(TemporalRefine, ConstantsAndAlphaKeepEveryBit) {
+TEST_P(TemporalPicture, ConstantsAndAlphaKeepEveryBit) {
   for (const Extent extent : {Extent{1, 1}, {7, 5}, {65, 33}}) {
     for (const double value : {0.0, .3, -2.0, 1e-7, 65504.0}) {
       const std::vector<Pixel> flat(static_cast<std::size_t>(extent.area()),
@@ -185,7 +196,7 @@ TEST_P(TemporalRefine, BlurredEdgesAreSharpened) {
   }
 }
 
-TEST_P(TemporalRefine, ANonFinitePixelCountsAsItsStandInAndReachesTwoPixelsFar) {
+TEST_P(TemporalPicture, ANonFinitePixelCountsAsItsStandInAndReachesAFewPixelsFar) {
   const Extent extent{22, 9};
   const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 9);
   const std::vector<Pixel> without = refined(pixels, extent);
@@ -199,14 +210,14 @@ TEST_P(TemporalRefine, ANonFinitePixelCountsAsItsStandInAndReachesTwoPixelsFar) 
     EXPECT_EQ(with, refined(stood, extent)) << bad;
     for (int y = 0; y < extent.height; ++y) {
       for (int x = 0; x < extent.width; ++x) {
-        if (std::max(std::abs(x - 12), std::abs(y - 4)) <= 2) continue;
+        if (std::max(std::abs(x - 12), std::abs(y - 4)) <= (denoises() ? 4 : 2)) continue;
         ASSERT_EQ(with[index_of(extent, x, y)], without[index_of(extent, x, y)]) << x << ", " << y;
       }
     }
   }
 }
 
-TEST_P(TemporalRefine, PoisonOutsideThePictureChangesNoBit) {
+TEST_P(TemporalPicture, PoisonOutsideThePictureChangesNoBit) {
   for (const Extent extent : {Extent{1, 1}, {5, 3}, {33, 21}}) {
     const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
     const std::vector<unsigned char> clean = run(pixels, extent, {}, 0);
@@ -216,27 +227,87 @@ TEST_P(TemporalRefine, PoisonOutsideThePictureChangesNoBit) {
 }
 
 // Under a memory checker this also shows that nothing beyond the picture is read.
-TEST_P(TemporalRefine, ATightImageGivesTheSameBits) {
+TEST_P(TemporalPicture, ATightImageGivesTheSameBits) {
   for (const Extent extent : {Extent{1, 1}, {1, 6}, {4, 2}, {5, 1}, {8, 3}, {13, 11}}) {
     const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kNoise, extent, 2);
     EXPECT_EQ(run(pixels, extent, {}, 0), run(pixels, extent, {}, 0, true)) << extent.width;
   }
 }
 
-TEST_P(TemporalRefine, TwoRunsAgreeBitForBit) {
+TEST_P(TemporalPicture, TwoRunsAgreeBitForBit) {
   const std::vector<Pixel> pixels = testing::pattern_pixels(Pattern::kExtremes, {100, 70}, 4);
   EXPECT_EQ(run(pixels, {100, 70}), run(pixels, {100, 70}));
 }
 
-const std::vector<Formats> kFormats = {{PixelFormat::kRGBA32F, PixelFormat::kRGBA32F},
-                                       {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F},
-                                       {PixelFormat::kRGBA16F, PixelFormat::kRGBA32F},
-                                       {PixelFormat::kRGBA16F, PixelFormat::kRGBA16F}};
+// Grey light of .5 with noise of the variance that is told, from pixel `edge` on another light.
+std::vector<Pixel> noisy_picture(Extent extent, double confidence, double noise, int edge, double light) {
+  const std::vector<Pixel> chance = testing::pattern_pixels(Pattern::kNoise, extent, 7);
+  const auto pixels = static_cast<double>(chance.size());
+  double mean = 0, square = 0;
+  for (const Pixel& pixel : chance) {
+    mean += pixel[0] / pixels;
+    square += pixel[0] * pixel[0] / pixels;
+  }
+  const double scale = std::sqrt(noise / confidence / (square - mean * mean));
+  return picture_of(extent, [&](int x, int y) {
+    return (x < edge ? .5 : light) * (1 + scale * (chance[index_of(extent, x, y)][0] - mean));
+  });
+}
 
-INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine, ::testing::ValuesIn(kFormats),
-                         testing::sample_names(kFormats, [](const Formats& f) {
-                           return fmt::format("{}_of_{}", name_of(f.picture), name_of(f.history));
-                         }));
+// Returns the mean squared difference of the columns from `first` to before `end` from `light`.
+double error_of(const std::vector<Pixel>& pixels, Extent extent, int first, int end, double light) {
+  double sum = 0;
+  for (int y = 0; y < extent.height; ++y) {
+    for (int x = first; x < end; ++x)
+      sum += std::pow(pixels[index_of(extent, x, y)][0] - light, 2) / ((end - first) * extent.height);
+  }
+  return sum;
+}
+
+TEST_P(TemporalDenoise, NoiseFadesBesideAnEdgeThatStays) {
+  const Extent extent{48, 32};
+  const double confidence = 4, edge_light = 3;
+  const auto noisy = noisy_picture(extent, confidence, GetParam().noise, 24, edge_light);
+  const std::vector<double> known(static_cast<std::size_t>(extent.area()), confidence);
+  const auto shown = refined(noisy, extent, known);
+  EXPECT_LT(error_of(shown, extent, 0, 24, .5), .25 * error_of(noisy, extent, 0, 24, .5));
+  EXPECT_LT(error_of(shown, extent, 24, 48, edge_light), .25 * error_of(noisy, extent, 24, 48, edge_light));
+}
+
+// Texture that is stronger than the noise that is told, and smooth light.
+TEST_P(TemporalDenoise, WhatNoiseDoesNotExplainStays) {
+  const Extent extent{24, 24};
+  const std::vector<double> known(static_cast<std::size_t>(extent.area()), 32);
+  const auto board = picture_of(extent, [](int x, int y) { return (x / 3 + y / 3) % 2 == 0 ? .2 : .9; });
+  const auto ramp = picture_of(extent, [](int x, int y) { return .2 + .02 * x + .01 * y; });
+  for (const auto& [picture, most] : {std::pair{board, 1e-3}, {ramp, 4e-3}}) {
+    const auto shown = refined(picture, extent, known);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+      ASSERT_NEAR(shown[i][0], picture[i][0], most) << i;
+  }
+}
+
+std::vector<Case> all_formats(float noise) {
+  std::vector<Case> all;
+  for (const PixelFormat picture : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F}) {
+    for (const PixelFormat history : {PixelFormat::kRGBA32F, PixelFormat::kRGBA16F})
+      all.push_back({picture, history, noise});
+  }
+  return all;
+}
+
+std::string name(const Case& c) {
+  return fmt::format("{}{}_of_{}", c.noise > 0 ? "denoised_" : "", name_of(c.picture), name_of(c.history));
+}
+
+INSTANTIATE_TEST_SUITE_P(Refined, TemporalPicture, ::testing::ValuesIn(all_formats(0)),
+                         testing::sample_names(all_formats(0), name));
+INSTANTIATE_TEST_SUITE_P(Denoised, TemporalPicture, ::testing::ValuesIn(all_formats(.25F)),
+                         testing::sample_names(all_formats(.25F), name));
+INSTANTIATE_TEST_SUITE_P(Variants, TemporalRefine, ::testing::ValuesIn(all_formats(0)),
+                         testing::sample_names(all_formats(0), name));
+INSTANTIATE_TEST_SUITE_P(Variants, TemporalDenoise, ::testing::ValuesIn(all_formats(.25F)),
+                         testing::sample_names(all_formats(.25F), name));
 
 }  // namespace
 }  // namespace quincunx

@@ -175,6 +175,7 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   within(&Settings::temporal, &TemporalSettings::view,
          {TemporalView::kPicture, TemporalView::kConfidence, TemporalView::kRejection, TemporalView::kPhase,
           TemporalView::kLayers, TemporalView::kCoverage, TemporalView::kNear, TemporalView::kFar});
+  within(&Settings::temporal, &TemporalSettings::noise, {0.0f, .5f});
   add({0.0f, .5f}, [](PlanInputs& inputs, float value) { inputs.settings.blur.shutter = value; });
   // Neither grain, nor whether the noise moves, nor the other parameters of blur and forms choose passes.
   return axes;

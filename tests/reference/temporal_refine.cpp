@@ -8,7 +8,6 @@
 namespace quincunx::reference {
 namespace {
 
-constexpr double kFiniteHalfMax = 65504;
 constexpr double kSharpening = .05;     // with one layer where all is known
 constexpr double kSharpeningNew = .35;  // and more, divided by the confidence and kSharpeningNewConfidence
 constexpr double kSharpeningNewConfidence = .6;
@@ -18,40 +17,6 @@ constexpr double kEdgeSmoothingNewConfidence = .15;
 constexpr double kEdgeSmoothingLayered = .2;  // with two layers
 constexpr double kEdgeSharpeningLayered = -.12;
 constexpr double kEdgeGradientFloor = 1e-3;
-constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
-
-double cleaned(double value) {
-  return std::isnan(value) ? 0 : std::clamp(value, -kFiniteHalfMax, kFiniteHalfMax);
-}
-
-template <typename Real>
-class TonePicture {
- public:
-  explicit TonePicture(const Picture& picture) : picture_(picture) {}
-
-  // Clamped to the edge.
-  PixelOf<Real> at(int x, int y) const {
-    const int column = std::clamp(x, 0, picture_.width - 1);
-    const int row = std::clamp(y, 0, picture_.height - 1);
-    const Pixel& pixel = picture_.pixels[index_of(picture_.width, column, row)];
-    PixelOf<Real> colour = {};
-    double brightest = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      colour[c] = cleaned(pixel[c]);
-      brightest = std::max(brightest, cleaned(pixel[c]));
-    }
-    const Real scale = 1 / (1 + Real(brightest));
-    return {colour[0] * scale, colour[1] * scale, colour[2] * scale, 0};
-  }
-
-  Real luma(int x, int y) const {
-    const PixelOf<Real> tone = at(x, y);
-    return .25 * (tone[0] + tone[2]) + .5 * tone[1];
-  }
-
- private:
-  const Picture& picture_;
-};
 
 // K cos 2a, K sin 2a and K, with a the direction across the edge.
 template <typename Real>
@@ -123,16 +88,9 @@ PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>&
   const Edge<Real> edge = edge_at(tone, x, y);
   const auto by = strengths_of<Real>(confidences[index_of(picture.width, x, y)]);
   PixelOf<Real> out = {};
-  Real brightest = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    out[c] = refined(tone, edge, by, x, y, c);
-    brightest = max(brightest, out[c]);
-  }
-  const Real scale = 1 / max(1 - brightest, kToneRestMin);
   for (std::size_t c = 0; c < 3; ++c)
-    out[c] = min(max(out[c] * scale, -kFiniteHalfMax), kFiniteHalfMax);
-  out[3] = picture.pixels[index_of(picture.width, x, y)][3];
-  return out;
+    out[c] = refined(tone, edge, by, x, y, c);
+  return light_of(out, picture, x, y);
 }
 
 template PixelOf<double> temporal_refine(const Picture&, const std::vector<double>&, int, int);

@@ -9,8 +9,18 @@
 // and back, within +-65504. Alpha stays. NaN counts as 0, what is beyond +-65504 as that. Neighbours are clamped to the
 // edge.
 // Source: Bigun and Granlund, "Optimal Orientation Detection of Linear Symmetry", 1987.
+//
+// temporal_denoise, in tone space, too: t' is the mean of the 7x7 pixels around, each weighted
+// w bell(d / (s n + 10^-7)), w = |W| + .03
+//   v   noise (1 - max(t, 0))^2 |t|^2 / w
+//   s   min(sum of |t - mean of four neighbours|^2 / (sum of v + 10^-12), .7), sums over the 5x5 pixels around
+//   d   sum of |t_q - t_p|^2, n sum of v_p + v_q, over the 3x3 places around both pixels
+// Source: Buades, Coll and Morel, "A non-local algorithm for image denoising", 2005.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "error_bound.h"
@@ -18,8 +28,59 @@
 
 namespace quincunx::reference {
 
+constexpr double kFiniteHalfMax = 65504;
+constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
+
+// What stands for a value that is not finite.
+inline double cleaned(double value) {
+  return std::isnan(value) ? 0 : std::clamp(value, -kFiniteHalfMax, kFiniteHalfMax);
+}
+
+template <typename Real>
+class TonePicture {
+ public:
+  explicit TonePicture(const Picture& picture) : picture_(picture) {}
+
+  // Clamped to the edge.
+  PixelOf<Real> at(int x, int y) const {
+    const int column = std::clamp(x, 0, picture_.width - 1);
+    const int row = std::clamp(y, 0, picture_.height - 1);
+    const Pixel& pixel = picture_.pixels[index_of(picture_.width, column, row)];
+    PixelOf<Real> colour = {};
+    double brightest = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      colour[c] = cleaned(pixel[c]);
+      brightest = std::max(brightest, cleaned(pixel[c]));
+    }
+    const Real scale = 1 / (1 + Real(brightest));
+    return {colour[0] * scale, colour[1] * scale, colour[2] * scale, 0};
+  }
+
+  Real luma(int x, int y) const {
+    const PixelOf<Real> tone = at(x, y);
+    return .25 * (tone[0] + tone[2]) + .5 * tone[1];
+  }
+
+ private:
+  const Picture& picture_;
+};
+
+// The way back from tone space; alpha is that of the picture's pixel.
+template <typename Real>
+PixelOf<Real> light_of(const PixelOf<Real>& tone, const Picture& picture, int x, int y) {
+  const Real scale = 1 / max(1 - max(max(max(tone[0], tone[1]), tone[2]), 0), kToneRestMin);
+  PixelOf<Real> light = {};
+  for (std::size_t c = 0; c < 3; ++c)
+    light[c] = min(max(tone[c] * scale, -kFiniteHalfMax), kFiniteHalfMax);
+  light[3] = picture.pixels[index_of(picture.width, x, y)][3];
+  return light;
+}
+
 // `confidences`: of each pixel, as history stores them.
 template <typename Real>
 PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>& confidences, int x, int y);
+template <typename Real>
+PixelOf<Real> temporal_denoise(const Picture& picture, const std::vector<double>& confidences, double noise,
+                               int x, int y);
 
 }  // namespace quincunx::reference

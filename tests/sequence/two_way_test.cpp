@@ -41,6 +41,9 @@ class BothWays : public testing::SequenceTest {
   static constexpr Extent kRender = {48, 30};
   static constexpr Extent kPicture = {96, 60};
 
+  float noise_ = 0;      // variance of a sample, of its square
+  std::string samples_;  // as Cycles has them; empty: it does not
+
   struct Seen {
     float light[3], distance, speed_x, speed_y;  // output pixels a frame
   };
@@ -83,9 +86,11 @@ class BothWays : public testing::SequenceTest {
         const Seen seen = seen_at(step_x * (x + .5 + jitter.x), step_y * (y + .5 + jitter.y), number);
         const auto u = static_cast<float>(seen.speed_x / step_x),
                    v = static_cast<float>(-seen.speed_y / step_y);
-        const float values[] = {alpha * seen.light[0],
-                                alpha * seen.light[1],
-                                alpha * seen.light[2],
+        const float chance = testing::noise(number + 2, 0, y * render.width + x) - .5f;  // variance 1/12
+        const float light = alpha * (1 + std::sqrt(12 * noise_) * chance);
+        const float values[] = {light * seen.light[0],
+                                light * seen.light[1],
+                                light * seen.light[2],
                                 alpha,
                                 seen.distance,
                                 -u,
@@ -105,6 +110,7 @@ class BothWays : public testing::SequenceTest {
     }
     std::vector<tools::Attribute> attributes = {
         {"quincunx:jitter", jitter}, {"quincunx:outputSize", Vec2{kPicture.width, kPicture.height}}};
+    if (!samples_.empty()) attributes.push_back({"cycles.ViewLayer.samples", samples_});
     if (cut) attributes.push_back({"quincunx:reset", 1});
     const Status status = tools::write_exr(input(number), render, channels, attributes);
     ASSERT_TRUE(status.ok()) << status.message();
@@ -193,6 +199,31 @@ TEST_F(BothWays, EightFramesAheadAreTheDefaultWhereMotionToThemIsKnown) {
   resolve_to("u", "");
   expect_same_files(1, 5, "zero");
   EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain").out.find("merge"), std::string::npos);
+}
+
+TEST_F(BothWays, NoiseThatIsToldIsTakenOutOfWhatIsShown) {
+  noise_ = .25f;
+  write_all(1, 10);
+  for (const char* way :
+       {"temporal:fast --two-way 0", "temporal --two-way 0", "temporal", "temporal:quality"}) {
+    resolve_to("noisy", fmt::format("--method {}", way));
+    resolve_to("denoised", fmt::format("--method {} --noise 4", way));
+    for (int number = 1; number <= 10; ++number)
+      EXPECT_GT(psnr_of("denoised", number), psnr_of("noisy", number) + .3) << way << " " << number;
+  }
+  samples_ = "4";
+  write_all(1, 10);
+  resolve_to("auto", "--method temporal:quality --noise auto");
+  for (int number = 1; number <= 10; ++number)
+    EXPECT_EQ(colours(output(number, "auto")), colours(output(number, "denoised"))) << number;
+  samples_ = "65";  // clean
+  write_all(1, 10);
+  resolve_to("auto", "--method temporal:quality --noise auto");
+  for (int number = 1; number <= 10; ++number)
+    EXPECT_EQ(colours(output(number, "auto")), colours(output(number, "noisy"))) << number;
+  EXPECT_NE(resolve("'{}/f.%04d.exr' --explain --noise 4").out.find("\n  temporal_denoise "),
+            std::string::npos);
+  EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain").out.find("temporal_denoise"), std::string::npos);
 }
 
 // What is read without history is a shot of its own: the frames after it may be another.

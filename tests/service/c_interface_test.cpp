@@ -343,10 +343,11 @@ ResolveSettings other_settings() {
   sampling = Sampling::kPoint;
   velocity_weight = 2;
   residual_weight = 3;
-  auto& [preset, view, history] = temporal;
+  auto& [preset, view, history, noise] = temporal;
   preset = TemporalPreset::kQuality;
   view = TemporalView::kFar;
   history = PixelFormat::kRGBA32F;
+  noise = 0.25f;
   auto& [shutter, samples] = blur;
   shutter = 1.5f;
   samples = 64;

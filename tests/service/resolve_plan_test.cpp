@@ -220,14 +220,29 @@ TEST(ResolvePlan, ViewsOfOneLayerSayThatTheSecondIsLeftOut) {
   EXPECT_FALSE(leaves_out(plan({}, settings(Method::kQuincunx)), "second layer of history"));
 }
 
-TEST(ResolvePlan, SharpnessBeyondZeroToOneIsRefused) {
+TEST(ResolvePlan, SharpnessAndNoiseBeyondZeroToOneAreRefused) {
   for (const float bad : {-.01f, 1.01f, std::nanf(""), INFINITY}) {
     ResolveSettings wanted = settings(Method::kBilinear);
-    wanted.sharpness = bad;
+    wanted.sharpness = wanted.temporal.noise = bad;
     const auto result = plan_for({}, wanted);
     ASSERT_FALSE(result.ok()) << bad;
     EXPECT_NE(result.status().message().find("settings.sharpness"), std::string::npos);
+    EXPECT_NE(result.status().message().find("settings.temporal.noise"), std::string::npos);
     EXPECT_NE(result.status().message().find("[0, 1]"), std::string::npos);
+  }
+}
+
+TEST(ResolvePlan, APictureIsDenoisedOnlyWhereNoiseIsTold) {
+  for (const TemporalPreset preset :
+       {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
+    ResolveSettings wanted = settings(Method::kTemporal);
+    wanted.temporal.preset = preset;
+    EXPECT_FALSE(has_pass(plan({}, wanted), "temporal_denoise"));
+    EXPECT_FALSE(has_buffer(plan({}, wanted), "noisy"));
+    wanted.temporal.noise = 1;
+    EXPECT_TRUE(has_pass(plan({}, wanted), "temporal_denoise"));
+    wanted.temporal.view = TemporalView::kConfidence;
+    EXPECT_FALSE(has_pass(plan({}, wanted), "temporal_denoise")) << "what is known is no picture";
   }
 }
 

@@ -43,6 +43,9 @@ struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;
   TemporalView view = TemporalView::kPicture;
   PixelFormat history = PixelFormat::kRGBA16F;  // RGBA16F or RGBA32F
+  float noise =
+      0;  // variance of a sample by chance, in parts of its square, in [0, 1]: of a path tracer about 1 /
+          // samples a pixel. Above 0 the picture is shown denoised
 
   friend bool operator==(const TemporalSettings&, const TemporalSettings&) = default;
 };

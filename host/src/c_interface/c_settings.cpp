@@ -81,6 +81,7 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.focus_mask = resolve.focus.mask;
   to.measures_content = resolve.control.measures_content;
   to.fades = resolve.control.fades;
+  to.temporal_noise = resolve.temporal.noise;
   return to;
 }
 
@@ -137,6 +138,7 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
                    .mask = from.focus_mask != 0};
   resolve.control.measures_content = from.measures_content != 0;
   resolve.control.fades = from.fades != 0;
+  resolve.temporal.noise = from.temporal_noise;
   if (!read.status().ok()) return read.status();
   return to;
 }
@@ -172,6 +174,7 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"settings.quincunx.residual_weight", "settings.residual_weight"},
     {"settings.temporal.view", "settings.temporal_view"},
     {"settings.temporal.history", "settings.history_format"},
+    {"settings.temporal.noise", "settings.temporal_noise"},
     {"settings.blur.shutter", "settings.shutter"},
     {"settings.blur.samples", "settings.blur_samples"},
     {"settings.focus.extent", "settings.focus_width x focus_height"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The passes of kernels/temporal: temporal_tiles, temporal_light, resolve_temporal, temporal_display, merge_histories,
-// temporal_refine.
+// temporal_denoise, temporal_refine.
 #include <fmt/format.h>
 
 #include "layers/layer.h"
@@ -344,7 +344,7 @@ void plan_merge_histories(const PlanFacts& facts, PassList& list) {
   list.passes.push_back(std::move(shown));
 }
 
-// temporal_refine: the history's picture sharpened, and smoothed along its edges.
+// temporal_denoise, temporal_refine: the history's picture without noise; sharpened, and smoothed along its edges.
 
 namespace {
 
@@ -352,22 +352,54 @@ constexpr int divided_up(int value) {
   return (value + kRefineBlock - 1) / kRefineBlock;
 }
 
+RefineParams refine_params(const PassFrame& frame, Resource source, Resource output) {
+  return {.width = frame.output.width,
+          .height = frame.output.height,
+          .source = layout_of(frame[source]),
+          .output = layout_of(frame[output])};
+}
+
+class TemporalDenoisePass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Resource denoised = denoised_of(facts());
+    bind(refine_params(frame, Resource::kNoisy, denoised), facts().settings.temporal.noise,
+         frame[Resource::kNoisy], frame[displayed_history_of(facts())], frame[denoised]);
+    const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
+    launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
+  }
+};
+
 class TemporalRefinePass : public Pass {
  public:
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const RefineParams params{.width = frame.output.width,
-                              .height = frame.output.height,
-                              .source = layout_of(frame[Resource::kUnrefined]),
-                              .output = layout_of(frame[picture()])};
-    bind(params, frame[Resource::kUnrefined], frame[displayed_history_of(facts())], frame[picture()]);
+    bind(refine_params(frame, Resource::kUnrefined, picture()), frame[Resource::kUnrefined],
+         frame[displayed_history_of(facts())], frame[picture()]);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
 };
 
 }  // namespace
+
+void plan_temporal_denoise(const PlanFacts& facts, PassList& list) {
+  if (!facts.denoises()) return;
+  const ResolveSettings& settings = facts.settings;
+  list.passes.push_back(
+      {.kernel = "temporal_denoise",
+       .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
+                              precision_of(settings.output.linear), precision_of(settings.temporal.history)),
+       .reason = "the frames' noise: pixels become means of such around them as differ by chance alone",
+       .uses = {{Resource::kNoisy, Access::kRead, Area::kOutput, settings.output.linear},
+                {displayed_history_of(facts), Access::kRead, Area::kOutput, settings.temporal.history},
+                {denoised_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+       .make = make_pass<TemporalDenoisePass>,
+       .frames = Frames::kSparse});
+}
 
 void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
   if (!facts.refines()) return;

@@ -156,6 +156,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_temporal_display,
     plan_display_layers,
     plan_merge_histories,
+    plan_temporal_denoise,
     plan_temporal_refine,
     plan_resolve_quincunx,
     plan_resolve_reprojected,

@@ -59,6 +59,7 @@ struct PlanFacts {
   bool refines() const {  // the picture of history: sharpened, and smoothed along edges
     return accumulates() && shows_picture() && settings.temporal.preset == TemporalPreset::kQuality;
   }
+  bool denoises() const { return accumulates() && shows_picture() && settings.temporal.noise > 0; }
   bool smooths_history() const {  // where little is known, on all sides; temporal_refine does it along edges
     return displays_history() && settings.temporal.preset != TemporalPreset::kFast && !refines();
   }

@@ -143,6 +143,10 @@ Status check(const ResolveSettings& settings) {
   if (!(settings.sharpness >= 0 && settings.sharpness <= 1)) {
     complaints.add(fmt::format("settings.sharpness is {}; it must lie in [0, 1]", settings.sharpness));
   }
+  if (!(settings.temporal.noise >= 0 && settings.temporal.noise <= 1)) {
+    complaints.add(
+        fmt::format("settings.temporal.noise is {}; it must lie in [0, 1]", settings.temporal.noise));
+  }
   check_focus(complaints, settings);
   const int samples = settings.blur.samples;
   if (samples < 4 || samples > 64 || !std::has_single_bit(static_cast<unsigned>(samples))) {

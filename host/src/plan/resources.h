@@ -86,6 +86,7 @@ enum class Resource : std::uint8_t {
   kOtherAlpha,
   kMergedHistory,
   kMergedAlpha,
+  kNoisy,
   kUnrefined,
   kUnsharpened,
   kResolved,
@@ -199,6 +200,7 @@ inline constexpr ResourceInfo kResources[] = {
     {Resource::kOtherAlpha, "other history alpha"},
     {Resource::kMergedHistory, "merged history"},
     {Resource::kMergedAlpha, "merged history alpha"},
+    {Resource::kNoisy, "noisy"},
     {Resource::kUnrefined, "unrefined"},
     {Resource::kUnsharpened, "unsharpened"},
     {Resource::kResolved, "resolved"},
@@ -245,9 +247,12 @@ inline Resource picture_of(const PlanFacts& facts) {
   return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
 }
 
-// The picture of the history, before the preset `quality` refines it.
-inline Resource shown_history_of(const PlanFacts& facts) {
+// The picture of the history, before the preset `quality` refines it, and before it is denoised.
+inline Resource denoised_of(const PlanFacts& facts) {
   return facts.refines() ? Resource::kUnrefined : picture_of(facts);
+}
+inline Resource shown_history_of(const PlanFacts& facts) {
+  return facts.denoises() ? Resource::kNoisy : denoised_of(facts);
 }
 
 // The picture of this direction's history alone, and the history that is shown.

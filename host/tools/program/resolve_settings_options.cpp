@@ -97,16 +97,18 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
+  const std::string noise =
+      settings.temporal.noise > 0 ? fmt::format(", denoised {}", settings.temporal.noise) : "";
   return fmt::format(
       "{}, view {}, sky motion {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, "
       "sharpness "
       "{}, blur {} of {} "
-      "samples",
+      "samples{}",
       name_of(variant_of(settings)), name_of(settings.temporal.view),
       name_of(settings.conventions.sky_motion), name_of(settings.conventions.drawn_velocity),
       settings.quincunx.velocity_weight, settings.filter.clamp_ringing ? "clamped" : "free",
       settings.filter.grain, settings.filter.noise_moves ? "moves" : "still", settings.sharpness,
-      settings.blur.shutter, settings.blur.samples);
+      settings.blur.shutter, settings.blur.samples, noise);
 }
 
 }  // namespace quincunx::tools

@@ -108,8 +108,8 @@ Settings = sized(
     ("shutter sharpness grain velocity_weight residual_weight", c_float), (
         "drawn_velocity depth_convention clip_space velocity_unit velocity_backward velocity_up velocity_jittered origin "
         "conventions_padding min_output_width min_output_height particle_target_width particle_target_height "
-        "focus_width focus_height focus_target_width focus_target_height focus_mask measures_content fades "
-        "extents_padding", c_int32))
+        "focus_width focus_height focus_target_width focus_target_height focus_mask measures_content fades",
+        c_int32), ("temporal_noise", c_float))
 Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame "
                         "presented_storage accumulates padding", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))

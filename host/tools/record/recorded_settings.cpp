@@ -71,10 +71,11 @@ void each_part(Settings& of, Visit&& visit) {
   visit("quincunx.sampling", sampling);
   visit("quincunx.velocity_weight", velocity_weight);
   visit("quincunx.residual_weight", residual_weight);
-  auto& [preset, view, history] = of.temporal;
+  auto& [preset, view, history, noise] = of.temporal;
   visit("temporal.preset", preset);
   visit("temporal.view", view);
   visit("temporal.history", history);
+  visit("temporal.noise", noise);
   auto& [shutter, samples] = of.blur;
   visit("blur.shutter", shutter);
   visit("blur.samples", samples);

@@ -196,6 +196,17 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
          "camera tells motion to the next frame, else 0)")
       .in_range(0, 64)
       .type_name("K");
+  app.add_option_function<std::string>(
+         "--noise",
+         [&options](const std::string& text) {
+           options.noise_by_frames = text == "auto";
+           const float samples = options.noise_by_frames ? 1 : parse_float("--noise", text);
+           if (!(samples >= 1)) throw UsageError{"--noise", fmt::format("'{}' is less than 1", text)};
+           options.resolve.temporal.noise = options.noise_by_frames ? 0 : 1 / samples;
+         },
+         "temporal: a path tracer took so many samples a pixel, and the picture is denoised; auto: as Cycles "
+         "says in the first frame, if at most 64 (default: it is not)")
+      .type_name("SPP|auto");
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
   app.add_flag("-n,--dry-run", options.dry_run, "Only list what would be read and made, and what is missing");
@@ -230,7 +241,10 @@ void check_needs(const ResolveOptions& options) {
 }
 
 // Refuses options of frames that nobody explains.
-void check_recorded(const CommandLine& app, const std::string& folder) {
+void check_recorded(const CommandLine& app, const ResolveOptions& options) {
+  const std::string& folder = options.input;
+  if (options.noise_by_frames)
+    throw wrong("--noise", fmt::format("auto reads what Cycles writes, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
         "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next",
@@ -253,7 +267,7 @@ std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& opt
   options.command_line = command_line_text("quincunx-resolve", argc, argv);
   return app.parse(argc, argv, [&app, &options] {
     options.method_named = app.has("--method");
-    if (options.recorded) check_recorded(app, options.input);
+    if (options.recorded) check_recorded(app, options);
     check_needs(options);
   });
 }

@@ -64,6 +64,20 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
   return first_error;
 }
 
+// Frames of more samples a pixel are clean to --noise auto.
+constexpr float kNoisySamplesMax = 64;
+
+Status settle_noise(const ResolveOptions& options, ResolveTask& task) {
+  if (!options.noise_by_frames) return {};
+  const float samples = task.format.samples;
+  if (!(samples >= 1)) {
+    return Status::io(
+        "--noise auto: the first frame has no attribute 'cycles.LAYER.samples'; write the samples a pixel");
+  }
+  task.resolve.temporal.noise = samples <= kNoisySamplesMax ? 1 / samples : 0;
+  return {};
+}
+
 void settle_method(const ResolveOptions& options, ResolveTask& task) {
   task.resolve = options.resolve;
   if (options.method_named) return;
@@ -159,6 +173,7 @@ Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
   if (!format.ok()) return format.status();
   task.format = std::move(format).value();
   settle_method(options, task);
+  if (Status status = settle_noise(options, task); !status.ok()) return status;
   auto output = output_for(options, task);
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();

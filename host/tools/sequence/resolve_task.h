@@ -26,7 +26,8 @@ struct ResolveOptions {
   ResolveSettings resolve;  // sizes and formats follow from the frames
   // Those of a recording; `resolve` then has all that was said otherwise.
   std::optional<RecordedSettings> recorded;
-  bool method_named = false;  // else it follows from the frames, too
+  bool method_named = false;     // else it follows from the frames, too
+  bool noise_by_frames = false;  // resolve.temporal.noise follows from them, as well
   ChannelType stored = ChannelType::kHalf;
   float exposure = 0;
   std::string truth;         // pattern; empty: none

@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <string_view>
+#include <variant>
 #include <vector>
+
+#include "tools/program/command_line.h"
 
 namespace quincunx::tools {
 namespace {
@@ -176,6 +180,21 @@ Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& 
   return places;
 }
 
+namespace {
+
+// Returns how many samples a pixel has, as Cycles says ("cycles.ViewLayer.samples"); 0 where it does not.
+float samples_in(const ImageHeader& header) {
+  for (const Attribute& attribute : header.attributes) {
+    const std::string_view name = attribute.name;
+    if (!name.starts_with("cycles.") || !name.ends_with(".samples")) continue;
+    if (const auto* text = std::get_if<std::string>(&attribute.value))
+      return static_cast<float>(number_in(*text).value_or(0));
+  }
+  return 0;
+}
+
+}  // namespace
+
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes) {
   SequenceFormat format;
@@ -196,6 +215,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
         first_path));
   }
   format.output = input.output ? *input.output : *attributes.output;
+  format.samples = samples_in(first);
   return format;
 }
 

@@ -108,6 +108,7 @@ struct SequenceFormat {
   float near_plane = kUnknownNear;
   JitterSource jitter;
   Extent output;
+  float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
 };
 
 // Errors: kInvalidArgument where the command line says too little (the message names the option), kIoFailure

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Rows of a picture in tone space, sixteen texels at a time, for kernels that look around each of the middle eight; and
+// the way back.
+//
+// Options: SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
+#pragma once
+
+#include "bits.h"
+#include "temporal/constants.h"
+#include "temporal/temporal_params.h"
+#include "texel.h"
+
+enum { kRowMargin = 4 };  // texels before the eight pixels of a row, and after them
+
+// Sixteen texels of a row; the pixels are the middle eight.
+typedef struct ToneRow {
+  float16 red, green, blue, luma;
+} ToneRow;
+
+static inline float8 at_pixels(float16 row) {
+  return row.s456789ab;
+}
+
+static inline float8 on_the_left(float16 row) {
+  return row.s3456789a;
+}
+
+static inline float8 on_the_right(float16 row) {
+  return row.s56789abc;
+}
+
+// Each texel's left and right neighbour; the outermost texel stands in for what lies beyond.
+static inline float16 to_the_left(float16 row) {
+  return row.s00123456789abcde;
+}
+
+static inline float16 to_the_right(float16 row) {
+  return row.s123456789abcdeff;
+}
+
+// The four texels from (x, y) on, clamped to the edge.
+static inline float16 load_clamped_texels4(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
+  const int last = params->width - 1;
+  if (x >= 0 && x + 3 <= last) return load_resolved4(source, params->source, x, y);
+  return (float16)(load_resolved(source, params->source, clamp(x, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 1, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 2, 0, last), y),
+                   load_resolved(source, params->source, clamp(x + 3, 0, last), y));
+}
+
+// NaN becomes 0; the rest is held within the largest half.
+static inline float16 cleaned(float16 values) {
+  const int16 is_nan = (as_int16(values) & 0x7fffffff) > 0x7f800000;
+  const float16 known = as_float16(as_int16(values) & ~is_nan);
+  return min(max(known, -FINITE_HALF_MAX), FINITE_HALF_MAX);
+}
+
+// Sixteen texels as they were drawn, cleaned.
+typedef struct LightRow {
+  float16 red, green, blue;
+} LightRow;
+
+// Those around the pixels from (x, y) on; the row clamped to the edge, too.
+static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* params, int x, int y) {
+  const int row = clamp(y, 0, params->height - 1);
+  const float16 t0 = load_clamped_texels4(source, params, x - kRowMargin, row);
+  const float16 t1 = load_clamped_texels4(source, params, x, row);
+  const float16 t2 = load_clamped_texels4(source, params, x + 4, row);
+  const float16 t3 = load_clamped_texels4(source, params, x + 8, row);
+  const LightRow light = {cleaned((float16)(t0.s048c, t1.s048c, t2.s048c, t3.s048c)),
+                          cleaned((float16)(t0.s159d, t1.s159d, t2.s159d, t3.s159d)),
+                          cleaned((float16)(t0.s26ae, t1.s26ae, t2.s26ae, t3.s26ae))};
+  return light;
+}
+
+static inline ToneRow tone_of(LightRow light) {
+  const float16 scale = 1.0f / (1.0f + max(max(max(light.red, light.green), light.blue), 0.0f));
+  ToneRow tone = {light.red * scale, light.green * scale, light.blue * scale, (float16)(0.0f)};
+  tone.luma = 0.25f * (tone.red + tone.blue) + 0.5f * tone.green;
+  return tone;
+}
+
+// Light of eight values in tone space; of those that stay, as it was.
+static inline float8 light_of(float8 tone, float8 scale, float8 before, int8 stays) {
+  return select(min(max(tone * scale, -FINITE_HALF_MAX), FINITE_HALF_MAX), before, stays);
+}
+
+// The first `count` pixels of a row, with the alpha of `source`.
+static inline void store_light8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
+                                int x, int y, int count, float8 red, float8 green, float8 blue) {
+  float reds[8], greens[8], blues[8];
+  vstore8(red, 0, reds);
+  vstore8(green, 0, greens);
+  vstore8(blue, 0, blues);
+  for (int i = 0; i < count; ++i) {
+    const float alpha = load_resolved(source, params->source, x + i, y).w;
+    store_output(output, params->output, x + i, y, (float4)(reds[i], greens[i], blues[i], alpha));
+  }
+}
+
+// Stores the pixels from (x, y) on, whose light was `light` and tone `before`. Those of which no channel has moved keep
+// their light.
+static inline void store_tone8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
+                               int x, int y, LightRow light, ToneRow before, float8 red, float8 green,
+                               float8 blue) {
+  const int8 stays =
+      (red == at_pixels(before.red)) & (green == at_pixels(before.green)) & (blue == at_pixels(before.blue));
+  const float8 brightest = max(max(max(red, green), blue), 0.0f);
+  const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
+  store_light8(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
+               light_of(red, scale, at_pixels(light.red), stays),
+               light_of(green, scale, at_pixels(light.green), stays),
+               light_of(blue, scale, at_pixels(light.blue), stays));
+}
