@@ -6,6 +6,7 @@
 #
 #   checkerboard  a frame of which half the pixels are shaded, as drawn, filled and accumulated, beside whole frames
 #   dual          a frame whose output has the display's size, .8 and .5 of it
+#   faults        what mistakes in the input of temporal look like
 #   filters       each method, at scales 0.5 and 0.71
 #   focus         an object in focus in a frame at scale 0.35
 #   mobile        frames from RGBA16F and from RGBA8 colour, and how they differ
@@ -20,7 +21,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-all=(checkerboard dual filters focus mobile parts sky temporal two_way wires)
+all=(checkerboard dual faults filters focus mobile parts sky temporal two_way wires)
 tiles=()  # of the sheet that is being made: labels and files, as montage takes them
 tile_count=0
 
@@ -183,6 +184,53 @@ draw_two_way() {
   done
   add_tile "truth, 64 samples" "$work/frame.0000.truth.png" "$place" 200
   sheet two_way.png 3
+}
+
+# fault LABEL [OPTION ...]: a tile of the last of the frames in $work, resolved with the options.
+fault() {
+  local label=$1 out=$work/fault-$tile_count
+  shift
+  build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --frames 24 --two-way 0 -q --method temporal \
+    --out "$out.%04d.png" "$@"
+  add_tile "$label" "$out.0024.png" "$geometry" 200
+}
+
+# jitters FILE X Y LATER: those that were drawn with, times X and Y, of frames that many later.
+jitters() {
+  python3 - "$work/whole.json" "$2" "$3" "$4" >"$1" <<'END'
+import json, sys
+x, y, later = map(float, sys.argv[2:])
+frames = json.load(open(sys.argv[1]))["per_frame"]
+for i, frame in enumerate(frames):
+    jitter = frames[min(max(i + int(later), 0), len(frames) - 1)]["jitter"]
+    print(frame["frame"], x * jitter[0], y * jitter[1])
+END
+}
+
+draw_faults() {
+  local run=(--scene pan --scale 0.5 --start 1 --fps 30 --frames 25 --jitter halton --exposure 1)
+  local geometry=104x76+228+178
+  local motion=(--velocity backward.u,backward.v)
+  local sequence=(build/release/bin/quincunx-dump -q --output 640x360 "${run[@]}" --sequence "$work/frame.%04d.exr")
+  "${sequence[@]}"
+  build/release/bin/quincunx-resolve "$work/frame.%04d.exr" --diagnose --json >"$work/whole.json"
+  jitters "$work/sign.txt" -1 -1 0
+  jitters "$work/last.txt" 1 1 -1
+  jitters "$work/double.txt" 2 2 0
+  fault "as it should be"
+  fault "velocity: the other direction" "${motion[@]}" --velocity-scale 0.003125,-0.0055556
+  fault "velocity: axes swapped" --velocity backward.v,backward.u --velocity-convention nuke
+  fault "velocity: twice as long" "${motion[@]}" --velocity-scale -0.00625,0.0111111
+  fault "velocity: none" --velocity none
+  fault "velocity: the jitter is in it" --velocity-jittered
+  fault "jitter: the other sign" --jitter "$work/sign.txt"
+  fault "jitter: of the last frame" --jitter "$work/last.txt"
+  fault "jitter: output's pixels" --jitter "$work/double.txt"
+  fault "jitter: not told" --jitter none
+  fault "depth: of the other kind" --depth-kind device-reversed
+  "${sequence[@]}" --dilate-velocity
+  fault "velocity: dilated"
+  sheet faults.png 4
 }
 
 # dump_view SCENE VIEW: what --view shows of frame 39, into $work/SCENE-VIEW.
