@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Breaks whole sequences in every way that diagnose() knows and counts what it says of them. No test: run by hand with
-// patterns of whole frames, as quincunx-dump --sequence writes them. A + before a pattern: its sky rests as drawn, and
-// that is said.
+// patterns of whole frames, as quincunx-dump --sequence writes them.
+//
+//   diagnose_proof [--pairs] [--noise] [--8-bit-velocity] [--only TEXT] [--threads N] [+]PATTERN ...
+//
+// +: the sky rests as drawn, and that is said. --only: faults whose names hold TEXT. What was not named and not left
+// open is printed with all findings; then come counts by fault, and what was mistaken for what.
 #include <fmt/format.h>
 
 #include <algorithm>
