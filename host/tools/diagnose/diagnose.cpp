@@ -39,6 +39,12 @@ FailureMap failure_map(Frames frames, const DiagnosedInput& input, const std::ve
   return map;
 }
 
+// Dilated motion is that of a pixel beside: it differs from the camera's by about as much as that of another frame.
+void doubt_frame(Finding& camera) {
+  if (has_fault(camera, "frame"))
+    camera = {.subject = camera.subject, .says = camera.says, .open = {"frame"}};
+}
+
 // `cuts`: frames before which cuts are missing; that finding is the last.
 Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
                   const std::vector<Pair>& pairs, std::vector<std::int64_t>& cuts) {
@@ -46,8 +52,12 @@ Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<
   const Scene scene = {frames, input, planes, pairs, motion, light_scale(frames)};
   Diagnosis diagnosis = {motion.findings, motion.mend};
   const DepthGuess depth = find_depth(scene, diagnosis.findings);
-  if (!has_fault(motion.findings.front(), "frame"))  // which lies beside its surfaces
-    diagnosis.findings.push_back(find_dilation(scene, depth.kind));
+  if (!has_fault(motion.findings.front(), "frame")) {  // which lies beside its surfaces
+    const Finding dilation = find_dilation(scene, depth.kind);
+    if (has_fault(dilation, "dilated") || (input.dilated && dilation.verdict == Verdict::kRight))
+      doubt_frame(diagnosis.findings.back());
+    diagnosis.findings.push_back(dilation);
+  }
   diagnosis.findings.push_back(find_resolution(scene));
   diagnosis.findings.push_back(find_sky(scene, depth));
   diagnosis.findings.push_back(find_objects(scene, depth));

@@ -144,6 +144,7 @@ std::optional<JitterGuess> jitter_in_motion(Frames frames, const DiagnosedInput&
         votes <= 4 * near(0) || votes <= 4 * near(1))
       continue;
     if (jitter == JitterGuess{}) return jitter;
+    if (jitter.pattern && found) continue;  // the last that one would think of
     if (votes > most) most = votes, found = jitter;
   }
   return found;
