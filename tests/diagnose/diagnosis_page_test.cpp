@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// The page of a diagnosis as a reader has it: opened in headless Chromium, where a probe script looks at what was drawn.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "page_fixture.h"
+#include "skip.h"
+#include "tools/diagnose/diagnosis_page.h"
+
+namespace quincunx::tools {
+namespace {
+
+using testing::kListener;
+using testing::with;
+using Json = nlohmann::json;
+
+constexpr const char* kProbe = R"(<script>
+probe.wait();
+(async () => {
+  const pause = () => new Promise((done) => setTimeout(done, 20));
+  const stage = () => document.querySelector("#viewer .stage");
+  for (let i = 0; i < 1000 && stage() && !stage().dataset.ready; ++i) await pause();
+  const seen = window.seen;
+  seen.lead = document.getElementById("lead").textContent;
+  seen.rows = [...document.querySelectorAll("#found tr")].map((row) => [...row.cells].map((cell) => cell.textContent));
+  seen.pictures = !document.getElementById("pictures").hidden;
+  seen.frames = [...document.querySelectorAll("#viewer select")].map((select) => select.options.length);
+  const pixel = (canvas) => [...canvas.getContext("2d").getImageData(1, 0, 1, 1).data.slice(0, 3)];
+  seen.pixels = [...document.querySelectorAll("#viewer canvas")].map(pixel);
+  probe.end();
+})();
+</script>)";
+
+const std::string kJson = R"({"wrong": true, "findings": [
+  {"subject": "velocity", "verdict": "wrong", "faults": ["sign of y"], "says": "fsr2", "fits": "y the other way",
+   "not_shown": ["frame"], "margin_db": 2.5, "share": 1, "option": "--velocity-convention nuke"},
+  {"subject": "cuts", "verdict": "cannot tell", "faults": [], "says": "marked", "fits": "", "not_shown": [],
+   "margin_db": 0, "share": 0, "option": ""}]})";
+
+class DiagnosisPage : public testing::PageInBrowser {
+ protected:
+  // Returns the probe's findings.
+  Json seen(std::span<const FailureMap> maps) {
+    const auto page = diagnosis_page("shot/a.%04d.exr", kJson, maps);
+    EXPECT_TRUE(page.ok()) << page.status().message();
+    const std::string text = browse(with(with(page.value(), "<head>", kListener), "</body>", kProbe),
+                                    "--window-size=1200,900 --dump-dom");
+    const std::string mark = "<pre id=\"probe\">";
+    const std::size_t at = text.find(mark);
+    EXPECT_NE(at, std::string::npos) << text_of("err");
+    if (at == std::string::npos) return {};
+    return Json::parse(text.substr(at + mark.size(), text.find("</pre>", at) - at - mark.size()));
+  }
+};
+
+TEST_F(DiagnosisPage, ShowsFindingsAndWhereTheInputFails) {
+  if (!there()) QUINCUNX_SKIP("chromium is not installed");
+  const FailureMap map = {7, {2, 1}, {0, 1}, {0, 1}, .5};
+  const Json saw = seen(std::vector<FailureMap>{map, map});
+  EXPECT_EQ(saw["errors"], Json::array());
+  EXPECT_EQ(saw["lead"], "shot/a.%04d.exr: velocity wrong.");
+  ASSERT_EQ(saw["rows"].size(), 2u);
+  EXPECT_EQ(saw["rows"][0], Json({"velocity", "wrong", "fsr2", "y the other way",
+                                  "--velocity-convention nuke", "2.50 dB", "100 %", "frame"}));
+  EXPECT_EQ(saw["rows"][1], Json({"cuts", "cannot tell", "marked", "", "", "", "", ""}));
+  EXPECT_EQ(saw["pictures"], true);
+  EXPECT_EQ(saw["frames"], Json({2, 2, 2}));
+  EXPECT_EQ(saw["pixels"][0], Json({255, 255, 255}));
+  EXPECT_EQ(saw["pixels"][1], Json({252, 253, 191})) << "the brightest of the map's colours";
+}
+
+TEST_F(DiagnosisPage, HasNoViewerWithoutPictures) {
+  if (!there()) QUINCUNX_SKIP("chromium is not installed");
+  const Json saw = seen({});
+  EXPECT_EQ(saw["errors"], Json::array());
+  EXPECT_EQ(saw["rows"].size(), 2u);
+  EXPECT_EQ(saw["pictures"], false);
+}
+
+}  // namespace
+}  // namespace quincunx::tools
