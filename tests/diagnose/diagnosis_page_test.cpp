@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The page of a diagnosis as a reader has it: opened in headless Chromium, where a probe script looks at what was drawn.
+// The page of a diagnosis as a reader has it: opened in headless Chromium, where a probe looks at what was drawn.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

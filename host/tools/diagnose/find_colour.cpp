@@ -75,6 +75,36 @@ bool eight_bits(const DiagnosedFrame& frame) {
   return off * 1000 < frame.colour.size() && std::count(levels.begin(), levels.end(), true) >= 24;
 }
 
+// Which parts of a jump of light, where one surface ends before another and both are plain, lie between the two pixels
+// beside the rim: all of it where a pixel shows one sample.
+void add_rim_parts(const DiagnosedFrame& frame, const std::vector<float>& depth, float light_scale,
+                   std::vector<float>& parts) {
+  constexpr float kOther = 1.2f, kAlike = 1.05f;  // depths
+  constexpr float kLeastJump = .15f, kFlat = .06f;
+  const auto look = [&](std::size_t at, std::size_t step) {
+    const auto z = [&](std::size_t i) { return depth[at + i * step]; };
+    const auto alike = [&](std::size_t i, std::size_t j) {
+      return z(i) <= kAlike * z(j) && z(j) <= kAlike * z(i);
+    };
+    if (!(z(2) > kOther * z(3) || z(3) > kOther * z(2))) return;
+    if (!alike(0, 1) || !alike(1, 2) || !alike(3, 4) || !alike(4, 5)) return;
+    const auto light = [&](std::size_t i) {
+      const float value = frame.luminance[at + i * step] * light_scale;
+      return value > 0 ? std::sqrt(value / (1 + value)) : 0;
+    };
+    const float jump = light(4) - light(1);
+    if (!(std::abs(jump) > kLeastJump) || std::abs(light(1) - light(0)) > kFlat * std::abs(jump) ||
+        std::abs(light(5) - light(4)) > kFlat * std::abs(jump))
+      return;
+    parts.push_back((light(3) - light(2)) / jump);
+  };
+  const auto width = static_cast<std::size_t>(frame.render.width);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (i % width + 5 < width) look(i, 1);
+    if (i + 5 * width < depth.size()) look(i, width);
+  }
+}
+
 }  // namespace
 
 Finding find_encoding(const Scene& scene) {
@@ -107,8 +137,6 @@ Finding find_encoding(const Scene& scene) {
 }
 
 Finding find_filter(const Scene& scene, DepthKind kind) {
-  constexpr float kOther = 1.2f, kAlike = 1.05f;  // depths
-  constexpr float kLeastJump = .15f, kFlat = .06f;
   constexpr float kWhole = .85f;  // of a jump between two pixels
   constexpr std::size_t kLeast = 100;
   Finding finding = {.subject = "picture", .says = "as sampled"};
@@ -117,28 +145,7 @@ Finding find_filter(const Scene& scene, DepthKind kind) {
     if (frame.depth.empty()) continue;
     std::vector<float> depth = frame.depth;
     to_reversed_depth(kind, scene.input.near_plane, depth);
-    const auto look = [&](std::size_t at, std::size_t step) {
-      const auto z = [&](std::size_t i) { return depth[at + i * step]; };
-      const auto alike = [&](std::size_t i, std::size_t j) {
-        return z(i) <= kAlike * z(j) && z(j) <= kAlike * z(i);
-      };
-      if (!(z(2) > kOther * z(3) || z(3) > kOther * z(2))) return;
-      if (!alike(0, 1) || !alike(1, 2) || !alike(3, 4) || !alike(4, 5)) return;
-      const auto light = [&](std::size_t i) {
-        const float value = frame.luminance[at + i * step] * scene.light_scale;
-        return value > 0 ? std::sqrt(value / (1 + value)) : 0;
-      };
-      const float jump = light(4) - light(1);
-      if (!(std::abs(jump) > kLeastJump) || std::abs(light(1) - light(0)) > kFlat * std::abs(jump) ||
-          std::abs(light(5) - light(4)) > kFlat * std::abs(jump))
-        return;
-      parts.push_back((light(3) - light(2)) / jump);
-    };
-    const auto width = static_cast<std::size_t>(frame.render.width);
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-      if (i % width + 5 < width) look(i, 1);
-      if (i + 5 * width < depth.size()) look(i, width);
-    }
+    add_rim_parts(frame, depth, scene.light_scale, parts);
   }
   if (parts.size() < kLeast) return finding;
   const auto part = std::count_if(parts.begin(), parts.end(), [](float p) { return p < kWhole; });
