@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Killed at any moment, a run leaves only whole files, and --resume makes the rest as if nothing had
 // happened.
+#include <fcntl.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -174,7 +176,10 @@ TEST_F(Resume, LeftoversOfLivingProcessesStay) {
   const std::string dead = folder_.file(".u.0002.exr.999999999-0.part");
   for (const std::string& path : {mine, other, dead})
     std::ofstream(path) << "part";
+  const int lock = ::open(mine.c_str(), O_WRONLY | O_CLOEXEC);  // as one who writes it has
+  ASSERT_EQ(::flock(lock, LOCK_EX | LOCK_NB), 0);
   resolve_to("u", "");
+  ::close(lock);
   EXPECT_TRUE(std::filesystem::exists(mine));
   EXPECT_TRUE(std::filesystem::exists(other));
   EXPECT_FALSE(std::filesystem::exists(dead));
