@@ -317,6 +317,15 @@ class Arithmetic(AddOn):
         self.scene.render.use_motion_blur = False
         self.assertNotIn("--blur", self.shot().command("p", (1, 3)))
 
+    def test_noise_is_taken_out_once(self):
+        words = self.shot().command("p", (1, 3))
+        self.assertEqual(words[words.index("--noise") + 1], "auto")
+        self.scene.quincunx.options = "--noise 3"
+        self.assertEqual(self.shot().command("p", (1, 3)).count("--noise"), 1)
+        self.scene.quincunx.options = ""
+        self.scene.cycles.use_denoising = True
+        self.assertNotIn("--noise", self.shot().command("p", (1, 3)))
+
 
 if __name__ == "__main__":
     unittest.main()

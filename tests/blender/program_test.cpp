@@ -52,7 +52,8 @@ class BlenderAddOn : public testing::SequenceTest {
                           .stored = tools::ChannelType::kFloat});
     for (int frame = 1; frame <= kFrames; ++frame) {
       const Status status =
-          tools::write_exr(folder_.file(fmt::format("shot_small/frame.{:04}.exr", frame)), kSmall, channels);
+          tools::write_exr(folder_.file(fmt::format("shot_small/frame.{:04}.exr", frame)), kSmall, channels,
+                           std::array<tools::Attribute, 1>{{{"cycles.ViewLayer.samples", "4"}}});
       ASSERT_TRUE(status.ok()) << status.message();
     }
   }

@@ -142,9 +142,12 @@ class Shot:
         if self.blur > 0:
             words += ["--blur", f"{self.blur:g}"]
         try:
-            return words + shlex.split(self.choices.options)
+            chosen = shlex.split(self.choices.options)
         except ValueError as error:
             raise Failure(f"The options '{self.choices.options}' end in the middle: {error}.") from error
+        if not self.scene.cycles.use_denoising and not any(word.startswith("--noise") for word in chosen):
+            words += ["--noise", "auto"]
+        return words + chosen
 
 
 def program_named(choice):
