@@ -72,8 +72,7 @@ const char* name_of(DepthKind kind);                 // "device-reversed"
 std::optional<DepthKind> depth_kind_named(std::string_view name);
 
 // In place, to uv velocity (this position - previous position, or with `to_next` this - next, +y down) of an image of
-// this extent. Each
-// value meets one rounding: a division by the extent where pixels are meant.
+// this extent. Each value meets one rounding: a division by the extent where pixels are meant.
 void to_velocity(const VelocityUnits& units, Extent extent, std::span<Vec2> motion);
 
 // In place, to reversed infinite depth. kDeviceReversed stays bit for bit. `near_plane` counts for kLinear
