@@ -36,34 +36,30 @@
 #define DENOISED_VARIANCE_MIN 1e-12f     // squared tone, of 25 pixels: against a division by 0
 #define DENOISED_DISTANCE_MIN 1e-7f      // squared tone, of 9 pixels: what rounding to halves moves
 
-enum {  // pixels; rows around a pixel and its patch
+enum {  // pixels
   kReach = 3,
-  kMiddle = kReach + 1,
-  kRows = 2 * kMiddle + 1
+  kMiddle = kReach + 1,                // rows above a pixel that its patches need
+  kRows = kRefineBlock + 2 * kMiddle,  // of a block
+  kRowWithMargins = 16 + 2 * kReach
 };
 
+// A row as ToneRow has it. An array: read anywhere by an index, where every other way takes some compilers minutes.
 typedef struct NoisyRow {
-  ToneRow tone;
-  float16 variance, weight;
+  float red[kRowWithMargins], green[kRowWithMargins], blue[kRowWithMargins];
+  float variance[kRowWithMargins], weight[kRowWithMargins];
 } NoisyRow;
 
-// As far as a row reaches.
-static inline float16 shifted(float16 row, int by) {
-  switch (by) {
-    case -3:
-      return row.s0000123456789abc;
-    case -2:
-      return row.s000123456789abcd;
-    case -1:
-      return to_the_left(row);
-    case 1:
-      return to_the_right(row);
-    case 2:
-      return row.s23456789abcdefff;
-    case 3:
-      return row.s3456789abcdeffff;
-  }
-  return row;
+// The values that lie `by` to the right of those of a row, `by` at most kReach to either side. Margins hold nothing.
+static inline float16 shifted(const float* row, int by) {
+  return vload16(0, row + kReach + by);
+}
+
+static inline float8 shifted_pixels(const float* row, int by) {
+  return vload8(0, row + kReach + kRowMargin + by);
+}
+
+static inline void store_row(float16 values, float* row) {
+  vstore16(values, 0, row + kReach);
 }
 
 static inline float8 sum_of_three(float16 row) {
@@ -87,63 +83,69 @@ static inline float16 confidences_around(HistoryLayer layer, int x, int y) {
   return vload16(0, stored);
 }
 
-static inline NoisyRow noisy_row(RESOLVED_TEXELS source, HistoryLayer layer, const RefineParams* params,
-                                 float noise, int x, int y) {
+static inline void load_noisy_row(NoisyRow* row, RESOLVED_TEXELS source, HistoryLayer layer,
+                                  const RefineParams* params, float noise, int x, int y) {
   const ToneRow t = tone_of(light_row(source, params, x, y));
   const float16 rest = 1.0f - max(max(max(t.red, t.green), t.blue), 0.0f);
   const float16 weight = fabs(confidences_around(layer, x, y)) + DENOISED_CONFIDENCE_FLOOR;
   const float16 square = t.red * t.red + t.green * t.green + t.blue * t.blue;
-  const NoisyRow row = {t, noise * rest * rest * square / weight, weight};
-  return row;
+  store_row(t.red, row->red);
+  store_row(t.green, row->green);
+  store_row(t.blue, row->blue);
+  store_row(noise * rest * rest * square / weight, row->variance);
+  store_row(weight, row->weight);
 }
 
 // Squared differences of one channel from the mean of the four neighbours.
-static inline float16 roughness(float16 above, float16 same, float16 below) {
-  const float16 apart = same - 0.25f * (above + below + to_the_left(same) + to_the_right(same));
+static inline float16 roughness(const float* above, const float* same, const float* below) {
+  const float16 own = shifted(same, 0);
+  const float16 around = shifted(above, 0) + shifted(below, 0) + to_the_left(own) + to_the_right(own);
+  const float16 apart = own - 0.25f * around;
   return apart * apart;
 }
 
-// Returns which part of the variance the pixels of the middle row show.
-static inline float8 shown_part(const NoisyRow* rows) {
+// Returns which part of the variance the pixels of the row in the middle show.
+static inline float8 shown_part(const NoisyRow* middle) {
   float16 rough = (float16)(0.0f), variance = (float16)(0.0f);
-  for (int i = kMiddle - 2; i <= kMiddle + 2; ++i) {
-    const ToneRow above = rows[i - 1].tone, same = rows[i].tone, below = rows[i + 1].tone;
-    rough += roughness(above.red, same.red, below.red) + roughness(above.green, same.green, below.green) +
-             roughness(above.blue, same.blue, below.blue);
-    variance += rows[i].variance;
+  for (int i = -2; i <= 2; ++i) {
+    const NoisyRow *above = middle + i - 1, *same = middle + i, *below = middle + i + 1;
+    rough += roughness(above->red, same->red, below->red) +
+             roughness(above->green, same->green, below->green) +
+             roughness(above->blue, same->blue, below->blue);
+    variance += shifted(same->variance, 0);
   }
   return min(sum_of_five(rough) / (sum_of_five(variance) + DENOISED_VARIANCE_MIN), DENOISED_PART_MAX);
 }
 
-// The weights of the pixels that lie (dx, dy) from those of the middle row.
-static inline float8 likeness(const NoisyRow* rows, float8 part, int dx, int dy) {
+// The weights of the pixels that lie (dx, dy) from those of the row in the middle.
+static inline float8 likeness(const NoisyRow* middle, float8 part, int dx, int dy) {
   float16 distance = (float16)(0.0f), variance = (float16)(0.0f);
-  for (int i = kMiddle - 1; i <= kMiddle + 1; ++i) {
-    const NoisyRow *own = rows + i, *other = rows + i + dy;
-    const float16 red = own->tone.red - shifted(other->tone.red, dx);
-    const float16 green = own->tone.green - shifted(other->tone.green, dx);
-    const float16 blue = own->tone.blue - shifted(other->tone.blue, dx);
+  for (int i = -1; i <= 1; ++i) {
+    const NoisyRow *own = middle + i, *other = middle + i + dy;
+    const float16 red = shifted(own->red, 0) - shifted(other->red, dx);
+    const float16 green = shifted(own->green, 0) - shifted(other->green, dx);
+    const float16 blue = shifted(own->blue, 0) - shifted(other->blue, dx);
     distance += red * red + green * green + blue * blue;
-    variance += own->variance + shifted(other->variance, dx);
+    variance += shifted(own->variance, 0) + shifted(other->variance, dx);
   }
   const float8 apart = sum_of_three(distance) / (part * sum_of_three(variance) + DENOISED_DISTANCE_MIN);
-  return bell(apart) * at_pixels(shifted(rows[kMiddle + dy].weight, dx));
+  return bell(apart) * shifted_pixels(middle[dy].weight, dx);
 }
 
-// Denoises the pixels from (x, y) on, in the middle of the rows.
-static inline void denoise_row(const NoisyRow* rows, LightRow light, RESOLVED_TEXELS source,
-                               OUTPUT_TEXELS output, const RefineParams* params, int x, int y) {
-  const float8 part = shown_part(rows), zero = (float8)(0.0f);
+// Denoises the pixels from (x, y) on, of the row in the middle.
+static inline void denoise_row(const NoisyRow* middle, RESOLVED_TEXELS source, OUTPUT_TEXELS output,
+                               const RefineParams* params, int x, int y) {
+  const LightRow light = light_row(source, params, x, y);
+  const ToneRow own = tone_of(light);
+  const float8 part = shown_part(middle), zero = (float8)(0.0f);
   float8 red = zero, green = zero, blue = zero, sum = zero;
-  const ToneRow own = rows[kMiddle].tone;
   for (int dy = -kReach; dy <= kReach; ++dy) {
-    const ToneRow other = rows[kMiddle + dy].tone;
-    UNROLL(7)
     for (int dx = -kReach; dx <= kReach; ++dx) {
-      const float8 weight = likeness(rows, part, dx, dy);
-      red += weight * at_pixels(shifted(other.red, dx) - own.red);
-      green += weight * at_pixels(shifted(other.green, dx) - own.green);
-      blue += weight * at_pixels(shifted(other.blue, dx) - own.blue);
+      const NoisyRow* other = middle + dy;
+      const float8 weight = likeness(middle, part, dx, dy);
+      red += weight * (shifted_pixels(other->red, dx) - at_pixels(own.red));
+      green += weight * (shifted_pixels(other->green, dx) - at_pixels(own.green));
+      blue += weight * (shifted_pixels(other->blue, dx) - at_pixels(own.blue));
       sum += weight;
     }
   }
@@ -161,13 +163,9 @@ __kernel void temporal_denoise(const RefineParams params, float noise, RESOLVED_
   const int bottom = min(top + kRefineBlock, params.height);
   for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
     NoisyRow rows[kRows];
-    for (int i = 1; i < kRows; ++i)
-      rows[i] = noisy_row(source, layer, &params, noise, x, top - kMiddle - 1 + i);
-    for (int y = top; y < bottom; ++y) {
-      for (int i = 0; i < kRows - 1; ++i)
-        rows[i] = rows[i + 1];
-      rows[kRows - 1] = noisy_row(source, layer, &params, noise, x, y + kMiddle);
-      denoise_row(rows, light_row(source, &params, x, y), source, output, &params, x, y);
-    }
+    for (int i = 0; i < kRows; ++i)
+      load_noisy_row(rows + i, source, layer, &params, noise, x, top - kMiddle + i);
+    for (int y = top; y < bottom; ++y)
+      denoise_row(rows + y - top + kMiddle, source, output, &params, x, y);
   }
 }

@@ -118,7 +118,7 @@ class TemporalRefine : public TemporalPicture {};
 class TemporalDenoise : public TemporalPicture {};
 
 TEST_P(TemporalPicture, MatchesTheReferenceOnEveryPatternAndSize) {
-  const Extent largest = denoises() ? Extent{13, 9} : Extent{67, 41};  // the reference takes a while
+  const Extent largest = denoises() ? Extent{21, 9} : Extent{67, 41};  // the reference takes a while
   for (const Extent extent : {Extent{1, 1}, {7, 5}, {8, 8}, {9, 17}, largest}) {
     for (const Pattern pattern : testing::all_patterns()) {
       const std::string what =
