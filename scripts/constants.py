@@ -56,20 +56,20 @@ RULES = {
     "rejection by cut": [
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
     "rejection by change": [
-        (LIGHT, "const float by_change = waits ? sure_change : changed;", "const float by_change = 0.0f;")],
+        (LIGHT, "return is_agreed ?", "return false ?")],
+    "… of cells": [(LIGHT, "max(by_tile, by_cell)", "by_tile")],
     "… above flicker": [(LIGHT, " + USUAL_FLICKER * flicker + ", " + ")],
-    "… above the neighbours' error": [
-        (LIGHT, "const float usual = USUAL_NEIGHBOUR_ERROR * neighbour_error + ", "const float usual = ")],
-    "… by a test of signs": [(LIGHT, "if (!is_agreed) return 0.0f;", "")],
-    "still tiles wait for a second frame": [
-        (LIGHT, "const bool waits = stands_still(tiles[i]) && around.confirmation < STILL_TILE_CONFIRMATION_MAX;",
+    "… above the neighbours' error": [(LIGHT, "return USUAL_NEIGHBOUR_ERROR * neighbour_error + ", "return ")],
+    "… by a test of signs": [(LIGHT, "return is_agreed ?", "return true ?")],
+    "rigid tiles wait for a second frame": [
+        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],
     "… unless the first is beyond doubt": [
         (LIGHT, "return max(min(suspected, before) - CONFIRMATION_COST, suspected - SINGLE_FRAME_REJECT_MIN);",
          "return min(suspected, before) - CONFIRMATION_COST;")],
     "… unless one was confirmed lately": [
-        (LIGHT, "const bool waits = stands_still(tiles[i]) && around.confirmation < STILL_TILE_CONFIRMATION_MAX;",
-         "const bool waits = stands_still(tiles[i]);")],
+        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
+         "const bool waits = tiles[i].is_rigid;")],
     "outliers are held back": [(LIGHT, "tile.holds_back = around.sum.outliers > 0.0f &&", "tile.holds_back = false &&")],
     "… only the first of late": [(LIGHT, "around.recent_outliers < OUTLIER_REARM_MAX", "true")],
 }

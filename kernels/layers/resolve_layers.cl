@@ -74,11 +74,10 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     float8 known_alpha = fetched_both.far.known.alpha;
     const FetchedHistory fetched = known_far(&pixels, &fetched_both.far, &motion);
     Evidence evidence = limit_confidence(&fetched, &motion);
-    const EdgeLight left = light_at_edge(light, &params, x, y);
-    const EdgeLight right = light_at_edge(light, &params, x + kTemporalTile, y);
-    reject_by_light(&evidence, left, right);
+    const RowLight row_light = light_of_row(light, &params, x, y);
+    reject_by_light(&evidence, row_light);
     evidence.rejection = select(evidence.rejection, (float8)(0.0f), pixels.is_split);
-    EightTexels known = relight(fetched.texels, left, right);
+    EightTexels known = relight(fetched.texels, row_light);
     EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
     float8 taken = far_samples(&pixels);
     if (light[tile_index].holds_back)
@@ -110,7 +109,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     near_tile.phase_y = layer.phase_y;
     const NearestSamples nearest_near = find_nearest_samples(&params, positions, x, row, near_tile);
     const float cut = light[tile_index].new_cut;
-    KnownLayers near = known_near(&pixels, &fetched_both.near, left, right, cut);
+    KnownLayers near = known_near(&pixels, &fetched_both.near, row_light, cut);
     near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
     const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);

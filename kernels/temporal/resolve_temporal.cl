@@ -91,8 +91,8 @@ static inline View view_confidence(EightTexels updated) {
   return view;
 }
 #elif VIEW == REJECTION
-static inline View view_rejection(const EightReprojections* motion, EdgeLight left, EdgeLight right) {
-  const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp(left.rejection, right.rejection)};
+static inline View view_rejection(const EightReprojections* motion, RowLight light) {
+  const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp_cells(light.rejection)};
   return view;
 }
 #else
@@ -198,10 +198,9 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 #endif
 
       // Relight.
-      const EdgeLight left = even ? EVEN_LIGHT : light_at_edge(light, &params, x, y);
-      const EdgeLight right = even ? EVEN_LIGHT : light_at_edge(light, &params, x + kTemporalTile, y);
-      reject_by_light(&evidence, left, right);
-      EightTexels known = relight(fetched.texels, left, right);
+      const RowLight row_light = even ? even_light() : light_of_row(light, &params, x, y);
+      reject_by_light(&evidence, row_light);
+      EightTexels known = relight(fetched.texels, row_light);
 
       // Load the samples, and find outliers to hold back.
       EightTexels samples = load_samples(colour, frame.colour, nearest.x, nearest.y);
@@ -229,7 +228,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
 #if VIEW == CONFIDENCE
       store_view(view, params.output, x, y, end, view_confidence(sum));
 #elif VIEW == REJECTION
-      store_view(view, params.output, x, y, end, view_rejection(&motion, left, right));
+      store_view(view, params.output, x, y, end, view_rejection(&motion, row_light));
 #elif VIEW == PHASE
       store_view(view, params.output, x, y, end, view_phase(tile, &fetched));
 #endif

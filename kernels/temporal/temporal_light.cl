@@ -9,13 +9,12 @@
 //   rejection  the largest of three, clamped to [0, 1]:
 //     by error   history foretells the samples much worse than their neighbours do, and not because light has changed
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
-//     by change  the tile's own samples agree that it is brighter or darker now, by more than its aliasing has shown in
-//                flicker and in the neighbours' error, as in the first frames of a moving highlight
+//     by change  the samples of the tile, or of a cell, agree that it is brighter or darker now, by more than its
+//                aliasing has shown in flicker and in the neighbours' error, as at the edge of a moving shadow
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
 //              (outliers): gain is 1 and rejection 0 then
-//   confirmed  in a tile that stands still, around which no suspicion was confirmed lately, rejection by error and by
-//              change wait for a second frame, because in a still picture each place of the jitter can look like a
-//              change of its own
+//   confirmed  in a rigid tile, around which no suspicion was confirmed lately, rejection by error and by
+//              change wait for a second frame, because each place of the jitter can look like a change of its own
 //
 //   tiles_x, tiles_y  in   how many tiles there are
 //   tiles             in   TileReprojection of each tile: motion edges, and whether it stands still
@@ -38,7 +37,7 @@ typedef struct EvidenceAround {
 
 static inline EvidenceAround sum_evidence(__global const TileReprojection* tiles, __global const TileEvidence* evidence,
                                           __global const TileLight* previous, int tiles_x, int tiles_y, int x, int y) {
-  EvidenceAround around = {{0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f}, 0.0f, 0.0f, 0.0f, false};
+  EvidenceAround around = {no_evidence(), 0.0f, 0.0f, 0.0f, false};
   for (int row = max(y - 1, 0); row <= min(y + 1, tiles_y - 1); ++row) {
     for (int column = max(x - 1, 0); column <= min(x + 1, tiles_x - 1); ++column) {
       const int i = row * tiles_x + column;
@@ -104,19 +103,42 @@ static inline float rejection_by_cut(const TotalLight* total) {
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
 
-static inline float suspicion_by_change(const TileEvidence* tile, float mean_brightening, float flicker,
-                                        float neighbour_error) {
+// Returns how much change of a tile or cell is usual.
+static inline float usual_change(float neighbour_error, float flicker) {
+  return USUAL_NEIGHBOUR_ERROR * neighbour_error + USUAL_FLICKER * flicker + USUAL_CHANGE;
+}
+
+// `range`: by how much more than is usual it rejects wholly, as a part of that.
+static inline float suspicion_by_change(float mean_brightening, float brighter, float count, float usual,
+                                        float range) {
   // A test of signs, corrected as for few samples: three must all agree.
-  const float majority = fabs(tile->brighter) - 1.0f;
-  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST_MIN * tile->count;
-  if (!is_agreed) return 0.0f;
-  const float usual = USUAL_NEIGHBOUR_ERROR * neighbour_error + USUAL_FLICKER * flicker + USUAL_CHANGE;
-  return max((fabs(mean_brightening) - usual) / (CHANGE_RANGE * usual), 0.0f);
+  const float majority = fabs(brighter) - 1.0f;
+  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST_MIN * count;
+  return is_agreed ? max((fabs(mean_brightening) - usual) / (range * usual), 0.0f) : 0.0f;
 }
 
 // Returns what is left of a suspicion that waits for a second frame: positive if confirmed.
 static inline float confirm(float suspected, float before) {
   return max(min(suspected, before) - CONFIRMATION_COST, suspected - SINGLE_FRAME_REJECT_MIN);
+}
+
+// The same of a suspicion by change, with its sign, if the previous frame's has it, too.
+static inline float confirm_change(float suspected, float before) {
+  return confirm(fabs(suspected), suspected * before > 0.0f ? fabs(before) : 0.0f);
+}
+
+// What a cell has changed by, and how usual that is. It is not rejected.
+static inline CellLight cell_light(CellEvidence evidence, CellLight before, float neighbour_error) {
+  CellLight cell;
+  cell.rejection = 0.0f;
+  cell.mean_brightening = evidence.brightening / max(evidence.count, 1.0f);
+  cell.flicker = FLICKER_MEMORY * before.flicker +
+                 (1.0f - FLICKER_MEMORY) * alternation(cell.mean_brightening, before.mean_brightening);
+  const float usual = usual_change(neighbour_error, cell.flicker);
+  cell.suspected_change = copysign(
+      suspicion_by_change(cell.mean_brightening, evidence.brighter, evidence.count, usual, CELL_CHANGE_RANGE),
+      cell.mean_brightening);
+  return cell;
 }
 
 // That of tile (x, y).
@@ -142,30 +164,44 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
     gain = 1.0f + (float)whole.brightening / (float)whole.light;  // surer than what one tile finds
   tile.gain = clamp(gain, 1.0f / GAIN_MAX, GAIN_MAX);
 
-  // Flicker.
-  tile.mean_brightening = own.brightening / max(own.count, 1.0f);
-  tile.flicker = FLICKER_MEMORY * before.flicker +
-                 (1.0f - FLICKER_MEMORY) * alternation(tile.mean_brightening, before.mean_brightening);
-
-  // Suspicions.
+  // Suspicions. Where the light has changed, a change is none.
   const float mean_error = around.sum.neighbour_error / max(around.sum.count, 1.0f);
+  float flicker = 0.0f, sure_of_cells = 0.0f;
+  for (int c = 0; c < 4; ++c) {
+    tile.cells[c] = cell_light(own.cells[c], before.cells[c], mean_error);
+    if (tile.gain != 1.0f) tile.cells[c].suspected_change = 0.0f;
+    flicker += 0.25f * tile.cells[c].flicker;
+    sure_of_cells =
+        max(sure_of_cells, confirm_change(tile.cells[c].suspected_change, before.cells[c].suspected_change));
+  }
+  const float mean_brightening = own.brightening / max(own.count, 1.0f);
   const float error = suspicion_by_error(&around.sum);
-  const float changed =
-      tile.gain == 1.0f ? suspicion_by_change(&own, tile.mean_brightening, tile.flicker, mean_error) : 0.0f;
+  const float changed = tile.gain == 1.0f
+                            ? suspicion_by_change(mean_brightening, own.brighter, own.count,
+                                                  usual_change(mean_error, flicker), TILE_CHANGE_RANGE)
+                            : 0.0f;
   tile.suspected_error = error;
-  tile.suspected_change = copysign(changed, tile.mean_brightening);
-  const float changed_before =
-      before.suspected_change * tile.mean_brightening > 0.0f ? fabs(before.suspected_change) : 0.0f;
+  tile.suspected_change = copysign(changed, mean_brightening);
   const float sure_error = confirm(error, before.suspected_error);
-  const float sure_change = confirm(changed, changed_before);
-  tile.confirmation = max(sure_error, sure_change) > 0.0f ? 1.0f : CONFIRMATION_MEMORY * before.confirmation;
+  const float sure_change = confirm_change(tile.suspected_change, before.suspected_change);
+  tile.confirmation = max(max(sure_error, sure_change), sure_of_cells) > 0.0f
+                          ? 1.0f
+                          : CONFIRMATION_MEMORY * before.confirmation;
 
   // Rejection.
-  const bool waits = stands_still(tiles[i]) && around.confirmation < STILL_TILE_CONFIRMATION_MAX;
+  const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
   const float by_error = waits ? sure_error : error;
   const float by_change = waits ? sure_change : changed;
   const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
-  tile.rejection = clamp(max(max(by_error, by_change), by_cut), 0.0f, 1.0f);
+  const float by_tile = max(max(by_error, by_change), by_cut);
+  tile.rejection = 0.0f;
+  for (int c = 0; c < 4; ++c) {
+    CellLight* cell = &tile.cells[c];
+    const float by_cell = waits ? confirm_change(cell->suspected_change, before.cells[c].suspected_change)
+                                : fabs(cell->suspected_change);
+    cell->rejection = clamp(max(by_tile, by_cell), 0.0f, 1.0f);
+    tile.rejection = max(tile.rejection, cell->rejection);
+  }
   const float cut = clamp(by_cut, 0.0f, 1.0f);
   tile.cut = max(cut, CUT_MEMORY * before.cut);
   tile.new_cut = max(cut - before.cut, 0.0f);
@@ -176,6 +212,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
       around.sum.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
   if (tile.holds_back) {
     tile.rejection = 0.0f;
+    for (int c = 0; c < 4; ++c)
+      tile.cells[c].rejection = 0.0f;
     tile.gain = 1.0f;
   }
   return tile;

@@ -4,8 +4,7 @@
 //   A tile is rigid if its samples, and the next ones around it, move alike within .05 output pixels. With r the phase
 //   of the previous tile that its middle comes from and v the way that it has come, both in output pixels, it takes
 //   texels round(r + v) away and has the phase r + v - round(r + v).
-//   The evidence (see TileEvidence) is sums over one of judged_apart samples of each row, in a pattern that is
-//   staggered from row to row. Samples that are not trusted do not count.
+//   The evidence (see TileEvidence) is sums over its samples; those that are not trusted do not count.
 //
 //   params          in   viewport, layouts, scales
 //   colour          in   RGBA16F or RGBA32F, viewport
@@ -95,6 +94,13 @@ static inline bool is_of_near_layer(const Past* past, const TemporalTileParams* 
 #endif
 }
 
+// Returns which of its tile's cells sample (x, y) lies in.
+static inline int cell_of(const TemporalTileParams* params, int x, int y) {
+  const int column = (int)((float)x * params->spacing_x + params->start_x) % kTemporalTile;
+  const int row = (int)((float)y * params->spacing_y + params->start_y) % kTemporalTile;
+  return 2 * (row / kTemporalCell) + column / kTemporalCell;
+}
+
 // Adds what sample (x, y) says of history.
 static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
                                 TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
@@ -119,13 +125,18 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   const float own = luma(sample), known = luma(before);
   const float scale = 1.0f / (1.0f + own + known);
   const float change = (own - known) * scale;
+  const float brighter = (change > LUMA_CHANGE_MIN ? 1.0f : 0.0f) - (change < -LUMA_CHANGE_MIN ? 1.0f : 0.0f);
   evidence->brightening += change;
   evidence->light += known * scale;
   evidence->history_error += fabs(change);
   const float beside = luma(around);
   evidence->neighbour_error += is_valid(around) ? fabs(own - beside) / (1.0f + own + beside) : 0.0f;
-  evidence->brighter += (change > LUMA_CHANGE_MIN ? 1.0f : 0.0f) - (change < -LUMA_CHANGE_MIN ? 1.0f : 0.0f);
+  evidence->brighter += brighter;
   evidence->count += 1.0f;
+  CellEvidence* cell = &evidence->cells[cell_of(params, x, y)];
+  cell->brightening += change;
+  cell->brighter += brighter;
+  cell->count += 1.0f;
   const OutlierRange range = outlier_range(before);
   if (!is_outlier(sample, range)) return;
   const int outliers_beside =
@@ -134,26 +145,17 @@ static inline void judge_sample(TileEvidence* evidence, COLOUR_TEXELS colour, DE
   evidence->outliers += outliers_beside >= 2 ? 1.0f : 0.0f;
 }
 
-// Returns the first column from `first` on that is judged in row y: one of `apart`, a power of two. Rows are staggered
-// so that four of them judge as many even as odd columns, and as many black as white fields of a chessboard: on one
-// colour alone, a moving edge would look like a change of light. In frames shaded in a checkerboard only shaded samples
-// are judged.
-static inline int first_judged(int first, int y, int apart, int parity) {
-  const int staggered = ((y ^ (y >> 1)) & 1) * (apart / 2) + ((y >> 1) & 1) * (apart / 4);
-  const int shifted = first + (parity >= 0 ? y - parity : staggered);
-  return first + (-shifted & (apart - 1));
-}
-
 static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout depth_layout,
                                            const Past* past, const TemporalTileParams* params, TileReprojection tile,
                                            SampleRange samples) {
   const int2 first = samples.first, last = samples.last;
-  const int apart = params->judged_apart;
-  TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  // On a checkerboard every second sample is shaded.
+  const int apart = params->parity >= 0 ? 2 : 1;
+  TileEvidence evidence = no_evidence();
   for (int y = first.y - 1; y <= last.y + 1; ++y)
     will_read_colour(colour, params->frame.colour, last.x + kColourAhead, y);
   for (int y = first.y; y <= last.y; ++y) {
-    for (int x = first_judged(first.x, y, apart, params->parity); x <= last.x; x += apart)
+    for (int x = first.x + (apart == 2 ? (first.x + y + params->parity) & 1 : 0); x <= last.x; x += apart)
       judge_sample(&evidence, colour, depth, depth_layout, past, params, tile, x, y);
   }
   return evidence;
@@ -213,7 +215,7 @@ __kernel void temporal_tiles(const TemporalTileParams params, COLOUR_TEXELS colo
 #endif
     const HistoryLayer known = {history, params.output_width, params.output_height};
     const Past past = {reprojection, known, previous_tiles, is_split ? splits : 0};
-    TileEvidence found_evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+    TileEvidence found_evidence = no_evidence();
     if (!hidden) found_evidence = gather_evidence(colour, depth, depth_layout, &past, &params, tile, samples);
     add_means(&sum, &params, found_evidence);
     tiles[i] = tile;

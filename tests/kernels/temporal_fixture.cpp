@@ -42,19 +42,27 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                       .neighbour_error = number(evidence.neighbour_error),
                                       .count = static_cast<float>(evidence.count),
                                       .brighter = static_cast<float>(evidence.brighter),
-                                      .outliers = static_cast<float>(evidence.outliers)};
+                                      .outliers = static_cast<float>(evidence.outliers),
+                                      .cells = {}};
   static_cast<TileLight&>(made) = {.gain = number(light.gain),
                                    .rejection = number(light.rejection),
                                    .cut = number(light.cut),
                                    .new_cut = number(light.new_cut),
                                    .persistence = number(light.persistence),
-                                   .flicker = number(light.flicker),
-                                   .mean_brightening = number(light.mean_brightening),
                                    .suspected_error = number(light.suspected_error),
                                    .suspected_change = number(light.suspected_change),
                                    .confirmation = number(light.confirmation),
                                    .recent_outliers = number(light.recent_outliers),
-                                   .holds_back = light.holds_back ? 1 : 0};
+                                   .holds_back = light.holds_back ? 1 : 0,
+                                   .cells = {}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& cell = evidence.cells[i];
+    static_cast<TileEvidence&>(made).cells[i] = {number(cell.brightening), static_cast<float>(cell.brighter),
+                                                 static_cast<float>(cell.count)};
+    const auto& lit = light.cells[i];
+    static_cast<TileLight&>(made).cells[i] = {number(lit.rejection), number(lit.suspected_change),
+                                              number(lit.mean_brightening), number(lit.flicker)};
+  }
   return made;
 }
 
@@ -77,31 +85,41 @@ LayerTile to_kernel(const reference::LayerTile& tile) {
 
 reference::Tile to_reference(const KernelTile& tile) {
   const auto number = [](float value) { return static_cast<double>(value); };
-  return {.reprojection = {.phase = {number(tile.phase_x), number(tile.phase_y)},
-                           .source_phase = {number(tile.source_phase_x), number(tile.source_phase_y)},
-                           .step = {tile.step_x, tile.step_y},
-                           .is_rigid = tile.is_rigid != 0,
-                           .is_trusted = tile.is_trusted != 0,
-                           .has_motion_edge = tile.has_motion_edge != 0},
-          .evidence = {.brightening = number(tile.brightening),
-                       .light = number(tile.light),
-                       .history_error = number(tile.history_error),
-                       .neighbour_error = number(tile.neighbour_error),
-                       .count = static_cast<int>(tile.count),
-                       .brighter = static_cast<int>(tile.brighter),
-                       .outliers = static_cast<int>(tile.outliers)},
-          .light = {.gain = number(tile.gain),
-                    .rejection = number(tile.rejection),
-                    .cut = number(tile.cut),
-                    .new_cut = number(tile.new_cut),
-                    .persistence = number(tile.persistence),
-                    .flicker = number(tile.flicker),
-                    .mean_brightening = number(tile.mean_brightening),
-                    .suspected_error = number(tile.suspected_error),
-                    .suspected_change = number(tile.suspected_change),
-                    .confirmation = number(tile.confirmation),
-                    .recent_outliers = number(tile.recent_outliers),
-                    .holds_back = tile.holds_back != 0}};
+  reference::Tile made{
+      .reprojection = {.phase = {number(tile.phase_x), number(tile.phase_y)},
+                       .source_phase = {number(tile.source_phase_x), number(tile.source_phase_y)},
+                       .step = {tile.step_x, tile.step_y},
+                       .is_rigid = tile.is_rigid != 0,
+                       .is_trusted = tile.is_trusted != 0,
+                       .has_motion_edge = tile.has_motion_edge != 0},
+      .evidence = {.brightening = number(tile.brightening),
+                   .light = number(tile.light),
+                   .history_error = number(tile.history_error),
+                   .neighbour_error = number(tile.neighbour_error),
+                   .count = static_cast<int>(tile.count),
+                   .brighter = static_cast<int>(tile.brighter),
+                   .outliers = static_cast<int>(tile.outliers),
+                   .cells = {}},
+      .light = {.gain = number(tile.gain),
+                .rejection = number(tile.rejection),
+                .cut = number(tile.cut),
+                .new_cut = number(tile.new_cut),
+                .persistence = number(tile.persistence),
+                .suspected_error = number(tile.suspected_error),
+                .suspected_change = number(tile.suspected_change),
+                .confirmation = number(tile.confirmation),
+                .recent_outliers = number(tile.recent_outliers),
+                .holds_back = tile.holds_back != 0,
+                .cells = {}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const CellEvidence& cell = tile.TileEvidence::cells[i];
+    made.evidence.cells[i] = {number(cell.brightening), static_cast<int>(cell.count),
+                              static_cast<int>(cell.brighter)};
+    const CellLight& lit = tile.TileLight::cells[i];
+    made.light.cells[i] = {number(lit.rejection), number(lit.suspected_change), number(lit.mean_brightening),
+                           number(lit.flicker)};
+  }
+  return made;
 }
 
 std::vector<unsigned char> encode_plane(PixelFormat texels, const std::vector<double>& values) {
@@ -214,7 +232,6 @@ TemporalStages::Tiles TemporalStages::run_tiles(const StageInputs& in) const {
   params.start_y = to_float((.5 + r.frame.jitter_y) * r.spacing(1));
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
-  params.judged_apart = r.judged_apart;
   params.parity = r.parity;
   const cl::Buffer before = to_device(parts_of<TileReprojection>(r.before));
   const cl::Buffer now = to_device(std::vector<TileReprojection>(r.before.size()));

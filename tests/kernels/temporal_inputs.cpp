@@ -236,7 +236,6 @@ StageInputs TemporalStages::inputs(Rig& rig, const StageSpec& spec) const {
   in.frame = made.inputs;
   reference::TemporalInputs& out = in.reference;
   out.frame = made.reference;
-  out.judged_apart = spec.parity >= 0 ? 2 << spec.seed % 2 : 1 << spec.seed % 3;
   out.parity = spec.parity;
   out.previous_width = spec.previous.width;
   out.previous_height = spec.previous.height;
@@ -271,7 +270,11 @@ std::vector<reference::Tile> TemporalStages::tiles(const StageInputs& in, unsign
     reference::Tile exact = to_reference(to_kernel(tile));
     const int i = static_cast<int>(made.size());
     std::mt19937 zone = zones.of(i % in.reference.tiles_x() / 5, i / in.reference.tiles_x() / 4);
-    if (zone() % 3 == 0) exact.light.rejection = as_float(uniform(zone));
+    const bool rejects = zone() % 3 == 0;
+    for (reference::CellLightOf<double>& cell : exact.light.cells) {
+      if (rejects) cell.rejection = as_float(uniform(zone));
+      exact.light.rejection = std::max(exact.light.rejection, cell.rejection);
+    }
     if (zone() % 3 == 0) exact.light.gain = as_float(.25 + 2 * uniform(zone));
     exact.light.holds_back = zone() % 2 == 0;
     if (zone() % 3 == 0) exact.light.new_cut = as_float(uniform(zone));

@@ -49,15 +49,23 @@ class Finder {
       tile.brighter = std::copysign(tile.count, tile.brighter);
       tile.brightening = std::copysign(tile.history_error, tile.brighter);
     }
+    for (CellEvidence& cell : tile.TileEvidence::cells) {
+      cell.count = static_cast<float>(static_cast<int>(6 * uniform()));
+      cell.brighter = std::copysign(uniform() < .5 ? cell.count : 1.f, tile.brightening);
+      cell.brightening = std::copysign(cell.count * below(.6), cell.brighter);
+    }
     tile.has_motion_edge = round % 7 < 3 && uniform() < .1 ? 1 : 0;
     tile.is_rigid = found.tiles.size() % 5 == 0 ? 0 : 1;
     if (uniform() < .008) tile.outliers = static_cast<float>(1 + found.tiles.size() % 3);
     add_to_total(found.total, tile, round);
     found.tiles.push_back(testing::to_reference(tile));
     tile.persistence = static_cast<float>(2 * uniform() - 1);
-    tile.flicker = uniform() < .5 ? below(.01) : below(.2);
     if (uniform() < .5) tile.brightening *= static_cast<float>(-2 * uniform());
-    tile.mean_brightening = tile.brightening / std::max(tile.count, 1.f);
+    for (CellLight& cell : tile.TileLight::cells) {
+      cell.flicker = uniform() < .5 ? below(.01) : below(.2);
+      cell.mean_brightening = std::copysign(below(.5), static_cast<float>(uniform() - .5));
+      if (round % 4 < 2) cell.suspected_change = std::copysign(below(3), cell.mean_brightening);
+    }
     if (round % 2 == 0) tile.suspected_error = std::abs(tile.brightening);
     if (round % 4 < 2) tile.suspected_change = std::copysign(tile.neighbour_error, tile.brightening);
     if (found.tiles.size() % 11 == 0) tile.confirmation = std::abs(tile.persistence);
@@ -102,8 +110,10 @@ std::vector<reference::TileLight> lights_of(const Findings& found) {
 
 // The same, had there been another flicker.
 std::vector<reference::TileLight> with_flicker(Findings found, double flicker) {
-  for (Tile& tile : found.before)
-    tile.light.flicker = flicker;
+  for (Tile& tile : found.before) {
+    for (reference::CellLightOf<double>& cell : tile.light.cells)
+      cell.flicker = flicker;
+  }
   return lights_of(found);
 }
 
@@ -130,7 +140,7 @@ struct Met {
   int gain_held_back = 0;     // by a motion edge
   int gain_of_the_whole = 0;  // which motion edges do not hold back
   int alternating = 0, changed = 0, hidden_by_flicker = 0;
-  int confirmed = 0, hidden_by_waiting = 0;
+  int confirmed = 0, hidden_by_waiting = 0, of_one_cell = 0;
   int held_back = 0, not_rearmed = 0, not_widespread = 0;
 
   template <typename Expected>
@@ -149,10 +159,11 @@ struct Met {
       rejected += rejection > 0 ? 1 : 0;
       gain_held_back += gain == 1 && joined[i].gain != 1 ? 1 : 0;
       gain_of_the_whole += edged[i].gain != 1 ? 1 : 0;
-      alternating += even[i].flicker > 0 ? 1 : 0;
+      alternating += even[i].cells[0].flicker > 0 ? 1 : 0;
       changed += rejection > wild[i].rejection ? 1 : 0;
       hidden_by_flicker += rejection < even[i].rejection ? 1 : 0;
       confirmed += expected[i].value.confirmation == 1 ? 1 : 0;
+      of_one_cell += rejection > expected[i].value.cells[0].rejection ? 1 : 0;
       hidden_by_waiting += rejection < confirmed_lately[i].rejection ? 1 : 0;
       held_back += expected[i].value.holds_back ? 1 : 0;
       not_rearmed += found.tiles[i].evidence.outliers > 0 && !expected[i].value.holds_back ? 1 : 0;
@@ -180,7 +191,19 @@ TEST(TemporalLight, MatchesTheReference_small) {
     for (std::size_t i = 0; i < expected.size(); ++i) {
       const auto& [value, bound, undecided] = expected[i];
       const std::string what = fmt::format("round {}, tile {}: ", round, i);
-      expect_near(value.flicker, bound.flicker, actual[i].flicker, what + "flicker");
+      for (std::size_t c = 0; c < 4; ++c) {
+        const auto& cell = value.cells[c];
+        const auto& limit = bound.cells[c];
+        const CellLight& found_cell = actual[i].cells[c];
+        const std::string where = fmt::format("{}cell {}: ", what, c);
+        expect_near(cell.flicker, limit.flicker, found_cell.flicker, where + "flicker");
+        expect_near(cell.mean_brightening, limit.mean_brightening, found_cell.mean_brightening,
+                    where + "mean");
+        if (undecided) continue;
+        expect_near(cell.rejection, limit.rejection, found_cell.rejection, where + "rejection");
+        expect_near(cell.suspected_change, limit.suspected_change, found_cell.suspected_change,
+                    where + "change");
+      }
       if (undecided) continue;
       expect_near(value.gain, bound.gain, actual[i].gain, what + "gain");
       expect_near(value.rejection, bound.rejection, actual[i].rejection, what + "rejection");
@@ -208,6 +231,7 @@ TEST(TemporalLight, MatchesTheReference_small) {
   EXPECT_GT(met.hidden_by_flicker, met.tiles / 100);
   EXPECT_GT(met.confirmed, met.tiles / 100);
   EXPECT_GT(met.hidden_by_waiting, met.tiles / 100);
+  EXPECT_GT(met.of_one_cell, met.tiles / 100);
   EXPECT_GT(met.held_back, met.tiles / 100);
   EXPECT_GT(met.not_rearmed, met.tiles / 1000);
   EXPECT_GT(met.not_widespread, met.tiles / 100);

@@ -78,6 +78,13 @@ class TemporalTiles : public ::testing::TestWithParam<StageVariant> {
                 what + " history_error");
     expect_near(evidence.neighbour_error, bound.neighbour_error, static_cast<double>(actual.neighbour_error),
                 what + " neighbour_error");
+    for (std::size_t c = 0; c < 4; ++c) {
+      const CellEvidence& cell = actual.TileEvidence::cells[c];
+      ASSERT_EQ(evidence.cells[c].count, static_cast<int>(cell.count)) << what << " cell " << c;
+      ASSERT_EQ(evidence.cells[c].brighter, static_cast<int>(cell.brighter)) << what << " cell " << c;
+      expect_near(evidence.cells[c].brightening, bound.cells[c].brightening,
+                  static_cast<double>(cell.brightening), what + " cell's brightening");
+    }
   }
 
   void compare_layers(const ExpectedTile& expected, const LayerTile& actual, const std::string& what) {

@@ -34,6 +34,13 @@ inline bool stands_still(const TileReprojection& tile) {
   return tile.is_rigid && tile.phase[0] == 0 && tile.phase[1] == 0 && tile.step[0] == 0 && tile.step[1] == 0;
 }
 
+// A tile has four cells, kTile / 2 pixels wide and high, row by row. Sums as in TileEvidence.
+template <typename Real>
+struct CellEvidenceOf {
+  Real brightening = 0;
+  int count = 0, brighter = 0;
+};
+
 // The evidence of a tile's samples s about the history h at their place, n being the mean of their four neighbours:
 // sums over the samples that judge, of luma, each divided by 1 + s + h, or 1 + s + n.
 template <typename Real>
@@ -45,25 +52,34 @@ struct TileEvidenceOf {
   int count = 0;             // samples
   int brighter = 0;  // those that are brighter than history by more than noise, less those that are darker
   int outliers = 0;  // those that are outliers, with two of their neighbours
+  std::array<CellEvidenceOf<Real>, 4> cells;
 };
 using TileEvidence = TileEvidenceOf<double>;
+
+// What follows from a cell's own evidence.
+template <typename Real>
+struct CellLightOf {
+  Real rejection = 0;         // of history, in [0, 1]
+  Real suspected_change = 0;  // as TileLightOf's
+  Real mean_brightening = 0;  // mean over the samples
+  Real flicker = 0;           // how far that goes to and fro from frame to frame: aliasing
+};
 
 // The conclusions from the evidence.
 template <typename Real>
 struct TileLightOf {
   Real gain = 1;       // relighting gain: history times this has this frame's light
-  Real rejection = 0;  // rejection of history, in [0, 1]
+  Real rejection = 0;  // the largest of its cells'
   Real cut = 0,
        new_cut = 0;      // how far the whole picture is another one, now or of late, and by how much more
   Real persistence = 0;  // in [-1, 1]: of a coherent change of light, over frames
-  Real flicker = 0;      // how far a sample's luma goes to and fro from frame to frame: aliasing
-  Real mean_brightening = 0;  // mean over the samples
   // Rejection by error and by change as it would be by this frame alone, from 0 on; that by change with the sign of the
   // change.
   Real suspected_error = 0, suspected_change = 0;
   Real confirmation = 0;     // 1 where a suspicion is confirmed; it fades
   Real recent_outliers = 0;  // 1 where samples are outliers, or beside; it fades
   bool holds_back = false;   // outliers are held back: they are the first ones
+  std::array<CellLightOf<Real>, 4> cells;
 };
 using TileLight = TileLightOf<double>;
 
@@ -96,8 +112,7 @@ struct TemporalInputs {
   std::vector<Pixel> history;
   std::vector<double> history_alpha;  // one for each output pixel; empty: the picture is opaque
   std::vector<Tile> before;           // tiles of the previous frame
-  int parity = -1;       // on a checkerboard sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
-  int judged_apart = 2;  // one of this many samples judges history: 1, 2 or 4
+  int parity = -1;  // on a checkerboard sample (x, y) is shaded where (x + y) % 2 is this; -1: all are
   // The second layer's inputs of temporal_tiles; empty: there is none.
   std::vector<LayerSplit> splits;        // one for each sample
   std::vector<int> split_marks;          // one for each tile: not 0 if a sample in it is split
@@ -131,22 +146,30 @@ PixelOf<Real> as(const Pixel& pixel) {
 }
 template <typename Real>
 TileEvidenceOf<Real> as(const TileEvidence& e) {
-  return {e.brightening, e.light, e.history_error, e.neighbour_error, e.count, e.brighter, e.outliers};
+  TileEvidenceOf<Real> made{e.brightening, e.light,    e.history_error, e.neighbour_error,
+                            e.count,       e.brighter, e.outliers,      {}};
+  for (std::size_t i = 0; i < 4; ++i)
+    made.cells[i] = {e.cells[i].brightening, e.cells[i].count, e.cells[i].brighter};
+  return made;
 }
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
-  return {l.gain,
-          l.rejection,
-          l.cut,
-          l.new_cut,
-          l.persistence,
-          l.flicker,
-          l.mean_brightening,
-          l.suspected_error,
-          l.suspected_change,
-          l.confirmation,
-          l.recent_outliers,
-          l.holds_back};
+  TileLightOf<Real> made{l.gain,
+                         l.rejection,
+                         l.cut,
+                         l.new_cut,
+                         l.persistence,
+                         l.suspected_error,
+                         l.suspected_change,
+                         l.confirmation,
+                         l.recent_outliers,
+                         l.holds_back,
+                         {}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const CellLightOf<double>& cell = l.cells[i];
+    made.cells[i] = {cell.rejection, cell.suspected_change, cell.mean_brightening, cell.flicker};
+  }
+  return made;
 }
 template <typename Real>
 TotalLightOf<Real> as(const TotalLight& t) {

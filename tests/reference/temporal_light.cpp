@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // temporal_light: of each tile whether the light has changed, and how far its history is to be rejected. B, L,
 // E, N, n: sums of brightening, light, history_error, neighbour_error and count over the tile and the eight
-// around it; mean: the tile's own brightening / count; b, k: its own brighter and count.
+// around it; mean: brightening / count of the tile or cell; b, k: its brighter and count.
 //   relative     B / L
 //   coherent     |B| > .75 sum |brightening|, |relative| > .05, |B| > 3 N / sqrt(n), no motion edge in the nine
 //                tiles, and the samples agree: (sum of b) sign(relative) > .4 n, seven of ten
@@ -11,20 +11,21 @@
 //   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light,
 //                and widespread; then at once gain = 1 + that sum / light, where the samples agree on
 //                the same sign
-//   flicker      f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where their signs
-//                differ, else 0
-//   rejection    the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed part is
-//                max(min(s, s') - .3, s - 4), s' that of the previous frame, 0 if of the other sign of mean
+//   flicker      of a cell: f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where
+//                their signs differ, else 0; of a tile: the mean of its cells'
+//   rejection    of each cell the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed
+//                part is max(min(s, s') - 1, s - 4), s' that of the previous frame, 0 if of the other sign of mean
 //     by error   (E - e) / e, e = 1.6 N + .002 n, where |B| < .5 E; where it waits its confirmed part
-//     by change  (|mean| - T) / (T / 2), T = .8 N / n + 12 f + .01, where gain = 1, (|b| - 1)^2 >= 1.1 k and
-//                |brightening| > .15 light; where it waits its confirmed part
+//     by change  (|mean| - T) / (T / 2), of a cell (|mean| - T) / (1.5 T), T = .3 N / n + 6 f + .01, where
+//                gain = 1 and (|b| - 1)^2 >= 1.1 k; where it waits its confirmed part; the larger of the tile's and
+//                the cell's
 //     by cut     (E' - 1.25 N') / (.35 N' + 1) of the whole picture's sums, where E' > .03 L', it is not
 //                relit, and the change is widespread
-//   confirmation 1 where the confirmed part of either suspicion is above 0, else u <- .97 u
+//   confirmation 1 where the confirmed part of any suspicion is above 0, else u <- .97 u
 //   recent outliers  1 where one of the nine tiles has outliers, else a <- .9 a
 //   holds back   there, if none of the nine had recent outliers >= .15 in the previous frame,
 //                and the picture is neither relit nor cut; gain = 1 and rejection = 0 then
-//   waits        where the tile stands still, and in the nine tiles the previous frame's confirmation is below .3
+//   waits        where the tile is rigid, and in the nine tiles the previous frame's confirmation is below .3
 // Source: found by measuring (docs/lab/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
 // of the whole picture.
 #include <algorithm>
@@ -47,20 +48,20 @@ constexpr double kLightSumMin = 1e-6;       // against a division by 0
 constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 
 // Rejection.
-constexpr double kErrorRatioMin = 1.6;       // times N: history foretells worse than the neighbours do
-constexpr double kErrorFloor = .002;         // for each sample
-constexpr double kErrorCoherenceMax = .5;    // |B| / E below which the error is no change of light
-constexpr double kSignTestMin = 1.1;         // (|b| - 1)^2 / samples: a test of signs
-constexpr double kUsualNeighbourError = .8;  // part of the neighbours' mean error, which is usual
-constexpr double kUsualFlicker = 12;         // times flicker; without flicker -.08 dB
-constexpr double kUsualChange = .01;         // mean change of luma of a sample
-constexpr double kChangeRange = .5;          // times what is usual, over which rejection grows to 1
-constexpr double kFlickerMemory = .9;        // each frame: about ten
-constexpr double kConfirmationCost = .3;     // taken from the suspicion that two frames share
-constexpr double kSingleFrameRejectMin = 4;  // suspicion of one frame that needs no other
-constexpr double kConfirmationMemory = .97;  // each frame
-constexpr double kStillTileConfirmationMax =
-    .3;                                 // below it a tile that stands still waits for a second frame
+constexpr double kErrorRatioMin = 1.6;            // times N: history foretells worse than the neighbours do
+constexpr double kErrorFloor = .002;              // for each sample
+constexpr double kErrorCoherenceMax = .5;         // |B| / E below which the error is no change of light
+constexpr double kSignTestMin = 1.1;              // (|b| - 1)^2 / samples: a test of signs
+constexpr double kUsualNeighbourError = .3;       // part of the neighbours' mean error, which is usual
+constexpr double kUsualFlicker = 6;               // times flicker
+constexpr double kUsualChange = .01;              // mean change of luma of a sample
+constexpr double kTileChangeRange = .5;           // times what is usual, over which rejection grows to 1
+constexpr double kCellChangeRange = 1.5;          // the same of a cell
+constexpr double kFlickerMemory = .9;             // each frame: about ten
+constexpr double kConfirmationCost = 1;           // taken from the suspicion that two frames share
+constexpr double kSingleFrameRejectMin = 4;       // suspicion of one frame that needs no other
+constexpr double kConfirmationMemory = .97;       // each frame
+constexpr double kRigidTileConfirmationMax = .3;  // below it a rigid tile waits for a second frame
 constexpr double kCutRatioMin = 1.25;   // E / N of the whole picture from which on it may be another one
 constexpr double kCutRatioRange = .35;  // times N, over which rejection grows to 1
 constexpr double kCutErrorMin = .03;    // part of the whole picture's light
@@ -133,20 +134,6 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_re
   light.gain = clamp(light.gain, 1 / kGainMax, kGainMax);
 }
 
-template <typename Real>
-Real mean_brightening(const TileEvidenceOf<Real>& evidence) {
-  return evidence.brightening / std::max(evidence.count, 1);
-}
-
-template <typename Real>
-Real update_flicker(const Real& mean_brightening, const TileLightOf<Real>& before) {
-  Real alternation = 0;
-  if (mean_brightening * before.mean_brightening < 0)
-    alternation = min(abs(mean_brightening), abs(before.mean_brightening));
-  const Real memory = kFlickerMemory;
-  return memory * before.flicker + (1 - memory) * alternation;
-}
-
 // History foretells the samples worse than their neighbours do, and not by a change of light.
 template <typename Real>
 Real suspicion_by_error(const Sums<Real>& sums) {
@@ -155,16 +142,37 @@ Real suspicion_by_error(const Sums<Real>& sums) {
   return max((sums.history_error - allowed) / allowed, 0);
 }
 
-// The tile's own samples agree that it is brighter or darker now, by more than aliasing has shown so far.
+// How much change is usual of a tile or cell.
 template <typename Real>
-Real suspicion_by_change(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& light,
-                         const Sums<Real>& sums) {
-  if (light.gain != 1) return 0;
+Real usual_change(const Sums<Real>& sums, const Real& flicker) {
+  return kUsualNeighbourError * (sums.neighbour_error / std::max(sums.count, 1)) + kUsualFlicker * flicker +
+         kUsualChange;
+}
+
+// The samples of a tile or cell agree that it is brighter or darker now, by more than aliasing has shown so far. With
+// the sign of the change.
+template <typename Real, typename Evidence>
+Real suspicion_by_change(const Evidence& evidence, const Real& usual, double range) {
   const int majority = std::abs(evidence.brighter) - 1;
   if (majority <= 0 || majority * majority < kSignTestMin * evidence.count) return 0;
-  const Real neighbours = sums.neighbour_error / std::max(sums.count, 1);
-  const Real usual = kUsualNeighbourError * neighbours + kUsualFlicker * light.flicker + kUsualChange;
-  return max((abs(light.mean_brightening) - usual) / (kChangeRange * usual), 0);
+  const Real mean = evidence.brightening / std::max(evidence.count, 1);
+  const Real suspected = max((abs(mean) - usual) / (range * usual), 0);
+  return mean < 0 ? -suspected : suspected;
+}
+
+// A cell that is not rejected.
+template <typename Real>
+CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const CellLightOf<Real>& before,
+                             const Sums<Real>& sums) {
+  CellLightOf<Real> cell;
+  cell.mean_brightening = evidence.brightening / std::max(evidence.count, 1);
+  Real alternation = 0;
+  if (cell.mean_brightening * before.mean_brightening < 0)
+    alternation = min(abs(cell.mean_brightening), abs(before.mean_brightening));
+  const Real memory = kFlickerMemory;
+  cell.flicker = memory * before.flicker + (1 - memory) * alternation;
+  cell.suspected_change = suspicion_by_change(evidence, usual_change(sums, cell.flicker), kCellChangeRange);
+  return cell;
 }
 
 // Returns the rest of a suspicion where a second frame must confirm it.
@@ -173,21 +181,41 @@ Real confirm(const Real& suspected, const Real& before) {
   return max(min(suspected, before) - kConfirmationCost, suspected - kSingleFrameRejectMin);
 }
 
-// Suspicions, their confirmation, and rejection but for a cut.
+// The same of a change, with its sign: the previous frame's counts if it went the same way.
+template <typename Real>
+Real confirm_change(const Real& suspected, const Real& before) {
+  return confirm(abs(suspected), suspected * before > 0 ? abs(before) : Real(0));
+}
+
+// Suspicions, their confirmation, and rejection. Where the light has changed, a change is no suspicion.
 template <typename Real>
 void suspect(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& before, const Sums<Real>& sums,
-             bool is_still, TileLightOf<Real>& light) {
-  const Real error = suspicion_by_error(sums);
-  const Real change = suspicion_by_change(evidence, light, sums);
-  const int sign = light.mean_brightening < 0 ? -1 : 1;
-  const bool is_same_way = before.suspected_change * sign > 0;
-  const Real sure_error = confirm(error, before.suspected_error);
-  const Real sure_change = confirm(change, is_same_way ? abs(before.suspected_change) : Real(0));
-  light.suspected_error = error;
-  light.suspected_change = change * sign;
-  light.confirmation = max(sure_error, sure_change) > 0 ? Real(1) : kConfirmationMemory * before.confirmation;
-  const bool waits = is_still && sums.confirmation < kStillTileConfirmationMax;
-  light.rejection = clamp(waits ? max(sure_error, sure_change) : max(error, change), 0, 1);
+             bool is_rigid, const Real& by_cut, TileLightOf<Real>& light) {
+  Real flicker = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    light.cells[i] = cell_light(evidence.cells[i], before.cells[i], sums);
+    flicker += .25 * light.cells[i].flicker;
+    if (light.gain != 1) light.cells[i].suspected_change = 0;
+  }
+  light.suspected_error = suspicion_by_error(sums);
+  if (light.gain == 1)
+    light.suspected_change = suspicion_by_change(evidence, usual_change(sums, flicker), kTileChangeRange);
+
+  const bool waits = is_rigid && sums.confirmation < kRigidTileConfirmationMax;
+  const auto sure_of = [](const auto& now, const auto& then) {
+    return confirm_change(now.suspected_change, then.suspected_change);
+  };
+  const Real sure = max(confirm(light.suspected_error, before.suspected_error), sure_of(light, before));
+  const Real by_tile = max(waits ? sure : max(light.suspected_error, abs(light.suspected_change)), by_cut);
+  Real surest = sure;
+  for (std::size_t i = 0; i < 4; ++i) {
+    CellLightOf<Real>& cell = light.cells[i];
+    const Real sure_of_cell = sure_of(cell, before.cells[i]);
+    surest = max(surest, sure_of_cell);
+    cell.rejection = clamp(max(by_tile, waits ? sure_of_cell : abs(cell.suspected_change)), 0, 1);
+    light.rejection = max(light.rejection, cell.rejection);
+  }
+  light.confirmation = surest > 0 ? Real(1) : kConfirmationMemory * before.confirmation;
 }
 
 // Over the whole picture history foretells no better than the neighbours: it shows another picture.
@@ -212,11 +240,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   const bool is_widespread = total.changed > kWholeChangedTilesMin * in.tiles_x * in.tiles_y;
   const bool relit = is_relit(total, is_widespread);
   relight(sums, total, relit, before, light);
-  light.mean_brightening = mean_brightening(evidence);
-  light.flicker = update_flicker(light.mean_brightening, before);
-  suspect(evidence, before, sums, stands_still(in.tiles[i].reprojection), light);
   const Real by_cut = is_widespread && !relit ? rejection_by_cut(total) : Real(0);
-  light.rejection = max(light.rejection, by_cut);
+  suspect(evidence, before, sums, in.tiles[i].reprojection.is_rigid, by_cut, light);
   light.cut = max(by_cut, kCutMemory * before.cut);
   light.new_cut = max(by_cut - before.cut, 0);
   light.recent_outliers = sums.outliers > 0 ? Real(1) : kOutlierMemory * before.recent_outliers;
@@ -225,6 +250,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   if (light.holds_back) {
     light.gain = 1;
     light.rejection = 0;
+    for (CellLightOf<Real>& cell : light.cells)
+      cell.rejection = 0;
   }
   return light;
 }

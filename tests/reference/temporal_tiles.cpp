@@ -102,6 +102,16 @@ bool is_of_near_layer(const TemporalInputs& in, int x, int y) {
   return !(Bounded(in.frame.depth[i]) < .5 * (Bounded(split.near_depth) + split.far_depth));
 }
 
+// Which of its tile's cells sample (x, y) lies in.
+template <typename Real>
+std::size_t cell_of(const TemporalInputs& in, int x, int y) {
+  const auto half = [&](int axis, int i, double jitter) {
+    const Real place = (i + .5 + Real(jitter)) * in.spacing(axis);
+    return floor_within(place, 0, 1 << 24) % kTile / (kTile / 2);
+  };
+  return static_cast<std::size_t>(2 * half(1, y, in.frame.jitter_y) + half(0, x, in.frame.jitter_x));
+}
+
 // Adds the evidence of sample (x, y).
 template <typename Real>
 void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile, int x, int y,
@@ -123,9 +133,13 @@ void judge_sample(const TemporalInputs& in, const TileReprojectionOf<Real>& tile
   evidence.light += h * scale;
   evidence.history_error += abs(change);
   evidence.neighbour_error += neighbour_error(in, x, y, s);
-  if (change > kLumaChangeMin) ++evidence.brighter;
-  if (change < -kLumaChangeMin) --evidence.brighter;
+  const int brighter = change > kLumaChangeMin ? 1 : change < -kLumaChangeMin ? -1 : 0;
+  evidence.brighter += brighter;
   ++evidence.count;
+  auto& cell = evidence.cells[cell_of<Real>(in, x, y)];
+  cell.brightening += change;
+  cell.brighter += brighter;
+  ++cell.count;
   if (is_outlier(sample, as<Real>(history)) && outlier_neighbours<Real>(in, x, y, history) >= 2)
     ++evidence.outliers;
 }
@@ -165,13 +179,6 @@ TileReprojectionOf<Real> reproject_tile(const TemporalInputs& in, int tile_x, in
   return tile;
 }
 
-// How far the judges of row y lie to the left of those of row 0.
-int staggered(int y, int judged_apart) {
-  constexpr std::array kOfTwo = {0, 1, 1, 0}, kOfFour = {0, 2, 3, 1};
-  const auto row = static_cast<std::size_t>(y % 4);
-  return judged_apart == 4 ? kOfFour[row] : judged_apart == 2 ? kOfTwo[row] : 0;
-}
-
 template <typename Real>
 TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReprojectionOf<Real>& reprojection,
                                    int tile_x, int tile_y) {
@@ -179,9 +186,7 @@ TileEvidenceOf<Real> judge_history(const TemporalInputs& in, const TileReproject
   const auto [columns, rows] = samples_of_tile<Real>(in, tile_x, tile_y);
   for (int y = rows.first; y <= rows.last; ++y) {
     for (int x = columns.first; x <= columns.last; ++x) {
-      const int place = in.parity >= 0 ? x + y - in.parity : x + staggered(y, in.judged_apart);
-      const bool is_judge = place % in.judged_apart == 0;
-      if (is_judge) judge_sample(in, reprojection, x, y, evidence);
+      if (in.parity < 0 || (x + y) % 2 == in.parity) judge_sample(in, reprojection, x, y, evidence);
     }
   }
   return evidence;

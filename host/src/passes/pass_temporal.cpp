@@ -15,20 +15,6 @@ namespace quincunx {
 
 namespace {
 
-// Returns n, where one of every n samples judges history. On a checkerboard only every second one is shaded.
-int judged_apart(const PlanFacts& facts) {
-  switch (facts.settings.temporal.preset) {
-    case TemporalPreset::kFast:
-      return 4;
-    case TemporalPreset::kBalanced:
-      break;
-    case TemporalPreset::kQuality:
-      if (!facts.fills()) return 1;
-      break;
-  }
-  return 2;
-}
-
 class TemporalTilesPass : public Pass {
  public:
   using Pass::Pass;
@@ -53,7 +39,6 @@ class TemporalTilesPass : public Pass {
         .start_y = (.5f + current.jitter.y) * spacing.y,
         .motion_x = motion.x,
         .motion_y = motion.y,
-        .judged_apart = judged_apart(facts()),
         .parity = shaded_parity(facts(), current)};
     bind(params, frame[Resource::kColour],
          view_or(frame, Resource::kReprojection, Resource::kTileReprojection),

@@ -92,14 +92,14 @@ static inline void mark_split(EightTexels* texels, int8 is_split) {
 
 // Returns them in this frame's light, with their confidence limited. The tile's own rejection tells of the far layer
 // alone; `cut`: how far the whole picture is another one.
-static inline KnownLayers known_near(const LayeredPixels* pixels, const FetchedLayers* fetched, EdgeLight left,
-                                       EdgeLight right, float cut) {
+static inline KnownLayers known_near(const LayeredPixels* pixels, const FetchedLayers* fetched, RowLight light,
+                                       float cut) {
   KnownLayers near = fetched->known;
   const float8 between = between_texels(fetched->from.fraction_x, fetched->from.fraction_y);
   const float8 most = most_confidence(min(pixels->open_trust, 1.0f - cut));
   near.confidence = min(after_resampling(near.confidence, between), min(most, RESAMPLED_CONFIDENCE_MAX));
   const float8 coverage = confidences(near.texels);
-  near.texels = relight(near.texels, left, right);
+  near.texels = relight(near.texels, light);
   near.texels.left.s37bf = coverage.lo;
   near.texels.right.s37bf = coverage.hi;
   return near;

@@ -54,17 +54,18 @@
 
 // ---- temporal_light: rejection by change.
 #define SIGN_TEST_MIN 1.1f          // squared standard deviations of a fair coin: the samples' majority [S]
-#define CHANGE_RANGE 0.5f           // of what is usual: by how much more it rejects wholly [S]
-#define USUAL_NEIGHBOUR_ERROR 0.8f  // of the neighbours' error: that much change is usual [S]
-#define USUAL_FLICKER 12.0f         // of flicker: an aliased tile is more often near its mean than far [S]
+#define TILE_CHANGE_RANGE 0.5f      // of what is usual: by how much more a tile rejects wholly [S]
+#define CELL_CHANGE_RANGE 1.5f      // the same of a cell, which knows less [S]
+#define USUAL_NEIGHBOUR_ERROR 0.3f  // of the neighbours' error: that much change is usual [S]
+#define USUAL_FLICKER 6.0f          // of flicker: an aliased cell is more often near its mean than far [S]
 #define USUAL_CHANGE 0.01f          // luma: usual anyway [S]
 #define FLICKER_MEMORY 0.9f         // a frame. Without flicker -.08 dB, still -.8 [S]
 
-// ---- temporal_light: tiles that stand still wait for a second frame.
-#define CONFIRMATION_COST 0.3f            // of a suspicion that two frames share [S]
+// ---- temporal_light: rigid tiles wait for a second frame.
+#define CONFIRMATION_COST 1.0f            // of a suspicion that two frames share [S]
 #define SINGLE_FRAME_REJECT_MIN 4.0f      // suspicion of one frame that needs no other [S]
 #define CONFIRMATION_MEMORY 0.97f         // a frame [S]
-#define STILL_TILE_CONFIRMATION_MAX 0.3f  // reached 40 frames after the last confirmed suspicion [S]
+#define RIGID_TILE_CONFIRMATION_MAX 0.3f  // reached 40 frames after the last confirmed suspicion [S]
 
 // ---- Outliers: samples that are held back for a frame.
 #define OUTLIER_RATIO_MIN 5.0f        // of history's brightest channel and the floor [S]

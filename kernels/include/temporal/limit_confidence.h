@@ -46,32 +46,68 @@ static inline Evidence limit_confidence(const FetchedHistory* history, const Eig
   return evidence;
 }
 
-// ---- Relighting: the gain and rejection that temporal_light found for each tile, blended between tiles.
+// ---- Relighting: the gain that temporal_light found for each tile, blended between tiles, and the rejection that it
+// found for each cell, blended between cells.
 
-// The light at one place of a tile's edge.
-typedef struct EdgeLight {
-  float rejection, gain;
-} EdgeLight;
+// What eight pixels of a row, those of one tile, are to make of it.
+typedef struct RowLight {
+  float4 rejection;  // at the centres of four cells: the tile's two, and one on each side
+  float left, right; // gains at the tile's edges
+} RowLight;
 
 // The same where light has not changed.
-#define EVEN_LIGHT ((EdgeLight){0.0f, 1.0f})
+static inline RowLight even_light(void) {
+  const RowLight light = {(float4)(0.0f), 1.0f, 1.0f};
+  return light;
+}
 
-// Returns the light at the left edge of pixel (x, y), the first column of a tile: bilinear between the four tiles
-// around.
-static inline EdgeLight light_at_edge(__global const TileLight* light, const TemporalParams* params, int x, int y) {
-  const int right = min(x / kTemporalTile, params->tiles_x - 1), left = max(x / kTemporalTile - 1, 0);
-  const int middle = y - kTemporalTile / 2;
-  const int above = max(middle, 0) / kTemporalTile, below = min(above + 1, params->tiles_y - 1);
-  const float down = middle < 0 ? 0.0f : ((float)(middle % kTemporalTile) + 0.5f) / (float)kTemporalTile;
-  __global const TileLight* upper = light + above * params->tiles_x;
-  __global const TileLight* lower = light + below * params->tiles_x;
-  const float2 upper_mean =
-      0.5f * (float2)(upper[left].rejection + upper[right].rejection, upper[left].gain + upper[right].gain);
-  const float2 lower_mean =
-      0.5f * (float2)(lower[left].rejection + lower[right].rejection, lower[left].gain + lower[right].gain);
-  const float2 mean = upper_mean + (lower_mean - upper_mean) * down;
-  const EdgeLight edge = {mean.x, mean.y};
-  return edge;
+// A row between two, and how far it is from the upper one to the lower.
+typedef struct RowBlend {
+  int above, below;
+  float down;
+} RowBlend;
+
+// Row y between the centres of rows of blocks of `size` pixels, the last of which is row `last`.
+static inline RowBlend between_rows(int y, int size, int last) {
+  const int middle = y - size / 2;
+  const int above = max(middle, 0) / size;
+  const float down = middle < 0 ? 0.0f : ((float)(middle % size) + 0.5f) / (float)size;
+  const RowBlend between = {above, min(above + 1, last), down};
+  return between;
+}
+
+static inline float rejection_of_cell(__global const TileLight* light, const TemporalParams* params, int x, int y) {
+  const int cell_x = clamp(x, 0, 2 * params->tiles_x - 1);
+  return light[y / 2 * params->tiles_x + cell_x / 2].cells[2 * (y % 2) + cell_x % 2].rejection;
+}
+
+// Those of row y of cells, from the one left of tile_x on.
+static inline float4 rejections_of_row(__global const TileLight* light, const TemporalParams* params, int tile_x,
+                                       int y) {
+  return (float4)(rejection_of_cell(light, params, 2 * tile_x - 1, y), rejection_of_cell(light, params, 2 * tile_x, y),
+                  rejection_of_cell(light, params, 2 * tile_x + 1, y),
+                  rejection_of_cell(light, params, 2 * tile_x + 2, y));
+}
+
+// Returns the mean gains of row tile_y of tiles at both edges of tile_x.
+static inline float2 gains_of_row(__global const TileLight* light, const TemporalParams* params, int tile_x,
+                                  int tile_y) {
+  __global const TileLight* row = light + tile_y * params->tiles_x;
+  const float own = row[tile_x].gain;
+  return 0.5f * (float2)(row[max(tile_x - 1, 0)].gain + own, own + row[min(tile_x + 1, params->tiles_x - 1)].gain);
+}
+
+// Returns the light of the pixels from (x, y) on, the first column of a tile.
+static inline RowLight light_of_row(__global const TileLight* light, const TemporalParams* params, int x, int y) {
+  const int tile_x = x / kTemporalTile;
+  const RowBlend cells = between_rows(y, kTemporalCell, 2 * params->tiles_y - 1);
+  const RowBlend tiles = between_rows(y, kTemporalTile, params->tiles_y - 1);
+  const float4 upper = rejections_of_row(light, params, tile_x, cells.above);
+  const float2 gains = gains_of_row(light, params, tile_x, tiles.above);
+  const float2 gain = gains + (gains_of_row(light, params, tile_x, tiles.below) - gains) * tiles.down;
+  const RowLight row = {upper + (rejections_of_row(light, params, tile_x, cells.below) - upper) * cells.down, gain.x,
+                        gain.y};
+  return row;
 }
 
 // Returns whether no tile of a column of three, the middle one at (tile_x, tile_y), has a change of light; clamped to
@@ -91,18 +127,25 @@ static inline float8 ramp(float left, float right) {
   return left + (right - left) * (float8)(0.0625f, 0.1875f, 0.3125f, 0.4375f, 0.5625f, 0.6875f, 0.8125f, 0.9375f);
 }
 
-// Limits confidence by the tiles' rejection, too.
-static inline void reject_by_light(Evidence* evidence, EdgeLight left, EdgeLight right) {
-  if (!(left.rejection + right.rejection > 0.0f)) return;
-  const float8 rejection = ramp(left.rejection, right.rejection);
+// Interpolates between the centres of four cells, at the centres of the tile's eight columns.
+static inline float8 ramp_cells(float4 cells) {
+  const float8 along = (float8)(0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f);
+  const float8 left = cells.s00111122, right = cells.s11222233;
+  return left + (right - left) * along;
+}
+
+// Limits confidence by the cells' rejection, too.
+static inline void reject_by_light(Evidence* evidence, RowLight light) {
+  if (!(light.rejection.x + light.rejection.y + light.rejection.z + light.rejection.w > 0.0f)) return;
+  const float8 rejection = ramp_cells(light.rejection);
   evidence->rejection = max(evidence->rejection, rejection);
   evidence->confidence = min(evidence->confidence, most_confidence(1.0f - rejection));
 }
 
 // Returns history in this frame's light.
-static inline EightTexels relight(EightTexels history, EdgeLight left, EdgeLight right) {
-  if (left.gain == 1.0f && right.gain == 1.0f) return history;
-  const float8 gain = ramp(left.gain, right.gain);
+static inline EightTexels relight(EightTexels history, RowLight light) {
+  if (light.left == 1.0f && light.right == 1.0f) return history;
+  const float8 gain = ramp(light.left, light.right);
   const EightTexels relit = {history.left * to_four_texels(gain.lo), history.right * to_four_texels(gain.hi)};
   return relit;
 }

@@ -20,10 +20,9 @@ typedef struct TemporalTileParams {
   float spacing_x, spacing_y;
   float start_x, start_y;
   float motion_x, motion_y;  // from Reprojection's pixels of the previous viewport to output pixels
-  int judged_apart;          // 1, 2 or 4: one of so many samples judges history
   int parity;                // as in TemporalParams
 } TemporalTileParams;
-QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 32);
+QUINCUNX_CHECK_SIZE(TemporalTileParams, 32 + 16 + 8 + 28);
 
 typedef struct TemporalParams {
   int output_width;

@@ -22,6 +22,7 @@ namespace quincunx {
 #endif
 
 enum { kTemporalTile = 8 };  // output pixels: as many as resolve_temporal and temporal_display make at once
+enum { kTemporalCell = kTemporalTile / 2 };  // output pixels: the side of a cell
 
 // Where a tile's history comes from. In a *rigid* tile everything moves alike. Its texels are copied from the previous
 // history by a whole number of texels and never resampled, so that nothing blurs. The rest of the motion is carried
@@ -43,6 +44,11 @@ static inline bool stands_still(TileReprojection tile) {
   return tile.is_rigid && tile.phase_x == 0.0f && tile.phase_y == 0.0f && tile.step_x == 0 && tile.step_y == 0;
 }
 
+// What the samples of a cell, a quarter of a tile, say of history; sums as in TileEvidence.
+typedef struct CellEvidence {
+  float brightening, brighter, count;
+} CellEvidence;
+
 // Evidence of a tile's samples about the history at their places. Sums over its judged samples; s and h are the lumas
 // of sample and history, n that of the mean of the four neighbours, and each difference is divided by 1 and both lumas:
 // brightness as the eye has it, not light.
@@ -54,18 +60,32 @@ typedef struct TileEvidence {
   float count;            // number of judged samples
   float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
   float outliers;        // how many of them, with two of their neighbours, are outliers
+  CellEvidence cells[4];  // row by row
 } TileEvidence;
-QUINCUNX_CHECK_SIZE(TileEvidence, 28);
+QUINCUNX_CHECK_SIZE(TileEvidence, 28 + 4 * 12);
+
+// That of no sample.
+static inline TileEvidence no_evidence(void) {
+  const CellEvidence none = {0.0f, 0.0f, 0.0f};
+  const TileEvidence evidence = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, {none, none, none, none}};
+  return evidence;
+}
+
+// What is to be done about the history of a cell.
+typedef struct CellLight {
+  float rejection;         // how far history is brought into the range of this frame's samples, in [0, 1]
+  float suspected_change;  // as TileLight's
+  float mean_brightening;  // CellEvidence's brightening / count, for the next frame
+  float flicker;           // how far that alternates from frame to frame, averaged over frames: aliasing
+} CellLight;
 
 // Whether the light of a tile has changed, and what is to be done about its history.
 typedef struct TileLight {
   float gain;         // the relighting gain: history's light times this is this frame's; 1 where light has not changed
-  float rejection;    // how far history is brought into the range of this frame's samples, in [0, 1]
+  float rejection;    // the largest of its cells'
   float cut;          // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
   float new_cut;      // by how much it is that more than of late
   float persistence;  // how far a change of light persists over frames, in [-1, 1]: positive where it brightens
-  float flicker;      // how far the mean brightening alternates from frame to frame, averaged over frames: aliasing
-  float mean_brightening;  // TileEvidence's brightening / count, for the next frame
   // Rejection by error and by change as this frame alone would have it, from 0 up and not clamped, for the next frame
   // to confirm. That by change has the sign of the change: positive where the tile brightens.
   float suspected_error, suspected_change;
@@ -73,8 +93,9 @@ typedef struct TileLight {
   float recent_outliers;  // 1 in a frame with outliers in it or beside it; it fades over frames
   // 0 or 1: outliers are held back, because no frame of late had any: they may be faults of one frame.
   int holds_back;
+  CellLight cells[4];
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 48);
+QUINCUNX_CHECK_SIZE(TileLight, 40 + 4 * 16);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 // many that an int would overflow: whether the light has changed everywhere, or the picture is another one.

@@ -113,9 +113,29 @@ void relight(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, in
     value *= gain;
 }
 
+// Interpolates between the centres of cells.
+template <typename Real>
+Real rejection_between_cells(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y) {
+  constexpr int kCell = kTile / 2;
+  const auto cell = [&](int column, int row) {
+    column = std::clamp(column, 0, 2 * in.tiles_x() - 1);
+    row = std::clamp(row, 0, 2 * in.tiles_y() - 1);
+    const Tile& tile = tiles[index_of(in.tiles_x(), column / 2, row / 2)];
+    return Real(tile.light.cells[static_cast<std::size_t>(2 * (row % 2) + column % 2)].rejection);
+  };
+  const double across = (x + .5) / kCell - .5, down = (y + .5) / kCell - .5;
+  const int column = static_cast<int>(std::floor(across)), row = static_cast<int>(std::floor(down));
+  const auto in_column = [&](int i) {
+    const Real upper = cell(i, row);
+    return upper + (cell(i, row + 1) - upper) * (down - row);
+  };
+  const Real left = in_column(column);
+  return left + (in_column(column + 1) - left) * (across - column);
+}
+
 template <typename Real>
 void reject(const TemporalInputs& in, const std::vector<Tile>& tiles, int x, int y, Known<Real>& known) {
-  const auto rejection = between_tiles<Real>(in, tiles, x, y, &TileLight::rejection);
+  const auto rejection = rejection_between_cells<Real>(in, tiles, x, y);
   known.rejection = max(known.rejection, rejection);
   known.confidence = min(known.confidence, most_confidence(1 - rejection));
 }
