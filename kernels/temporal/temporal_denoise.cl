@@ -31,11 +31,6 @@
 #error "SOURCE_FORMAT and OUTPUT_FORMAT must be the same"
 #endif
 
-#define DENOISED_CONFIDENCE_FLOOR 0.03f  // weights: pixels of which nothing is known count, too
-#define DENOISED_PART_MAX 0.7f           // of the variance that the noise told gives; 1.5: -.14 dB
-#define DENOISED_VARIANCE_MIN 1e-12f     // squared tone, of 25 pixels: against a division by 0
-#define DENOISED_DISTANCE_MIN 1e-7f      // squared tone, of 9 pixels: what rounding to halves moves
-
 enum {  // pixels
   kReach = 3,
   kMiddle = kReach + 1,                // rows above a pixel that its patches need

@@ -116,3 +116,9 @@
 #define EDGE_SMOOTHING_LAYERED 0.2f          // the same of two layers [F]
 #define EDGE_SHARPENING_LAYERED -0.12f       // of the second derivative across an edge, two layers [F]
 #define EDGE_GRADIENT_FLOOR 1e-3f            // squared tone: much weaker gradients make no edge [S]
+
+// ---- temporal_denoise.
+#define DENOISED_CONFIDENCE_FLOOR 0.03f  // weights: pixels of which nothing is known count, too [S]
+#define DENOISED_PART_MAX 0.7f           // of the variance that the noise told gives; 1.5: -.14 dB [S]
+#define DENOISED_VARIANCE_MIN 1e-12f     // squared tone, of 25 pixels [N]
+#define DENOISED_DISTANCE_MIN 1e-7f      // squared tone, of 9 pixels: what rounding to halves moves [N]

@@ -51,8 +51,8 @@ static inline Evidence limit_confidence(const FetchedHistory* history, const Eig
 
 // What eight pixels of a row, those of one tile, are to make of it.
 typedef struct RowLight {
-  float4 rejection;  // at the centres of four cells: the tile's two, and one on each side
-  float left, right; // gains at the tile's edges
+  float4 rejection;             // at the centres of four cells: the tile's two, and one on each side
+  float left_gain, right_gain;  // at the tile's edges
 } RowLight;
 
 // The same where light has not changed.
@@ -144,8 +144,8 @@ static inline void reject_by_light(Evidence* evidence, RowLight light) {
 
 // Returns history in this frame's light.
 static inline EightTexels relight(EightTexels history, RowLight light) {
-  if (light.left == 1.0f && light.right == 1.0f) return history;
-  const float8 gain = ramp(light.left, light.right);
+  if (light.left_gain == 1.0f && light.right_gain == 1.0f) return history;
+  const float8 gain = ramp(light.left_gain, light.right_gain);
   const EightTexels relit = {history.left * to_four_texels(gain.lo), history.right * to_four_texels(gain.hi)};
   return relit;
 }
