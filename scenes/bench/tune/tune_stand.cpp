@@ -275,6 +275,7 @@ std::vector<TuneCase> tune_cases() {
   cases[6].resolve.conventions.velocity_jittered = true;  // it is not, but this costs the same
   cases[7].only_camera_moves = true;
   cases[8].resolve.temporal.preset = TemporalPreset::kQuality;
+  cases[8].resolve.temporal.noise = 0.1f;
   cases[8].resolve.conventions.sky_motion = SkyMotion::kEvidence;
   cases[8].resolve.conventions.drawn_velocity = DrawnVelocity::kDilated;  // nor is this; about the same
   cases[9].resolve.temporal.preset = TemporalPreset::kFast;
