@@ -42,8 +42,6 @@
 #include "layers/layer_tile.h"
 #endif
 
-// Found by search on the development scenes.
-
 enum { kJudgedAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
 // The previous frame, as far as it is known, and how to get there.
@@ -160,8 +158,6 @@ static inline TileEvidence gather_evidence(COLOUR_TEXELS colour, DEPTH_TEXELS de
   }
   return evidence;
 }
-
-// Found by search on the development scenes.
 
 // Adds the means of a tile to a sum of such, in units that leave no total beyond an int.
 static inline void add_means(TotalLight* sum, const TemporalTileParams* params, TileEvidence tile) {

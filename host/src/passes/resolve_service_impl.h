@@ -56,7 +56,7 @@ struct ResolveService::Impl {
   FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
                        const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
-  // Of TwoWay.
+  // What TwoWay does, in two_way.cpp.
   FrameReport show(const FrameInputs& inputs, bool smooth, const FrameOutputs& outputs);
   Status write(const KeptHistory& kept, Resource texels, Resource alpha);
   Status read_merged(KeptHistory& kept);

@@ -37,6 +37,16 @@ const char* name_of(Unit unit) {
   return "";
 }
 
+// Adds what motion and jitter can have in common; `both`: the name of both signs being wrong.
+template <typename Guess>
+void add_common_faults(std::vector<std::string>& faults, const Guess& guess, const char* both) {
+  if (guess.swapped) faults.emplace_back("axes");
+  if (guess.flip_x && guess.flip_y) faults.emplace_back(both);
+  if (guess.flip_x && !guess.flip_y) faults.emplace_back("sign of x");
+  if (guess.flip_y && !guess.flip_x) faults.emplace_back("sign of y");
+  if (guess.later != 0) faults.emplace_back("frame");
+}
+
 }  // namespace
 
 Vec2 factors_of(const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
@@ -110,11 +120,7 @@ std::vector<std::string> faults_of(const MotionGuess& guess) {
   std::vector<std::string> faults;
   if (guess.unit == Unit::kNothing) return {"unit"};  // of values that are too small
   if (guess.unit != Unit::kStated) faults.push_back("unit");
-  if (guess.swapped) faults.push_back("axes");
-  if (guess.flip_x && guess.flip_y) faults.push_back("direction");
-  if (guess.flip_x && !guess.flip_y) faults.push_back("sign of x");
-  if (guess.flip_y && !guess.flip_x) faults.push_back("sign of y");
-  if (guess.later != 0) faults.push_back("frame");
+  add_common_faults(faults, guess, "direction");
   return faults;
 }
 
@@ -191,11 +197,7 @@ std::vector<std::string> faults_of(const JitterGuess& guess) {
   if (guess.pattern) return {"pattern"};
   if (guess.factor == 0) return {"none"};
   if (guess.factor != 1) faults.push_back("scale");
-  if (guess.swapped) faults.push_back("axes");
-  if (guess.flip_x && guess.flip_y) faults.push_back("sign");
-  if (guess.flip_x && !guess.flip_y) faults.push_back("sign of x");
-  if (guess.flip_y && !guess.flip_x) faults.push_back("sign of y");
-  if (guess.later != 0) faults.push_back("frame");
+  add_common_faults(faults, guess, "sign");
   return faults;
 }
 
