@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Structs that host and the kernels before and after a resolve share, as in params.h: those of a finished picture, of
-// measure_content and of overlay_particles.
+// measure_content, of check_motion and of overlay_particles.
 #pragma once
 
 #include "params.h"
@@ -104,6 +104,39 @@ typedef struct ContentParams {
   float step_y;
 } ContentParams;
 QUINCUNX_CHECK_SIZE(ContentParams, 64);
+
+// ---- check_motion.
+// Every kMotionStep-th sample of every such row is asked, kMotionSamples^2 by a work-item. Velocity is read in
+// kMotionReadings ways: as it is, with x turned, with y turned, with both.
+enum { kMotionStep = 8, kMotionSamples = 4, kMotionReadings = 4, kMotionUnits = 255 };
+
+// Numbers of samples that move along an axis, and their errors, of a sample at most kMotionUnits, so that those of
+// 32768^2 fit.
+typedef struct MotionAxisSums {
+  unsigned samples;
+  unsigned errors[kMotionReadings];
+} MotionAxisSums;
+QUINCUNX_CHECK_SIZE(MotionAxisSums, 20);
+
+typedef struct MotionSums {
+  MotionAxisSums x, y;
+} MotionSums;
+QUINCUNX_CHECK_SIZE(MotionSums, 40);
+
+typedef struct MotionCheckParams {
+  int width;  // the viewports, in texels
+  int height;
+  int previous_width;
+  int previous_height;
+  int items_x;
+  int items_y;
+  TexelLayout velocity;
+  TexelLayout colour0, colour1;
+  // Sample (i, j) lies at (i * step_x + start_x, j * step_y + start_y) among those of the previous frame.
+  float step_x, step_y, start_x, start_y;
+  float motion_x, motion_y;  // from velocity to samples of the previous frame, backwards in time
+} MotionCheckParams;
+QUINCUNX_CHECK_SIZE(MotionCheckParams, 72);
 
 // ---- overlay_particles.
 // Runs of this many neighbouring pixels of a row are copied at once where no particle is.

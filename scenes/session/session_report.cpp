@@ -82,6 +82,8 @@ tools::RunReport RenderSession::report() const {
   };
   report.frames = rows_;
   tools::add_measured(report.frames, reports_);
+  if (options_.resolve.checks_motion && !reports_.empty())
+    report.settings.emplace_back("motion check", text_of(reports_.back().motion));
   if (front_) report.settings.push_back({"error front", front_->explanation});
   if (loop_->pacing().has_display()) {
     report.pacing = {loop_->run()};

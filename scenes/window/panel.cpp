@@ -103,12 +103,19 @@ void draw_method(LookSettings& look, const PanelFacts& facts) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", facts.reasons.c_str());
 }
 
+void draw_motion(const PanelFacts& facts) {
+  if (facts.motion.empty()) return;
+  label("motion");
+  ImGui::TextWrapped("%s", facts.motion.c_str());
+}
+
 void draw_picture_settings(WindowSettings& settings, const PanelFacts& facts) {
   LookSettings& look = settings.look;
   const std::string scene = look.scene;
   choose_text("scene", facts.scenes, look.scene);
   if (look.scene != scene && look.focus != kFocusPointer) look.focus.clear();  // that was in the other scene
   draw_method(look, facts);
+  draw_motion(facts);
   choose_value("targets", kTargetKinds, look.targets);
   choose_text("shadow map", kShadowScales, look.shadow_scale);
   choose_text("particles", kParticleScales, look.particle_scale, "in the frame");

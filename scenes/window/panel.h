@@ -30,6 +30,7 @@ struct PanelFacts {
   double target_ms = 0;  // 0: none
   std::string method;    // that a controller chose; empty: that of the settings
   std::string reasons;   // why, lines of text; empty: no controller chose it
+  std::string motion;    // what frames say of velocity; empty: nobody asks
   std::string opengl;
   std::string opencl;
   std::optional<PickedPixel> pixel;  // under the cursor, where the picture is enlarged

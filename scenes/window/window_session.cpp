@@ -284,6 +284,7 @@ PanelFacts WindowSession::facts() {
   facts.target_ms = 1000 / settings_.rate.target_fps;
   if (picture_->choice()) facts.method = name_of(picture_->choice()->method);
   if (paced_ && picture_->choice()) facts.reasons = paced_->pacing().reasons();
+  if (picture_->plan().settings.checks_motion) facts.motion = text_of(picture_->times().report.motion);
   if (tools::ms_since(said_) < 1000 * kMessageSeconds) facts.message = message_;
   if (settings_.zoom.factor > 1) {
     const Vec2 pixel = pointed_pixel();

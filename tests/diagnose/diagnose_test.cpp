@@ -378,6 +378,20 @@ TEST_F(DiagnoseProgram, AListingHasALineOfIt) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.out.find("Diagnosis velocity sign of y (--velocity-convention nuke)"), std::string::npos)
       << result.out;
+  const auto json = nlohmann::json::parse(resolve(listing + "--json").out);
+  EXPECT_EQ(json["diagnosis"], "nothing wrong in frames 1 to 5");
+}
+
+TEST_F(DiagnoseProgram, ARunSaysWhichWayMotionPointsIfAsked) {
+  write(Stage({.frames = 14}).frames());
+  const std::string run =
+      "'{}/f.%04d.exr' --out '{}/u.%04d.exr' --output 320x180 --velocity backward.u,backward.v ";
+  const auto right = resolve(run + "--velocity-convention nuke --check-motion");
+  EXPECT_NE(right.out.find("motion check velocity points the right way"), std::string::npos) << right.out;
+  const auto turned = resolve(run + "--velocity-convention fsr2 --check-motion");
+  EXPECT_NE(turned.out.find("motion check velocity.y seems to point the other way: "), std::string::npos)
+      << turned.out;
+  EXPECT_EQ(resolve(run + "--velocity-convention fsr2").out.find("motion check"), std::string::npos);
 }
 
 TEST_F(DiagnoseProgram, AReportShowsWhere) {

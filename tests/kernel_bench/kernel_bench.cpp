@@ -135,7 +135,9 @@ void add_passes(std::vector<Case>& cases, Stage& stage, bool opengl, const Optio
   if (!options.peers) return;
   for (const double scale : options.scales) {
     add_cpp_peers(cases, stage.output(), scale);
+#ifdef QUINCUNX_OIIO_PEERS
     add_oiio_peers(cases, stage.output(), scale);
+#endif
     if (opengl) add_gl_peers(cases, stage.output(), scale);
   }
 }

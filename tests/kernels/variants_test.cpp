@@ -94,7 +94,7 @@ PlanInputs first_plan(Extent output = {64, 64}) {
 std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
   // A field that is added to the settings stops this line from compiling: give it an axis, too.
   [[maybe_unused]] const auto& [f01, f02, f03, f04, f05, f06, f07, targets, picture, filter, f11, f12, f13,
-                                f14, control] = ResolveSettings();
+                                f14, control, checks] = ResolveSettings();
   [[maybe_unused]] const auto& [t1, t2, t3, t4, t5] = targets;
   [[maybe_unused]] const auto& [p1, p2, p3, p4, p5] = picture;
   [[maybe_unused]] const auto& [l1, l2, l3] = filter;
@@ -162,6 +162,7 @@ std::vector<PlanAxis> plan_axes(Extent output = {64, 64}) {
          {SkyMotion::kAsDrawn, SkyMotion::kCamera, SkyMotion::kEvidence});
   setting(&Settings::sharpness, {0.0f, .5f});
   within(&Settings::control, &ControlSettings::measures_content, {false, true});
+  setting(&Settings::checks_motion, {false, true});
   within(&Settings::control, &ControlSettings::fades, {false, true});
   setting(&Settings::focus,
           {FocusSettings{}, FocusSettings{.extent = small}, FocusSettings{.extent = small, .mask = true}});

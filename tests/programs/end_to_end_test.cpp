@@ -200,6 +200,15 @@ TEST_F(EndToEnd, TheReportSaysWhatWasDone) {
   EXPECT_NE(dumped.find("192"), std::string::npos) << "the last viewport is 192 wide";
 }
 
+TEST_F(EndToEnd, TheReportSaysWhichWayVelocityPointsIfAsked) {
+  const ProgramResult result = run_program(
+      folder_,
+      "-q --scene occluders --output 640x360 --scale 0.5 --frames 14 --check-motion --report '{}/r'");
+  ASSERT_EQ(result.exit_code, 0) << result.out;
+  const std::string said = nlohmann::json::parse(read_file(path("r.json")))["settings"]["motion check"];
+  EXPECT_TRUE(said.starts_with("velocity.x points the right way: ")) << said;
+}
+
 TEST_F(EndToEnd, ScoresAreOfThisRunAndChangeNoPixel) {
   const std::string run = "--scene pan --frames 8 --method temporal --scale-path random:0.4,0.8 ";
   render(run + "--out '{}/without.%04d.exr'");

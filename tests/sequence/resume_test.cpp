@@ -27,8 +27,8 @@ class Resume : public testing::SequenceTest {
   void write_large_frames() {
     for (int number = 1; number <= kFrames; ++number) {
       testing::FrameFile file = frame(number);
-      file.extent = {160, 90};
-      file.attributes[1] = {"quincunx:outputSize", Vec2{640, 360}};
+      file.extent = {320, 180};
+      file.attributes[1] = {"quincunx:outputSize", Vec2{1280, 720}};
       write_frame(input(number), file);
     }
   }

@@ -126,6 +126,8 @@ std::vector<Axis> axes_of_frames() {
                 {"alpha", [](Combination& made) { made.needs.background = false; }},
                 {"cleared",
                  [](Combination& made) { made.settings.targets.clear = !(made.needs.background = false); }}},
+               {setting("unchecked", &ResolveSettings::checks_motion, false),
+                setting("checked", &ResolveSettings::checks_motion, true)},
                {view("picture", TemporalView::kPicture), view("rejection", TemporalView::kRejection),
                 view("near", TemporalView::kNear)},
                {focus("no focus", {}), focus("focus", {.extent = kRegion}),

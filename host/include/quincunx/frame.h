@@ -13,6 +13,7 @@
 
 #include "quincunx/advanced/content_statistics.h"
 #include "quincunx/advanced/export.h"
+#include "quincunx/advanced/motion_check.h"
 #include "quincunx/image.h"
 #include "quincunx/status.h"
 
@@ -140,6 +141,7 @@ struct [[nodiscard]] FrameReport {
   // With settings.control.measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
   // known yet. Moving light has no velocity: it is seen by reactive values alone.
   std::optional<ContentStatistics> content = {};
+  MotionCheck motion = {};  // with settings.checks_motion, what the frames up to this one say of velocity
 
   bool ok() const { return status.ok(); }
 };

@@ -144,6 +144,7 @@ struct ResolveSettings {
   MotionBlurSettings blur = {};
   FocusSettings focus = {};
   ControlSettings control = {};
+  bool checks_motion = false;  // for debugging: FrameReport::motion is wanted
 
   friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };

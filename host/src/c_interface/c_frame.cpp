@@ -258,6 +258,8 @@ void write_report(const FrameReport& from, quincunx_report report, quincunx_repo
   report.output_height = from.output_extent.height;
   report.focused = from.focused;
   report.content_known = from.content.has_value();
+  report.motion = sentence_of(from.motion.verdict);
+  report.motion_margin_db = from.motion.margin_db;
   for (int i = 0; i < std::min(report.pass_count, report.pass_capacity); ++i) {
     const PassReport& pass = from.passes[static_cast<std::size_t>(i)];
     if (report.passes != nullptr) report.passes[i] = {pass.kernel, pass.ms, pass.bytes};

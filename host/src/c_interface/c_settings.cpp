@@ -82,6 +82,7 @@ quincunx_settings to_c(const SceneSettings& settings) {
   to.measures_content = resolve.control.measures_content;
   to.fades = resolve.control.fades;
   to.temporal_noise = resolve.temporal.noise;
+  to.checks_motion = resolve.checks_motion;
   return to;
 }
 
@@ -138,6 +139,7 @@ Result<SceneSettings> from_c(const quincunx_settings* settings) {
                    .mask = from.focus_mask != 0};
   resolve.control.measures_content = from.measures_content != 0;
   resolve.control.fades = from.fades != 0;
+  resolve.checks_motion = from.checks_motion != 0;
   resolve.temporal.noise = from.temporal_noise;
   if (!read.status().ok()) return read.status();
   return to;

@@ -48,6 +48,7 @@ FrameRing::Slot& FrameRing::begin() {
   slot.done = {};
   slot.non_finite = 0;
   slot.content = {};
+  slot.motion = {};
   return slot;
 }
 
@@ -64,6 +65,8 @@ std::optional<FrameReport> FrameRing::next_completed() {
     for (std::size_t i = 0; events_have_times_ && i < report.passes.size(); ++i)
       report.passes[i].ms = milliseconds(slot.passes[i]);
     report.non_finite_pixels = slot.non_finite;
+    watch_.add(slot.motion);
+    report.motion = watch_.check();
     if (slot.measures_content) report.content = statistics_of(slot.content, report.output_extent);
   }
   ++taken_;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "device/opencl.h"
+#include "passes/pass_check_motion.h"
 #include "picture_params.h"
 #include "quincunx/frame.h"
 
@@ -22,9 +23,10 @@ class FrameRing {
     FrameReport report;
     std::array<cl::Event, PassReports::max_size()> passes;
     cl::Event done;                // last command of the frame
-    std::uint32_t non_finite = 0;  // this and the next: written by non-blocking reads that `done` covers
+    std::uint32_t non_finite = 0;  // this and the sums: written by non-blocking reads that `done` covers
     ContentSums content = {};
     bool measures_content = false;
+    MotionSums motion = {};
   };
 
   // Whether the passes' events have their times; where not, reports keep those that they have.
@@ -42,6 +44,7 @@ class FrameRing {
 
  private:
   bool events_have_times_;
+  MotionWatch watch_;
   std::array<Slot, kFrames> slots_;
   std::uint64_t next_ = 0;   // frames begun and committed
   std::uint64_t taken_ = 0;  // how many of those were taken or dropped

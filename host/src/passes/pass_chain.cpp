@@ -227,7 +227,7 @@ void PassChain::forget(const PassFrame& frame) {
 void PassChain::mark_needed(const PassFrame& frame, const FrameOutputs& outputs, std::size_t first) {
   const bool shows = !facts_.two_way || outputs.linear || outputs.presented;
   std::array<bool, kResourceCount> wanted = kept_;
-  wanted[index_of(Resource::kContentSums)] = true;
+  wanted[index_of(Resource::kContentSums)] = wanted[index_of(Resource::kMotionSums)] = true;
   wanted[index_of(Resource::kMergedHistory)] = frame.keeps_merged;
   wanted[index_of(shown_of(facts_))] = shows;
   wanted[index_of(Resource::kPresented)] = static_cast<bool>(outputs.presented);

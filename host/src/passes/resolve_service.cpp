@@ -151,6 +151,11 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
     queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.content),
                             &slot.content);
   }
+  // The first frame and those after a cut have none, and the buffer those of a frame before.
+  if (const ImageView sums = picture.chain().newest(Resource::kMotionSums);
+      sums && picture.has_history(inputs)) {
+    queue.enqueueReadBuffer(borrow<cl::Buffer>(sums.memory), CL_FALSE, 0, sizeof(slot.motion), &slot.motion);
+  }
   queue.enqueueReadBuffer(counter, CL_FALSE, at, sizeof(slot.non_finite), &slot.non_finite, nullptr,
                           &slot.done);
   queue.flush();

@@ -143,6 +143,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_far_motion,
     plan_far_velocity,
     plan_measure_content,
+    plan_check_motion,
     plan_reproject,
     // The picture: from many frames, from two, or from one.
     plan_layer_records,

@@ -169,6 +169,7 @@ void plan_resolve_reprojected(const PlanFacts& facts, PassList& list);
 void plan_scale(const PlanFacts& facts, PassList& list);
 void plan_scale_filter(const PlanFacts& facts, PassList& list);
 void plan_measure_content(const PlanFacts& facts, PassList& list);
+void plan_check_motion(const PlanFacts& facts, PassList& list);
 void plan_cross_fade(const PlanFacts& facts, PassList& list);
 void plan_temporal_denoise(const PlanFacts& facts, PassList& list);
 void plan_temporal_refine(const PlanFacts& facts, PassList& list);

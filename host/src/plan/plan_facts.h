@@ -44,6 +44,10 @@ struct PlanFacts {
   bool fits_sky() const { return moves_sky() && settings.conventions.sky_motion == SkyMotion::kEvidence; }
   bool reads_reactive() const { return (keeps_previous_frame() || measures_content()) && needs.transparents; }
   bool measures_content() const { return settings.control.measures_content && has_velocity(); }
+  bool checks_motion() const {
+    return settings.checks_motion && velocity == VelocitySource::kTarget && reads_velocity() &&
+           keeps_previous_frame();
+  }
   bool shows_picture() const {  // and no debug view
     return !accumulates() || settings.temporal.view == TemporalView::kPicture;
   }

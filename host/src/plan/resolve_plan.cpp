@@ -259,7 +259,7 @@ std::optional<ResolvePlan> ResolvePlan::focus_plan() const {
   region.targets.clear = false;
   region.targets.particle_extent = {};  // those of the region are drawn with the rest of it
   region.focus = {};
-  region.control.measures_content = region.control.fades = false;
+  region.control.measures_content = region.control.fades = region.checks_motion = false;
   return plan_for(needs, region).value();  // what it asks has been asked of the picture's settings
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "quincunx/advanced/motion_check.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -42,8 +44,8 @@ template <typename Guess>
 void add_common_faults(std::vector<std::string>& faults, const Guess& guess, const char* both) {
   if (guess.swapped) faults.emplace_back("axes");
   if (guess.flip_x && guess.flip_y) faults.emplace_back(both);
-  if (guess.flip_x && !guess.flip_y) faults.emplace_back("sign of x");
-  if (guess.flip_y && !guess.flip_x) faults.emplace_back("sign of y");
+  if (guess.flip_x && !guess.flip_y) faults.emplace_back(quincunx::name_of(MotionVerdict::kSignOfX));
+  if (guess.flip_y && !guess.flip_x) faults.emplace_back(quincunx::name_of(MotionVerdict::kSignOfY));
   if (guess.later != 0) faults.emplace_back("frame");
 }
 
@@ -120,7 +122,7 @@ std::vector<std::string> faults_of(const MotionGuess& guess) {
   std::vector<std::string> faults;
   if (guess.unit == Unit::kNothing) return {"unit"};  // of values that are too small
   if (guess.unit != Unit::kStated) faults.push_back("unit");
-  add_common_faults(faults, guess, "direction");
+  add_common_faults(faults, guess, quincunx::name_of(MotionVerdict::kDirection));
   return faults;
 }
 

@@ -288,7 +288,7 @@ std::string diagnosis_line(const ResolveTask& task) {
           fmt::format("{} {} ({})", finding.subject, fmt::join(finding.faults, ", "), finding.option));
   }
   if (!told && wrong.empty()) return {};
-  return fmt::format("{:<9} {} in frames {} to {}\n", "Diagnosis",
+  return fmt::format("{} in frames {} to {}",
                      wrong.empty() ? "nothing wrong" : fmt::format("{}", fmt::join(wrong, "; ")),
                      sequence->frames.front().number, sequence->frames.back().number);
 }

@@ -27,8 +27,8 @@ Diagnosis diagnose(const ResolveTask& task, const DiagnosedSequence& sequence);
 // Returns a table for a person.
 std::string diagnosis_text(std::span<const DiagnosedFrame> frames, const Diagnosis& diagnosis);
 
-// Returns a line for a listing, by the first frames; empty where looking at them takes more than a moment, or where
-// they cannot be read.
+// Returns what a listing says, by the first frames: "nothing wrong in frames 1 to 5"; empty where looking at them takes
+// more than a moment, or where they cannot be read.
 std::string diagnosis_line(const ResolveTask& task);
 
 // Returns JSON with the jitter that fits of every frame of the task, as --jitter takes it for a file; a frame whose

@@ -93,6 +93,8 @@ void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std:
   app.add_flag("!--still-noise", settings.filter.noise_moves, "The same noise in every frame");
   add_choice(app, "--tone-map", settings.output.tone_map, choices<ToneMap>(),
              "clamp, reinhard or aces (default: aces)");
+  app.add_flag("--check-motion", settings.checks_motion,
+               "Say whether velocity points where samples come from, or would with another sign");
   app.add_flag("!--no-dither", settings.output.dither, "Round to 8 bits without dither");
 }
 

@@ -109,7 +109,7 @@ Settings = sized(
         "drawn_velocity depth_convention clip_space velocity_unit velocity_backward velocity_up velocity_jittered origin "
         "conventions_padding min_output_width min_output_height particle_target_width particle_target_height "
         "focus_width focus_height focus_target_width focus_target_height focus_mask measures_content fades",
-        c_int32), ("temporal_noise", c_float))
+        c_int32), ("temporal_noise", c_float), ("checks_motion checks_padding", c_int32))
 Needs = sized("Needs", ("reads_depth reads_velocity reads_reactive reads_camera keeps_previous_frame "
                         "presented_storage accumulates padding", c_int32), ("frame_bytes", c_uint64))
 Image = sized("Image", ("place format width height", c_int32), ("offset pitch", c_size_t), ("memory", c_void_p))
@@ -132,7 +132,8 @@ Content = sized("Content", ("moving speed_px apart thin light zoom", c_double), 
 Report = sized("Report", ("passes", POINTER(PassReport)), ("pass_capacity pass_count", c_int32),
                ("frame_index", c_uint64), ("non_finite_pixels", c_int64), ("render_width render_height", c_int32),
                ("ratio_x ratio_y", c_float), ("used_previous padding output_width output_height focused content_known",
-                                              c_int32), ("content", POINTER(Content)), ("in_focus", POINTER(c_int32)))
+                                              c_int32), ("content", POINTER(Content)), ("in_focus", POINTER(c_int32)),
+               ("motion", c_char_p), ("motion_margin_db", c_double))
 
 
 NUMBERS = ("velocity_scale", "clip_to_previous_clip", "exposure", "reset", "parity", "frame_index", "near_plane",
@@ -395,19 +396,21 @@ class Resolver:
         """Of the frames since the last call, each a dictionary:
 
         frame_index, render_extent, output_extent, used_previous, focused, non_finite_pixels, passes: [(name, ms,
-        bytes)], where those of a focus begin with "focus: ", and content: with the setting measures_content the shares
-        of ContentStatistics by name, else None.
+        bytes)], where those of a focus begin with "focus: ", content: with the setting measures_content the shares
+        of ContentStatistics by name, else None, and motion: with the setting checks_motion what the frames say of
+        velocity, and by how many dB it is better, else None.
         """
         found, passes, in_focus = [], (PassReport * MAX_PASSES)(), (c_int32 * MAX_PASSES)()
         content = Content()
         report = Report(passes=passes, pass_capacity=MAX_PASSES, in_focus=in_focus, content=ctypes.pointer(content))
         while call("quincunx_next_report", self._service, byref(report)) == 0:
             known = {name: getattr(content, name) for name in Content.names()} if report.content_known else None
+            motion = (report.motion.decode(), report.motion_margin_db) if report.motion else None
             found.append({"frame_index": report.frame_index,
                           "render_extent": (report.render_width, report.render_height),
                           "output_extent": (report.output_width, report.output_height),
                           "used_previous": bool(report.used_previous), "focused": bool(report.focused),
-                          "non_finite_pixels": report.non_finite_pixels, "content": known,
+                          "non_finite_pixels": report.non_finite_pixels, "content": known, "motion": motion,
                           "passes": [("focus: " * bool(in_focus[i]) + passes[i].kernel.decode(), passes[i].ms,
                                       passes[i].bytes) for i in range(report.pass_count)]})
         return found

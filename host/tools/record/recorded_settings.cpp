@@ -91,13 +91,14 @@ void each_part(Settings& of, Visit&& visit) {
 template <typename Visit, typename Settings>
 void each_setting(Settings& of, Visit&& visit) {
   auto& [method, output_extent, target_extent, colour, velocity, conventions, sharpness, targets, output,
-         filter, quincunx, temporal, blur, focus, control] = of;
+         filter, quincunx, temporal, blur, focus, control, checks_motion] = of;
   visit("method", method);
   visit("output_extent", output_extent);
   visit("target_extent", target_extent);
   visit("colour", colour);
   visit("velocity", velocity);
   visit("sharpness", sharpness);
+  visit("checks_motion", checks_motion);
   each_convention(of, visit);
   each_part(of, visit);
 }

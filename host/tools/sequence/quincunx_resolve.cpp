@@ -35,8 +35,9 @@ int print_listing(const ResolveOptions& options, const ResolveTask& task) {
   const Status status = task.check(options.skip_bad_frames);
   const bool listed = !task.scan.problem().ok();
   if (!status.ok() && !listed) return fail(status);
-  fmt::print("{}", options.json ? listing_json(task) : listing_text(task, options.verbosity > 0));
-  if (!options.json) fmt::print("{}", diagnosis_line(task));
+  const std::string diagnosis = diagnosis_line(task);
+  fmt::print("{}", options.json ? listing_json(task, diagnosis)
+                                : listing_text(task, diagnosis, options.verbosity > 0));
   return status.ok() ? kDone : kFailed;
 }
 
@@ -103,8 +104,7 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
     spdlog::info("recorded on '{}', resolved on '{}', which may round otherwise", options.recorded->device,
                  name);
   if (task.output) {
-    if (Status status = task.output->check_folder(); !status.ok()) return status;
-    task.output->remove_leftovers(wanted);
+    if (Status status = task.output->prepare_folder(wanted); !status.ok()) return status;
   }
   auto resolver = SequenceResolver::create(device.value(), task.plan,
                                            {.input = task.input,

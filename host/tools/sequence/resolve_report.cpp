@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tools/program/run_report.h"
@@ -58,6 +59,14 @@ void add_files(std::string& text, const ResolveTask& task) {
   }
 }
 
+// Two services that go both ways may say different things.
+MotionCheck worst_motion(const std::vector<FrameReport>& reports) {
+  return std::max_element(
+             reports.begin(), reports.end(),
+             [](const FrameReport& a, const FrameReport& b) { return a.motion.verdict < b.motion.verdict; })
+      ->motion;
+}
+
 }  // namespace
 
 RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task, const Device& device,
@@ -87,6 +96,8 @@ RunReport resolve_report(const ResolveOptions& options, const ResolveTask& task,
   add_measured(report.frames, outcome.reports);
   report.scores.assign(scores.begin(), scores.end());
   report.left_out = task.plan.left_out;
+  if (task.resolve.checks_motion && !outcome.reports.empty())
+    report.settings.emplace_back("motion check", text_of(worst_motion(outcome.reports)));
   report.warnings = advice_on(task);
   report.warnings.insert(report.warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
   if (task.output && !outcome.resolved.empty()) {
@@ -106,7 +117,7 @@ std::string summary_of(const SequenceScan& scan) {
                      scan.has_matrices() ? "camera known" : "camera not known");
 }
 
-std::string listing_text(const ResolveTask& task, bool verbose) {
+std::string listing_text(const ResolveTask& task, const std::string& diagnosis, bool verbose) {
   const SequenceScan& scan = task.scan;
   const auto line = [](const char* what, const std::string& value) {
     return fmt::format("{:<9} {}\n", what, value);
@@ -132,10 +143,11 @@ std::string listing_text(const ResolveTask& task, bool verbose) {
   text += line("Missing", problems.empty() ? "nothing" : counted(scan.bad()));
   for (const std::string& problem : problems)
     text += fmt::format("  {}\n", problem);
+  if (!diagnosis.empty()) text += line("Diagnosis", diagnosis);
   return text;
 }
 
-std::string listing_json(const ResolveTask& task) {
+std::string listing_json(const ResolveTask& task, const std::string& diagnosis) {
   const SequenceScan& scan = task.scan;
   const Extent target = scan.target();
   const Json json = {
@@ -155,6 +167,7 @@ std::string listing_json(const ResolveTask& task) {
       {"history_only", scan.history()},
       {"bad", scan.bad()},
       {"problems", problems_of(scan)},
+      {"diagnosis", diagnosis.empty() ? Json(nullptr) : Json(diagnosis)},
   };
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -12,8 +12,9 @@
 namespace quincunx::tools {
 
 // Returns the text of --dry-run: for a person, listing every file where `verbose`, or JSON.
-std::string listing_text(const ResolveTask& task, bool verbose);
-std::string listing_json(const ResolveTask& task);
+// `diagnosis`: what diagnosis_line() says, which may be nothing.
+std::string listing_text(const ResolveTask& task, const std::string& diagnosis, bool verbose);
+std::string listing_json(const ResolveTask& task, const std::string& diagnosis);
 
 // Describes the good frames, of which there must be one: "at most 454x255, half colour, with alpha, camera known".
 std::string summary_of(const SequenceScan& scan);

@@ -119,11 +119,9 @@ Status SequenceOutput::check_names(std::span<const std::int64_t> frames,
   return {};
 }
 
-Status SequenceOutput::check_folder() const {
-  return AtomicFile::create(path(0)).status();  // without commit() no file stays
-}
-
-void SequenceOutput::remove_leftovers(std::span<const std::int64_t> frames) const {
+Status SequenceOutput::prepare_folder(std::span<const std::int64_t> frames) const {
+  // Without commit() no file stays; that of a run killed meanwhile is one of these frames', and so removed by the next.
+  if (Status status = AtomicFile::create(path(frames.front())).status(); !status.ok()) return status;
   const std::string folder = folder_of(pattern.expand(0));
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
@@ -136,6 +134,7 @@ void SequenceOutput::remove_leftovers(std::span<const std::int64_t> frames) cons
     std::filesystem::remove(entry->path(), ignored);
     spdlog::debug("removed '{}', which an earlier run left behind", entry->path().string());
   }
+  return {};
 }
 
 Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles& truth, Extent extent,

@@ -43,11 +43,9 @@ struct SequenceOutput {
   // another or one of `inputs` (by whatever name), kIoFailure where one is a folder.
   Status check_names(std::span<const std::int64_t> frames, std::span<const std::string> inputs) const;
 
-  // Makes the folder. Errors: kIoFailure where that is not possible or nothing can be written there.
-  Status check_folder() const;
-
-  // Removes the temporary files of these frames that a killed run left behind.
-  void remove_leftovers(std::span<const std::int64_t> frames) const;
+  // Makes the folder, and removes the temporary files of these frames, at least one and ascending, that a killed run
+  // left behind. Errors: kIoFailure where that is not possible or nothing can be written there.
+  Status prepare_folder(std::span<const std::int64_t> frames) const;
 };
 
 using SharedPixels = std::shared_ptr<const std::vector<float>>;  // linear RGBA

@@ -271,6 +271,7 @@ std::vector<TuneCase> tune_cases() {
   cases[1].resolve.sharpness = 0.5f;
   cases[1].resolve.control.measures_content = cases[1].resolve.control.fades = true;
   cases[5].resolve.blur.shutter = 0.5f;
+  cases[5].resolve.checks_motion = true;
   cases[6].resolve.quincunx.form = TwoFrameForm::kReprojected;
   cases[6].resolve.conventions.velocity_jittered = true;  // it is not, but this costs the same
   cases[7].only_camera_moves = true;

@@ -157,6 +157,10 @@ typedef struct quincunx_report {
   int32_t content_known; /* 1: `content` was written; 0: settings.measures_content is 0, or not known yet */
   quincunx_content* content; /* in: where to write it, with its struct_size, or NULL */
   int32_t* in_focus;         /* in: room for pass_capacity, or NULL; out: 1 for passes of the focus */
+  /* With settings.checks_motion, what the frames up to this one say of velocity: "velocity.y seems to point the other
+   * way", or that it points the right way; static. NULL: nothing, as where nothing moves. motion_check.h. */
+  const char* motion;
+  double motion_margin_db; /* by how much that foretells frames better */
 } quincunx_report;
 
 #endif

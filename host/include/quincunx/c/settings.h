@@ -121,7 +121,9 @@ typedef struct quincunx_settings {
   int32_t focus_mask;                              /* focus.mask is given; default 0 */
   int32_t measures_content;                        /* report.content is wanted; default 0 */
   int32_t fades;                                   /* inputs.fade may be given; default 0 */
-  float temporal_noise; /* variance of a sample, in parts of its square: 1 / samples a pixel; default 0 */
+  float temporal_noise;   /* variance of a sample, in parts of its square: 1 / samples a pixel; default 0 */
+  int32_t checks_motion;  /* for debugging: report.motion is wanted; default 0 */
+  int32_t checks_padding; /* 0 */
 } quincunx_settings;
 
 /* What follows from a plan for those who bring the images: 0 no, 1 yes. */
