@@ -25,7 +25,7 @@ function(quincunx_install_pc name)
   if(NOT BUILD_SHARED_LIBS)  # what a static library leaves to its user to link
     set(QUINCUNX_PC_REQUIRES " fmt libxxhash")
     set(QUINCUNX_PC_LIBS " -lstdc++ -lm -pthread")
-    set(QUINCUNX_PC_RECORD_REQUIRES " OpenImageIO")
+    set(QUINCUNX_PC_RECORD_REQUIRES " OpenEXR libpng")
   endif()
   configure_file(cmake/${name}.pc.in ${name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${name}.pc DESTINATION ${quincunx_pc_dir} COMPONENT dev)

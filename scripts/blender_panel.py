@@ -54,7 +54,7 @@ def steps():
     while addon.QUINCUNX_OT_render.job:
         yield 0.05
         job = addon.QUINCUNX_OT_render.job
-        if job and 0 < job.progress()[0] < 1 and not os.path.exists(os.path.join(PICTURES, "resolving.png")):
+        if job and 0.1 < job.progress()[0] < 1 and not os.path.exists(os.path.join(PICTURES, "resolving.png")):
             take("resolving.png")
     bpy.context.scene.frame_set(bpy.context.scene.frame_end)
     yield 2

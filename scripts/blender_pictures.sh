@@ -76,7 +76,7 @@ xvfb-run -a -s "-screen 0 1600x900x24" blender "$work/shot.blend" --window-geome
   --python scripts/blender_panel.py -- "$PWD/host/tools/blender" "$work" >>"$work/log" 2>&1 ||
   fail "Blender's window failed; see $work/log"
 for name in panel resolving; do
-  convert "$work/$name.png" -crop 245x490+1355+365 +repage "$work/$name-crop.png"
+  convert "$work/$name.png" -crop 245x510+1355+365 +repage "$work/$name-crop.png"
 done
 convert "$work/panel-crop.png" "$work/resolving-crop.png" +append docs/images/blender_panel.png
 convert "$work/loaded.png" -resize 1200x docs/images/blender_loaded.png

@@ -66,6 +66,7 @@ enter_system() {
     cp -L /etc/resolv.conf "$root/etc/resolv.conf"
   fi
   mount -t proc proc "$root/proc"
+  ln -sf /proc/self/mounts "$root/etc/mtab"  # Blender asks for it
   mount -t sysfs -o ro sysfs "$root/sys"  # PoCL learns from it how much memory and how many processors there are
   mount --rbind --make-rslave /sys/fs/cgroup "$root/sys/fs/cgroup"  # Slurm 22.05 does not begin without
   mount -t tmpfs -o mode=755,size=1M tmpfs "$root/dev"

@@ -5,7 +5,7 @@
 build_packages=(
   g++ cmake ninja-build pkg-config libgtest-dev   # configuring includes the tests
   libspdlog-dev libfmt-dev libcli11-dev nlohmann-json3-dev libglm-dev libxxhash-dev
-  libopenimageio-dev libopenexr-dev libimath-dev libfreetype-dev
+  libopenexr-dev libimath-dev libpng-dev libfreetype-dev
   libtinygltf-dev libstb-dev
   libepoxy-dev libegl-dev libgl-dev
   ocl-icd-opencl-dev opencl-clhpp-headers
@@ -18,6 +18,7 @@ run_packages=(
   fonts-dejavu-core                      # captions of the contact sheet
 )
 test_packages=(clang clang-format python3 python3-numpy chromium
+  libopenimageio-dev                     # a peer of the kernel benchmark
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
 )

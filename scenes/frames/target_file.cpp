@@ -39,7 +39,7 @@ std::vector<Attribute> attributes_of(const TargetFile& file) {
   attributes.push_back({"quincunx:dt", static_cast<float>(1 / file.fps)});
   attributes.push_back({"worldToCamera", to_attribute(glm::mat4(matrices.camera_from_world))});
   attributes.push_back(
-      {"FramesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}});
+      {"framesPerSecond", tools::Rational{static_cast<int>(std::lround(file.fps * 1000)), 1000}});
   return attributes;
 }
 

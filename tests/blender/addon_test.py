@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: MIT
 """The Blender add-on without Blender: what it changes for a render, and that it puts everything back, come what may."""
 import contextlib
+import filecmp
 import io
 import os
+import re
+import subprocess
 import sys
 import tempfile
+import tomllib
 import unittest
+import zipfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.join(HERE, "fake"), os.path.join(HERE, "../../host/tools/blender")]
 
 import bpy  # noqa: E402
 import quincunx_blender as addon  # noqa: E402
+
+EXTENSION = os.environ.get("QUINCUNX_EXTENSION")  # the zip
 
 # In place of quincunx-resolve: makes the results, or fails as it does. It says what it was called with.
 PROGRAM = """#!/bin/sh
@@ -23,7 +30,11 @@ case "$*" in
 esac
 echo "$*" >> ../called
 echo "warning: the sky stands still" >&2
-for frame in 1 2 3; do echo made > ../shot_000$frame.exr; done
+while [ $# -gt 0 ]; do
+  case "$1" in --out) out=$2;; --frames) frames=$2;; --jitter) [ ! -f "$2" ] || cp "$2" ../jitter;; esac
+  shift
+done
+for frame in $(seq "${frames%-*}" "${frames#*-}"); do echo made > "$(printf "$out" "$frame")"; done
 """
 
 
@@ -163,7 +174,105 @@ class Rendering(AddOn):
         self.assertEqual(self.state(), before)
 
 
+    def test_a_preview_is_one_frame_of_its_neighbours(self):
+        self.scene.frame_end, self.scene.frame_current = 20, 3
+        self.scene.timeline_markers.append(bpy.Owner(frame=2, camera=bpy.Camera()))
+        before, seen = self.state(), []
+
+        def render(**_):
+            seen.append((self.scene.frame_start, self.scene.frame_end))
+            return bpy.render_files()
+
+        self.when_rendering(render)
+        sentence, out, _ = self.run_addon(preview=True)
+        self.assertIsNone(sentence, out)
+        self.assertEqual(self.state(), before)
+        self.assertEqual(seen, [(2, 11)], "8 frames on each side, but none from before a change of camera")
+        self.assertEqual(self.entries(), ["called", "preview_shot_0003.exr", "resolve"])
+        with open(os.path.join(self.folder, "called"), encoding="ascii") as file:
+            self.assertIn("--frames 3-3 --warm-up 8 ", file.read())
+        self.assertEqual(bpy.data.images.loaded[0].source, "FILE")
+        self.scene.frame_current = 21
+        self.expect_failure("The current frame, 21, is not in the shot, which has frames 1 to 20.", preview=True)
+
+    def test_a_draft_comes_first_with_the_jitter_of_the_small_frames(self):
+        editors = [bpy.Owner(type="IMAGE_EDITOR", spaces=bpy.Owner(active=bpy.Owner(image=None, image_user=bpy.Owner(
+            frame_start=0, frame_duration=0, frame_offset=0, use_auto_refresh=False)))) for _ in range(2)]
+        bpy.context.window_manager.windows.append(bpy.Owner(screen=bpy.Owner(areas=editors)))
+        self.assertIsNone(self.run_addon(draft=True)[0])
+        names = [f"{kind}shot_000{frame}.exr" for kind in ("draft_", "") for frame in (1, 2, 3)]
+        self.assertEqual(self.entries(), ["called", *names[:3], "jitter", "resolve", *names[3:]])
+        with open(os.path.join(self.folder, "called"), encoding="ascii") as file:
+            draft, full = file.read().splitlines()
+        self.assertIn("--output 32x18 ", draft)
+        self.assertIn("--output 64x36 ", full)
+        with open(os.path.join(self.folder, "jitter"), encoding="ascii") as file:
+            found = [[float(word) for word in line.split()] for line in file]
+        self.assertEqual(found, [[frame, *addon.jitter_of(frame, (32, 18), (64, 36))] for frame in (1, 2, 3)])
+        shown = [os.path.basename(area.spaces.active.image.path) for area in editors]
+        self.assertEqual(shown, ["shot_0001.exr", "draft_shot_0001.exr"])
+
+
+@unittest.skipIf(EXTENSION is None, "shared libraries make no extension")
+class Extension(AddOn):
+    """The zip, unpacked as Blender does: without the files' modes."""
+
+    def setUp(self):
+        super().setUp()
+        with zipfile.ZipFile(EXTENSION) as packed:
+            packed.extractall(self.folder)
+        self.old, addon.__file__ = addon.__file__, os.path.join(self.folder, "__init__.py")
+
+    def tearDown(self):
+        addon.__file__ = self.old
+
+    def test_it_has_what_its_manifest_says(self):
+        self.assertTrue(filecmp.cmp(self.old, addon.__file__, shallow=False))
+        with open(os.path.join(self.folder, "blender_manifest.toml"), "rb") as file:
+            manifest = tomllib.load(file)
+        self.assertEqual((manifest["id"], manifest["type"], manifest["blender_version_min"]),
+                         ("quincunx", "add-on", "4.2.0"))
+        self.assertEqual(manifest["version"], ".".join(map(str, addon.bl_info["version"])))
+        with contextlib.suppress(FileNotFoundError):  # where Blender is not installed
+            about = subprocess.run(["blender", "--version"], capture_output=True, text=True, check=True).stdout
+            if tuple(map(int, re.search(r"(\d+)\.(\d+)", about).groups())) >= (4, 2):
+                subprocess.run(["blender", "--command", "extension", "validate", EXTENSION], check=True)
+
+    def test_its_program_runs_by_itself(self):
+        own = addon.program_named("")
+        self.assertEqual(own, os.path.join(self.folder, "bin", addon.PROGRAM))
+        self.assertEqual(addon.program_named(self.program), self.program, "what the user chose comes first")
+        version = subprocess.run([own, "--version"], capture_output=True, text=True, check=True, env={}).stdout
+        self.assertIn(".".join(map(str, addon.bl_info["version"])), version)
+        loaded = subprocess.run([own], capture_output=True, text=True, check=True,
+                                env={"LD_TRACE_LOADED_OBJECTS": "1"}).stdout
+        for name, path in re.findall(r"(\S+) => (\S+)", loaded):
+            with self.subTest(name):
+                self.assertEqual(os.path.dirname(os.path.realpath(path)) != os.path.join(self.folder, "lib"),
+                                 bool(re.match(r"lib(c|m|z|gcc_s|stdc\+\+|asan|ubsan)\.so", name)))
+
+
 class Failing(AddOn):
+    def test_an_abort_ends_the_program_and_leaves_what_is_whole(self):
+        with open(self.program, "w", encoding="ascii") as file:
+            file.write("""#!/bin/sh
+case "$*" in *--dry-run) exit 1;; esac
+echo made > ../shot_0001.exr
+exec sleep 60
+""")
+        job = addon.Job(bpy.context, self.program)
+        before = self.state()
+        try:
+            job.begin()
+            job.render()
+            while not job.step() and job.progress()[0] == 0:
+                pass
+        finally:
+            job.end()
+        self.assertIsNotNone(job.resolving.process.returncode, "it has ended")
+        self.assertEqual(self.state(), before)
+        self.assertEqual(self.entries(), ["resolve", "shot_0001.exr", "shot_small"])
+
     def test_a_render_that_fails(self):
         def render(**_):
             raise RuntimeError("Error: out of memory\n")

@@ -113,6 +113,35 @@ TEST_F(Blender, EverySettingIsPutBackAndAFailureIsOneSentence) {
       "quincunx: The render was cancelled; nothing is resolved.");
 }
 
+TEST_F(Blender, APreviewIsOneFrameAndADraftHasHalfTheSize) {
+  const auto result = add_on(fmt::format(
+      "import bpy; bpy.context.scene.frame_current = {}; addon.run(program='{}', preview=True, draft=True)",
+      kLast, QUINCUNX_PROGRAM));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_NE(result.out.find("9 frames of 160x90 rendered"), std::string::npos) << result.out;
+  EXPECT_EQ(image(folder_.file(fmt::format("out/draft_preview_shot_{:04}.exr", kLast))).extent,
+            (Extent{kFull.width / 2, kFull.height / 2}));
+  EXPECT_EQ(image(folder_.file(fmt::format("out/preview_shot_{:04}.exr", kLast))).extent, kFull);
+  const auto files = std::distance(std::filesystem::directory_iterator(folder_.file("out")), {});
+  EXPECT_EQ(files, 2);
+}
+
+TEST_F(Blender, AnAbortLeavesWholeFiles) {
+  const auto result = add_on(fmt::format(
+      "import bpy\naddon.register()\njob = addon.Job(bpy.context, '{}')\njob.begin()\njob.render()\n"
+      "while not job.step() and job.progress()[0] == 0:\n  pass\njob.end()\n",
+      QUINCUNX_PROGRAM));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  int results = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.file("out"))) {
+    if (entry.is_directory()) continue;  // the small frames
+    EXPECT_EQ(image(entry.path().string()).extent, kFull);
+    ++results;
+  }
+  EXPECT_GT(results, 0);
+  EXPECT_LT(results, kFrames);
+}
+
 // By Blender's own projection: of odd sizes, both fits of the lens, pixels that are not square.
 TEST_F(Blender, ShiftsMoveWhatIsSeenByTheJitter) {
   constexpr double kSinglePrecision = 1e-4;  // pixels: some 300 of them, in numbers of 24 bits

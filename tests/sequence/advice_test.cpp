@@ -171,7 +171,7 @@ TEST_F(Advice, TheListingSaysWhatTheFramesAre) {
   expect_said(part, "with alpha, camera not known");
   part.data = part.display;
   part.channels.emplace_back("A");
-  part.types.push_back(OIIO::TypeHalf);
+  part.types.push_back(Imf::HALF);
   part.pixels.resize(24 * 14 * 4);
   expect_said(part, "with alpha, camera not known");
   testing::FrameFile file = frame(1);

@@ -73,7 +73,7 @@ class Alpha : public testing::SequenceTest {
       part.data = window;
       part.display = {0, 0, kRender};
       part.channels = {"R", "G", "B", "A", "backward.u", "backward.v", "Z"};
-      part.types.assign(part.channels.size(), OIIO::TypeFloat);
+      part.types.assign(part.channels.size(), Imf::FLOAT);
       part.pixels = samples(matte, frame, window, part.channels.size());
       testing::write_exr_parts(input(frame), {part});
     }

@@ -115,7 +115,7 @@ TEST_F(Input, ChannelsThatCannotBeUsedAreRefused) {
   };
   testing::ExrPart whole = testing::simple_part({2, 2}, {"R", "G", "B", "Z"}, std::vector<float>(16));
   EXPECT_EQ(message_of({whole}), "");
-  whole.types[3] = OIIO::TypeUInt32;
+  whole.types[3] = Imf::UINT;
   EXPECT_EQ(message_of({whole}), "'f.exr' holds integers in channel 'Z'; half or float is needed");
   testing::write_deep_exr(input(1), {2, 2});
   names.depth.clear();

@@ -67,15 +67,12 @@ TEST_F(Layers, AChannelNamedYBesideXIsNotGrey) {
                  "has no channel 'R'");
 }
 
-// Y beside RY and BY is the luminance of a colour. OpenImageIO 2.4 names these three channels as they are. 2.5 names
-// them R, G and B, and then cannot read them, as none of these leaves texels out.
+// Y beside RY and BY is the luminance of a colour.
 TEST_F(Layers, LuminanceOfAColourIsNotGrey) {
   write_channels(input(1), {24, 14}, {"BY", "RY", "Y"});
   const auto result = resolve(fmt::format("'{{}}/f.%04d.exr' --out '{{}}/o/u.%04d.exr' {}", kSame));
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_TRUE(result.err.find("has no channel 'R'") != std::string::npos ||
-              result.err.find("cannot be read") != std::string::npos)
-      << result.err;
+  EXPECT_NE(result.err.find("has no channel 'R'"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder_.file("o/u.0001.exr")));
 }
 

@@ -184,14 +184,14 @@ TEST_F(ReadFrame, KeepsWhatHoldsForTheResolvedFrameToo) {
   Matrix matrix = {};
   matrix[5] = 3;
   file.attributes.push_back({"worldToNDC", matrix});
-  file.attributes.push_back({"FramesPerSecond", Rational{24000, 1001}});
+  file.attributes.push_back({"framesPerSecond", Rational{24000, 1001}});
   write_frame(input(1), file);
   const SequenceFrame got = read({}, file.extent);
   ASSERT_TRUE(got.world_to_ndc);
   EXPECT_EQ(*got.world_to_ndc, matrix);
   bool rate = false;
   for (const Attribute& attribute : got.kept) {
-    rate |= attribute.name == "FramesPerSecond" && attribute.value == AttributeValue(Rational{24000, 1001});
+    rate |= attribute.name == "framesPerSecond" && attribute.value == AttributeValue(Rational{24000, 1001});
     EXPECT_NE(attribute.name, "quincunx:jitter");  // which the resolve takes out
   }
   EXPECT_TRUE(rate);

@@ -305,13 +305,13 @@ TEST_F(Run, SharpeningIsOfTheLinearPictureAndNamedInIt) {
 
 TEST_F(Run, AttributesOfTheResultSayWhatItIs) {
   testing::FrameFile file = frame(7);
-  file.attributes.push_back({"FramesPerSecond", tools::Rational{24, 1}});
+  file.attributes.push_back({"framesPerSecond", tools::Rational{24, 1}});
   write_frame(input(7), file);
   resolve_to("u", "");
   const tools::LoadedImage made = image(output(7));
   EXPECT_EQ(made.extent, kOutput);
   EXPECT_EQ(std::get<int>(made.attribute("quincunx:frameIndex")->value), 7);
-  EXPECT_TRUE(made.attribute("FramesPerSecond")->value == tools::AttributeValue(tools::Rational{24, 1}));
+  EXPECT_TRUE(made.attribute("framesPerSecond")->value == tools::AttributeValue(tools::Rational{24, 1}));
   const std::string how = std::get<std::string>(made.attribute("quincunx:resolve")->value);
   EXPECT_NE(how.find("output 34x20"), std::string::npos) << how;
   EXPECT_NE(how.find("velocity backward.u,backward.v nuke"), std::string::npos) << how;

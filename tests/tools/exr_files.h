@@ -2,11 +2,19 @@
 // EXR files of every shape that other programs write: parts, tiles, windows, types, deep pixels.
 #pragma once
 
-#include <OpenImageIO/deepdata.h>
-#include <OpenImageIO/imageio.h>
-#include <gtest/gtest.h>
+#include <ImfChannelList.h>
+#include <ImfDeepFrameBuffer.h>
+#include <ImfDeepScanLineOutputFile.h>
+#include <ImfFrameBuffer.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfTiledOutputFile.h>
+#include <ImfTiledOutputPart.h>
 
-#include <memory>
+#include <algorithm>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -19,7 +27,7 @@ struct ExrPart {
   tools::ImageWindow data;
   tools::ImageWindow display;
   std::vector<std::string> channels;
-  std::vector<OIIO::TypeDesc> types;  // one for each channel
+  std::vector<Imf::PixelType> types;  // one for each channel
   std::vector<float> pixels;          // pixels of the data window, channels interleaved
   int tile = 0;                       // side of the tiles; 0: scanlines
   std::string compression = "zip";
@@ -29,56 +37,115 @@ struct ExrPart {
 inline ExrPart simple_part(Extent extent, std::vector<std::string> channels, std::vector<float> pixels) {
   ExrPart part;
   part.data = part.display = {0, 0, extent};
-  part.types.assign(channels.size(), OIIO::TypeHalf);
+  part.types.assign(channels.size(), Imf::HALF);
   part.channels = std::move(channels);
   part.pixels = std::move(pixels);
   return part;
 }
 
-inline OIIO::ImageSpec spec_of(const ExrPart& part) {
-  OIIO::ImageSpec spec(part.data.extent.width, part.data.extent.height,
-                       static_cast<int>(part.channels.size()), OIIO::TypeHalf);
-  spec.x = part.data.x;
-  spec.y = part.data.y;
-  spec.full_x = part.display.x;
-  spec.full_y = part.display.y;
-  spec.full_width = part.display.extent.width;
-  spec.full_height = part.display.extent.height;
-  spec.tile_width = spec.tile_height = part.tile;
-  spec.channelnames = part.channels;
-  spec.channelformats = part.types;
-  spec.attribute("compression", part.compression);
-  if (!part.name.empty()) spec.attribute("oiio:subimagename", part.name);
-  return spec;
+inline Imath::Box2i box_of(const tools::ImageWindow& window) {
+  return {{window.x, window.y}, {window.x + window.extent.width - 1, window.y + window.extent.height - 1}};
+}
+
+inline Imf::Header header_of(const ExrPart& part, bool of_several) {
+  constexpr const char* kCompressions[] = {"none",  "rle", "zips", "zip",  "piz",
+                                           "pxr24", "b44", "b44a", "dwaa", "dwab"};  // in OpenEXR's order
+  Imf::Header header(box_of(part.display), box_of(part.data));
+  header.compression() = static_cast<Imf::Compression>(
+      std::find(std::begin(kCompressions), std::end(kCompressions), part.compression) - kCompressions);
+  for (std::size_t c = 0; c < part.channels.size(); ++c)
+    header.channels().insert(part.channels[c], Imf::Channel(part.types[c]));
+  if (part.tile > 0) header.setTileDescription(Imf::TileDescription(part.tile, part.tile));
+  if (of_several) header.setType(part.tile > 0 ? Imf::TILEDIMAGE : Imf::SCANLINEIMAGE);
+  if (!part.name.empty()) header.setName(part.name);
+  return header;
+}
+
+// `write` gets what OpenEXR is to write from.
+template <typename Write>
+void with_frame_buffer(const ExrPart& part, Write write) {
+  const std::size_t count = part.channels.size(), width = static_cast<std::size_t>(part.data.extent.width);
+  std::vector<char> texels(part.pixels.size() * 4);  // the channels' types, each in 4 bytes
+  for (std::size_t i = 0; i < part.pixels.size(); ++i) {
+    const float value = part.pixels[i];
+    const half as_half(value);
+    const auto as_integer = static_cast<unsigned>(std::max(value, 0.0f));
+    char* texel = texels.data() + i * 4;
+    if (part.types[i % count] == Imf::HALF) std::memcpy(texel, &as_half, sizeof as_half);
+    if (part.types[i % count] == Imf::UINT) std::memcpy(texel, &as_integer, sizeof as_integer);
+    if (part.types[i % count] == Imf::FLOAT) std::memcpy(texel, &value, sizeof value);
+  }
+  const auto stride = static_cast<std::ptrdiff_t>(count * 4),
+             row = stride * static_cast<std::ptrdiff_t>(width);
+  Imf::FrameBuffer buffer;
+  for (std::size_t c = 0; c < count; ++c) {
+    char* first = texels.data() + c * 4 - part.data.x * stride - part.data.y * row;
+    buffer.insert(part.channels[c], Imf::Slice(part.types[c], first, static_cast<std::size_t>(stride),
+                                               static_cast<std::size_t>(row)));
+  }
+  write(buffer);
+}
+
+template <typename Scanlines>
+void write_scanlines(Scanlines& file, const ExrPart& part) {
+  with_frame_buffer(part, [&](const Imf::FrameBuffer& buffer) {
+    file.setFrameBuffer(buffer);
+    file.writePixels(part.data.extent.height);
+  });
+}
+
+template <typename Tiles>
+void write_tiles(Tiles& file, const ExrPart& part) {
+  with_frame_buffer(part, [&](const Imf::FrameBuffer& buffer) {
+    file.setFrameBuffer(buffer);
+    file.writeTiles(0, file.numXTiles() - 1, 0, file.numYTiles() - 1);
+  });
 }
 
 inline void write_exr_parts(const std::string& path, const std::vector<ExrPart>& parts) {
-  const auto output = OIIO::ImageOutput::create("openexr");
-  std::vector<OIIO::ImageSpec> specs;
+  std::vector<Imf::Header> headers;
   for (const ExrPart& part : parts)
-    specs.push_back(spec_of(part));
-  ASSERT_TRUE(output->open(path, static_cast<int>(specs.size()), specs.data())) << output->geterror();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (i > 0) {
-      ASSERT_TRUE(output->open(path, specs[i], OIIO::ImageOutput::AppendSubimage));
+    headers.push_back(header_of(part, parts.size() > 1));
+  if (parts.size() == 1 && parts[0].tile > 0) {
+    Imf::TiledOutputFile file(path.c_str(), headers[0]);
+    write_tiles(file, parts[0]);
+  } else if (parts.size() == 1) {
+    Imf::OutputFile file(path.c_str(), headers[0]);
+    write_scanlines(file, parts[0]);
+  } else {
+    Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      if (parts[i].tile > 0) {
+        Imf::TiledOutputPart tiles(file, static_cast<int>(i));
+        write_tiles(tiles, parts[i]);
+      } else {
+        Imf::OutputPart scanlines(file, static_cast<int>(i));
+        write_scanlines(scanlines, parts[i]);
+      }
     }
-    ASSERT_TRUE(output->write_image(OIIO::TypeFloat, parts[i].pixels.data())) << output->geterror();
   }
-  ASSERT_TRUE(output->close());
 }
 
+// One sample a pixel.
 inline void write_deep_exr(const std::string& path, Extent extent) {
-  OIIO::ImageSpec spec(extent.width, extent.height, 4, OIIO::TypeHalf);
-  spec.channelnames = {"R", "G", "B", "A"};
-  spec.deep = true;
-  OIIO::DeepData data;
-  data.init(spec);
-  for (std::int64_t pixel = 0; pixel < extent.area(); ++pixel)
-    data.set_samples(pixel, 1);
-  const auto output = OIIO::ImageOutput::create("openexr");
-  ASSERT_TRUE(output->open(path, spec)) << output->geterror();
-  ASSERT_TRUE(output->write_deep_image(data)) << output->geterror();
-  ASSERT_TRUE(output->close());
+  const auto pixels = static_cast<std::size_t>(extent.area()), width = static_cast<std::size_t>(extent.width);
+  std::vector<unsigned> counts(pixels, 1);
+  half one(1);
+  std::vector<half*> samples(pixels, &one);
+  Imf::Header header(extent.width, extent.height);
+  header.setType(Imf::DEEPSCANLINE);
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  Imf::DeepFrameBuffer buffer;
+  buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts.data()),
+                                           sizeof counts[0], sizeof counts[0] * width));
+  for (const char* name : {"R", "G", "B", "A"}) {
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+    buffer.insert(name, Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(samples.data()), sizeof samples[0],
+                                       sizeof samples[0] * width, sizeof one));
+  }
+  Imf::DeepScanLineOutputFile file(path.c_str(), header);
+  file.setFrameBuffer(buffer);
+  file.writePixels(extent.height);
 }
 
 }  // namespace quincunx::testing

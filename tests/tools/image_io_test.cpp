@@ -141,7 +141,7 @@ TEST(Exr, ReturnsAttributes) {
       {"quincunx:frameIndex", 120},
       {"quincunx:near", 0.1f},
       {"worldToCamera", matrix},
-      {"FramesPerSecond", Rational{30000, 1001}},
+      {"framesPerSecond", Rational{30000, 1001}},
   };
   ASSERT_TRUE(write_exr(folder.file("a.exr"), {1, 1}, {&channel, 1}, attributes).ok());
   const Result<LoadedImage> image = read_image(folder.file("a.exr"));

@@ -64,7 +64,7 @@ TEST_F(Reading, EveryChannelOfLongFilesInAnyCompression) {
   const Extent extent{7, 300};
   for (const char* compression : {"none", "rle", "zips", "zip", "piz", "dwab"}) {
     ExrPart part = simple_part(extent, {"R", "G", "B", "Z"}, ramp(extent.area() * 4, 0));
-    part.types[3] = OIIO::TypeFloat;
+    part.types[3] = Imf::FLOAT;
     part.compression = compression;
     ImageReader reader = open({part});
     for (std::size_t c = 0; c < 4; ++c) {
@@ -78,7 +78,7 @@ TEST_F(Reading, EveryChannelOfLongFilesInAnyCompression) {
 TEST_F(Reading, SeveralChannelsAtOnceKeepTheirTypes) {
   const Extent extent{5, 70};
   ExrPart part = simple_part(extent, {"R", "G", "B", "A", "u", "v"}, ramp(extent.area() * 6, 1));
-  part.types[4] = part.types[5] = OIIO::TypeFloat;
+  part.types[4] = part.types[5] = Imf::FLOAT;
   ImageReader reader = open({part});
   const auto pixels = static_cast<std::size_t>(extent.area());
   std::vector<std::uint16_t> colour(pixels * 4);
@@ -151,7 +151,7 @@ TEST_F(Reading, ADataWindowThatIsNotTheDisplayWindow) {
 
 TEST_F(Reading, WhatCannotBeUsedIsSaidInTheHeader) {
   ExrPart part = simple_part({2, 2}, {"R", "id"}, ramp(8, 0));
-  part.types[1] = OIIO::TypeUInt32;
+  part.types[1] = Imf::UINT;
   const ImageReader reader = open({part});
   EXPECT_FALSE(reader.header().parts[0].channels[0].integer);
   EXPECT_TRUE(reader.header().parts[0].channels[1].integer);

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Quincunx for Blender: Cycles renders a shot small, and quincunx-resolve makes its frames of full size from it.
 
-The button is in Properties > Output > Quincunx. Without a display:
+The buttons are in Properties > Output > Quincunx. Without a display:
 
     blender -b shot.blend --addons quincunx_blender --python-expr "import quincunx_blender; quincunx_blender.run()"
+
+This file is the whole add-on. In an extension (Blender 4.2 and later) it is __init__.py, beside the program.
 
 Both take the steps of a Job: check() finds what stands in the way, SmallRender changes the scene, Blender renders,
 SmallRender puts every setting back, whether frames were rendered or not, and Resolving runs quincunx-resolve.
 """
 import contextlib
+import itertools
 import os
 import re
 import shlex
@@ -32,6 +35,8 @@ bl_info = {
 
 PROGRAM = "quincunx-resolve"
 FILTER_WIDTH = 0.01  # pixels, the least that Cycles takes: samples then lie at one place, the jittered centre
+JITTER_FILE = "jitter.txt"  # among the small frames
+PREVIEW_REACH = 8  # frames on each side of the one to be seen, which accumulates them
 LONGEST_SHUTTER = 2  # frames, of --blur
 SMALLEST_SIDE = 4  # pixels, of Blender
 BAR_LETTERS = 10  # of progress, where the panel may be narrow
@@ -89,21 +94,30 @@ def shift_of(jitter, size, aspect, fit):
 
 
 class Shot:
-    """What is rendered, and where to. `choices`: QuincunxSettings, or what has its attributes."""
+    """What is rendered, and where to. `choices`: QuincunxSettings, or what has its attributes.
 
-    def __init__(self, scene, layer, choices):
+    `preview`: of the current frame alone, from its neighbours too, with a name of its own.
+    """
+
+    def __init__(self, scene, layer, choices, preview=False):
         render = scene.render
         self.scene, self.layer, self.choices = scene, layer, choices
         self.full = tuple(
             int(side * render.resolution_percentage / 100) for side in (render.resolution_x, render.resolution_y))
         self.small = small_size(self.full, choices.percent)
         self.aspect = small_aspect(self.small, self.full, (render.pixel_aspect_x, render.pixel_aspect_y))
-        self.frames = range(scene.frame_start, scene.frame_end + 1)
+        self.frames = self.results = range(scene.frame_start, scene.frame_end + 1)
         path = bpy.path.abspath(render.filepath)
         self.folder = os.path.dirname(path) or os.getcwd()
         stem = re.sub(r"\.(exr|png|jpe?g|tiff?)$", "", os.path.basename(path), flags=re.IGNORECASE)
         self.stem = stem if "#" in stem else stem + "####"
         self.blur = render.motion_blur_shutter if render.use_motion_blur else 0
+        if preview:
+            now = scene.frame_current
+            take = next((take for take in self.takes() if take[0] <= now <= take[1]), (now, now - 1))
+            self.frames = range(max(take[0], now - PREVIEW_REACH), min(take[1], now + PREVIEW_REACH) + 1)
+            self.results = range(now, now + 1)
+            self.stem = "preview_" + self.stem
 
     @property
     def small_folder(self):
@@ -112,8 +126,17 @@ class Shot:
     def small_file(self, frame):
         return os.path.join(self.small_folder, f"frame.{frame:04}.exr")
 
-    def result(self, frame):
-        return os.path.join(self.folder, re.sub("#+", lambda mark: f"{frame:0{len(mark[0])}}", self.stem) + ".exr")
+    @property
+    def drafts(self):
+        """For each set of results, in the order in which they are made, whether it is the draft."""
+        return (True, False) if self.choices.draft else (False,)
+
+    def stem_of(self, draft):
+        return "draft_" + self.stem if draft else self.stem
+
+    def result(self, frame, draft=False):
+        name = re.sub("#+", lambda mark: f"{frame:0{len(mark[0])}}", self.stem_of(draft))
+        return os.path.join(self.folder, name + ".exr")
 
     def cameras(self):
         """Those through which the frames are seen, each once."""
@@ -122,6 +145,8 @@ class Shot:
 
     def takes(self):
         """(first, last) of the frames between changes of camera, which have no history in common."""
+        if not self.frames:
+            return []
         cuts = sorted({marker.frame for marker in self.scene.timeline_markers if marker.camera})
         starts = [self.frames[0], *(cut for cut in cuts if self.frames[0] < cut <= self.frames[-1])]
         return list(zip(starts, [start - 1 for start in starts[1:]] + [self.frames[-1]]))
@@ -129,13 +154,16 @@ class Shot:
     def shift(self, frame, fit):
         return shift_of(jitter_of(frame, self.small, self.full), self.small, self.aspect, fit)
 
-    def command(self, program, take):
+    def command(self, program, take, draft=False):
         """The words that resolve a take, in the folder of the small frames. Raises Failure for an open quote."""
         name = self.layer.name
-        number = re.sub("#+", lambda mark: f"%0{len(mark[0])}d", self.stem)
+        number = re.sub("#+", lambda mark: f"%0{len(mark[0])}d", self.stem_of(draft))
+        size = [(side + 1) // 2 for side in self.full] if draft else self.full
+        first, last = max(take[0], self.results[0]), min(take[1], self.results[-1])
         words = [program, "frame.%04d.exr", "--out", os.path.join(os.pardir, number + ".exr"),
-                 "--output", f"{self.full[0]}x{self.full[1]}", "--frames", f"{take[0]}-{take[1]}", "--warm-up", "0",
-                 "--method", self.choices.method, "--jitter", "halton", "--sky-motion", "evidence",
+                 "--output", f"{size[0]}x{size[1]}", "--frames", f"{first}-{last}",
+                 "--warm-up", str(max(first - take[0], take[1] - last)), "--method", self.choices.method,
+                 "--jitter", JITTER_FILE if draft else "halton", "--sky-motion", "evidence",
                  "--colour", f"{name}.Combined", "--velocity", f"{name}.Vector.X,{name}.Vector.Y",
                  "--velocity-next", f"{name}.Vector.Z,{name}.Vector.W", "--velocity-convention", "blender",
                  "--depth", f"{name}.Depth.Z"]
@@ -151,8 +179,14 @@ class Shot:
 
 
 def program_named(choice):
-    """The path of quincunx-resolve, or of what was chosen instead; None where there is none."""
-    return shutil.which(bpy.path.abspath(choice) if choice else PROGRAM)
+    """The path of what was chosen, else of an extension's own program, else of that in PATH; None without any."""
+    if choice:
+        return shutil.which(bpy.path.abspath(choice))
+    own = os.path.join(os.path.dirname(os.path.abspath(__file__)), "bin", PROGRAM)
+    if os.path.isfile(own) and not os.access(own, os.X_OK):  # Blender unpacks files without their modes
+        with contextlib.suppress(OSError):  # another user's
+            os.chmod(own, 0o755)
+    return shutil.which(own) or shutil.which(PROGRAM)
 
 
 def obstacles(shot):
@@ -168,7 +202,10 @@ def obstacles(shot):
         (any(camera.type == "CAMERA" and camera.data.type == "PANO" for camera in cameras),
          "The camera is panoramic; only perspective and orthographic ones have a shift."),
         (any(camera.library for camera in cameras), "The camera is linked from another file; make a library override."),
-        (not shot.frames, f"The last frame, {scene.frame_end}, comes before the first, {scene.frame_start}."),
+        (scene.frame_end < scene.frame_start,
+         f"The last frame, {scene.frame_end}, comes before the first, {scene.frame_start}."),
+        (not shot.frames, f"The current frame, {scene.frame_current}, is not in the shot, which has frames "
+                          f"{scene.frame_start} to {scene.frame_end}."),
         (scene.frame_step != 1, f"The frame step is {scene.frame_step}; motion is known for steps of 1 only."),
         (render.frame_map_old != render.frame_map_new, "Time is stretched; set Old and New of Time Stretching alike."),
         (render.use_border, "Render Region is on; turn it off."),
@@ -207,6 +244,7 @@ class SmallRender:
         shot, layer, cycles = self.shot, self.shot.layer, self.shot.scene.cycles
         render, image = shot.scene.render, shot.scene.render.image_settings
         wanted = [
+            (shot.scene, "frame_start", shot.frames[0]), (shot.scene, "frame_end", shot.frames[-1]),
             (render, "resolution_x", shot.small[0]), (render, "resolution_y", shot.small[1]),
             (render, "resolution_percentage", 100),
             (render, "pixel_aspect_x", shot.aspect[0]), (render, "pixel_aspect_y", shot.aspect[1]),
@@ -334,12 +372,14 @@ def try_command(shot, program):
 
 
 class Resolving:
-    """Runs of quincunx-resolve, one for each take."""
+    """Runs of quincunx-resolve, one for each take, and before them one each for its draft."""
 
     def __init__(self, shot, program):
         self.shot = shot
-        self.commands = [shot.command(program_named(program), take) for take in shot.takes()]
-        self.before = {frame: state_of(shot.result(frame)) for frame in shot.frames}
+        self.commands = [shot.command(program_named(program), take, draft)
+                         for draft in shot.drafts for take in shot.takes()]
+        paths = [shot.result(frame, draft) for draft in shot.drafts for frame in shot.results]
+        self.before = {path: state_of(path) for path in paths}
         self.said = tempfile.TemporaryFile(mode="w+")
         self.process = None
 
@@ -358,7 +398,7 @@ class Resolving:
 
     def done(self):
         """How many results are there."""
-        return sum(state_of(self.shot.result(frame)) != state for frame, state in self.before.items())
+        return sum(state_of(path) != state for path, state in self.before.items())
 
     def messages(self, kind):
         """What it said of one kind, "error" or "warning"; most often nothing."""
@@ -378,30 +418,43 @@ class Resolving:
 
 
 def clear(shot):
-    """Makes the folder of the small frames, and removes those of earlier runs from it, but nothing else."""
+    """Makes the folder of the small frames, and removes what earlier runs left in it, but nothing else."""
     os.makedirs(shot.small_folder, exist_ok=True)
     for name in os.listdir(shot.small_folder):
-        if re.fullmatch(r"frame\.\d{4,}\.exr", name):
+        if name == JITTER_FILE or re.fullmatch(r"frame\.\d{4,}\.exr", name):
             os.remove(os.path.join(shot.small_folder, name))
 
 
-def load(shot):
-    """The results as an image of Blender's, shown in the image editors that are open."""
-    image = bpy.data.images.load(shot.result(shot.frames[0]), check_existing=True)
-    image.source = "SEQUENCE" if len(shot.frames) > 1 else "FILE"
+def write_jitter(shot):
+    """For the draft: quincunx-resolve would take another pattern for its size."""
+    with open(os.path.join(shot.small_folder, JITTER_FILE), "w", encoding="ascii") as file:
+        for frame in shot.frames:
+            print(frame, *jitter_of(max(frame, 0), shot.small, shot.full), file=file)
+
+
+def loaded(shot, draft):
+    image = bpy.data.images.load(shot.result(shot.results[0], draft), check_existing=True)
+    image.source = "SEQUENCE" if len(shot.results) > 1 else "FILE"
     image.reload()
+    return image
+
+
+def load(shot):
+    """The results as images of Blender's; those image editors that are open show them and the draft in turn."""
+    images = [loaded(shot, draft) for draft in reversed(shot.drafts)]
     areas = [area for window in bpy.context.window_manager.windows for area in window.screen.areas]
-    for space in [area.spaces.active for area in areas if area.type == "IMAGE_EDITOR"]:
+    spaces = [area.spaces.active for area in areas if area.type == "IMAGE_EDITOR"]
+    for space, image in zip(spaces, itertools.cycle(images)):
         space.image = image
-        space.image_user.frame_start, space.image_user.frame_duration = shot.frames[0], len(shot.frames)
-        space.image_user.frame_offset, space.image_user.use_auto_refresh = shot.frames[0] - 1, True
+        space.image_user.frame_start, space.image_user.frame_duration = shot.results[0], len(shot.results)
+        space.image_user.frame_offset, space.image_user.use_auto_refresh = shot.results[0] - 1, True
 
 
 class Job:
     """begin(), a render of Blender's, step() until it is True; end() in any case. All raise Failure."""
 
-    def __init__(self, context, program=""):
-        self.shot = Shot(context.scene, context.view_layer, context.scene.quincunx)
+    def __init__(self, context, program="", preview=False):
+        self.shot = Shot(context.scene, context.view_layer, context.scene.quincunx, preview)
         self.program = program or chosen_program()
         self.changed = SmallRender(self.shot)
         self.outcome = self.resolving = None
@@ -412,6 +465,8 @@ class Job:
         try_command(self.shot, self.program)
         try:
             clear(self.shot)
+            if self.shot.choices.draft:
+                write_jitter(self.shot)
         except OSError as error:
             raise Failure(f"The small frames have no place: {error}.") from error
         self.changed.change()
@@ -448,9 +503,9 @@ class Job:
 
     def progress(self):
         """(part, text)"""
-        if not self.resolving:
+        if not self.resolving:  # Blender shows how far a render is, and draws no panel during it
             return 0, "rendering"
-        done, count = self.resolving.done(), len(self.shot.frames)
+        done, count = self.resolving.done(), len(self.resolving.before)
         return done / count, f"resolved: {done} of {count}"
 
     def end(self):
@@ -491,7 +546,7 @@ def choose(name, value):
         raise Failure(f"{value!r} cannot be chosen for {name}: {error}") from error
 
 
-def run(program="", **choices):
+def run(program="", preview=False, **choices):
     """Renders and resolves the scene of the open file. `choices`: those of QuincunxSettings, kept in the scene.
 
     On a failure it ends Blender with one sentence on stderr and exit status 1.
@@ -501,7 +556,7 @@ def run(program="", **choices):
     try:
         for name, value in choices.items():
             choose(name, value)
-        wait_for(Job(bpy.context, program))
+        wait_for(Job(bpy.context, program, preview))
     except Failure as failure:
         sys.exit(f"quincunx: {failure}")
 
@@ -524,6 +579,8 @@ class QuincunxSettings(bpy.types.PropertyGroup):
                ("temporal:quality", "High", "A little better, and slower")])
     options: bpy.props.StringProperty(
         name="Options", description="More options of quincunx-resolve, as typed in a shell: --sharpen 0.3")
+    draft: bpy.props.BoolProperty(
+        name="Half-Size Draft", description="Make results of half the size, too, before the full ones")
     keep: bpy.props.BoolProperty(
         name="Keep Small Frames", description="Leave the rendered frames beside the results, to resolve them once more")
 
@@ -531,7 +588,8 @@ class QuincunxSettings(bpy.types.PropertyGroup):
 class QuincunxPreferences(bpy.types.AddonPreferences):
     bl_idname = __name__
     program: bpy.props.StringProperty(
-        name="Program", subtype="FILE_PATH", description="Path of quincunx-resolve; empty: it is looked for in PATH")
+        name="Program", subtype="FILE_PATH", 
+        description="Path of quincunx-resolve; empty: the extension's own, else that in PATH")
 
     def draw(self, _context):
         self.layout.prop(self, "program")
@@ -543,7 +601,9 @@ class QUINCUNX_OT_render(bpy.types.Operator):
     bl_idname = "quincunx.render"
     bl_label = "Render small, resolve to full size"
 
-    job = None  # that of the panel's button, while it runs
+    preview: bpy.props.BoolProperty(
+        name="Preview", description="Only the current frame, and as many on each side as it accumulates")
+    job = None  # that of the panel's buttons, while it runs
 
     @classmethod
     def poll(cls, _context):
@@ -551,7 +611,7 @@ class QUINCUNX_OT_render(bpy.types.Operator):
 
     def execute(self, context):
         try:
-            wait_for(Job(context))
+            wait_for(Job(context, preview=self.preview))
         except Failure as failure:
             self.report({"ERROR"}, str(failure))
             return {"CANCELLED"}
@@ -561,7 +621,7 @@ class QUINCUNX_OT_render(bpy.types.Operator):
         if bpy.app.background:
             return self.execute(context)
         cls = type(self)
-        cls.job = Job(context)
+        cls.job = Job(context, preview=self.preview)
         self.timer = context.window_manager.event_timer_add(0.1, window=context.window)
         try:
             cls.job.begin()
@@ -596,7 +656,7 @@ class QUINCUNX_OT_render(bpy.types.Operator):
             self.report({"ERROR"}, sentence)
             return {"CANCELLED"}
         self.report({"WARNING"} if job.warnings else {"INFO"},
-                    job.warnings or f"{len(job.shot.frames)} frames of full size are in {job.shot.folder}")
+                    job.warnings or f"Frames of full size in {job.shot.folder}: {len(job.shot.results)}")
         return {"FINISHED"}
 
 
@@ -609,22 +669,25 @@ class QUINCUNX_PT_output(bpy.types.Panel):
     def draw(self, context):
         layout, choices = self.layout, context.scene.quincunx
         layout.use_property_split, layout.use_property_decorate = True, False
-        for name in ("percent", "method", "options", "keep"):
+        for name in ("percent", "method", "options", "draft", "keep"):
             layout.prop(choices, name)
         job = QUINCUNX_OT_render.job
         shot = job.shot if job else Shot(context.scene, context.view_layer, choices)
-        sentence = "" if job else self.obstacle(shot)
         column = layout.column()
         self.write(context, column, "{} frames of {}×{}, resolved to {}×{}".format(
             len(shot.frames), *shot.small, *shot.full))
-        row = column.row()
-        row.enabled, row.scale_y = not sentence, 1.4
-        row.operator(QUINCUNX_OT_render.bl_idname, icon="RENDER_ANIMATION",
-                     text=f"Render at {choices.percent} %, resolve to full size")
-        if sentence:
-            self.write(context, column, sentence, icon="ERROR")
         if job:
             self.draw_progress(column, *job.progress())
+            return
+        sentence = self.obstacle(shot)
+        buttons = column.column()
+        buttons.enabled, buttons.scale_y = not sentence, 1.4
+        buttons.operator(QUINCUNX_OT_render.bl_idname, icon="RENDER_ANIMATION",
+                         text=f"Render at {choices.percent} %, resolve to full size").preview = False
+        buttons.operator(QUINCUNX_OT_render.bl_idname, icon="RENDER_STILL",
+                         text=f"Preview frame {context.scene.frame_current}").preview = True
+        if sentence:
+            self.write(context, column, sentence, icon="ERROR")
 
     @staticmethod
     def write(context, layout, text, icon="NONE"):

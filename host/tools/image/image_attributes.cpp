@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/image_attributes.h"
 
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfRationalAttribute.h>
+#include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
+
 #include <cstring>
 #include <optional>
 #include <string>
@@ -9,65 +18,79 @@
 namespace quincunx::tools {
 namespace {
 
-using OIIO::TypeDesc;
-
-const TypeDesc kPairOfFloats(TypeDesc::FLOAT, TypeDesc::VEC2);
-const TypeDesc kEightFloats(TypeDesc::FLOAT, 8);
-
 struct AttributeWriter {
-  OIIO::ImageSpec& spec;
+  Imf::Header& header;
   const std::string& name;
 
-  void operator()(const std::string& value) const { spec.attribute(name, value); }
-  void operator()(int value) const { spec.attribute(name, value); }
-  void operator()(float value) const { spec.attribute(name, value); }
-  void operator()(const Vec2& value) const { spec.attribute(name, kPairOfFloats, &value); }
-  void operator()(const Rational& value) const { spec.attribute(name, OIIO::TypeRational, &value); }
-  void operator()(const Matrix& value) const { spec.attribute(name, OIIO::TypeMatrix44, value.data()); }
-  void operator()(const Chromaticities& value) const { spec.attribute(name, kEightFloats, value.data()); }
+  void operator()(const std::string& value) const { insert(value); }
+  void operator()(int value) const { insert(value); }
+  void operator()(float value) const { insert(value); }
+  void operator()(const Vec2& value) const { insert(Imath::V2f(value.x, value.y)); }
+  void operator()(const Rational& value) const {
+    insert(Imf::Rational(value.numerator, static_cast<unsigned>(value.denominator)));
+  }
+  void operator()(const Matrix& value) const {
+    Imath::M44f matrix;
+    std::memcpy(matrix.getValue(), value.data(), sizeof value);
+    insert(matrix);
+  }
+  void operator()(const Chromaticities& value) const {
+    const auto& v = value;
+    insert(Imf::Chromaticities({v[0], v[1]}, {v[2], v[3]}, {v[4], v[5]}, {v[6], v[7]}));
+  }
+
+  template <typename Value>
+  void insert(const Value& value) const {
+    header.insert(name, Imf::TypedAttribute<Value>(value));
+  }
 };
 
+// The attribute's value, if it is of this type.
 template <typename Value>
-AttributeValue copied(const OIIO::ParamValue& param) {
-  Value value;
-  std::memcpy(&value, param.data(), sizeof value);
-  return value;
+const Value* as(const Imf::Attribute& attribute) {
+  const auto* typed = dynamic_cast<const Imf::TypedAttribute<Value>*>(&attribute);
+  return typed != nullptr ? &typed->value() : nullptr;
 }
 
-template <typename Number>
-AttributeValue pair_of(const OIIO::ParamValue& param) {
-  Number pair[2];
-  std::memcpy(pair, param.data(), sizeof pair);
-  return Vec2{static_cast<float>(pair[0]), static_cast<float>(pair[1])};
+template <typename Pair>
+Vec2 rounded(const Pair& pair) {
+  return {static_cast<float>(pair.x), static_cast<float>(pair.y)};
 }
 
-std::optional<AttributeValue> value_of(const OIIO::ParamValue& param) {
-  const TypeDesc type = param.type();
-  if (type == OIIO::TypeString) return param.get_string();
-  if (type == OIIO::TypeInt) return param.get_int();
-  if (type == OIIO::TypeFloat || type == TypeDesc(TypeDesc::DOUBLE)) return param.get_float();
-  if (type == kPairOfFloats) return copied<Vec2>(param);
-  if (type == TypeDesc(TypeDesc::DOUBLE, TypeDesc::VEC2)) return pair_of<double>(param);
-  if (type == OIIO::TypeRational) return copied<Rational>(param);
-  if (type == TypeDesc(TypeDesc::INT, TypeDesc::VEC2)) return pair_of<int>(param);
-  if (type == OIIO::TypeMatrix44) return copied<Matrix>(param);
-  if (type == kEightFloats) return copied<Chromaticities>(param);
+std::optional<AttributeValue> value_of(const Imf::Attribute& attribute) {
+  if (const auto* text = as<std::string>(attribute)) return *text;
+  if (const auto* number = as<int>(attribute)) return *number;
+  if (const auto* number = as<float>(attribute)) return *number;
+  if (const auto* number = as<double>(attribute)) return static_cast<float>(*number);
+  if (const auto* pair = as<Imath::V2f>(attribute)) return rounded(*pair);
+  if (const auto* pair = as<Imath::V2d>(attribute)) return rounded(*pair);
+  if (const auto* pair = as<Imath::V2i>(attribute)) return rounded(*pair);
+  if (const auto* ratio = as<Imf::Rational>(attribute)) return Rational{ratio->n, static_cast<int>(ratio->d)};
+  if (const auto* of_exr = as<Imath::M44f>(attribute)) {
+    Matrix matrix;
+    std::memcpy(matrix.data(), of_exr->getValue(), sizeof matrix);
+    return matrix;
+  }
+  if (const auto* xy = as<Imf::Chromaticities>(attribute)) {
+    return Chromaticities{xy->red.x,  xy->red.y,  xy->green.x, xy->green.y,
+                          xy->blue.x, xy->blue.y, xy->white.x, xy->white.y};
+  }
   return std::nullopt;
 }
 
 }  // namespace
 
-std::vector<Attribute> attributes_of(const OIIO::ImageSpec& spec) {
+std::vector<Attribute> attributes_of(const Imf::Header& header) {
   std::vector<Attribute> attributes;
-  for (const OIIO::ParamValue& param : spec.extra_attribs) {
-    if (auto value = value_of(param)) attributes.push_back({param.name().string(), *std::move(value)});
+  for (auto found = header.begin(); found != header.end(); ++found) {
+    if (auto value = value_of(found.attribute())) attributes.push_back({found.name(), *std::move(value)});
   }
   return attributes;
 }
 
-void set_attributes(OIIO::ImageSpec& spec, std::span<const Attribute> attributes) {
+void set_attributes(Imf::Header& header, std::span<const Attribute> attributes) {
   for (const Attribute& attribute : attributes)
-    std::visit(AttributeWriter{spec, attribute.name}, attribute.value);
+    std::visit(AttributeWriter{header, attribute.name}, attribute.value);
 }
 
 }  // namespace quincunx::tools

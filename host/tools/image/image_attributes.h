@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The door between the attributes of image_io.h and those of OpenImageIO. For image_io.cpp and
-// image_reader.cpp only.
+// The door between the attributes of image_io.h and those of OpenEXR. For image_io.cpp and image_reader.cpp only.
 #pragma once
 
-#include <OpenImageIO/imageio.h>
+#include <ImfHeader.h>
 
 #include <span>
 #include <vector>
@@ -12,10 +11,9 @@
 
 namespace quincunx::tools {
 
-// Those of a type that AttributeValue holds, in the file's order. Pairs and numbers of other precision are
-// rounded to float.
-std::vector<Attribute> attributes_of(const OIIO::ImageSpec& spec);
+// Those of a type that AttributeValue holds, by name. Pairs and numbers of other precision are rounded to float.
+std::vector<Attribute> attributes_of(const Imf::Header& header);
 
-void set_attributes(OIIO::ImageSpec& spec, std::span<const Attribute> attributes);
+void set_attributes(Imf::Header& header, std::span<const Attribute> attributes);
 
 }  // namespace quincunx::tools

@@ -1,44 +1,45 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/image_io.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfStdIO.h>
+#include <png.h>
 
 #include <algorithm>
+#include <csetjmp>
+#include <cstring>
 #include <exception>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "tools/image/image_attributes.h"
+#include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
 
 namespace quincunx::tools {
 
 namespace {
 
-constexpr int kPngCompressionLevel = 1;  // level 1 out of 9: the frame loop waits for it
-constexpr int kPngFilterUp = 0x20;  // libpng's PNG_FILTER_UP: 2.5 times faster than trying all, no larger
-constexpr int kPngSmallest = 9;
-constexpr int kPngFilterAll = 0xf8;      // libpng's PNG_ALL_FILTERS: the best of five for each row
-constexpr int kZipCompressionLevel = 4;  // OpenEXR's own default
-
-// OpenImageIO's messages may run over several lines and repeat the temporary name; one sentence is enough.
-std::string first_line(std::string text) {
-  const std::size_t end = text.find('\n');
-  if (end != std::string::npos) text.resize(end);
-  return text.empty() ? "no reason was given" : text;
-}
+// How a PNG is written. The frame loop waits for files: level 1 out of 9, and one filter, which is 2.5 times faster
+// than trying all and no larger.
+struct PngWay {
+  int level = 1;
+  int filters = PNG_FILTER_UP;
+};
+constexpr PngWay kSmallest = {9, PNG_ALL_FILTERS};
 
 Status cannot_write(const std::string& path, const std::string& reason) {
-  return Status::io(fmt::format("'{}' cannot be written: {}", path, first_line(reason)));
+  return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
 }
 
 Status cannot_read(const std::string& path, const std::string& reason) {
-  return Status::io(fmt::format("'{}' cannot be read: {}", path, first_line(reason)));
+  return Status::io(fmt::format("'{}' cannot be read: {}", path, reason));
 }
 
 Status check_extent(const std::string& path, Extent extent) {
@@ -49,27 +50,60 @@ Status check_extent(const std::string& path, Extent extent) {
                   path, extent.width, extent.height));
 }
 
-// Opens the temporary file with the format's own writer, since its name does not tell the format.
-Status write_whole(const std::string& path, const char* format, const OIIO::ImageSpec& spec,
-                   OIIO::TypeDesc type, const void* data, OIIO::stride_t pixel_stride,
-                   OIIO::stride_t row_stride) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file.ok()) return file.status();
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) return cannot_write(path, OIIO::geterror());
-  if (!output->open(file->temporary_path(), spec)) return cannot_write(path, output->geterror());
-  if (!output->write_image(type, data, pixel_stride, row_stride))
-    return cannot_write(path, output->geterror());
-  if (!output->close()) return cannot_write(path, output->geterror());
-  return file->commit();
+struct PngRows {
+  Extent extent;
+  int channels = 3;  // in the file: 1 grey, 3 RGB, 4 RGBA
+  const std::uint8_t* texels = nullptr;
+  std::size_t row_bytes = 0;
+  bool skips_fourth = false;  // of each texel in memory
+};
+
+void append(png_structp png, png_bytep bytes, std::size_t count) {
+  auto& made = *static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(png));
+  made.insert(made.end(), bytes, bytes + count);
+}
+
+// False where libpng refuses: it then jumps back here, so nothing in this function may have a destructor.
+bool write_rows(png_structp png, png_infop info, const PngRows& rows, const PngWay& way) {
+  if (setjmp(png_jmpbuf(png)) != 0) return false;
+  constexpr int kColourTypes[] = {0, PNG_COLOR_TYPE_GRAY, 0, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
+  png_set_IHDR(png, info, static_cast<png_uint_32>(rows.extent.width),
+               static_cast<png_uint_32>(rows.extent.height), 8, kColourTypes[rows.channels],
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_compression_level(png, way.level);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, way.filters);
+  png_write_info(png, info);
+  if (rows.skips_fourth) png_set_filler(png, 0, PNG_FILLER_AFTER);
+  for (int y = 0; y < rows.extent.height; ++y)
+    png_write_row(png, rows.texels + static_cast<std::size_t>(y) * rows.row_bytes);
+  png_write_end(png, info);
+  return true;
+}
+
+// Empty where libpng refuses, which says why on stderr: too long a side, or no memory.
+std::vector<std::uint8_t> encoded(const PngRows& rows, const PngWay& way) {
+  std::vector<std::uint8_t> made;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  if (info != nullptr) {
+    png_set_write_fn(png, &made, append, nullptr);
+    if (!write_rows(png, info, rows, way)) made.clear();
+  }
+  png_destroy_write_struct(&png, &info);
+  return made;
+}
+
+Status write_bytes(const std::string& path, const void* bytes, std::size_t count) {
+  return write_text(path, {static_cast<const char*>(bytes), count});
 }
 
 std::size_t size_of(ChannelType type) {
-  return type == ChannelType::kHalf ? 2 : 4;
+  return type == ChannelType::kHalf ? sizeof(half) : sizeof(float);
 }
 
-OIIO::TypeDesc type_of(ChannelType type) {
-  return type == ChannelType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat;
+Imf::PixelType type_of(ChannelType type) {
+  return type == ChannelType::kHalf ? Imf::HALF : Imf::FLOAT;
 }
 
 Status check_channels(const std::string& path, std::span<const Channel> channels) {
@@ -87,49 +121,88 @@ Status check_channels(const std::string& path, std::span<const Channel> channels
   return {};
 }
 
-// One interleaved row-major buffer of the file's own types, as OpenImageIO's writer takes mixed types.
-Result<std::vector<std::byte>> interleave(const std::string& path, Extent extent,
-                                          std::span<const Channel> channels, std::size_t pixel_bytes) {
-  std::vector<std::byte> native(static_cast<std::size_t>(extent.area()) * pixel_bytes);
-  std::size_t offset = 0;
-  for (const Channel& channel : channels) {
-    const std::size_t pixel_stride = channel.pixel_stride != 0 ? channel.pixel_stride : size_of(channel.type);
-    const std::size_t row_stride = channel.row_stride != 0 ? channel.row_stride : pixel_stride * extent.width;
-    const bool converted = OIIO::convert_image(
-        1, extent.width, extent.height, 1, channel.data, type_of(channel.type),
-        static_cast<OIIO::stride_t>(pixel_stride), static_cast<OIIO::stride_t>(row_stride), OIIO::AutoStride,
-        native.data() + offset, type_of(channel.stored), static_cast<OIIO::stride_t>(pixel_bytes),
-        static_cast<OIIO::stride_t>(pixel_bytes * extent.width), OIIO::AutoStride);
-    if (!converted) return cannot_write(path, fmt::format("channel '{}' cannot be converted", channel.name));
-    offset += size_of(channel.stored);
+// The channel's texels as a packed plane of the type that the file stores.
+template <typename From, typename To>
+std::vector<char> converted(const Channel& channel, Extent extent, std::size_t pixel_stride,
+                            std::size_t row_stride) {
+  std::vector<char> plane(static_cast<std::size_t>(extent.area()) * sizeof(To));
+  char* to = plane.data();
+  for (int y = 0; y < extent.height; ++y) {
+    const char* from = static_cast<const char*>(channel.data) + static_cast<std::size_t>(y) * row_stride;
+    for (int x = 0; x < extent.width; ++x, from += pixel_stride, to += sizeof(To)) {
+      From value;
+      std::memcpy(&value, from, sizeof value);
+      const To stored(value);
+      std::memcpy(to, &stored, sizeof stored);
+    }
   }
-  return native;
+  return plane;
 }
 
-LoadedImage describe(const OIIO::ImageSpec& spec) {
-  LoadedImage image;
-  image.extent = {spec.width, spec.height};
-  image.channels = spec.channelnames;
-  for (int i = 0; i < spec.nchannels; ++i) {
-    image.stored.push_back(spec.channelformat(i) == OIIO::TypeHalf ? ChannelType::kHalf
-                                                                   : ChannelType::kFloat);
+void write_channels(Imf::OutputFile& file, Extent extent, std::span<const Channel> channels) {
+  Imf::FrameBuffer buffer;
+  std::vector<std::vector<char>> planes;
+  for (const Channel& channel : channels) {
+    std::size_t pixel_stride = channel.pixel_stride != 0 ? channel.pixel_stride : size_of(channel.type);
+    std::size_t row_stride = channel.row_stride != 0 ? channel.row_stride : pixel_stride * extent.width;
+    char* data = static_cast<char*>(const_cast<void*>(channel.data));  // which is only read
+    if (channel.type != channel.stored) {
+      planes.push_back(channel.stored == ChannelType::kHalf
+                           ? converted<float, half>(channel, extent, pixel_stride, row_stride)
+                           : converted<half, float>(channel, extent, pixel_stride, row_stride));
+      data = planes.back().data();
+      pixel_stride = size_of(channel.stored);
+      row_stride = pixel_stride * extent.width;
+    }
+    buffer.insert(channel.name, Imf::Slice(type_of(channel.stored), data, pixel_stride, row_stride));
   }
-  image.attributes = attributes_of(spec);
+  file.setFrameBuffer(buffer);
+  file.writePixels(extent.height);
+}
+
+Result<LoadedImage> read_png(const std::string& path) {
+  png_image file = {};
+  file.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&file, path.c_str()) == 0) return cannot_read(path, file.message);
+  file.format &= PNG_FORMAT_FLAG_ALPHA | PNG_FORMAT_FLAG_COLOR;  // 8 bits, in that order
+  std::vector<std::uint8_t> texels(PNG_IMAGE_SIZE(file));
+  if (png_image_finish_read(&file, nullptr, texels.data(), 0, nullptr) == 0)
+    return cannot_read(path, file.message);
+  LoadedImage image;
+  image.extent = {static_cast<int>(file.width), static_cast<int>(file.height)};
+  image.channels = (file.format & PNG_FORMAT_FLAG_COLOR) != 0 ? std::vector<std::string>{"R", "G", "B"}
+                                                              : std::vector<std::string>{"Y"};
+  if ((file.format & PNG_FORMAT_FLAG_ALPHA) != 0) image.channels.emplace_back("A");
+  image.stored.assign(image.channels.size(), ChannelType::kFloat);
+  for (const std::uint8_t code : texels)
+    image.pixels.push_back(static_cast<float>(code) / 255);
   return image;
 }
 
-Result<LoadedImage> read_unguarded(const std::string& path) {
-  OIIO::ImageSpec as_stored;  // no premultiplication of PNG's encoded colours
-  as_stored.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path, &as_stored);
-  if (!input) return cannot_read(path, OIIO::geterror());
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.deep) return cannot_read(path, "it holds deep pixels; a flat image is needed");
-  LoadedImage image = describe(spec);
-  image.pixels.resize(static_cast<std::size_t>(image.extent.area()) * image.channels.size());
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data())) {
-    return cannot_read(path, input->geterror());
+Result<LoadedImage> read_exr(const std::string& path) {
+  auto reader = ImageReader::open(path);
+  if (!reader.ok()) return reader.status();
+  const ImagePart& part = reader->header().parts.front();
+  if (part.deep) return cannot_read(path, "it holds deep pixels; a flat image is needed");
+  LoadedImage image = {.extent = part.display.extent,
+                       .channels = {},
+                       .stored = {},
+                       .pixels = {},
+                       .attributes = reader->header().attributes};
+  const std::size_t count = part.channels.size();
+  image.pixels.resize(static_cast<std::size_t>(image.extent.area()) * count);
+  std::vector<ChannelTarget> targets;
+  for (const HeaderChannel& channel : part.channels) {
+    image.channels.push_back(channel.name);
+    image.stored.push_back(channel.stored);
+    const std::size_t index = targets.size();
+    targets.push_back({.from = {0, static_cast<int>(index)},
+                       .type = ChannelType::kFloat,
+                       .data = image.pixels.data() + index,
+                       .pixel_stride = count * sizeof(float),
+                       .row_stride = count * sizeof(float) * image.extent.width});
   }
+  if (Status status = reader->read(targets); !status.ok()) return status;
   return image;
 }
 
@@ -139,14 +212,11 @@ Status write_png(const std::string& path, Extent extent, const std::uint8_t* rgb
                  PngAlpha alpha) {
   if (Status status = check_extent(path, extent); !status.ok()) return status;
   if (rgba == nullptr) return Status::invalid(fmt::format("'{}': there are no texels to write", path));
-  const int channels = alpha == PngAlpha::kKeep ? 4 : 3;
-  OIIO::ImageSpec spec(extent.width, extent.height, channels, OIIO::TypeUInt8);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  spec.attribute("png:compressionLevel", kPngCompressionLevel);
-  spec.attribute("png:filter", kPngFilterUp);
-  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const bool keeps = alpha == PngAlpha::kKeep;
   const std::size_t row = row_bytes != 0 ? row_bytes : static_cast<std::size_t>(extent.width) * 4;
-  return write_whole(path, "png", spec, OIIO::TypeUInt8, rgba, 4, static_cast<OIIO::stride_t>(row));
+  const std::vector<std::uint8_t> bytes = encoded({extent, keeps ? 4 : 3, rgba, row, !keeps}, {});
+  if (bytes.empty()) return cannot_write(path, "it cannot be encoded");
+  return write_bytes(path, bytes.data(), bytes.size());
 }
 
 Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
@@ -157,18 +227,13 @@ Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
     return Status::invalid(fmt::format("a PNG of {}x{} pixels cannot be made from {} texels of {} channels",
                                        extent.width, extent.height, texels.size(), channels));
   }
-  OIIO::ImageSpec spec(extent.width, extent.height, channels, OIIO::TypeUInt8);
-  spec.attribute("png:compressionLevel", kPngSmallest);
-  spec.attribute("png:filter", kPngFilterAll);
-  std::vector<std::uint8_t> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("png");
-  if (!output) return cannot_write("PNG", OIIO::geterror());
-  output->set_ioproxy(&memory);
-  if (!output->open("memory.png", spec) || !output->write_image(OIIO::TypeUInt8, texels.data()) ||
-      !output->close()) {
-    return cannot_write("PNG", output->geterror());
-  }
+  std::vector<std::uint8_t> bytes =
+      encoded({.extent = extent,
+               .channels = channels,
+               .texels = texels.data(),
+               .row_bytes = static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels)},
+              kSmallest);
+  if (bytes.empty()) return cannot_write("PNG", "it cannot be encoded");
   return bytes;
 }
 
@@ -176,20 +241,20 @@ Status write_exr(const std::string& path, Extent extent, std::span<const Channel
                  std::span<const Attribute> attributes) {
   if (Status status = check_extent(path, extent); !status.ok()) return status;
   if (Status status = check_channels(path, channels); !status.ok()) return status;
-  OIIO::ImageSpec spec(extent.width, extent.height, static_cast<int>(channels.size()), OIIO::TypeHalf);
-  std::size_t pixel_bytes = 0;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    spec.channelnames[i] = channels[i].name;
-    spec.channelformats.push_back(type_of(channels[i].stored));
-    pixel_bytes += size_of(channels[i].stored);
+  Imf::StdOSStream memory;  // the file's own stream would not tell of a full disk
+  try {
+    Imf::Header header(extent.width, extent.height);
+    header.compression() = Imf::ZIP_COMPRESSION;
+    for (const Channel& channel : channels)
+      header.channels().insert(channel.name, Imf::Channel(type_of(channel.stored)));
+    set_attributes(header, attributes);
+    Imf::OutputFile file(memory, header);
+    write_channels(file, extent, channels);
+  } catch (const std::exception& problem) {
+    return cannot_write(path, problem.what());
   }
-  spec.attribute("compression", fmt::format("zip:{}", kZipCompressionLevel));
-  spec.attribute("DateTime", "");  // else the present moment: the same pixels make the same file
-  set_attributes(spec, attributes);
-  const Result<std::vector<std::byte>> native = interleave(path, extent, channels, pixel_bytes);
-  if (!native.ok()) return native.status();
-  return write_whole(path, "openexr", spec, OIIO::TypeUnknown, native->data(), OIIO::AutoStride,
-                     OIIO::AutoStride);
+  const std::string bytes = memory.str();
+  return write_bytes(path, bytes.data(), bytes.size());
 }
 
 int LoadedImage::channel(std::string_view name) const {
@@ -205,13 +270,8 @@ const Attribute* LoadedImage::attribute(std::string_view name) const {
 
 Result<LoadedImage> read_image(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) return cannot_read(path, "there is no such file");
-  if (std::filesystem::is_directory(path, error)) return cannot_read(path, "it is a folder");
-  try {
-    return read_unguarded(path);
-  } catch (const std::exception& problem) {  // a damaged header may ask for absurd memory
-    return cannot_read(path, problem.what());
-  }
+  if (!std::filesystem::is_directory(path, error) && path.ends_with(".png")) return read_png(path);
+  return read_exr(path);
 }
 
 }  // namespace quincunx::tools

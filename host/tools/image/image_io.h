@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Image files: the only door to OpenImageIO for pictures, together with image_reader.h.
+// Image files: with image_reader.h the only door to OpenEXR and libpng.
 //
 // Files are written under a temporary name and renamed, so nothing half-written stays; missing folders are
 // made. Rows run top-down, as everywhere in Quincunx. All functions are thread-safe for different paths.
@@ -78,7 +78,7 @@ struct LoadedImage {
   std::vector<std::string> channels;
   std::vector<ChannelType> stored;  // type of each channel in the file; kFloat for integer files
   std::vector<float> pixels;  // interleaved, extent.area() * channels.size(); 8-bit files: 0 to 1, as encoded
-  std::vector<Attribute> attributes;  // those of a type that AttributeValue holds
+  std::vector<Attribute> attributes;  // an EXR's, of a type that AttributeValue holds
 
   int channel(std::string_view name) const;  // index, or -1
   float at(int x, int y, int channel) const {
@@ -87,8 +87,7 @@ struct LoadedImage {
   const Attribute* attribute(std::string_view name) const;  // null when there is none
 };
 
-// Reads a whole image (PNG, EXR and what else OpenImageIO knows); its first part where it has several, and
-// the data window, wherever it lies.
+// Reads a whole image: a PNG by its name, else an EXR; the display window of its first part where it has several.
 Result<LoadedImage> read_image(const std::string& path);
 
 }  // namespace quincunx::tools

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/image_reader.h"
 
-#include <OpenImageIO/imageio.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
+#include <ImfTestFile.h>
+#include <ImfThreading.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +19,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,29 +28,43 @@
 namespace quincunx::tools {
 namespace {
 
-// Whole blocks of every common compression but DWAB (16 lines for ZIP, 32 for PIZ), so that the few channel
-// runs of a band find the block unpacked that the run before them needed.
+// Rows that are read at once where the data window is wider than the display window.
 constexpr int kBandRows = 64;
 
+// OpenEXR's messages may run over several lines; one sentence is enough.
 Status cannot_read(const std::string& path, std::string reason) {
   reason.resize(std::min(reason.find('\n'), reason.size()));
   return Status::io(
       fmt::format("'{}' cannot be read: {}", path, reason.empty() ? "no reason was given" : reason));
 }
 
-ImagePart describe(const OIIO::ImageSpec& spec) {
+ImageWindow window_of(const Imath::Box2i& box) {
+  return {box.min.x, box.min.y, {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1}};
+}
+
+// Channels by layer; within one R, G, B, A before others. OpenEXR has them by name.
+auto order_of(const HeaderChannel& channel) {
+  const std::size_t dot = channel.name.rfind('.') + 1;  // 0 where there is none
+  const std::string own = channel.name.substr(dot);
+  const std::size_t colour = own.size() == 1 ? std::string("RGBA").find(own) : std::string::npos;
+  return std::tuple(channel.name.substr(0, dot), colour, own);
+}
+
+ImagePart describe(const Imf::Header& header) {
   ImagePart part;
-  part.name = spec.get_string_attribute("oiio:subimagename");
-  part.data = {spec.x, spec.y, {spec.width, spec.height}};
-  part.display = {spec.full_x, spec.full_y, {spec.full_width, spec.full_height}};
-  part.deep = spec.deep;
-  part.compression = spec.get_string_attribute("compression");
-  for (int i = 0; i < spec.nchannels; ++i) {
-    const OIIO::TypeDesc type = spec.channelformat(i);
-    part.channels.push_back({.name = spec.channelnames[i],
-                             .stored = type == OIIO::TypeHalf ? ChannelType::kHalf : ChannelType::kFloat,
-                             .integer = type != OIIO::TypeHalf && type != OIIO::TypeFloat});
+  if (header.hasName()) part.name = header.name();
+  part.data = window_of(header.dataWindow());
+  part.display = window_of(header.displayWindow());
+  part.deep = header.hasType() && Imf::isDeepData(header.type());
+  part.dwa = header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+  for (auto found = header.channels().begin(); found != header.channels().end(); ++found) {
+    const Imf::PixelType type = found.channel().type;
+    part.channels.push_back({.name = found.name(),
+                             .stored = type == Imf::HALF ? ChannelType::kHalf : ChannelType::kFloat,
+                             .integer = type == Imf::UINT});
   }
+  std::sort(part.channels.begin(), part.channels.end(),
+            [](const HeaderChannel& a, const HeaderChannel& b) { return order_of(a) < order_of(b); });
   return part;
 }
 
@@ -51,69 +72,74 @@ std::size_t size_of(ChannelType type) {
   return type == ChannelType::kHalf ? 2 : 4;
 }
 
-OIIO::TypeDesc type_of(ChannelType type) {
-  return type == ChannelType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat;
+// Texels of one channel, of which the first is pixel (left, top) of the file.
+Imf::Slice slice_at(int left, int top, ChannelType type, void* data, std::size_t pixel_stride,
+                    std::size_t row_stride) {
+  const auto back =
+      left * static_cast<std::ptrdiff_t>(pixel_stride) + top * static_cast<std::ptrdiff_t>(row_stride);
+  return {type == ChannelType::kHalf ? Imf::HALF : Imf::FLOAT, static_cast<char*>(data) - back, pixel_stride,
+          row_stride};
 }
 
-// Channels of one part that lie side by side in the file and become texels of one type: read in one go.
-struct Run {
-  int part = 0;
-  int first = 0;
-  ChannelType type = ChannelType::kHalf;
-  std::vector<ChannelTarget> targets;  // for channels first, first + 1, ...
+using Targets = std::vector<ChannelTarget>;
 
-  int end() const { return first + static_cast<int>(targets.size()); }
-};
-
-std::vector<Run> runs_of(std::span<const ChannelTarget> targets) {
-  std::vector<ChannelTarget> sorted(targets.begin(), targets.end());
-  std::sort(sorted.begin(), sorted.end(), [](const ChannelTarget& a, const ChannelTarget& b) {
-    return std::pair(a.from.part, a.from.channel) < std::pair(b.from.part, b.from.channel);
-  });
-  std::vector<Run> runs;
-  for (const ChannelTarget& target : sorted) {
-    const bool joins = !runs.empty() && runs.back().part == target.from.part &&
-                       runs.back().type == target.type && runs.back().end() == target.from.channel;
-    if (!joins) runs.push_back({target.from.part, target.from.channel, target.type, {}});
-    runs.back().targets.push_back(target);
+// Those of one part, each channel once: OpenEXR takes one place for each. So a channel that is wanted twice is read
+// twice.
+std::vector<Targets> rounds_of(std::span<const ChannelTarget> targets) {
+  std::vector<Targets> rounds;
+  for (const ChannelTarget& target : targets) {
+    const auto takes_it = [&](const Targets& round) {
+      return round.front().from.part == target.from.part &&
+             std::none_of(round.begin(), round.end(),
+                          [&](const ChannelTarget& other) { return other.from == target.from; });
+    };
+    auto round = std::find_if(rounds.begin(), rounds.end(), takes_it);
+    if (round == rounds.end()) round = rounds.emplace(rounds.end());
+    round->push_back(target);
   }
-  return runs;
+  return rounds;
 }
 
-template <typename Texel>
-void copy_row(const std::byte* from, std::size_t from_stride, std::byte* to, std::size_t to_stride,
-              int count) {
-  for (int i = 0; i < count; ++i)
-    std::memcpy(to + i * to_stride, from + i * from_stride, sizeof(Texel));
+// Straight to where they belong.
+void read_rows(Imf::InputPart& input, const ImagePart& part, const Targets& targets, int top, int bottom) {
+  Imf::FrameBuffer buffer;
+  for (const ChannelTarget& target : targets) {
+    buffer.insert(part.channels[target.from.channel].name,
+                  slice_at(part.display.x, part.display.y, target.type, target.data, target.pixel_stride,
+                           target.row_stride));
+  }
+  input.setFrameBuffer(buffer);
+  input.readPixels(top, bottom - 1);
 }
 
-// Rows [begin, end) of the data window, as the file counts them.
-struct Band {
-  int begin = 0;
-  int end = 0;
-};
-
-// From the band's texels (the data window's width, the run's channels interleaved) to where they belong.
-void scatter(const std::byte* texels, const Run& run, const ImagePart& part, Band band) {
+// By way of whole rows of the data window, for it reaches beyond the display window at the sides.
+void read_wide_rows(Imf::InputPart& input, const ImagePart& part, const Targets& targets, int top,
+                    int bottom) {
   const ImageWindow& data = part.data;
-  const ImageWindow& display = part.display;
-  const std::size_t texel = size_of(run.type);
-  const std::size_t pixel = texel * run.targets.size();
-  const int left = std::max(data.x, display.x);
-  const int right = std::min(data.x + data.extent.width, display.x + display.extent.width);
-  const int top = std::max(band.begin, display.y);
-  const int bottom = std::min(band.end, display.y + display.extent.height);
-  for (std::size_t i = 0; i < run.targets.size(); ++i) {
-    const ChannelTarget& target = run.targets[i];
-    for (int y = top; y < bottom; ++y) {
-      const std::size_t row = static_cast<std::size_t>(y - band.begin) * data.extent.width;
-      const std::byte* from = texels + (row + (left - data.x)) * pixel + i * texel;
-      std::byte* to = static_cast<std::byte*>(target.data) + (y - display.y) * target.row_stride +
-                      (left - display.x) * target.pixel_stride;
-      if (texel == 2) {
-        copy_row<std::uint16_t>(from, pixel, to, target.pixel_stride, right - left);
-      } else {
-        copy_row<float>(from, pixel, to, target.pixel_stride, right - left);
+  const int left = std::max(data.x, part.display.x);
+  const int right = std::min(data.x + data.extent.width, part.display.x + part.display.extent.width);
+  const auto width = static_cast<std::size_t>(data.extent.width);
+  std::vector<std::byte> planes(targets.size() * sizeof(float) * width * kBandRows);
+  const auto plane_of = [&](std::size_t i) { return planes.data() + i * sizeof(float) * width * kBandRows; };
+  for (int begin = top; begin < bottom; begin += kBandRows) {
+    const int end = std::min(begin + kBandRows, bottom);
+    Imf::FrameBuffer buffer;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const std::size_t texel = size_of(targets[i].type);
+      buffer.insert(part.channels[targets[i].from.channel].name,
+                    slice_at(data.x, begin, targets[i].type, plane_of(i), texel, texel * width));
+    }
+    input.setFrameBuffer(buffer);
+    input.readPixels(begin, end - 1);
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const ChannelTarget& target = targets[i];
+      const std::size_t texel = size_of(target.type);
+      for (int y = begin; y < end; ++y) {
+        const std::byte* from = plane_of(i) + ((y - begin) * width + (left - data.x)) * texel;
+        std::byte* to = static_cast<std::byte*>(target.data) + (y - part.display.y) * target.row_stride +
+                        (left - part.display.x) * target.pixel_stride;
+        for (int x = left; x < right; ++x, from += texel, to += target.pixel_stride)
+          std::memcpy(to, from, texel);
       }
     }
   }
@@ -299,57 +325,31 @@ class Blocks {
 }  // namespace
 
 struct ImageReader::Impl {
+  explicit Impl(const std::string& name) : path(name), file(name.c_str()) {
+    header.attributes = attributes_of(file.header(0));
+    for (int part = 0; part < file.parts(); ++part)
+      header.parts.push_back(describe(file.header(part)));
+  }
+
+  void read(const Targets& targets) {
+    const int index = targets.front().from.part;
+    const ImagePart& part = header.parts[index];
+    const int top = std::max(part.data.y, part.display.y);
+    const int bottom =
+        std::min(part.data.y + part.data.extent.height, part.display.y + part.display.extent.height);
+    const int left = std::max(part.data.x, part.display.x);
+    const int right =
+        std::min(part.data.x + part.data.extent.width, part.display.x + part.display.extent.width);
+    if (top >= bottom || left >= right) return;
+    Imf::InputPart input(file, index);
+    const bool wide = right - left < part.data.extent.width;
+    (wide ? read_wide_rows : read_rows)(input, part, targets, top, bottom);
+  }
+
   std::string path;
-  std::unique_ptr<OIIO::ImageInput> input;
+  Imf::MultiPartInputFile file;
   ImageHeader header;
-
-  Status open();
-  Status read_part(int index, std::span<const Run> runs);
-  bool read_band(const OIIO::ImageSpec& spec, const Run& run, Band band, std::byte* texels);
 };
-
-Status ImageReader::Impl::open() {
-  input = OIIO::ImageInput::open(path);
-  if (!input) return cannot_read(path, OIIO::geterror());
-  if (std::strcmp(input->format_name(), "openexr") != 0) {
-    return cannot_read(path, fmt::format("it is no EXR file but {}", input->format_name()));
-  }
-  header.attributes = attributes_of(input->spec());
-  for (int index = 0; input->seek_subimage(index, 0); ++index)
-    header.parts.push_back(describe(input->spec()));
-  static_cast<void>(input->geterror());  // that there is no further part
-  return {};
-}
-
-bool ImageReader::Impl::read_band(const OIIO::ImageSpec& spec, const Run& run, Band band, std::byte* texels) {
-  if (spec.tile_width == 0) {
-    return input->read_scanlines(run.part, 0, band.begin, band.end, 0, run.first, run.end(),
-                                 type_of(run.type), texels);
-  }
-  return input->read_tiles(run.part, 0, spec.x, spec.x + spec.width, band.begin, band.end, 0, 1, run.first,
-                           run.end(), type_of(run.type), texels);
-}
-
-Status ImageReader::Impl::read_part(int index, std::span<const Run> runs) {
-  const ImagePart& part = header.parts[index];
-  const OIIO::ImageSpec spec = input->spec_dimensions(index, 0);
-  const int block = std::max(spec.tile_height, 1);
-  const int rows = (kBandRows + block - 1) / block * block;
-  const int data_end = part.data.y + part.data.extent.height;
-  const int wanted_end = std::min(data_end, part.display.y + part.display.extent.height);
-  std::vector<std::byte> texels;
-  for (Band band = {part.data.y, 0}; band.begin < wanted_end; band.begin = band.end) {
-    band.end = std::min(band.begin + rows, data_end);
-    if (band.end <= part.display.y) continue;
-    for (const Run& run : runs) {
-      texels.resize(static_cast<std::size_t>(band.end - band.begin) * part.data.extent.width *
-                    run.targets.size() * size_of(run.type));
-      if (!read_band(spec, run, band, texels.data())) return cannot_read(path, input->geterror());
-      scatter(texels.data(), run, part, band);
-    }
-  }
-  return {};
-}
 
 ImageReader::ImageReader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ImageReader::~ImageReader() = default;
@@ -360,14 +360,12 @@ Result<ImageReader> ImageReader::open(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return cannot_read(path, "there is no such file");
   if (std::filesystem::is_directory(path, error)) return cannot_read(path, "it is a folder");
-  auto impl = std::make_unique<Impl>();
-  impl->path = path;
   try {
-    if (Status status = impl->open(); !status.ok()) return status;
+    if (!Imf::isOpenExrFile(path.c_str())) return cannot_read(path, "it is no EXR file");
+    return ImageReader(std::make_unique<Impl>(path));
   } catch (const std::exception& problem) {  // a damaged header may ask for absurd memory
     return cannot_read(path, problem.what());
   }
-  return ImageReader(std::move(impl));
 }
 
 const ImageHeader& ImageReader::header() const {
@@ -375,14 +373,9 @@ const ImageHeader& ImageReader::header() const {
 }
 
 Status ImageReader::read(std::span<const ChannelTarget> targets) {
-  const std::vector<Run> runs = runs_of(targets);
   try {
-    for (auto first = runs.begin(); first != runs.end();) {
-      const auto end =
-          std::find_if(first, runs.end(), [&](const Run& run) { return run.part != first->part; });
-      if (Status status = impl_->read_part(first->part, {first, end}); !status.ok()) return status;
-      first = end;
-    }
+    for (const Targets& round : rounds_of(targets))
+      impl_->read(round);
   } catch (const std::exception& problem) {
     return cannot_read(impl_->path, problem.what());
   }
@@ -427,7 +420,7 @@ std::string ImageHeader::channel_names() const {
 }
 
 void set_exr_threads(int threads) {
-  OIIO::attribute("exr_threads", threads == 0 ? -1 : threads);
+  Imf::setGlobalThreadCount(threads);
 }
 
 Status check_blocks(const std::string& path) {

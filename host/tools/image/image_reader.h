@@ -38,7 +38,7 @@ struct ImagePart {
   ImageWindow data;
   ImageWindow display;
   bool deep = false;
-  std::string compression;  // "zip", "dwaa"
+  bool dwa = false;  // compressed by DWAA or DWAB
   std::vector<HeaderChannel> channels;
 };
 

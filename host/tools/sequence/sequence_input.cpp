@@ -79,7 +79,7 @@ class Search {
  private:
   void check(const std::string& name, ChannelPlace place) {
     const ImagePart& part = header_.parts[place.part];
-    dwa_ |= part.compression.starts_with("dwa");
+    dwa_ |= part.dwa;
     if (part.deep) {
       complain(fmt::format("holds deep pixels in channel '{}'; flat ones are needed", name));
     } else if (header_.at(place).integer) {

@@ -17,8 +17,8 @@ namespace quincunx::tools {
 namespace {
 
 constexpr std::uint16_t kHalfOne = 0x3c00;
-constexpr const char* kKeptAttributes[] = {"worldToCamera", "worldToNDC", "FramesPerSecond", "chromaticities",
-                                           "PixelAspectRatio"};
+constexpr const char* kKeptAttributes[] = {"worldToCamera", "worldToNDC", "framesPerSecond", "chromaticities",
+                                           "pixelAspectRatio"};
 
 // Sets the alpha of every pixel that the file has.
 template <typename Texel>

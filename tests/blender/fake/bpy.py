@@ -109,7 +109,7 @@ def reset(folder):
     layer = Owner(name="ViewLayer", use=True, use_pass_combined=False, use_pass_z=False, use_pass_vector=False,
                   depsgraph=None)
     cycles = Owner(pixel_filter_type="BOX", filter_width=1.5, use_animated_seed=False, use_denoising=False)
-    choices = Owner(percent=50, method="temporal", options="", keep=False)
+    choices = Owner(percent=50, method="temporal", options="", draft=False, keep=False)
     scene = Scene(name="Scene", render=render, cycles=cycles, view_layers=[layer], timeline_markers=[], frame_start=1,
                   frame_end=3, frame_step=1, frame_current=7, frame_subframe=0.5, camera=Camera(), quincunx=choices)
     context = Owner(scene=scene, view_layer=layer, preferences=Owner(addons={}), window_manager=Owner(windows=[]))
