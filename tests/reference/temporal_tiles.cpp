@@ -50,15 +50,15 @@ std::array<Pixel, 4> neighbours_of(const TemporalInputs& in, int x, int y) {
           texel_clamped(in.frame, x + aside, y - 1), texel_clamped(in.frame, x - aside, y + 1)};
 }
 
-// How far the luma of the mean of its neighbours is from a sample's; 0 where that is not valid.
+// How far the luma of the mean of its neighbours is from a sample's; 0 where one of them is not valid.
 template <typename Real>
 Real neighbour_error(const TemporalInputs& in, int x, int y, const Real& own) {
   PixelOf<Real> mean = {};
   for (const Pixel& sample : neighbours_of(in, x, y)) {
+    if (!is_valid(sample)) return 0;
     for (std::size_t c = 0; c < 4; ++c)
       mean[c] += .25 * Real(sample[c]);
   }
-  if (!is_valid(mean)) return 0;
   const Real n = luma(mean);
   return abs(own - n) / (1 + own + n);
 }

@@ -40,14 +40,12 @@ static inline void load_next_sample(COLOUR_TEXELS texels, TexelLayout layout, in
 // Loads the samples of a row nearest to eight pixels.
 static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout, int8 x, int y) {
 #if SOURCE_STORAGE == BUFFER && SOURCE_FORMAT == HALF && ON_CPU
-  __global const ulong* row = (__global const ulong*)texels + row_index(layout, y);
-  const EightTexels samples = {load_half_bits((ulong4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3])),
-                               load_half_bits((ulong4)(row[x.s4], row[x.s5], row[x.s6], row[x.s7]))};
+  return gather_half_texels((__global const ulong*)texels + row_index(layout, y), x);
 #else
   EightTexels samples = no_texels();
   EIGHT_TIMES(load_next_sample(texels, layout, &x, y, &samples));
-#endif
   return samples;
+#endif
 }
 
 // Returns the luma weight of a valid sample: 1 up to a brightest channel of 2 and less beyond, so that one bright

@@ -101,6 +101,32 @@ static inline EightTexels load_history8(HistoryLayer layer, int index) {
   return row;
 }
 
+#if ON_CPU
+// Four-channel halves at eight indices.
+static inline EightTexels gather_half_texels(__global const ulong* texels, int8 index) {
+  const EightTexels gathered = {
+      load_half_bits((ulong4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3])),
+      load_half_bits((ulong4)(texels[index.s4], texels[index.s5], texels[index.s6], texels[index.s7]))};
+  return gathered;
+}
+#endif
+
+static inline void push_history(HistoryLayer layer, int8* index, EightTexels* texels) {
+  *texels = push_texel(*texels, load_history(layer, index->s0));
+  *index = NEXT_LANES(*index);
+}
+
+// The texels at eight indices.
+static inline EightTexels gather_history(HistoryLayer layer, int8 index) {
+#if HISTORY_FORMAT == HALF && ON_CPU
+  return gather_half_texels((__global const ulong*)layer.texels, index);
+#else
+  EightTexels texels = no_texels();
+  EIGHT_TIMES(push_history(layer, &index, &texels));
+  return texels;
+#endif
+}
+
 // The texel at `index`, which may lie anywhere, is read soon.
 static inline void will_read_history(HistoryLayer layer, int index) {
   WILL_READ(layer.texels + 4 * index);
@@ -114,7 +140,19 @@ static inline float16 to_four_texels(float4 value) {
 // The lanes of four texels that hold their last channel.
 #define LAST_CHANNELS ((int16)(0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1, 0, 0, 0, -1))
 
-// The confidences of eight texels.
+// The channels of eight texels.
+static inline float8 reds(EightTexels texels) {
+  return (float8)(texels.left.s048c, texels.right.s048c);
+}
+
+static inline float8 greens(EightTexels texels) {
+  return (float8)(texels.left.s159d, texels.right.s159d);
+}
+
+static inline float8 blues(EightTexels texels) {
+  return (float8)(texels.left.s26ae, texels.right.s26ae);
+}
+
 static inline float8 confidences(EightTexels texels) {
   return (float8)(texels.left.s37bf, texels.right.s37bf);
 }
