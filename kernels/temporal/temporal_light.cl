@@ -8,6 +8,7 @@
 //              picture's
 //   rejection  the largest of three, clamped to [0, 1]:
 //     by error   history foretells the samples much worse than their neighbours do, and not because light has changed
+//                or aliasing flickers
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
 //     by change  the samples of the tile, or of a cell, agree that it is brighter or darker now, by more than its
 //                aliasing has shown in flicker and in the neighbours' error, as at the edge of a moving shadow
@@ -17,7 +18,7 @@
 //              change wait for a second frame, because each place of the jitter can look like a change of its own
 //
 //   tiles_x, tiles_y  in   how many tiles there are
-//   tiles             in   TileReprojection of each tile: motion edges, and whether it stands still
+//   tiles             in   TileReprojection of each tile: motion edges, whether it is rigid, and where it was
 //   evidence          in   TileEvidence of each tile
 //   total             in   TotalLight: of all tiles
 //   previous          in   TileLight of each tile, of the previous frame
@@ -91,8 +92,9 @@ static inline float alternation(float now, float before) {
   return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
-static inline float suspicion_by_error(const TileEvidence* sum) {
-  const float allowed = ERROR_RATIO_MIN * sum->neighbour_error + ERROR_FLOOR * max(sum->count, 1.0f);
+static inline float suspicion_by_error(const TileEvidence* sum, float flicker) {
+  const float usual = ERROR_FLOOR + ERROR_FLICKER * flicker;  // of a sample
+  const float allowed = ERROR_RATIO_MIN * sum->neighbour_error + usual * max(sum->count, 1.0f);
   const bool incoherent = fabs(sum->brightening) < ERROR_COHERENCE_MAX * sum->history_error;
   return incoherent ? max((sum->history_error - allowed) / allowed, 0.0f) : 0.0f;
 }
@@ -141,13 +143,33 @@ static inline CellLight cell_light(CellEvidence evidence, CellLight before, floa
   return cell;
 }
 
+// Returns which of `count` tiles or cells in a row, of `size` pixels, the middle of number i was in, `step` texels ago.
+static inline int source_of(int i, int size, int step, int count) {
+  return clamp(i * size + size / 2 - step, 0, count * size - 1) / size;
+}
+
+// Returns what the previous frame remembered of tile (x, y) and of its cells, where a rigid tile was.
+static inline TileLight remember(__global const TileLight* previous, TileReprojection tile, int tiles_x, int tiles_y,
+                                 int x, int y) {
+  const int from_x = source_of(x, kTemporalTile, tile.step_x, tiles_x);
+  const int from_y = source_of(y, kTemporalTile, tile.step_y, tiles_y);
+  TileLight before = previous[from_y * tiles_x + from_x];
+  if (tile.step_x == 0 && tile.step_y == 0) return before;
+  for (int c = 0; c < 4; ++c) {
+    const int column = source_of(2 * x + c % 2, kTemporalCell, tile.step_x, 2 * tiles_x);
+    const int row = source_of(2 * y + c / 2, kTemporalCell, tile.step_y, 2 * tiles_y);
+    before.cells[c] = previous[row / 2 * tiles_x + column / 2].cells[row % 2 * 2 + column % 2];
+  }
+  return before;
+}
+
 // That of tile (x, y).
 static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileReprojection* tiles,
                                  __global const TileEvidence* evidence, __global const TotalLight* total,
                                  __global const TileLight* previous, int x, int y) {
   const int i = y * tiles_x + x;
   const TileEvidence own = evidence[i];
-  const TileLight before = previous[i];
+  const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);
   const TotalLight whole = *total;
   const EvidenceAround around = sum_evidence(tiles, evidence, previous, tiles_x, tiles_y, x, y);
   const LightChange change = change_of(&around);
@@ -175,7 +197,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
         max(sure_of_cells, confirm_change(tile.cells[c].suspected_change, before.cells[c].suspected_change));
   }
   const float mean_brightening = own.brightening / max(own.count, 1.0f);
-  const float error = suspicion_by_error(&around.sum);
+  const float error = suspicion_by_error(&around.sum, flicker);
   const float changed = tile.gain == 1.0f
                             ? suspicion_by_change(mean_brightening, own.brighter, own.count,
                                                   usual_change(mean_error, flicker), TILE_CHANGE_RANGE)

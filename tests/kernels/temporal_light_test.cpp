@@ -56,6 +56,10 @@ class Finder {
     }
     tile.has_motion_edge = round % 7 < 3 && uniform() < .1 ? 1 : 0;
     tile.is_rigid = found.tiles.size() % 5 == 0 ? 0 : 1;
+    if (tile.is_rigid == 1 && round % 2 == 0) {
+      tile.step_x = static_cast<int>(std::lround(60 * uniform() - 30));
+      tile.step_y = static_cast<int>(std::lround(30 * uniform() - 15));
+    }
     if (uniform() < .008) tile.outliers = static_cast<float>(1 + found.tiles.size() % 3);
     add_to_total(found.total, tile, round);
     found.tiles.push_back(testing::to_reference(tile));

@@ -11,11 +11,14 @@
 //   relit        |sum of brightenings| of the whole picture > .8 its change and > .05 its light,
 //                and widespread; then at once gain = 1 + that sum / light, where the samples agree on
 //                the same sign
+//   before       a rigid tile's memory, primed here, is that of the tile, and of the cells, where the middles of it and
+//                of its cells were `step` texels ago, clamped to the picture
 //   flicker      of a cell: f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where
 //                their signs differ, else 0; of a tile: the mean of its cells'
 //   rejection    of each cell the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed
 //                part is max(min(s, s') - 1, s - 4), s' that of the previous frame, 0 if of the other sign of mean
-//     by error   (E - e) / e, e = 1.6 N + .002 n, where |B| < .5 E; where it waits its confirmed part
+//     by error   (E - e) / e, e = 1.6 N + (.002 + 2 f) n, f of the tile, where |B| < .5 E; where it waits its
+//                confirmed part
 //     by change  (|mean| - T) / (T / 2), of a cell (|mean| - T) / (1.5 T), T = .3 N / n + 6 f + .01, where
 //                gain = 1 and (|b| - 1)^2 >= 1.1 k; where it waits its confirmed part; the larger of the tile's and
 //                the cell's
@@ -50,6 +53,7 @@ constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 // Rejection.
 constexpr double kErrorRatioMin = 1.6;            // times N: history foretells worse than the neighbours do
 constexpr double kErrorFloor = .002;              // for each sample
+constexpr double kErrorFlicker = 2;               // times flicker, for each sample
 constexpr double kErrorCoherenceMax = .5;         // |B| / E below which the error is no change of light
 constexpr double kSignTestMin = 1.1;              // (|b| - 1)^2 / samples: a test of signs
 constexpr double kUsualNeighbourError = .3;       // part of the neighbours' mean error, which is usual
@@ -136,9 +140,10 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_re
 
 // History foretells the samples worse than their neighbours do, and not by a change of light.
 template <typename Real>
-Real suspicion_by_error(const Sums<Real>& sums) {
+Real suspicion_by_error(const Sums<Real>& sums, const Real& flicker) {
   if (abs(sums.brightening) >= kErrorCoherenceMax * sums.history_error) return 0;
-  const Real allowed = kErrorRatioMin * sums.neighbour_error + Real(kErrorFloor) * std::max(sums.count, 1);
+  const Real usual = kErrorFloor + kErrorFlicker * flicker;
+  const Real allowed = kErrorRatioMin * sums.neighbour_error + usual * std::max(sums.count, 1);
   return max((sums.history_error - allowed) / allowed, 0);
 }
 
@@ -197,7 +202,7 @@ void suspect(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& befo
     flicker += .25 * light.cells[i].flicker;
     if (light.gain != 1) light.cells[i].suspected_change = 0;
   }
-  light.suspected_error = suspicion_by_error(sums);
+  light.suspected_error = suspicion_by_error(sums, flicker);
   if (light.gain == 1)
     light.suspected_change = suspicion_by_change(evidence, usual_change(sums, flicker), kTileChangeRange);
 
@@ -227,13 +232,37 @@ Real rejection_by_cut(const TotalLightOf<Real>& total) {
                0, 1);
 }
 
+// The index of the place, of `count` places of `size` pixels on an axis, where the middle of place i was.
+int place_before(int i, int size, int step, int count) {
+  const int middle = i * size + size / 2 - step;
+  return std::clamp(middle, 0, count * size - 1) / size;
+}
+
+// What is remembered of a tile, from where it was.
+TileLight memory_of(const LightInputs& in, int x, int y) {
+  const auto& step = in.tiles[index_of(in.tiles_x, x, y)].reprojection.step;
+  const auto light_at = [&](int column, int row) -> const TileLight& {
+    return in.before[index_of(in.tiles_x, column, row)].light;
+  };
+  TileLight light = light_at(place_before(x, kTile, step[0], in.tiles_x), place_before(y, kTile, step[1], in.tiles_y));
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 2; ++column) {
+      const int from_x = place_before(2 * x + column, kTile / 2, step[0], 2 * in.tiles_x);
+      const int from_y = place_before(2 * y + row, kTile / 2, step[1], 2 * in.tiles_y);
+      light.cells[static_cast<std::size_t>(2 * row + column)] =
+          light_at(from_x / 2, from_y / 2).cells[static_cast<std::size_t>(from_y % 2 * 2 + from_x % 2)];
+    }
+  }
+  return light;
+}
+
 }  // namespace
 
 template <typename Real>
 TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   const auto i = index_of(in.tiles_x, x, y);
   const auto evidence = as<Real>(in.tiles[i].evidence);
-  const auto before = as<Real>(in.before[i].light);
+  const auto before = as<Real>(memory_of(in, x, y));
   const auto total = as<Real>(in.total);
   const auto sums = sums_around<Real>(in, x, y);
   TileLightOf<Real> light;

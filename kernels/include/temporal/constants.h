@@ -43,6 +43,7 @@
 // ---- temporal_light: rejection by error.
 #define ERROR_RATIO_MIN 1.6f       // history's error / the neighbours' [S]
 #define ERROR_FLOOR 0.002f         // luma of each sample: less is no error [S]
+#define ERROR_FLICKER 2.0f         // of flicker: what aliasing lets samples and history differ by [S]
 #define ERROR_COHERENCE_MAX 0.5f   // of the error: if more of it is brightening it may be a change of light [S]
 
 // ---- temporal_light: rejection by cut. In cuts the ratio is 1.66 or more; textures finer than the samples have as
