@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 // --two-way: frames that know later ones, on a disc before a wall, both moving, with exact motion and truth.
+#include <sys/resource.h>
+
 #include <cmath>
+#include <csignal>
 
 #include "sequence_fixture.h"
+#include "tools/sequence/sequence_histories.h"
 #include "tools/sequence/sequence_reader.h"
 #include "tools/sequence/sequence_scan.h"
 
@@ -378,6 +382,63 @@ TEST_F(BothWays, AFrameAheadThatCannotBeReadIsNamedOnce) {
   expect_same_files(1, 36, "b");
 }
 
+TEST_F(BothWays, HistoriesBeyondMemoryGoIntoFilesThatVanish) {
+  for (int number = 1; number <= 26; ++number)
+    write(number, {"forward.u", "forward.v"}, 1, .5f);
+  resolve_to("u", "--two-way 8 --blur 1");  // with alpha, velocity and depth
+  const std::string temporary = folder_.file("temporary");
+  std::filesystem::create_directory(temporary);
+  const std::string run = "'{}/f.%04d.exr' --out '{}/%.%04d.exr' --two-way 8 --blur 1 --memory ";
+  const auto resolve_in = [&](const std::string& shell, const std::string& name, const std::string& size) {
+    std::string arguments = run + size;
+    arguments.replace(arguments.find("%.%"), 1, name);
+    return testing::run_program(folder_, arguments, (shell + " " QUINCUNX_PROGRAM).c_str());
+  };
+  const std::string in_folder = fmt::format("TMPDIR='{}'", temporary);
+  for (const char* size : {"0.2MB", "0GB"}) {  // three frames; none
+    const auto result = resolve_in(in_folder, "spilled", size);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("are put into files in '" + temporary), std::string::npos) << result.err;
+    expect_same_files(1, 26, "spilled");
+    EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  }
+  EXPECT_EQ(resolve_in(in_folder, "held", "500MB").err.find("are put into files"), std::string::npos);
+  expect_same_files(1, 26, "held");
+  const auto refused = resolve_in("TMPDIR=/no/folder", "refused", "0MB");
+  EXPECT_EQ(refused.exit_code, 1) << refused.err;
+  EXPECT_NE(refused.err.find("folder '/no/folder' takes no temporary file of 0.1 MB: No such file"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(output(1, "refused")));
+}
+
+TEST(SequenceHistories, AFullDiskIsRefusedInASentence) {
+  tools::SequenceHistories histories(100'000);
+  const KeptHistory kept = {std::vector<std::byte>(60'000, std::byte{3}), {}, {}, {std::byte{4}}};
+  ASSERT_TRUE(histories.put(1, kept).ok());  // in memory
+  rlimit before = {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full = {30'000, before.rlim_max};
+  const auto on_signal = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  const Status refused = histories.put(2, kept);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, on_signal);
+  EXPECT_EQ(refused.code(), StatusCode::kIoFailure);
+  EXPECT_NE(
+      refused.message().find("takes no temporary file of 0.1 MB: File too large; say a larger --memory"),
+      std::string::npos)
+      << refused.message();
+  ASSERT_TRUE(histories.put(2, kept).ok());
+  for (const std::size_t key : {1, 2}) {
+    const auto taken = histories.take(key);
+    ASSERT_TRUE(taken.ok());
+    EXPECT_EQ(taken->texels, kept.texels);
+    EXPECT_EQ(taken->depth, kept.depth);
+    EXPECT_TRUE(taken->alpha.empty());
+  }
+}
+
 TEST_F(BothWays, ChunksOfWholeWindowsAndResumedRunsGiveTheSameBytes) {
   write_all(1, 36);
   resolve_to("u", "--two-way 6");
@@ -434,6 +495,9 @@ TEST_F(BothWays, WhatCannotBeIsRefusedInASentence) {
   };
   refused("--two-way 8 --method bilinear", 2, "--two-way merges the histories of method temporal");
   refused("--two-way 65", 2, "--two-way");
+  for (const char* size : {"2", "GB", "-1GB", "2KB"})
+    refused(std::string("--memory ") + size, 2,
+            fmt::format("--memory: '{}' is no size; write for example 2GB", size));
   refused("--two-way 8 --velocity-next Z", 2, "--velocity-next");
   refused("--two-way 8 --velocity-next no.u,no.v", 1, "has no channel 'no.u'");
   refused("--two-way 8 --output 30x20", 2, "--two-way merges histories, but frame 1 has 48x30 pixels");

@@ -114,6 +114,7 @@ Status resolve(const ResolveOptions& options, const ResolveTask& task) {
                                             .exposure = options.exposure,
                                             .threads = options.threads,
                                             .skip_bad_frames = options.skip_bad_frames,
+                                            .memory = options.memory,
                                             .scores = scores.get()});
   if (!resolver.ok()) return resolver.status();
   {

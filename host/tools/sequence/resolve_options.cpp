@@ -20,6 +20,15 @@
 namespace quincunx::tools {
 namespace {
 
+// Reads "2.5GB".
+std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
+  const double unit = text.ends_with("GB") ? 1e9 : text.ends_with("MB") ? 1e6 : 0;
+  const double count = unit > 0 ? number_in(text.substr(0, text.size() - 2)).value_or(NAN) : NAN;
+  if (!(count >= 0 && count * unit < 1e18))
+    throw UsageError{option, fmt::format("'{}' is no size; write for example 2GB or 500MB", text)};
+  return static_cast<std::uint64_t>(count * unit);
+}
+
 // The channels that are read, and what they mean.
 
 // "A,B" into two words that are not empty.
@@ -196,6 +205,12 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
          "camera tells motion to the next frame, else 0)")
       .in_range(0, 64)
       .type_name("K");
+  app.add_option_function<std::string>(
+         "--memory", [&options](const std::string& text) { options.memory = parse_bytes("--memory", text); },
+         "Of histories that --two-way keeps; those beyond go into temporary files in TMPDIR or /var/tmp, for "
+         "the "
+         "same pixels (default: 4GB)")
+      .type_name("SIZE");
   app.add_option_function<std::string>(
          "--noise",
          [&options](const std::string& text) {

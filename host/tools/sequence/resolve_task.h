@@ -11,6 +11,7 @@
 #include "quincunx/resolve_plan.h"
 #include "tools/image/image_io.h"
 #include "tools/record/recorded_settings.h"
+#include "tools/sequence/sequence_histories.h"
 #include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_scan.h"
@@ -37,6 +38,7 @@ struct ResolveOptions {
   std::optional<int> warm_up;                       // absent: what the method looks back
   bool resume = false;
   bool skip_bad_frames = false;
+  std::uint64_t memory = kDefaultHistoryBytes;  // of histories, as SequenceJob has it
 
   bool dry_run = false;
   bool explain = false;

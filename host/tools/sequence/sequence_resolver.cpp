@@ -45,6 +45,7 @@ SequenceResolver::SequenceResolver(const Device& device, ResolveService service,
     : device_(device),
       forward_{std::move(service)},
       job_(std::move(job)),
+      histories_(job_.memory),
       watch_(forward_.service.plan(), job_.format.near_plane),
       writers_(writing_threads(job_.threads), 1) {
   for (const ScannedFrame& frame : job_.scan.frames) {
@@ -302,11 +303,12 @@ Status SequenceResolver::add_forward(std::size_t index) {
   if (!inputs.ok()) return inputs.status();
   KeptFrame kept;
   const bool is_last = index + 1 == good_.size() || good_[index + 1].reset;  // of its shot
-  KeptHistory* const history = scanned.wanted ? &kept.history : nullptr;
-  kept.report =
-      TwoWay::add(forward_.service, inputs.value(), is_last ? Merging::kNever : Merging::kLater, history);
+  KeptHistory history;
+  kept.report = TwoWay::add(forward_.service, inputs.value(), is_last ? Merging::kNever : Merging::kLater,
+                            scanned.wanted ? &history : nullptr);
   if (!kept.report.ok()) return kept.report.status;
   if (scanned.wanted) {
+    if (Status status = histories_.put(index, std::move(history)); !status.ok()) return status;
     kept.frame.number = frame.number;
     kept.frame.render = frame.render;
     kept.frame.kept = frame.kept;
@@ -346,11 +348,16 @@ Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& win
   const auto kept = kept_.find(index);
   // The frame where the run begins knows nothing of later ones; those ahead of the window wait for their own run.
   const bool merges = !inputs->reset && index <= window.last && kept != kept_.end();
+  auto history = merges ? histories_.take(index) : KeptHistory();
+  if (!history.ok()) return history.status();
   const FrameReport report =
       TwoWay::add(backward_->service, inputs.value(), merges ? Merging::kNow : Merging::kLater,
-                  merges ? &kept->second.history : nullptr);
+                  merges ? &history.value() : nullptr);
   if (!report.ok()) return report.status;
-  if (merges) kept->second.smooths = true;
+  if (merges) {
+    kept->second.smooths = true;
+    if (Status status = histories_.put(index, std::move(history).value()); !status.ok()) return status;
+  }
   if (forward_.last == scanned.number) {
     if (Status status = TwoWay::turn(backward_->service, forward_.service); !status.ok()) return status;
   }
@@ -364,7 +371,9 @@ Status SequenceResolver::show(std::size_t index) {
   const auto found = kept_.find(index);
   if (found == kept_.end()) return {};  // it turned out bad
   const KeptFrame& kept = found->second;
-  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, kept.smooths, kept.history,
+  const auto history = histories_.take(index);
+  if (!history.ok()) return history.status();
+  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, kept.smooths, history.value(),
                                           {linear_.view(), presented_.view()});
   if (!report.ok()) return report.status;
   if (Status status = deliver(kept.frame, good_[index], kept.report); !status.ok()) return status;

@@ -18,6 +18,7 @@
 #include "src/passes/two_way.h"
 #include "tools/program/run_report.h"
 #include "tools/program/work_queue.h"
+#include "tools/sequence/sequence_histories.h"
 #include "tools/sequence/sequence_output.h"
 #include "tools/sequence/sequence_reader.h"
 
@@ -32,7 +33,8 @@ struct SequenceJob {
   float exposure = 0;                    // exposure of a PNG; 0: 1, or the recorded one
   int threads = 1;                       // that read, and that write, at least one of each
   bool skip_bad_frames = false;
-  SequenceScores* scores = nullptr;  // not owned; null: none
+  std::uint64_t memory = kDefaultHistoryBytes;  // limit of histories that are kept
+  SequenceScores* scores = nullptr;             // not owned; null: none
 };
 
 // Outcome of a job.
@@ -80,12 +82,11 @@ class SequenceResolver {
     std::int64_t count = 0;  // dispatched
   };
 
-  // A frame that was resolved forwards and is not shown yet.
+  // A frame that was resolved forwards and is not shown yet. Its history is among `histories_`.
   struct KeptFrame {
     SequenceFrame frame;  // without images, but velocity where scores ask for it
     FrameInputs inputs;   // without images
     FrameReport report;
-    KeptHistory history;
     bool smooths =
         false;  // it is smoothed where it is shown: neither a first frame alone, nor what already is
   };
@@ -127,6 +128,7 @@ class SequenceResolver {
   SequenceJob job_;
   std::vector<ScannedFrame> good_;
   std::map<std::size_t, KeptFrame> kept_;
+  SequenceHistories histories_;
   MotionSamples later_;  // of the frame that was read before, backwards, where its motion is turned
   Image linear_;         // the resolved picture, blurred where the plan blurs
   Image presented_;
