@@ -125,9 +125,10 @@ class BothWays : public testing::SequenceTest {
       write(number);
   }
 
-  void expect_same_files(int first, int last, const std::string& name) const {
+  void expect_same_files(int first, int last, const std::string& name, const std::string& as = "u") const {
     for (int number = first; number <= last; ++number)
-      EXPECT_TRUE(testing::read_file(output(number)) == testing::read_file(output(number, name))) << number;
+      EXPECT_TRUE(testing::read_file(output(number, as)) == testing::read_file(output(number, name)))
+          << number;
   }
 
   std::vector<float> colours(const std::string& path) const {
@@ -373,6 +374,12 @@ TEST_F(BothWays, AFrameAheadThatCannotBeReadIsNamedOnce) {
   EXPECT_EQ(times_named(skipped.err), 1) << skipped.err;
   for (int number = 24; number <= 36; ++number)
     EXPECT_EQ(std::filesystem::exists(output(number, "b")), number != 34) << number;
+  std::filesystem::remove(input(34));  // as if it had never been there
+  resolve_to("gap", "--two-way 8 --frames 24-36 --skip-bad-frames");
+  expect_same_files(24, 32, "gap", "b");
+  // It was added before the gap was known, and so it is smoothed where a last frame is not.
+  EXPECT_NEAR(psnr_of("b", 33), psnr_of("gap", 33), .2);
+  expect_same_files(35, 36, "gap", "b");
   for (int number = 24; number <= 33; ++number)
     std::filesystem::remove(output(number, "b"));
   for (const int number : {35, 36})

@@ -405,21 +405,29 @@ Status SequenceResolver::finish() {
 std::vector<SequenceResolver::Step> SequenceResolver::steps_of(
     const std::vector<TwoWayWindow>& windows) const {
   std::vector<Step> steps;
-  std::size_t next = 0;
-  for (const TwoWayWindow& window : windows) {
-    while (next <= window.turn)
+  std::size_t next = place_.frame;
+  for (std::size_t i = place_.window; i < windows.size(); ++i) {
+    while (next <= windows[i].turn)
       steps.push_back({next++});
-    for (std::size_t i = window.turn + 1; i-- > window.first;)
-      steps.push_back({i, true});
+    for (std::size_t frame = windows[i].turn + 1; frame-- > windows[i].first;)
+      steps.push_back({frame, true});
   }
-  while (windows.empty() && next < good_.size())
+  while (!backward_ && next < good_.size())
     steps.push_back({next++});
   return steps;
 }
 
-Status SequenceResolver::run_steps(const std::vector<TwoWayWindow>& windows,
-                                   const std::function<void(std::int64_t)>& progress,
-                                   const std::atomic<bool>& stop) {
+Status SequenceResolver::show_window(const TwoWayWindow& window) {
+  Status status;
+  for (std::size_t shown = window.first; shown <= window.last && status.ok(); ++shown)
+    status = show(shown);
+  ++place_.window;
+  return status;
+}
+
+Result<bool> SequenceResolver::run_steps(const std::function<void(std::int64_t)>& progress,
+                                         const std::atomic<bool>& stop) {
+  const auto windows = backward_ ? two_way_windows(good_, job_.format.two_way) : std::vector<TwoWayWindow>();
   const std::vector<Step> steps = steps_of(windows);
   const int readers = reading_threads(job_.threads);
   ahead_ = std::make_unique<ReadAhead<SequenceFrame>>(
@@ -432,33 +440,41 @@ Status SequenceResolver::run_steps(const std::vector<TwoWayWindow>& windows,
         return read_frame(job_.input.expand(scanned.number), steps[index].backward ? backward : job_.format,
                           scanned, plan.settings.colour, frame);
       });
-  auto window = windows.begin();
+  const auto done_before = place_.steps;
+  std::optional<std::size_t> bad;
   Status status;
-  for (std::size_t i = 0; i < steps.size() && status.ok(); ++i) {
+  for (std::size_t i = 0; i < steps.size() && status.ok() && !bad; ++i) {
     const auto [frame, backward] = steps[i];
-    status = stop              ? Status::io("stopped by a signal; the files are whole, and --resume goes on")
-             : backward        ? add_backward(frame, *window)
-             : windows.empty() ? resolve_frame(good_[frame])
-                               : add_forward(frame);
-    if (backward && frame == window->first) {
-      for (std::size_t shown = window->first; shown <= window->last && status.ok(); ++shown)
-        status = show(shown);
-      ++window;
-    }
-    progress(static_cast<std::int64_t>((i + 1) * job_.scan.frames.size() / steps.size()));
+    status = stop         ? Status::io("stopped by a signal; the files are whole, and --resume goes on")
+             : backward   ? add_backward(frame, windows[place_.window])
+             : !backward_ ? resolve_frame(good_[frame])
+                          : add_forward(frame);
+    if (backward && status.ok() && frame == windows[place_.window].first)
+      status = show_window(windows[place_.window]);
+    if (backward_ && !backward && status.ok() && forward_.last != good_[frame].number) bad = frame;
+    ++place_.steps;
+    progress(
+        static_cast<std::int64_t>(place_.steps * job_.scan.frames.size() / (done_before + steps.size())));
   }
-  const Status finished = finish();
-  outcome_.busy = {{"reading", ahead_->busy_seconds()}};
+  outcome_.busy.front().seconds += ahead_->busy_seconds();
   ahead_.reset();  // it refers to `steps`
-  return status.ok() ? finished : status;
+  if (!status.ok()) return status;
+  if (!bad) return true;
+  place_.frame = *bad;
+  good_.erase(good_.begin() + static_cast<std::ptrdiff_t>(*bad));
+  if (*bad < good_.size()) good_[*bad].reset = true;
+  return false;
 }
 
 Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
                              const std::atomic<bool>& stop) {
   const Clock::time_point start = Clock::now();
   last_delivery_ = start;
-  const Status status = run_steps(
-      backward_ ? two_way_windows(good_, job_.format.two_way) : std::vector<TwoWayWindow>(), progress, stop);
+  outcome_.busy = {{"reading", 0}};
+  Result<bool> ended = false;
+  while (ended.ok() && !ended.value())
+    ended = run_steps(progress, stop);
+  const Status finished = finish();
   double resolving = 0;
   for (const double ms : outcome_.resolve_ms)
     resolving += ms / 1000;
@@ -466,7 +482,7 @@ Status SequenceResolver::run(const std::function<void(std::int64_t)>& progress,
   outcome_.busy.push_back({"writing", writers_.busy_seconds()});
   if (job_.scores != nullptr) outcome_.busy.push_back({"measuring", job_.scores->busy_seconds()});
   outcome_.wall_seconds = ms_since(start) / 1000;
-  return status;
+  return ended.ok() ? finished : ended.status();
 }
 
 }  // namespace quincunx::tools

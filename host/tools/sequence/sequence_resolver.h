@@ -97,6 +97,12 @@ class SequenceResolver {
     bool backward = false;
   };
 
+  struct Place {
+    std::size_t frame = 0;   // the next one forwards
+    std::size_t window = 0;  // not shown yet
+    std::size_t steps = 0;   // done
+  };
+
   SequenceResolver(const Device& device, ResolveService service, SequenceJob job);
   Status allocate(Stream& stream) const;
   Status allocate();
@@ -116,10 +122,12 @@ class SequenceResolver {
   Status hand_over(const SequenceFrame& frame, Picture picture);
   Status finish();
   void collect_reports();
-  // Steps of the run, and the windows that end after some of them.
+  Status show_window(const TwoWayWindow& window);
+  // The steps that are left.
   std::vector<Step> steps_of(const std::vector<TwoWayWindow>& windows) const;
-  Status run_steps(const std::vector<TwoWayWindow>& windows,
-                   const std::function<void(std::int64_t)>& progress, const std::atomic<bool>& stop);
+  // Does them; false: as far as one whose frame, forwards, turned out bad. That is no longer among the good ones, and
+  // the windows are others.
+  Result<bool> run_steps(const std::function<void(std::int64_t)>& progress, const std::atomic<bool>& stop);
   bool presents() const { return job_.output && job_.output->pattern.format() == FileFormat::kPng; }
 
   Device device_;
@@ -127,6 +135,7 @@ class SequenceResolver {
   std::optional<Stream> backward_;  // where the job looks ahead
   SequenceJob job_;
   std::vector<ScannedFrame> good_;
+  Place place_;
   std::map<std::size_t, KeptFrame> kept_;
   SequenceHistories histories_;
   MotionSamples later_;  // of the frame that was read before, backwards, where its motion is turned
