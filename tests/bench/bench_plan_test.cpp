@@ -86,6 +86,23 @@ TEST(Plan, AMethodMayHaveEightBitColour) {
   expect_refused({"--methods", "quincunx@rgba4"}, "no method 'quincunx@rgba4'");
 }
 
+TEST(Plan, NoiseIsOfAllFramesAndKnownToWhatDenoises) {
+  const auto plan = plan_from(parsed({"--methods", "bilinear,temporal,two-way/denoised/temporal", "--noise",
+                                      "4", "--history-warm-up", "7"}));
+  ASSERT_TRUE(plan.ok()) << plan.status().message();
+  EXPECT_EQ(plan->conditions.noise, 4);
+  EXPECT_EQ(plan->methods[1].resolve.temporal.noise, 0);
+  EXPECT_EQ(plan->methods[2].resolve.temporal.noise, .25f);
+  EXPECT_TRUE(plan->methods[2].two_way);
+  EXPECT_EQ(plan->methods[2].name, "two-way/denoised/temporal:balanced");
+  EXPECT_FALSE(plan_from(parsed({}))->conditions.noise);
+  expect_refused({"--methods", "denoised/temporal"}, "'denoised/temporal:balanced' needs --noise");
+  expect_refused({"--methods", "denoised/quincunx", "--noise", "4"},
+                 "'denoised/quincunx:velocity' needs --noise");
+  expect_refused({"--methods", "temporal@rgba8", "--noise", "4"},
+                 "'temporal:balanced@rgba8' has frames of 8 bits");
+}
+
 TEST(Plan, AFocusIsOfTheMethodsThatAskForIt) {
   const auto plan = plan_from(parsed({"--methods", "bilinear,focus/bilinear,focus/temporal@rgba8", "--focus",
                                       "8,8,40,30", "--focus-scale", "1.5"}));

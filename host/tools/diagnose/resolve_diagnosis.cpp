@@ -11,6 +11,7 @@
 
 #include "tools/diagnose/diagnosis_page.h"
 #include "tools/image/display_light.h"
+#include "tools/image/half.h"
 #include "tools/program/atomic_file.h"
 #include "tools/sequence/sequence_reader.h"
 

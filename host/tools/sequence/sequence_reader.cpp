@@ -4,13 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <exception>
 #include <limits>
 #include <utility>
 
+#include "tools/image/half.h"
 #include "tools/sequence/exchange_format.h"
 
 namespace quincunx::tools {
@@ -177,11 +177,6 @@ float sky_motion(const CameraMotion& motion, Extent render) {
 }
 
 }  // namespace
-
-float from_half(std::uint16_t half) {
-  const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(half & 0x7fffu) << 13) * 0x1p112f;
-  return (half & 0x8000u) != 0 ? -value : value;
-}
 
 Status read_recorded(const std::string& folder, const ScannedFrame& expected, const ResolvePlan& plan,
                      SequenceFrame& frame) {

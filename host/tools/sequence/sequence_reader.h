@@ -36,9 +36,6 @@ struct SequenceFrame {
 Status read_frame(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
                   PixelFormat colour, SequenceFrame& frame);
 
-// Returns a half's value; infinity and what is no number become some large number.
-float from_half(std::uint16_t half);
-
 // A frame's motion, and what tells which surface a sample of it shows.
 struct MotionSamples {
   Extent render;

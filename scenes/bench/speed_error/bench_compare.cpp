@@ -223,6 +223,8 @@ Status check_conditions(const Conditions& before, const Conditions& after) {
   if (before.seed != after.seed) return differ("--seed", before.seed, after.seed);
   if (before.fps != after.fps) return differ("--fps", before.fps, after.fps);
   if (before.start != after.start) return differ("--start", before.start, after.start);
+  if (before.noise != after.noise)
+    return differ("--noise", before.noise.value_or(0), after.noise.value_or(0));
   if (before.truth_samples != after.truth_samples)
     return differ("--truth", before.truth_samples, after.truth_samples);
   return {};

@@ -36,7 +36,7 @@ void add_choice_options(tools::CommandLine& app, BenchOptions& options) {
          "--methods", options.methods,
          "Methods (default: all of --list-methods); NAME@rgba8 is NAME on 8-bit colour, checkerboard/NAME "
          "of frames with half of their pixels shaded, dual0.8/NAME at an output of 0.8 that is then scaled, "
-         "focus/NAME with --focus")
+         "two-way/NAME both ways, denoised/NAME with --noise, focus/NAME with --focus")
       .delimiter(',')
       .type_name("NAME,...");
   app.add_option(
@@ -80,6 +80,11 @@ void add_measuring_options(tools::CommandLine& app, BenchOptions& options) {
   app.add_option("--truth", options.truth, "Truth has N x N samples a pixel (default: 8)")
       .in_range(1, 64)
       .type_name("N");
+  app.add_option("--noise", options.noise,
+                 "Frames are as noisy as those of a path tracer with so many samples a pixel; methods "
+                 "denoised/NAME know of it (default: no noise)")
+      .in_range(1, 64)
+      .type_name("SPP");
   app.add_option("--fps", options.fps, "Frames a second of scene time").positive().show_default();
   app.add_option("--start", options.start, "Scene time of the first frame, seconds").show_default();
 }

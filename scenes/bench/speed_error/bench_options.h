@@ -26,6 +26,7 @@ struct BenchOptions : scenes::PictureOptions {
   // Before the measured ones, of methods that accumulate; at least warm_up.
   int history_warm_up = scenes::kWarmUpFrames;
   int rounds = 5;
+  int noise = 0;  // samples a pixel of frames that a path tracer might have made; 0: without noise
   int truth = 8;  // samples along each side of a pixel
   bool quick = false;
 

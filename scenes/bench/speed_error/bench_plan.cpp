@@ -97,6 +97,21 @@ BenchMethod at_smaller_output(BenchMethod method, const std::string& scale) {
   return method;
 }
 
+// The twin of a method that accumulates, which is told how noisy its frames are.
+constexpr std::string_view kDenoised = "denoised/";
+
+Result<BenchMethod> denoised(BenchMethod method, int noise) {
+  if (!method.accumulates || noise == 0) {
+    return Status::invalid(fmt::format("--methods: '{}{}' needs --noise, and a method that accumulates",
+                                       kDenoised, method.name));
+  }
+  method.name = std::string(kDenoised) + method.name;
+  method.summary += ", denoised";
+  method.resolve.temporal.noise = 1 / static_cast<float>(noise);
+  method.is_default = false;
+  return method;
+}
+
 // The twin of a method that accumulates, with the histories of both directions.
 constexpr std::string_view kTwoWay = "two-way/";
 
@@ -110,7 +125,7 @@ Result<BenchMethod> both_ways(BenchMethod method) {
   return method;
 }
 
-Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names) {
+Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names, int noise) {
   std::vector<BenchMethod> methods = all_methods();
   if (names.empty()) return methods;
   std::vector<BenchMethod> chosen;
@@ -118,7 +133,7 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
     if (const auto dual = split_dual(name)) {
       if (auto outputs = scenes::OutputPath::parse(dual->scale, {1000, 1000}, 0); !outputs.ok())
         return Status::invalid(fmt::format("--methods: '{}': {}", name, outputs.status().message()));
-      auto method = chosen_methods({dual->method});
+      auto method = chosen_methods({dual->method}, noise);
       if (!method.ok()) return method.status();
       if (method->front().two_way)
         return Status::invalid(fmt::format("--methods: '{}': both ways there is one output", name));
@@ -131,6 +146,8 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
     const bool two_way = name.starts_with(kTwoWay);
     std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
     if (two_way) plain.erase(0, kTwoWay.size());
+    const bool denoises = plain.starts_with(kDenoised);
+    if (denoises) plain.erase(0, kDenoised.size());
     if (checkerboard) plain.erase(0, kCheckerboard.size());
     if (focuses) plain.erase(0, kFocus.size());
     const std::string longest = longest_name(plain);
@@ -142,12 +159,17 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
         known += (known.empty() ? "" : ", ") + method.name;
       return Status::invalid(
           fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it, or {}, "
-                      "{}, {} or {}S/ before it",
-                      name, known, kEncoded, kCheckerboard, kFocus, kTwoWay, kDual));
+                      "{}, {}, {} or {}S/ before it",
+                      name, known, kEncoded, kCheckerboard, kFocus, kTwoWay, kDenoised, kDual));
     }
     BenchMethod method = *found;
     if (encoded) method = in_eight_bits(std::move(method));
     if (checkerboard) method = on_checkerboard(std::move(method));
+    if (denoises) {
+      auto twin = denoised(std::move(method), noise);
+      if (!twin.ok()) return twin.status();
+      method = std::move(twin).value();
+    }
     if (two_way) {
       auto twin = both_ways(std::move(method));
       if (!twin.ok()) return twin.status();
@@ -212,6 +234,16 @@ Status check_focus(const BenchOptions& options, const std::vector<BenchMethod>& 
   return scenes::FocusTarget::parse(options.focus, options.output).status();
 }
 
+// Noise is of light, and of the whole picture.
+Status check_noise(const BenchOptions& options, const std::vector<BenchMethod>& methods) {
+  for (const BenchMethod& method : methods) {
+    if (options.noise == 0 || (method.resolve.colour != PixelFormat::kRGBA8 && !method.focuses)) continue;
+    return Status::invalid(
+        fmt::format("--noise: '{}' has frames of 8 bits or a focus, which are without it", method.name));
+  }
+  return {};
+}
+
 // The default method where it is measured, else the last.
 std::size_t frame_method_of(const std::vector<BenchMethod>& methods) {
   const auto found = std::find_if(methods.begin(), methods.end(),
@@ -223,9 +255,10 @@ std::size_t frame_method_of(const std::vector<BenchMethod>& methods) {
 
 Result<BenchPlan> plan_from(const BenchOptions& options) {
   if (Status status = check_numbers(options); !status.ok()) return status;
-  auto methods = chosen_methods(options.methods);
+  auto methods = chosen_methods(options.methods, options.noise);
   if (!methods.ok()) return methods.status();
   if (Status status = check_focus(options, methods.value()); !status.ok()) return status;
+  if (Status status = check_noise(options, methods.value()); !status.ok()) return status;
   std::vector<std::string> method_names;
   for (const BenchMethod& method : methods.value())
     method_names.push_back(method.name);
@@ -250,6 +283,7 @@ Result<BenchPlan> plan_from(const BenchOptions& options) {
                      .seed = options.seed,
                      .fps = options.fps,
                      .start = options.start};
+  if (options.noise > 0) plan.conditions.noise = options.noise;
   if (!options.focus.empty()) {
     plan.conditions.focus = options.focus;
     plan.conditions.focus_scale = options.focus_scale;

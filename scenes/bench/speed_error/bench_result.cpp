@@ -160,6 +160,7 @@ void fields(Archive& io, Conditions& value) {
   io("start", value.start);
   io("focus", value.focus);
   io("focus_scale", value.focus_scale);
+  io("noise", value.noise);
 }
 
 template <typename Archive>

@@ -175,6 +175,7 @@ struct Conditions {
   double start = 0;                        // scene time of the first frame, seconds
   std::optional<std::string> focus = {};   // as --focus has it; absent where there is none
   std::optional<double> focus_scale = {};  // render scale of its region
+  std::optional<int> noise = {};           // samples a pixel of noisy frames; absent where they are not
 
   friend bool operator==(const Conditions&, const Conditions&) = default;
 };

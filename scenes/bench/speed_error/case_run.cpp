@@ -91,7 +91,7 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
   if (presents) resolves.push_back(plan_.methods[plan_.frame_method].resolve);
   const BenchMethod& any = plan_.methods[methods.front()];
   auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, any), resolves, std::nullopt,
-                                focus_for(plan_.conditions, any));
+                                focus_for(plan_.conditions, any), plan_.conditions.noise);
   if (!feed.ok()) return feed.status();
   for (std::size_t i = 0; i < resolves.size(); ++i) {
     auto contender = Contender::create(device_, feed->plans()[i]);

@@ -4,9 +4,11 @@
 #include <epoxy/gl.h>
 
 #include <chrono>
+#include <cmath>
 #include <string_view>
 
 #include "bench/harness/clocks.h"
+#include "tools/image/half.h"
 
 namespace quincunx::bench {
 namespace {
@@ -14,6 +16,30 @@ namespace {
 double now_ms() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+// Returns a number in (0, 1] that depends on nothing but its arguments.
+double chance(std::uint32_t time, std::uint32_t pixel, std::uint32_t sample) {
+  std::uint32_t h = time * 0x9e3779b9u ^ pixel * 0x85ebca6bu ^ sample * 0xc2b2ae35u;
+  h = (h ^ h >> 16) * 0x2c1b3c6du;
+  h = (h ^ h >> 12) * 0x297a2d39u;
+  return ((h ^ h >> 15) + 1.) * 0x1p-32;
+}
+
+// Multiplies the light of each pixel by a gamma factor of mean 1 and variance 1 / samples.
+Status add_noise(const Device& device, const FrameInputs& inputs, int samples, std::uint32_t time) {
+  const Extent extent = inputs.render_extent;
+  std::vector<std::uint16_t> colour(static_cast<std::size_t>(extent.area()) * 4);
+  if (Status status = device.download(inputs.colour, extent, colour.data()); !status.ok()) return status;
+  for (std::size_t i = 0; i < colour.size(); i += 4) {
+    double sum = 0;
+    for (int sample = 0; sample < samples; ++sample)
+      sum -= std::log(chance(time, static_cast<std::uint32_t>(i / 4), static_cast<std::uint32_t>(sample)));
+    const auto factor = static_cast<float>(sum / samples);
+    for (std::size_t c = i; c < i + 3; ++c)
+      colour[c] = tools::to_half(factor * tools::from_half(colour[c]));
+  }
+  return device.upload(inputs.colour, extent, colour.data());
 }
 
 }  // namespace
@@ -34,13 +60,16 @@ Result<FrameFeed> FrameFeed::create(const scenes::FrameSource& stage,
                                     const scenes::SequenceSettings& sequence,
                                     const std::vector<ResolveSettings>& resolves,
                                     const std::optional<scenes::PartsSettings>& parts,
-                                    const std::optional<scenes::FocusOptions>& focus) {
+                                    const std::optional<scenes::FocusOptions>& focus,
+                                    std::optional<int> noise) {
   auto source = stage.another(sequence, parts, focus);
   if (!source.ok()) return source.status();
   FrameFeed feed(std::move(source).value());
   auto plans = feed.source_->connect_all(resolves);
   if (!plans.ok()) return plans.status();
   feed.plans_ = std::move(plans).value();
+  feed.noise_ = noise;
+  feed.fps_ = sequence.fps;
   return feed;
 }
 
@@ -54,6 +83,11 @@ Result<FrameInputs> FrameFeed::next() {
   auto inputs = source_->acquire();
   interop_ = interop.elapsed();
   ++drawn_;
+  if (!noise_ || !inputs.ok()) return inputs;
+  // Quarters of frames, because scenes with cuts begin between two.
+  const auto time = static_cast<std::uint32_t>(std::llround(4 * fps_ * source_->oldest().view.seconds));
+  if (Status status = add_noise(source_->device(), inputs.value(), *noise_, time); !status.ok())
+    return status;
   return inputs;
 }
 

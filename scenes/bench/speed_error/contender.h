@@ -36,11 +36,13 @@ class StepClock {
 class FrameFeed {
  public:
   // From the scene, context and device of `stage`, for these resolves of each frame; the parts are the stage's where
-  // none are given.
+  // none are given. `noise`: light has that of so many samples a pixel, the same in each feed; of RGBA16F targets
+  // without a focus.
   static Result<FrameFeed> create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
                                   const std::vector<ResolveSettings>& resolves,
                                   const std::optional<scenes::PartsSettings>& parts = {},
-                                  const std::optional<scenes::FocusOptions>& focus = {});
+                                  const std::optional<scenes::FocusOptions>& focus = {},
+                                  std::optional<int> noise = {});
 
   const std::vector<ResolvePlan>& plans() const { return plans_; }
 
@@ -62,6 +64,8 @@ class FrameFeed {
 
   std::unique_ptr<scenes::FrameSource> source_;
   std::vector<ResolvePlan> plans_;
+  std::optional<int> noise_;
+  double fps_ = 0;
   std::int64_t drawn_ = 0;  // frames
   StepTime draw_;
   StepTime interop_;

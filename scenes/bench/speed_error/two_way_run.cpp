@@ -27,9 +27,9 @@ struct Direction {
   ResolveService service;
 
   static Result<Direction> create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
-                                  ResolveSettings resolve) {
+                                  ResolveSettings resolve, std::optional<int> noise) {
     resolve.output.present = false;
-    auto feed = FrameFeed::create(stage, sequence, {resolve});
+    auto feed = FrameFeed::create(stage, sequence, {resolve}, std::nullopt, std::nullopt, noise);
     if (!feed.ok()) return feed.status();
     auto service = TwoWay::create(stage.device(), feed->plans().front());
     if (!service.ok()) return service.status();
@@ -76,7 +76,7 @@ Result<std::vector<std::vector<float>>> two_way_pictures(const scenes::FrameSour
   const int measured = plan.conditions.frames;
   scenes::SequenceSettings sequence = sequence_for(plan, scale, method);
   sequence.frames = before + measured + kAhead;
-  auto forward = Direction::create(stage, sequence, method.resolve);
+  auto forward = Direction::create(stage, sequence, method.resolve, plan.conditions.noise);
   if (!forward.ok()) return forward.status();
   std::vector<KeptFrame> frames(static_cast<std::size_t>(measured));
   for (int i = -before; i < measured + kAhead; ++i) {
@@ -87,7 +87,7 @@ Result<std::vector<std::vector<float>>> two_way_pictures(const scenes::FrameSour
     frame.inputs = std::move(inputs).value();
   }
   sequence.backwards = true;
-  auto backward = Direction::create(stage, sequence, method.resolve);
+  auto backward = Direction::create(stage, sequence, method.resolve, plan.conditions.noise);
   if (!backward.ok()) return backward.status();
   for (int i = measured + kAhead; i-- > 0;) {
     KeptHistory* const kept = i < measured ? &frames[static_cast<std::size_t>(i)].history : nullptr;
