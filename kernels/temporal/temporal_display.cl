@@ -11,7 +11,7 @@
 //   alpha      in   ALPHA 1: its alpha, resampled and smoothed as colour is
 //   output     out  RGBA32F or RGBA16F, output extent
 // Options: ALPHA   1 (default) | 0: the picture is opaque
-//          SMOOTH  1 (default) | 0 | 2: not pixels of two layers, whose layers are laid together in a merged history
+//          SMOOTH  1 (default) | 0
 //          OUTPUT_FORMAT as in texel.h, HISTORY_FORMAT as in temporal/history.h
 // Reference: tests/reference/temporal_display.cpp
 #include "bits.h"
@@ -157,12 +157,7 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
       }
 
       // Smooth.
-      const float8 stored = confidences(pixels.own);  // negative of two layers
-#if SMOOTH == 2
-      const float8 confidence = select(stored, (float8)(SMOOTHED_CONFIDENCE_MAX), as_int8(stored));
-#else
-      const float8 confidence = fabs(stored);
-#endif
+      const float8 confidence = fabs(confidences(pixels.own));
       const bool smooth = is_smoothed(&params, confidence);
       if (smooth) {
         const EightTexels around = inside ? load_around(layer, x, y) : gather_around(layer, x, y);

@@ -32,7 +32,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .previous = previous,
                   .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,
-                  .merging = merges_ ? Merging::kNow : Merging::kLater,
+                  .merges = merges_,
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,
                   .output = output,

@@ -373,9 +373,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kTemporalTile);
   params.rows_per_item = rows_per_item(impl().profile.shape);
   params.first = shown.first ? 1 : 0;
-  std::string options = spec_of(facts(shown.preset), "temporal_display").options;
-  if (shown.merged) options.replace(options.find("SMOOTH=1"), 8, "SMOOTH=2");
-  cl::Kernel display = kernel("temporal_display", options);
+  cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);
   display.setArg(0, params);
   const cl::Buffer known = history(in);
   const cl::Buffer now = to_device(parts_of<TileReprojection>(tiles));

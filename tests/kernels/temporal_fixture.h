@@ -117,8 +117,7 @@ class TemporalStages {
                      const ResolveVariant& how = {}) const;
   struct Shown {
     TemporalPreset preset = TemporalPreset::kBalanced;
-    bool first = false;   // the first of all frames
-    bool merged = false;  // the history is that of merge_histories
+    bool first = false;  // the first of all frames
   };
   Result run_display(Rig& rig, const StageInputs& in, const std::vector<reference::Tile>& tiles,
                      const Shown& shown) const;

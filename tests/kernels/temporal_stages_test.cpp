@@ -194,9 +194,8 @@ TEST_P(Temporal, DisplayMatchesTheReference) {
     StageInputs in = stages.inputs(rig, spec);
     give_layers(in.reference, spec.seed);
     using Shown = TemporalStages::Shown;
-    for (const Shown& shown : {Shown{}, {TemporalPreset::kFast}, {.first = true}, {.merged = true}}) {
-      const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first,
-                                              !shown.merged};
+    for (const Shown& shown : {Shown{}, {TemporalPreset::kFast}, {.first = true}}) {
+      const reference::DisplayOptions options{shown.preset != TemporalPreset::kFast && !shown.first};
       const auto actual = stages.run_display(rig, in, in.reference.before, shown);
       const auto reference = [&]<typename Real>(Real, int x, int y) {
         return reference::temporal_display<Real>(in.reference, in.reference.before, options, x, y);

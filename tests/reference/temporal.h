@@ -234,7 +234,6 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
 
 struct DisplayOptions {
   bool smooth = true;
-  bool smooth_layered = true;  // pixels of two layers, too
 };
 
 // temporal_display: output pixel (x, y) of the picture that in.history holds.

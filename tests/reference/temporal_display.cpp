@@ -81,9 +81,8 @@ PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>
                                const DisplayOptions& options, int x, int y) {
   const TileReprojection& tile = tiles[index_of(in.tiles_x(), x / kTile, y / kTile)].reprojection;
   HistoryTexel<Real> shown = picture_at<Real>(in, tile, x, y);
-  const double confidence = in.history_clamped(x, y)[3];
-  const bool may_smooth = options.smooth && (options.smooth_layered || !std::signbit(confidence));
-  if (may_smooth && std::abs(confidence) < kSmoothedConfidenceMax) smooth(in, x, y, shown);
+  const double confidence = std::abs(in.history_clamped(x, y)[3]);
+  if (options.smooth && confidence < kSmoothedConfidenceMax) smooth(in, x, y, shown);
   return {shown.texel[0], shown.texel[1], shown.texel[2], shown.alpha};
 }
 

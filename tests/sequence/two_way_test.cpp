@@ -172,7 +172,9 @@ class BothWays : public testing::SequenceTest {
 TEST_F(BothWays, TheFirstFrameIsAsGoodAsLaterOnesAndNoneIsWorse) {
   write_all(1, 26);
   for (const char* method : {"temporal:fast", "temporal", "temporal:quality"}) {
-    resolve_to("one", fmt::format("--method {} --two-way 0", method));
+    // `temporal` is refined both ways, as one way only `quality` is.
+    const char* refined = method == std::string("temporal") ? "temporal:quality" : method;
+    resolve_to("one", fmt::format("--method {} --two-way 0", refined));
     resolve_to("two", fmt::format("--method {} --two-way 8", method));
     double gain = 0;
     for (int number = 1; number <= 26; ++number) {
@@ -180,9 +182,10 @@ TEST_F(BothWays, TheFirstFrameIsAsGoodAsLaterOnesAndNoneIsWorse) {
       EXPECT_GT(two, one - .1) << method << " " << number;
       if (number > 10 && number < 20) gain += (two - one) / 9;
     }
-    // The last one knows no more: it is the same but for a rounding to halves, which files have, too.
-    const std::vector<float> one = colours(output(26, "one")), two = colours(output(26, "two"));
-    EXPECT_TRUE(std::string(method) == "temporal:quality" ? psnr(one, two) > 70 : one == two) << method;
+    // The last one knows no more: it is the same but for a rounding to halves, which files have, too, and for the
+    // wider taps of `quality`.
+    EXPECT_GT(psnr(colours(output(26, "one")), colours(output(26, "two"))), refined == method ? 70 : 45)
+        << method;
     EXPECT_GT(psnr_of("two", 1), psnr_of("one", 1) + 2) << method;
     EXPECT_GT(psnr_of("two", 1), psnr_of("one", 20) - .3) << method;
     EXPECT_GT(gain, .3) << method;
@@ -304,7 +307,7 @@ TEST_F(BothWays, NothingIsSeenBeyondACutAndOneFrameStandsAlone) {
   write(14);
   resolve_to("gap", "--two-way 8 --skip-bad-frames");
   expect_same_files(1, 12, "gap");
-  resolve_to("one", "--two-way 0 --frames 14 --warm-up 0");
+  resolve_to("one", "--two-way 0 --frames 14 --warm-up 0 --method temporal:quality");  // refined, too
   // But for a rounding to halves.
   EXPECT_GT(psnr(colours(output(14, "gap")), colours(output(14, "one"))), 70);
   write(13, {"forward.u", "forward.v"}, 1, 1, kRender, true);
@@ -376,9 +379,7 @@ TEST_F(BothWays, AFrameAheadThatCannotBeReadIsNamedOnce) {
     EXPECT_EQ(std::filesystem::exists(output(number, "b")), number != 34) << number;
   std::filesystem::remove(input(34));  // as if it had never been there
   resolve_to("gap", "--two-way 8 --frames 24-36 --skip-bad-frames");
-  expect_same_files(24, 32, "gap", "b");
-  // It was added before the gap was known, and so it is smoothed where a last frame is not.
-  EXPECT_NEAR(psnr_of("b", 33), psnr_of("gap", 33), .2);
+  expect_same_files(24, 33, "gap", "b");
   expect_same_files(35, 36, "gap", "b");
   for (int number = 24; number <= 33; ++number)
     std::filesystem::remove(output(number, "b"));
@@ -478,7 +479,7 @@ TEST_F(BothWays, AlphaBlurAndPresentedPicturesFollow) {
   // The last frame knows as much either way, but history's halves may round to the next code.
   for (const char* arguments :
        {"--out '{}/two.%04d.png' --two-way 6", "--out '{}/one.%04d.png' --two-way 0"}) {
-    const auto result = resolve(std::string("'{}/f.%04d.exr' -q ") + arguments);
+    const auto result = resolve(std::string("'{}/f.%04d.exr' -q --method temporal:quality ") + arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
   }
   const auto farthest_code = [this](int number) {

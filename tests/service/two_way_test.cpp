@@ -29,22 +29,28 @@ TEST(TwoWay, AHistoryThatIsKeptAndShownIsThePictureOfDispatch) {
   const TemporalScene scene = testing::wires_before_a_wall();  // of two layers, and at no pixels' centres
   for (const TemporalPreset preset :
        {TemporalPreset::kFast, TemporalPreset::kBalanced, TemporalPreset::kQuality}) {
-    const ResolveSettings settings = {
-        .method = Method::kTemporal,
-        .sharpness = .4f,
-        .temporal = {.preset = preset, .history = PixelFormat::kRGBA32F}};  // nothing is rounded
+    // Both ways `balanced` is refined, too; its history is another from the second frame on.
+    const bool refined = preset == TemporalPreset::kBalanced;
+    ResolveSettings settings = {.method = Method::kTemporal,
+                                .sharpness = .4f,
+                                .temporal = {.preset = refined ? TemporalPreset::kQuality : preset,
+                                             .history = PixelFormat::kRGBA32F}};  // nothing is rounded
     ServiceRig rig({}, settings, scene.output, kRender);
-    auto created = TwoWay::create(rig.device(), rig.service().plan());
+    settings = rig.service().plan().settings;
+    settings.temporal.preset = preset;
+    const auto plan = plan_for(rig.service().plan().needs, settings);
+    ASSERT_TRUE(plan.ok()) << plan.status().message();
+    auto created = TwoWay::create(rig.device(), plan.value());
     ASSERT_TRUE(created.ok()) << created.status().message();
     KeptHistory kept;
-    for (int index = 0; index < 4; ++index) {
+    for (int index = 0; index < (refined ? 1 : 4); ++index) {
       const FrameInputs inputs = rig.upload(frame_of(scene, index));
       ASSERT_TRUE(rig.dispatch(inputs).ok());
       const std::vector<Pixel> expected = rig.resolved();
-      const FrameReport added = TwoWay::add(created.value(), inputs, Merging::kNever, &kept);
+      const FrameReport added = TwoWay::add(created.value(), inputs, false, &kept);
       ASSERT_TRUE(added.ok()) << added.status.message();
       EXPECT_EQ(added.used_previous, index > 0);
-      const FrameReport shown = TwoWay::show(created.value(), without_images(inputs), false, kept,
+      const FrameReport shown = TwoWay::show(created.value(), without_images(inputs), kept,
                                              {rig.resolved_view(), rig.presented_view()});
       ASSERT_TRUE(shown.ok()) << shown.status.message();
       EXPECT_TRUE(rig.resolved() == expected) << name_of(preset) << " " << index;
@@ -64,10 +70,9 @@ TEST(TwoWay, ATurnedServiceGoesOnFromTheOtherHistory) {
   constexpr int kLast = 12;
   KeptHistory kept, alone;
   for (int index = 0; index <= kLast; ++index)
-    ASSERT_TRUE(
-        TwoWay::add(forward.value(), rig.upload(frame_of(scene, index)), Merging::kLater, &kept).ok());
+    ASSERT_TRUE(TwoWay::add(forward.value(), rig.upload(frame_of(scene, index)), false, &kept).ok());
   const auto error_of = [&](const KeptHistory& history, const FrameInputs& inputs, int index) {
-    EXPECT_TRUE(TwoWay::show(forward.value(), without_images(inputs), true, history,
+    EXPECT_TRUE(TwoWay::show(forward.value(), without_images(inputs), history,
                              {rig.resolved_view(), rig.presented_view()})
                     .ok());
     return testing::squared_error(rig.resolved(), scene.truth(index), scene.output);
@@ -81,10 +86,10 @@ TEST(TwoWay, ATurnedServiceGoesOnFromTheOtherHistory) {
   const auto error_backwards = [&](bool turns) {
     FrameInputs inputs = rig.upload(frame_of(scene, kLast));
     inputs.reset = true;
-    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, Merging::kLater, nullptr).ok());
+    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, false, nullptr).ok());
     EXPECT_TRUE(!turns || TwoWay::turn(backward.value(), forward.value()).ok());
     inputs = rig.upload(before);
-    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, Merging::kLater, &alone).ok());
+    EXPECT_TRUE(TwoWay::add(backward.value(), inputs, false, &alone).ok());
     return error_of(alone, inputs, kLast - 1);
   };
   EXPECT_LT(error_backwards(true), .7 * error_backwards(false));
@@ -97,7 +102,7 @@ TEST(TwoWay, ABadFrameIsRefusedAsByDispatch) {
   ASSERT_TRUE(service.ok());
   FrameInputs inputs = rig.upload(frame_of(scene, 0));
   inputs.jitter.x = 2;
-  const FrameReport report = TwoWay::add(service.value(), inputs, Merging::kLater, nullptr);
+  const FrameReport report = TwoWay::add(service.value(), inputs, false, nullptr);
   EXPECT_EQ(report.status.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(report.status.message().find("jitter.x is 2"), std::string::npos) << report.status.message();
 }

@@ -45,8 +45,8 @@ struct PassFrame {
   FrameInputs previous = {};  // the current one where there is no history
   Vec2 jitter_motion = {};    // jitter_motion() since the last frame, whether or not that counts as history
   bool has_history = false;
-  Merging merging = Merging::kLater;   // facts.two_way
-  bool keeps_merged = false;           // the same: read afterwards
+  bool merges = false;                 // facts.two_way: there is another history
+  bool keeps_merged = false;           // the same: the merged one is read afterwards
   const FocusInputs* focus = nullptr;  // null: the frame has none
   Extent focus_extent = {};            // the plan's
   Extent output = {};                  // this frame's

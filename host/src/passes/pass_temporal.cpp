@@ -243,20 +243,19 @@ class TemporalDisplayPass : public Pass {
     const Resource shown = merged ? shown_history_of(facts()) : centred_of(facts());
     const Resource history = merged ? Resource::kMergedHistory : Resource::kHistory;
     TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
-    if (facts().two_way && !merged && frame.merging != Merging::kNever) params.first = 1;  // not smoothed
     bind(params, frame[merged ? Resource::kCentredTiles : Resource::kTileReprojection], frame[history],
          view_or(frame, merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, history), frame[shown]);
     launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
 
-PassSpec display_spec(const PlanFacts& facts, int smooths, Resource shown) {
+PassSpec display_spec(const PlanFacts& facts, Resource shown) {
   const ResolveSettings& settings = facts.settings;
   return {
       .kernel = "temporal_display",
       .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             facts.accumulates_alpha() ? 1 : 0, smooths, precision_of(settings.output.linear),
-                             precision_of(settings.temporal.history)),
+                             facts.accumulates_alpha() ? 1 : 0, facts.smooths_history() ? 1 : 0,
+                             precision_of(settings.output.linear), precision_of(settings.temporal.history)),
       .reason = "the method: the history's picture",
       .uses = {{shown, Access::kWrite, Area::kOutput, settings.output.linear}},
       .make = make_pass<TemporalDisplayPass>,
@@ -268,7 +267,7 @@ PassSpec display_spec(const PlanFacts& facts, int smooths, Resource shown) {
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.displays_history()) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec = display_spec(facts, facts.smooths_history() ? 1 : 0, centred_of(facts));
+  PassSpec spec = display_spec(facts, centred_of(facts));
   spec.uses.push_back(
       {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)});
   spec.uses.push_back({Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history});
@@ -290,7 +289,7 @@ class MergeHistoriesPass : public Pass {
                              .height = frame.output.height,
                              .centred = layout_of(frame[Resource::kCentred]),
                              .columns_per_item = columns_per_item(shape(), frame.output.width),
-                             .has_other = frame.merging == Merging::kNow ? 1 : 0};
+                             .has_other = frame.merges ? 1 : 0};
     bind(params, frame[Resource::kCentred], frame[Resource::kHistory], frame[Resource::kOtherHistory],
          view_or(frame, Resource::kOtherAlpha, Resource::kOtherHistory), frame[Resource::kMergedHistory],
          view_or(frame, Resource::kMergedAlpha, Resource::kMergedHistory));
@@ -316,7 +315,7 @@ void plan_merge_histories(const PlanFacts& facts, PassList& list) {
                           {Resource::kMergedHistory, Access::kWrite, Area::kOutput, history}},
                  .make = make_pass<MergeHistoriesPass>,
                  .frames = Frames::kSparse};
-  PassSpec shown = display_spec(facts, facts.smooths_history() ? 2 : 0, shown_history_of(facts));
+  PassSpec shown = display_spec(facts, shown_history_of(facts));
   shown.uses.push_back(
       {Resource::kCentredTiles, Access::kAccumulate, Area::kTiles, {}, sizeof(TileReprojection)});
   shown.uses.push_back({Resource::kMergedHistory, Access::kRead, Area::kOutput, history});
@@ -393,7 +392,7 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
       {.kernel = "temporal_refine",
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
-       .reason = "the preset: sharpened, and smoothed along edges where little is known",
+       .reason = "the preset, or both ways: sharpened, and smoothed along edges where little is known",
        .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.output.linear},
                 {displayed_history_of(facts), Access::kRead, Area::kOutput, settings.temporal.history},
                 {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},

@@ -134,7 +134,7 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
   const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
   queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
   PassFrame frame = picture.frame(inputs, outputs, counted);
-  frame.merging = merging;
+  frame.merges = merges;
   frame.keeps_merged = keeps;
   FocusInputs laid;  // outlives the frame
   if (given != nullptr) {

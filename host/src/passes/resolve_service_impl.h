@@ -57,7 +57,7 @@ struct ResolveService::Impl {
                        const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
   // What TwoWay does, in two_way.cpp.
-  FrameReport show(const FrameInputs& inputs, bool smooth, const FrameOutputs& outputs);
+  FrameReport show(const FrameInputs& inputs, const FrameOutputs& outputs);
   Status write(const KeptHistory& kept, Resource texels, Resource alpha);
   Status read_merged(KeptHistory& kept);
 
@@ -68,8 +68,8 @@ struct ResolveService::Impl {
   cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
   FrameObserver observer;  // may be empty
-  // For TwoWay: what becomes of the next frame's history, and whether it is read; the inputs of blur, where there is.
-  Merging merging = Merging::kLater;
+  // For TwoWay: whether the next frame's history is merged with another one, and read; the inputs of blur.
+  bool merges = false;
   bool keeps = false;
   Image shown_velocity, shown_depth;
 };

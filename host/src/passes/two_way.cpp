@@ -48,7 +48,7 @@ Status ResolveService::Impl::read_merged(KeptHistory& kept) {
   }
 }
 
-FrameReport ResolveService::Impl::show(const FrameInputs& inputs, bool smooth, const FrameOutputs& outputs) {
+FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs) {
   FrameReport refused;
   try {
     const cl::CommandQueue& queue = device.impl()->queue;
@@ -61,7 +61,7 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, bool smooth, c
     queue.enqueueFillBuffer(counter, cl_uint{0}, at, sizeof(cl_uint));
     const FrameInputs current = native_inputs(picture.plan().settings, inputs);
     const FrameOutputs made = native_outputs(picture.plan().settings, outputs);
-    PassFrame frame = picture.chain().frame(current, smooth ? &current : nullptr, made, counted);
+    PassFrame frame = picture.chain().frame(current, nullptr, made, counted);
     frame[Resource::kVelocity] = shown_velocity.view();
     frame[Resource::kDepth] = shown_depth.view();
     picture.chain().show(frame, made, slot.report, slot.passes.data());
@@ -86,14 +86,12 @@ ResolvePlan TwoWay::planned(const ResolvePlan& plan) {
   return plan_of(facts);
 }
 
-FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, Merging merging,
-                        KeptHistory* kept) {
+FrameReport TwoWay::add(ResolveService& service, const FrameInputs& inputs, bool merges, KeptHistory* kept) {
   ResolveService::Impl& impl = *service.impl_;
   FrameReport report;
-  if (merging == Merging::kNow)
-    report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
+  if (merges) report.status = impl.write(*kept, Resource::kOtherHistory, Resource::kOtherAlpha);
   if (!report.ok()) return report;
-  impl.merging = merging;
+  impl.merges = merges;
   impl.keeps = kept != nullptr;
   report = impl.dispatch(inputs, nullptr, {}, {});
   if (!report.ok() || kept == nullptr) return report;
@@ -128,8 +126,8 @@ Status TwoWay::turn(ResolveService& backward, const ResolveService& forward) {
   }
 }
 
-FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, bool smooth,
-                         const KeptHistory& kept, const FrameOutputs& outputs) {
+FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, const KeptHistory& kept,
+                         const FrameOutputs& outputs) {
   ResolveService::Impl& impl = *service.impl_;
   FrameReport report;
   report.status = impl.write(kept, Resource::kMergedHistory, Resource::kMergedAlpha);
@@ -139,7 +137,7 @@ FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, boo
     if (report.ok())
       report.status = impl.device.upload(impl.shown_depth.view(), inputs.render_extent, kept.depth.data());
   }
-  return report.ok() ? impl.show(inputs, smooth, outputs) : report;
+  return report.ok() ? impl.show(inputs, outputs) : report;
 }
 
 }  // namespace quincunx

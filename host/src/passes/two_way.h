@@ -7,20 +7,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "quincunx/advanced/export.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {
-
-// What becomes of a frame's history.
-enum class Merging : std::uint8_t {
-  kLater,  // it will be merged, and is smoothed after that
-  kNow,    // it is merged with the one of the other direction
-  kNever,  // it is shown as dispatch() shows it
-};
 
 // A frame's history in host memory, at the pixels' centres: colour and confidence of each pixel in the history's
 // format, and alpha where the plan accumulates it; the frame's velocity and depth where the plan blurs. Used again, it
@@ -38,19 +30,17 @@ class QUINCUNX_API TwoWay {
   // the passes add() runs those as far as merge_histories, and show() the rest. Pure.
   static ResolvePlan planned(const ResolvePlan& plan);
 
-  // Adds a frame to the service's history, as dispatch() does. `kept`, if not null, becomes that history, or with kNow
-  // what it and the history in `kept`, of the same frame, come to together.
-  static FrameReport add(ResolveService& service, const FrameInputs& inputs, Merging merging,
-                         KeptHistory* kept);
+  // Adds a frame to the service's history, as dispatch() does. `kept`, if not null, becomes that history, or where it
+  // merges what that and the history in `kept`, of the same frame, come to together.
+  static FrameReport add(ResolveService& service, const FrameInputs& inputs, bool merges, KeptHistory* kept);
 
   // Turns round: gives `backward` the history of `forward` in place of its own. Both have added the same frame last,
   // `backward` with `reset`, and have plans that differ in nothing but what follows history.
   static Status turn(ResolveService& backward, const ResolveService& forward);
 
-  // Makes the picture of a history. `inputs`: the frame's, without images. `smooth`: whether pixels of which little is
-  // known are smoothed as the preset does; not what was added with kNever.
-  static FrameReport show(ResolveService& service, const FrameInputs& inputs, bool smooth,
-                          const KeptHistory& kept, const FrameOutputs& outputs);
+  // Makes the picture of a history. `inputs`: the frame's, without images.
+  static FrameReport show(ResolveService& service, const FrameInputs& inputs, const KeptHistory& kept,
+                          const FrameOutputs& outputs);
 };
 
 }  // namespace quincunx

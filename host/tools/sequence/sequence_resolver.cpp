@@ -302,10 +302,8 @@ Status SequenceResolver::add_forward(std::size_t index) {
   const auto inputs = inputs_of(forward_, frame, scanned);
   if (!inputs.ok()) return inputs.status();
   KeptFrame kept;
-  const bool is_last = index + 1 == good_.size() || good_[index + 1].reset;  // of its shot
   KeptHistory history;
-  kept.report = TwoWay::add(forward_.service, inputs.value(), is_last ? Merging::kNever : Merging::kLater,
-                            scanned.wanted ? &history : nullptr);
+  kept.report = TwoWay::add(forward_.service, inputs.value(), false, scanned.wanted ? &history : nullptr);
   if (!kept.report.ok()) return kept.report.status;
   if (scanned.wanted) {
     if (Status status = histories_.put(index, std::move(history)); !status.ok()) return status;
@@ -315,7 +313,6 @@ Status SequenceResolver::add_forward(std::size_t index) {
     if (job_.scores != nullptr) kept.frame.velocity = frame.velocity;
     kept.inputs = inputs.value();
     kept.inputs.colour = kept.inputs.velocity = kept.inputs.depth = kept.inputs.reactive = {};
-    kept.smooths = !is_last && !inputs->reset;
     kept_.emplace(index, std::move(kept));
   }
   outcome_.resolve_ms.push_back(ms_since(start));
@@ -351,11 +348,9 @@ Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& win
   auto history = merges ? histories_.take(index) : KeptHistory();
   if (!history.ok()) return history.status();
   const FrameReport report =
-      TwoWay::add(backward_->service, inputs.value(), merges ? Merging::kNow : Merging::kLater,
-                  merges ? &history.value() : nullptr);
+      TwoWay::add(backward_->service, inputs.value(), merges, merges ? &history.value() : nullptr);
   if (!report.ok()) return report.status;
   if (merges) {
-    kept->second.smooths = true;
     if (Status status = histories_.put(index, std::move(history).value()); !status.ok()) return status;
   }
   if (forward_.last == scanned.number) {
@@ -373,8 +368,8 @@ Status SequenceResolver::show(std::size_t index) {
   const KeptFrame& kept = found->second;
   const auto history = histories_.take(index);
   if (!history.ok()) return history.status();
-  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, kept.smooths, history.value(),
-                                          {linear_.view(), presented_.view()});
+  const FrameReport report =
+      TwoWay::show(forward_.service, kept.inputs, history.value(), {linear_.view(), presented_.view()});
   if (!report.ok()) return report.status;
   if (Status status = deliver(kept.frame, good_[index], kept.report); !status.ok()) return status;
   kept_.erase(found);

@@ -87,8 +87,6 @@ class SequenceResolver {
     SequenceFrame frame;  // without images, but velocity where scores ask for it
     FrameInputs inputs;   // without images
     FrameReport report;
-    bool smooths =
-        false;  // it is smoothed where it is shown: neither a first frame alone, nor what already is
   };
 
   // One file read, and added to a stream.

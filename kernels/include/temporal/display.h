@@ -11,8 +11,8 @@
 #ifndef SMOOTH
 #define SMOOTH 1
 #endif
-#if SMOOTH < 0 || SMOOTH > 2
-#error "SMOOTH must be 0, 1 or 2"
+#if SMOOTH < 0 || SMOOTH > 1
+#error "SMOOTH must be 0 or 1"
 #endif
 
 // How the pixels of a tile are resampled: which texel is the first of the four around the centre of each, and their

@@ -41,8 +41,7 @@ struct Direction {
     const auto inputs = feed.next();
     if (!inputs.ok()) return inputs.status();
     const bool both = merges && !inputs->reset;
-    const FrameReport report = TwoWay::add(service, inputs.value(), both ? Merging::kNow : Merging::kLater,
-                                           both || !merges ? kept : nullptr);
+    const FrameReport report = TwoWay::add(service, inputs.value(), both, both || !merges ? kept : nullptr);
     if (!report.ok()) return report.status;
     if (Status status = service.finish(); !status.ok()) return status;
     feed.release();
@@ -56,8 +55,7 @@ Result<std::vector<std::vector<float>>> show(ResolveService& service, const std:
   if (!image.ok()) return image.status();
   std::vector<std::vector<float>> pictures;
   for (const KeptFrame& frame : frames) {
-    const FrameReport report =
-        TwoWay::show(service, frame.inputs, true, frame.history, {.linear = image->view()});
+    const FrameReport report = TwoWay::show(service, frame.inputs, frame.history, {.linear = image->view()});
     if (!report.ok()) return report.status;
     pictures.emplace_back(static_cast<std::size_t>(output.area()) * 4);
     if (Status status = service.device().download(image->view(), output, pictures.back().data());
