@@ -57,7 +57,8 @@ Status SequenceHistories::put(std::size_t key, KeptHistory history) {
     kept.file.reset(open_temporary_file());
     if (!kept.file) return refused(bytes);
     for (const std::vector<std::byte>* part : parts) {
-      if (std::fwrite(part->data(), 1, part->size(), kept.file.get()) != part->size()) return refused(bytes);
+      const bool written = part->empty() || std::fwrite(part->data(), part->size(), 1, kept.file.get()) == 1;
+      if (!written) return refused(bytes);
     }
     if (std::fflush(kept.file.get()) != 0) return refused(bytes);
     if (!std::exchange(has_spilled_, true)) {
@@ -80,7 +81,7 @@ Result<KeptHistory> SequenceHistories::take(std::size_t key) {
   const auto parts = parts_of(kept.history);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     parts[i]->resize(kept.sizes[i]);
-    if (std::fread(parts[i]->data(), 1, kept.sizes[i], kept.file.get()) != kept.sizes[i]) {
+    if (kept.sizes[i] > 0 && std::fread(parts[i]->data(), kept.sizes[i], 1, kept.file.get()) != 1) {
       return Status::io(fmt::format("a temporary file in '{}' cannot be read: {}",
                                     folder_of_temporary_files(), std::strerror(errno)));
     }
