@@ -21,7 +21,8 @@ struct Fault {
   std::string name;  // "velocity: sign of x", as diagnose() names it
   std::function<void(Frames&)> apply;
   std::function<void(tools::DiagnosedInput&)> say = [](tools::DiagnosedInput&) {
-  };  // what the input says then
+  };                   // what the input says then
+  bool draws = false;  // motion of its own
 };
 
 inline std::function<void(Frames&)> velocity(const std::function<Vec2(Vec2, Extent)>& change) {
@@ -152,8 +153,12 @@ inline std::vector<Fault> faults(float near_plane) {
              (*frame.world_to_ndc)[k] *= -1;
          }
        }},
-      {"objects: at rest", [near_plane](Frames& frames) { stop_objects(frames, near_plane, false); }},
-      {"objects: at rest", [near_plane](Frames& frames) { stop_objects(frames, near_plane, true); }},
+      {.name = "objects: at rest",
+       .apply = [near_plane](Frames& frames) { stop_objects(frames, near_plane, false); },
+       .draws = true},
+      {.name = "objects: at rest",
+       .apply = [near_plane](Frames& frames) { stop_objects(frames, near_plane, true); },
+       .draws = true},
       {"dilation: dilated", dilate},
       {"sky: at rest",
        [](Frames& frames) {
@@ -169,7 +174,7 @@ inline std::vector<Fault> faults(float near_plane) {
                frame.velocity[static_cast<std::size_t>(y * frame.render.width + x)] =
                    frame.velocity[static_cast<std::size_t>(y / 2 * 2 * frame.render.width + x / 2 * 2)];
        }},
-      {"velocity: jitter in it", jitter_into_velocity},
+      {.name = "velocity: jitter in it", .apply = jitter_into_velocity, .draws = true},
       {"velocity: sign of x", velocity([](Vec2 v, Extent) {
          return Vec2{-v.x, v.y};
        })},

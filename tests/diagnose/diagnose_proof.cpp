@@ -2,10 +2,13 @@
 // Breaks whole sequences in every way that diagnose() knows and counts what it says of them. No test: run by hand with
 // patterns of whole frames, as quincunx-dump --sequence writes them.
 //
-//   diagnose_proof [--pairs] [--noise] [--8-bit-velocity] [--only TEXT] [--threads N] [+]PATTERN ...
+//   diagnose_proof [--pairs N] [--varied] [--only TEXT] [--open] [--threads N] [+]PATTERN ...
 //
-// +: the sky rests as drawn, and that is said. --only: faults whose names hold TEXT. What was not named and not left
-// open is printed with all findings; then come counts by fault, and what was mistaken for what.
+// +: the sky rests as drawn, and that is said. --pairs: every Nth pair of faults instead of none and one. --varied:
+// each case three times: as drawn, with noise, with 8-bit velocity. --only: faults whose names hold TEXT. What was not
+// named and not left open (--open: that, too) is printed with all findings; then come counts by fault and by variation,
+// and what was mistaken for what. A fault that changes nothing, such as one of motion where nothing moves, has no
+// effect; nothing may be said of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +32,15 @@ namespace {
 using testing::Fault;
 using testing::Frames;
 
+enum class Variation : std::uint8_t { kAsDrawn, kNoise, kEightBits };
+
+constexpr const char* kVariations[] = {"as drawn", "noise of 16 samples a pixel", "velocity of 8 bits"};
+
 struct Mode {
-  bool pairs = false;      // two faults at a time, in place of none and one
-  bool noise = false;      // of a twentieth of the middle luminance
-  bool eight_bit = false;  // velocity in steps of a quarter pixel, 8 bits from -32 to 32
-  std::string only;        // faults whose names hold this
+  std::size_t pairs = 0;  // every so manieth pair of faults; 0: none and one
+  bool varied = false;
+  bool open = false;  // prints those, too
+  std::string only;   // faults whose names hold this
   int threads = 1;
 };
 
@@ -44,38 +51,53 @@ struct Sequence {
   DiagnosedInput input = {};
 };
 
+struct Break {
+  const Fault* fault;
+  bool idle;  // leaves the frames as they are, as one of motion does where nothing moves
+};
+
 struct Case {
   const Sequence* sequence;
-  std::vector<const Fault*> faults;
+  Variation variation;
+  std::vector<Break> breaks;
 };
 
 struct Count {
-  int named = 0, nearly = 0, partly = 0, open = 0, missed = 0;
+  int idle = 0, named = 0, nearly = 0, partly = 0, open = 0, missed = 0;
 
-  int all() const { return named + nearly + partly + open + missed; }
+  int all() const { return idle + named + nearly + partly + open + missed; }
+
+  void operator+=(const Count& other) {
+    idle += other.idle, named += other.named, nearly += other.nearly;
+    partly += other.partly, open += other.open, missed += other.missed;
+  }
 };
 
+// Each pixel's light as the mean of 16 samples whose light is distributed exponentially.
 void add_noise(Frames& frames) {
+  constexpr float kSamples = 16;
   std::mt19937 random(1);
-  std::normal_distribution<float> noise(0, .1f / light_scale(frames));
+  std::gamma_distribution<float> noise(kSamples, 1 / kSamples);
   for (DiagnosedFrame& frame : frames) {
     for (std::size_t i = 0; i < frame.luminance.size(); ++i) {
-      const float more = noise(random);
-      frame.luminance[i] += more;
+      const float factor = noise(random);
+      frame.luminance[i] *= factor;
       for (std::size_t k = 0; k < 3 && !frame.colour.empty(); ++k)
-        frame.colour[i][k] = std::max(frame.colour[i][k] + more, 0.0f);
+        frame.colour[i][k] *= factor;
     }
   }
 }
 
+// Velocity in steps of a quarter pixel, 8 bits from -32 to 32.
 void round_velocity(Frames& frames) {
+  const auto rounded = [](float v) { return std::clamp(std::round(v * 4), -128.0f, 127.0f) / 4; };
   for (DiagnosedFrame& frame : frames) {
     for (Vec2& v : frame.velocity)
-      v = {std::round(v.x * 4) / 4, std::round(v.y * 4) / 4};
+      v = {rounded(v.x), rounded(v.y)};
   }
 }
 
-Result<Sequence> read(const std::string& argument, const Mode& mode) {
+Result<Sequence> read(const std::string& argument) {
   Sequence sequence = {.pattern = argument.substr(argument[0] == '+' ? 1 : 0), .sky = argument[0] == '+'};
   ResolveOptions options;
   options.input = sequence.pattern;
@@ -89,13 +111,25 @@ Result<Sequence> read(const std::string& argument, const Mode& mode) {
   if (!whole.ok()) return whole.status();
   sequence.frames = std::move(whole->frames);
   sequence.input = whole->input;
-  if (mode.noise) add_noise(sequence.frames);
-  if (mode.eight_bit) round_velocity(sequence.frames);
   return sequence;
 }
 
 std::string subject_of(const std::string& fault) {
   return fault.substr(0, fault.find(':'));
+}
+
+bool is_idle(const Sequence& sequence, Variation variation, const Fault& fault) {
+  Frames whole = sequence.frames, broken = whole;
+  fault.apply(broken);
+  if (variation == Variation::kEightBits) round_velocity(whole), round_velocity(broken);
+  const std::size_t gone = whole.size() - broken.size();
+  for (std::size_t i = 0; i < broken.size(); ++i) {
+    const DiagnosedFrame &x = whole[i + gone], &y = broken[i];
+    if (x.jitter != y.jitter || x.luminance != y.luminance || x.velocity != y.velocity ||
+        x.depth != y.depth || x.world_to_ndc != y.world_to_ndc)
+      return false;
+  }
+  return true;
 }
 
 // Sorts a case into the table: named in full, in what the frames can show, one of two, open as the diagnosis says, or
@@ -137,11 +171,11 @@ const char* judge(const std::set<std::string>& expected, const Diagnosis& diagno
 
 class Proof {
  public:
-  Proof(const std::vector<Case>& cases, int threads) : cases_(cases), threads_(threads) {}
+  Proof(const std::vector<Case>& cases, const Mode& mode) : cases_(cases), mode_(mode) {}
 
   void run() {
     std::vector<std::thread> helpers;
-    for (int i = 1; i < threads_; ++i)
+    for (int i = 1; i < mode_.threads; ++i)
       helpers.emplace_back([this] { work(); });
     work();
     for (std::thread& helper : helpers)
@@ -149,18 +183,21 @@ class Proof {
     Count sum;
     for (const auto& [name, count] : counts_) {
       print(name, count);
-      sum.named += count.named, sum.nearly += count.nearly, sum.partly += count.partly;
-      sum.open += count.open, sum.missed += count.missed;
+      sum += count;
     }
     print("all", sum);
+    for (const auto& [variation, count] : by_variation_)
+      print(kVariations[static_cast<std::size_t>(variation)], count);
     for (const auto& [confusion, times] : confusions_)
       fmt::print("{:4} times {}\n", times, confusion);
   }
 
  private:
   static void print(const std::string& name, const Count& count) {
-    fmt::print("{:50} {:5} cases: named {:5}  nearly {:3}  partly {:3}  cannot tell {:4}  missed {:3}\n",
-               name, count.all(), count.named, count.nearly, count.partly, count.open, count.missed);
+    fmt::print(
+        "{:50} {:5} cases: no effect {:4}  named {:5}  nearly {:3}  partly {:3}  cannot tell {:4}  missed "
+        "{:3}\n",
+        name, count.all(), count.idle, count.named, count.nearly, count.partly, count.open, count.missed);
   }
 
   void work() {
@@ -171,24 +208,36 @@ class Proof {
   void prove(const Case& one) {
     Frames frames = one.sequence->frames;
     DiagnosedInput input = one.sequence->input;
-    std::set<std::string> expected, subjects;
-    for (const Fault* fault : one.faults) {
-      fault->apply(frames);
+    std::set<std::string> expected, faults, subjects;
+    if (one.variation == Variation::kNoise) add_noise(frames);
+    for (const bool draws : {true, false}) {
+      for (const auto& [fault, idle] : one.breaks) {
+        if (fault->draws == draws) fault->apply(frames);
+      }
+      if (draws && one.variation == Variation::kEightBits) round_velocity(frames);
+    }
+    for (const auto& [fault, idle] : one.breaks) {
       fault->say(input);
-      expected.insert(fault->name);
+      if (!idle) expected.insert(fault->name);
+      faults.insert(fault->name);
       subjects.insert(subject_of(fault->name));
     }
     const auto start = std::chrono::steady_clock::now();
     const Diagnosis diagnosis = diagnose(frames, input);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    const std::string broken = expected.empty() ? "whole" : fmt::format("{}", fmt::join(expected, " + "));
-    const std::string row = one.faults.size() < 2 ? broken : fmt::format("{}", fmt::join(subjects, " and "));
+    const std::string broken = faults.empty() ? "whole" : fmt::format("{}", fmt::join(faults, " + "));
+    const std::string row = one.breaks.size() < 2 ? broken : fmt::format("{}", fmt::join(subjects, " and "));
     const std::lock_guard lock(mutex_);
-    const std::string outcome = judge(expected, diagnosis, counts_[row]);
-    if (outcome == "ok" || outcome == "open") return;
+    Count count;
+    const std::string outcome = judge(expected, diagnosis, count);
+    if (outcome == "ok" && expected.empty() && !faults.empty()) count = {.idle = 1};
+    counts_[row] += count;
+    by_variation_[one.variation] += count;
+    if (outcome == "ok" || (outcome == "open" && !mode_.open)) return;
     const std::string said = testing::named(diagnosis);
-    ++confusions_[broken + " -> " + said];
-    fmt::print("{:4} {} {} -> {} {:.2f}s", outcome, one.sequence->pattern, broken, said, took.count());
+    if (outcome != "open") ++confusions_[broken + " -> " + said];
+    fmt::print("{:4} {} {}: {} -> {} {:.2f}s", outcome, one.sequence->pattern,
+               kVariations[static_cast<std::size_t>(one.variation)], broken, said, took.count());
     for (const Finding& finding : diagnosis.findings)
       fmt::print(" | {} {} {:.1f} dB {:.0f}% {}", finding.subject, name_of(finding.verdict),
                  finding.margin_db, 100 * finding.share, fmt::join(finding.open, ","));
@@ -197,33 +246,34 @@ class Proof {
   }
 
   const std::vector<Case>& cases_;
-  int threads_;
+  const Mode& mode_;
   std::atomic<std::size_t> next_ = 0;
   std::mutex mutex_;
   std::map<std::string, Count> counts_;
+  std::map<Variation, Count> by_variation_;
   std::map<std::string, int> confusions_;
 };
 
-std::vector<Case> cases_of(const Sequence& sequence, const std::vector<Fault>& faults, const Mode& mode) {
-  std::vector<const Fault*> fit;
+// Adds those of a sequence. `pairs`: how many there were before, so that sequences share them out.
+void add_cases(const Sequence& sequence, const std::vector<Fault>& faults, const Mode& mode,
+               Variation variation, std::size_t& pairs, std::vector<Case>& cases) {
+  std::vector<Break> fit;
   for (const Fault& fault : faults) {
     if (!(sequence.sky && fault.name.starts_with("sky")) && fault.name.find(mode.only) != std::string::npos)
-      fit.push_back(&fault);
+      fit.push_back({&fault, is_idle(sequence, variation, fault)});
   }
-  std::vector<Case> cases;
-  if (!mode.pairs) {
-    cases.push_back({&sequence, {}});
-    for (const Fault* fault : fit)
-      cases.push_back({&sequence, {fault}});
-    return cases;
+  if (mode.pairs == 0) {
+    cases.push_back({&sequence, variation, {}});
+    for (const Break& one : fit)
+      cases.push_back({&sequence, variation, {one}});
+    return;
   }
   for (std::size_t i = 0; i < fit.size(); ++i) {
     for (std::size_t j = i + 1; j < fit.size(); ++j) {
-      if (subject_of(fit[i]->name) != subject_of(fit[j]->name))
-        cases.push_back({&sequence, {fit[i], fit[j]}});
+      if (subject_of(fit[i].fault->name) != subject_of(fit[j].fault->name) && pairs++ % mode.pairs == 0)
+        cases.push_back({&sequence, variation, {fit[i], fit[j]}});
     }
   }
-  return cases;
 }
 
 int run(int argc, char** argv) {
@@ -231,10 +281,11 @@ int run(int argc, char** argv) {
   std::vector<std::string> patterns;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    mode.pairs |= argument == "--pairs";
-    mode.noise |= argument == "--noise";
-    mode.eight_bit |= argument == "--8-bit-velocity";
-    if (argument == "--only" && i + 1 < argc) {
+    mode.varied |= argument == "--varied";
+    mode.open |= argument == "--open";
+    if (argument == "--pairs" && i + 1 < argc) {
+      mode.pairs = static_cast<std::size_t>(std::max(std::atoi(argv[++i]), 1));
+    } else if (argument == "--only" && i + 1 < argc) {
       mode.only = argv[++i];
     } else if (argument == "--threads" && i + 1 < argc) {
       mode.threads = std::atoi(argv[++i]);
@@ -245,16 +296,19 @@ int run(int argc, char** argv) {
   std::vector<std::unique_ptr<Sequence>> sequences;
   std::vector<std::vector<Fault>> faults;
   std::vector<Case> cases;
+  std::size_t pairs = 0;
   faults.reserve(patterns.size());
   for (const std::string& pattern : patterns) {
-    auto sequence = read(pattern, mode);
+    auto sequence = read(pattern);
     if (!sequence.ok()) return fmt::print(stderr, "{}\n", sequence.status().message()), 1;
     sequences.push_back(std::make_unique<Sequence>(std::move(sequence).value()));
     faults.push_back(testing::faults(sequences.back()->input.near_plane));
-    for (const Case& one : cases_of(*sequences.back(), faults.back(), mode))
-      cases.push_back(one);
+    for (const Variation variation : {Variation::kAsDrawn, Variation::kNoise, Variation::kEightBits}) {
+      if (mode.varied || variation == Variation::kAsDrawn)
+        add_cases(*sequences.back(), faults.back(), mode, variation, pairs, cases);
+    }
   }
-  Proof(cases, mode.threads).run();
+  Proof(cases, mode).run();
   return 0;
 }
 

@@ -169,11 +169,7 @@ TEST(Diagnose, NamesEveryFault) {
     DiagnosedInput input = kInput;
     fault.say(input);
     const Diagnosis diagnosis = tools::diagnose(frames, input);
-    // Motion of another frame is told from the camera's, which does not say which of both is late.
-    const bool late = fault.name == "velocity: frame" && testing::named(diagnosis) == "camera: frame";
-    if (!late) {
-      EXPECT_EQ(testing::named(diagnosis), fault.name);
-    }
+    EXPECT_EQ(testing::named(diagnosis), fault.name);
     EXPECT_TRUE(diagnosis.wrong()) << fault.name;
   }
 }

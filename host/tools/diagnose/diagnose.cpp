@@ -39,6 +39,29 @@ FailureMap failure_map(Frames frames, const DiagnosedInput& input, const std::ve
   return map;
 }
 
+// Returns the frames that have a frame `later` after them, with its motion.
+std::vector<DiagnosedFrame> with_motion_of(Frames frames, int later) {
+  std::vector<DiagnosedFrame> aligned;
+  for (std::size_t i = later < 0 ? 1 : 0; i + (later > 0 ? 1 : 0) < frames.size(); ++i) {
+    const std::size_t other = later > 0 ? i + 1 : i - 1;
+    aligned.push_back(frames[i]);
+    if (follows(frames, std::max(i, other)) && frames[other].render == frames[i].render)
+      aligned.back().velocity = frames[other].velocity;
+  }
+  return aligned;
+}
+
+void add_lateness(Finding& velocity, const Lateness& lateness) {
+  const MotionGuess late = {.later = lateness.later};
+  if (velocity.verdict != Verdict::kWrong) velocity.margin_db = 0;
+  velocity.verdict = Verdict::kWrong;
+  velocity.faults.emplace_back("frame");
+  velocity.fits += (velocity.fits.empty() ? "" : ", ") + text_of(late);
+  velocity.share = lateness.share;
+  velocity.option += (velocity.option.empty() ? "" : ", ") + option_of({}, late, {});
+  std::erase(velocity.open, "frame");
+}
+
 // Dilated motion is that of a pixel beside: it differs from the camera's by about as much as that of another frame.
 void doubt_frame(Finding& camera) {
   if (has_fault(camera, "frame"))
@@ -59,11 +82,30 @@ Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<
     diagnosis.findings.push_back(dilation);
   }
   diagnosis.findings.push_back(find_resolution(scene));
+  const bool coarse = diagnosis.findings.back().verdict == Verdict::kWrong;
   diagnosis.findings.push_back(find_sky(scene, depth));
-  diagnosis.findings.push_back(find_objects(scene, depth));
+  diagnosis.findings.push_back(find_objects(scene, depth, coarse));
   diagnosis.findings.push_back(find_encoding(scene));
   diagnosis.findings.push_back(find_filter(scene, depth.kind));
   find_light(scene, diagnosis.findings, cuts);
+  return diagnosis;
+}
+
+// With motion that belongs to the frames it is with.
+Diagnosis diagnose_aligned(Frames frames, const DiagnosedInput& input) {
+  if (frames.empty()) return {};
+  const std::vector<Plane> planes = planes_of(frames);
+  std::vector<Pair> pairs = pairs_of(frames, planes);
+  std::vector<std::int64_t> cuts;
+  Diagnosis diagnosis = examine(frames, input, planes, pairs, cuts);
+  if (cuts.empty()) return diagnosis;
+  // Once more without what is no pair; that there are cuts remains.
+  const Finding found = diagnosis.findings.back();
+  std::erase_if(pairs, [&](const Pair& pair) {
+    return std::find(cuts.begin(), cuts.end(), frames[pair.now].number) != cuts.end();
+  });
+  diagnosis = examine(frames, input, planes, pairs, cuts);
+  diagnosis.findings.back() = found;
   return diagnosis;
 }
 
@@ -105,18 +147,14 @@ std::vector<FailureMap> failure_maps(Frames frames, const DiagnosedInput& input,
 
 Diagnosis diagnose(Frames frames, const DiagnosedInput& input) {
   if (frames.empty()) return {};
-  const std::vector<Plane> planes = planes_of(frames);
-  std::vector<Pair> pairs = pairs_of(frames, planes);
-  std::vector<std::int64_t> cuts;
-  Diagnosis diagnosis = examine(frames, input, planes, pairs, cuts);
-  if (cuts.empty()) return diagnosis;
-  // Once more without what is no pair; that there are cuts remains.
-  const Finding found = diagnosis.findings.back();
-  std::erase_if(pairs, [&](const Pair& pair) {
-    return std::find(cuts.begin(), cuts.end(), frames[pair.now].number) != cuts.end();
-  });
-  diagnosis = examine(frames, input, planes, pairs, cuts);
-  diagnosis.findings.back() = found;
+  const Lateness lateness = find_lateness(frames, input);
+  if (lateness.later == 0) {
+    Diagnosis diagnosis = diagnose_aligned(frames, input);
+    if (lateness.known) std::erase(diagnosis.findings.front().open, "frame");
+    return diagnosis;
+  }
+  Diagnosis diagnosis = diagnose_aligned(with_motion_of(frames, lateness.later), input);
+  if (!diagnosis.findings.empty()) add_lateness(diagnosis.findings.front(), lateness);
   return diagnosis;
 }
 

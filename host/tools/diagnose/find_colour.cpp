@@ -41,12 +41,15 @@ struct Mixtures {
   std::size_t linear = 0;
   std::size_t encoded = 0;
 
-  void add(const Colour& a, const Colour& b, const Colour& c) {
+  // Three of a row of colours, and the same decoded.
+  void add(const std::vector<Colour>& row, const std::vector<Colour>& light, std::size_t first,
+           std::size_t step) {
     constexpr float kLeastBend = .03f, kStraight = .3f;
+    const Colour &a = row[first], &b = row[first + step], &c = row[first + 2 * step];
     if (!within_screen(a) || !within_screen(b) || !within_screen(c)) return;
     const float as_is = apart(a, b, c);
     if (as_is < 0) return;
-    const Colour da = decoded(a), db = decoded(b), dc = decoded(c);
+    const Colour &da = light[first], &db = light[first + step], &dc = light[first + 2 * step];
     const float as_decoded = apart(da, db, dc);
     const Colour middle = {(a[0] + c[0]) / 2, (a[1] + c[1]) / 2, (a[2] + c[2]) / 2};
     const float bend = apart(da, decoded(middle), dc);
@@ -117,9 +120,11 @@ Finding find_encoding(const Scene& scene) {
     ++looked;
     stepped += eight_bits(frame) ? 1 : 0;
     const auto width = static_cast<std::size_t>(frame.render.width);
+    std::vector<Colour> light(frame.colour.size());
+    std::transform(frame.colour.begin(), frame.colour.end(), light.begin(), decoded);
     for (std::size_t i = 0; i + 2 * width < frame.colour.size(); ++i) {
-      mixtures.add(frame.colour[i], frame.colour[i + width], frame.colour[i + 2 * width]);
-      if (i % width + 2 < width) mixtures.add(frame.colour[i], frame.colour[i + 1], frame.colour[i + 2]);
+      mixtures.add(frame.colour, light, i, width);
+      if (i % width + 2 < width) mixtures.add(frame.colour, light, i, 1);
     }
   }
   const std::size_t all = mixtures.linear + mixtures.encoded;

@@ -94,7 +94,7 @@ Foretold foretold(const Scene& scene, const std::vector<Motion>& motion, float s
     }
     for (std::size_t i = 0; i < motion[p].size(); ++i) {
       const Vec2 a = motion[p][i], b = scene.motion.motion[p][i];
-      const float apart = std::min(std::hypot(a.x - b.x, a.y - b.y), 1.0f);
+      const float apart = std::min(std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)), 1.0f);
       // A motion of exactly 0 was not drawn, as that of many a sky: it tells nothing of the camera.
       const bool drawn = pair.places[i].velocity[1] != Vec2{};
       result.errors[p].push_back(drawn ? apart * apart + step * step : 0);
@@ -176,9 +176,11 @@ void find_wrong(Finding& finding, const std::string& fault, const std::string& f
 
 }  // namespace
 
-std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess) {
+std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
+                                      int back) {
   const auto now = matrix_at(scene.frames, pair.now, guess.camera);
-  const auto before = matrix_at(scene.frames, pair.now - 1, guess.camera);
+  const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(pair.now) - back);
+  const auto before = matrix_at(scene.frames, other, guess.camera);
   if (!now || !before) return std::nullopt;
   return camera_motion(*now, *before, scene.input.near_plane * guess.near_factor);
 }

@@ -76,14 +76,18 @@ void find_light(const Scene& scene, std::vector<Finding>& findings, std::vector<
     exposure.verdict = cuts.verdict = Verdict::kRight;
     std::vector<std::string> jumps;
     std::vector<std::int64_t> unmarked;
+    bool doubt = false;
     for (const Step& step : steps) {
       const double both = step.overall / step.stops;
       if (step.correlation < kIsAnother) {
         unmarked.push_back(step.number);
-      } else if (std::abs(step.stops - middle(all)) > kJump && both > .5 && both < 2 && step.agree > .65) {
-        jumps.push_back(fmt::format("{:+.2f} stops in frame {}", step.stops, step.number));
+      } else if (std::abs(step.stops - middle(all)) > kJump) {
+        const bool everywhere = both > .5 && both < 2 && step.agree > .65;
+        doubt |= !everywhere;
+        if (everywhere) jumps.push_back(fmt::format("{:+.2f} stops in frame {}", step.stops, step.number));
       }
     }
+    if (doubt) exposure.verdict = Verdict::kUnknown;
     if (!jumps.empty()) {
       exposure.verdict = Verdict::kWrong;
       exposure.faults = {"jump"};

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "tools/diagnose/findings.h"
 #include "tools/diagnose/motion_guesses.h"
@@ -25,7 +27,9 @@ class Search {
     return motion;
   }
 
-  Foretold foretold(const std::vector<Motion>& motion, const JitterGuess& jitter, int later = 0) const {
+  // With a stride, at every so many places only.
+  Foretold foretold(const std::vector<Motion>& motion, const JitterGuess& jitter, int later = 0,
+                    std::size_t stride = 1) const {
     Foretold result = {.motion = &motion,
                        .shift = std::vector<Vec2>(pairs_.size()),
                        .errors = std::vector<std::vector<float>>(pairs_.size())};
@@ -35,22 +39,25 @@ class Search {
       const auto before = jitter_at(frames_, input_, jitter, pair.now - 1);
       if (!now || !before || (later > 0 && !pair.has_next) || (later < 0 && !pair.has_second)) continue;
       result.shift[p] = {now->x * pair.ratio.x - before->x, now->y * pair.ratio.y - before->y};
-      result.errors[p] = foretell(pair, planes_[pair.now - 1], motion[p], result.shift[p]);
+      result.errors[p] = foretell(pair, planes_[pair.now - 1], motion[p], result.shift[p], stride);
     }
     return result;
   }
 
-  // Errors with the shift that fits each pair best, whatever the jitter.
-  double least_error(const std::vector<Motion>& motion) const {
+  std::size_t places() const {
+    std::size_t sum = 0;
+    for (const Pair& pair : pairs_)
+      sum += pair.places.size();
+    return sum;
+  }
+
+  // Errors with the shift that fits each pair best, whatever the jitter; more than `most` is not looked at closely.
+  double least_error(const std::vector<Motion>& motion, double most) const {
     constexpr std::size_t kEnough = 5;  // pairs, spread over all
     const std::size_t stride = std::max<std::size_t>(pairs_.size() / kEnough, 1);
     double sum = 0;
-    for (std::size_t p = 0; p < pairs_.size(); p += stride) {
-      const Plane& before = planes_[pairs_[p].now - 1];
-      for (const float error :
-           foretell(pairs_[p], before, motion[p], best_shift(pairs_[p], before, motion[p])))
-        sum += error;
-    }
+    for (std::size_t p = 0; p < pairs_.size() && sum <= most; p += stride)
+      sum += tools::least_error(pairs_[p], planes_[pairs_[p].now - 1], motion[p]);
     return sum;
   }
 
@@ -68,16 +75,18 @@ class Search {
 // Returns guesses of motion worth a second look: the input's own first, then those that foretell best with any shift.
 std::vector<MotionGuess> best_guesses(const Search& search, const std::vector<MotionGuess>& guesses) {
   constexpr std::size_t kKept = 6;
-  std::vector<std::pair<double, std::size_t>> order;
+  std::vector<std::pair<double, std::size_t>> order;  // the best so far
   for (std::size_t g = 1; g < guesses.size(); ++g) {
     // Where guesses come to the same, the simpler goes first.
     const double handicap = 1 + .002 * static_cast<double>(faults_of(guesses[g]).size());
-    order.emplace_back(search.least_error(search.motion(guesses[g])) * handicap, g);
+    const double most = order.size() < kKept ? std::numeric_limits<double>::max() : order.back().first;
+    order.emplace_back(search.least_error(search.motion(guesses[g]), most) * handicap, g);
+    std::sort(order.begin(), order.end());
+    if (order.size() > kKept) order.pop_back();
   }
-  std::sort(order.begin(), order.end());
   std::vector<MotionGuess> kept = {guesses[0]};
-  for (std::size_t i = 0; i < std::min(kKept, order.size()); ++i)
-    kept.push_back(guesses[order[i].second]);
+  for (const auto& [error, g] : order)
+    kept.push_back(guesses[g]);
   return kept;
 }
 
@@ -171,7 +180,7 @@ struct Guesses {
   std::vector<MotionGuess> motions;
   std::vector<JitterGuess> jitters;
   std::vector<std::vector<Motion>> fields;  // of the motions
-  std::vector<Candidate> candidates;        // every motion with every jitter
+  std::vector<Candidate> candidates;        // every motion with every jitter; the hopeless without errors
   std::size_t chosen = 0;
 
   std::size_t index(std::size_t m, std::size_t j) const { return m * jitters.size() + j; }
@@ -183,17 +192,77 @@ struct Guesses {
   bool told() const { return jitters.size() > 4; }  // of a jitter: guesses are more than none and patterns
 };
 
+double mean_error(const Foretold& foretold) {
+  double sum = 0, n = 0;
+  for (const std::vector<float>& errors : foretold.errors) {
+    sum = std::accumulate(errors.begin(), errors.end(), sum);
+    n += static_cast<double>(errors.size());
+  }
+  return n > 0 ? sum / n : 1;
+}
+
+// Whether one foretells worse than the other by far more than chance makes of some thousand places.
+bool hopeless(const Foretold& one, const Foretold& other) {
+  constexpr double kSure = 5;  // standard errors: neighbours err together
+  double sum = 0, squares = 0;
+  for (std::size_t p = 0; p < one.errors.size(); ++p) {
+    for (std::size_t i = 0; i < std::min(one.errors[p].size(), other.errors[p].size()); ++i) {
+      const double more = static_cast<double>(one.errors[p][i]) - static_cast<double>(other.errors[p][i]);
+      sum += more, squares += more * more;
+    }
+  }
+  return sum > kSure * std::sqrt(squares);
+}
+
+// What is asked of a candidate that was hopeless, too.
+const Foretold& foretold(const Search& search, Guesses& guesses, std::size_t m, std::size_t j) {
+  Foretold& known = guesses.candidates[guesses.index(m, j)].foretold;
+  if (known.errors.empty())
+    known = search.foretold(guesses.fields[m], guesses.jitters[j], guesses.motions[m].later);
+  return known;
+}
+
 void foretell_all(const Search& search, Guesses& guesses) {
+  constexpr std::size_t kEnough = 5000;  // places, to find the hopeless
+  const std::size_t stride = std::max<std::size_t>(search.places() / kEnough, 1);
   for (const MotionGuess& guess : guesses.motions)
     guesses.fields.push_back(search.motion(guess));
+  std::vector<Foretold> samples;
+  std::vector<double> means;
   for (std::size_t m = 0; m < guesses.motions.size(); ++m) {
     for (const JitterGuess& jitter : guesses.jitters) {
       // A pattern in place of what is told is the last that one would think of.
       const std::size_t strange = jitter.pattern && guesses.told() ? 1 : 0;
-      guesses.candidates.push_back({strange + faults_of(guesses.motions[m]).size() + faults_of(jitter).size(),
-                                    m, search.foretold(guesses.fields[m], jitter, guesses.motions[m].later)});
+      guesses.candidates.push_back(
+          {strange + faults_of(guesses.motions[m]).size() + faults_of(jitter).size(), m, {}});
+      samples.push_back(search.foretold(guesses.fields[m], jitter, guesses.motions[m].later, stride));
+      means.push_back(mean_error(samples.back()));
     }
   }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    std::size_t best = i;
+    for (std::size_t other = 0; other < samples.size(); ++other) {
+      const bool simpler = guesses.candidates[other].faults <= guesses.candidates[i].faults;
+      if (simpler && means[other] < means[best]) best = other;
+    }
+    if (!hopeless(samples[i], samples[best]))
+      foretold(search, guesses, i / guesses.jitters.size(), i % guesses.jitters.size());
+  }
+}
+
+// Believes motion in another unit only where it foretells better than none.
+void choose_guess(const Search& search, const std::vector<Pair>& pairs, Frames frames, Guesses& guesses) {
+  guesses.chosen = choose(pairs, frames, guesses.candidates);
+  if (guesses.motion().unit == Unit::kStated) return;
+  std::vector<Motion> rest;
+  for (const Pair& pair : pairs)
+    rest.emplace_back(pair.places.size());
+  if (clear(search.compared(guesses.best(), search.foretold(rest, guesses.jitter())))) return;
+  for (std::size_t m = 0; m < guesses.motions.size(); ++m) {
+    for (std::size_t j = 0; j < guesses.jitters.size(); ++j)
+      if (guesses.motions[m].unit != Unit::kStated) guesses.candidates[guesses.index(m, j)].foretold = {};
+  }
+  guesses.chosen = choose(pairs, frames, guesses.candidates);
 }
 
 // Returns how the chosen motion compares with those that may be mistaken for it.
@@ -217,7 +286,7 @@ Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const
 }
 
 // `mixed`: the jitter is in the motion though that is not said, or is not though it is.
-Finding judge_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses, bool mixed,
+Finding judge_motion(const Search& search, const DiagnosedInput& input, Guesses& guesses, bool mixed,
                      Extent extent) {
   const MotionGuess& motion = guesses.motion();
   Finding finding = {.subject = "velocity", .says = tools::name_of(input.units.convention)};
@@ -239,22 +308,22 @@ Finding judge_motion(const Search& search, const DiagnosedInput& input, const Gu
                                                          : " ",
                                   said ? "no --velocity-jittered" : "--velocity-jittered");
   }
-  const std::size_t other = motion == MotionGuess{} ? 0 : guesses.index(0, guesses.chosen_jitter());
-  const Comparison compared = search.compared(guesses.best(), guesses.candidates[other].foretold);
+  const std::size_t jitter = motion == MotionGuess{} ? 0 : guesses.chosen_jitter();
+  const Comparison compared = search.compared(guesses.best(), foretold(search, guesses, 0, jitter));
   finding.margin_db = compared.margin_db;
   finding.share = compared.share;
   return finding;
 }
 
 // `jitter`: the one that fits. Where the motion holds it, pictures cannot tell it from none: the motion's word counts.
-Finding judge_jitter(const Search& search, const Guesses& guesses, const JitterGuess& jitter, bool mixed) {
+Finding judge_jitter(const Search& search, Guesses& guesses, const JitterGuess& jitter, bool mixed) {
   Finding finding = {.subject = "jitter", .says = guesses.told() ? "told" : "none"};
   if (jitter == JitterGuess{}) {
     Rivals rivals;
     for (std::size_t j = 1; j < guesses.jitters.size() && !mixed; ++j) {
       if (guesses.jitters[j].pattern && guesses.told()) continue;
-      const Candidate& rival = guesses.candidates[guesses.index(guesses.chosen_motion(), j)];
-      rivals.add(search.compared(guesses.best(), rival.foretold), faults_of(guesses.jitters[j]));
+      const Foretold& rival = foretold(search, guesses, guesses.chosen_motion(), j);
+      rivals.add(search.compared(guesses.best(), rival), faults_of(guesses.jitters[j]));
     }
     rivals.judge(finding);
     if (mixed) finding.verdict = Verdict::kRight;
@@ -266,8 +335,8 @@ Finding judge_jitter(const Search& search, const Guesses& guesses, const JitterG
   finding.option = jitter.pattern       ? fmt::format("--jitter {}", tools::name_of(*jitter.pattern))
                    : jitter.factor == 0 ? "--jitter none"
                                         : "--jitter FILE, with what --diagnose --json prints";
-  const Candidate& told = guesses.candidates[guesses.index(guesses.chosen_motion(), 0)];
-  const Comparison compared = search.compared(guesses.best(), told.foretold);
+  const Foretold& told = foretold(search, guesses, guesses.chosen_motion(), 0);
+  const Comparison compared = search.compared(guesses.best(), told);
   finding.margin_db = compared.margin_db;
   finding.share = compared.share;
   return finding;
@@ -285,7 +354,7 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   guesses.jitters = jitter_guesses(frames, input);
   if (has_motion) guesses.motions = best_guesses(search, motion_guesses(input, extent));
   foretell_all(search, guesses);
-  guesses.chosen = choose(pairs, frames, guesses.candidates);
+  choose_guess(search, pairs, frames, guesses);
 
   MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
   JitterGuess jitter = guesses.jitter();

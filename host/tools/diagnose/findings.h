@@ -18,6 +18,15 @@ inline std::size_t pixel_of(const DiagnosedFrame& frame, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
+// Does motion end where surfaces of its own frame do, or of the frame before or after? Needs neither texture nor units.
+struct Lateness {
+  bool known = false;
+  int later = 0;     // frames by which the motion that fits was written too early
+  double share = 0;  // of the rims that say so, where it is not 0
+};
+
+Lateness find_lateness(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input);
+
 // What motion and jitter are, looked at together, because each hides the other's mistakes.
 struct MotionAnswer {
   std::vector<Finding> findings = {};
@@ -57,8 +66,10 @@ struct DepthGuess {
 // Judges depth and camera; returns the guess to believe.
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);
 
-// Returns how the camera moved to the later frame of a pair; nothing where that is not known.
-std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess);
+// Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0); nothing
+// where that is not known.
+std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
+                                      int back = 1);
 
 // Returns the pixels by which that moves a point at rest, which a frame of this size has at `at`.
 Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent extent);
@@ -72,8 +83,9 @@ Finding find_resolution(const Scene& scene);
 // Does the sky stand still in the picture although the camera moves it?
 Finding find_sky(const Scene& scene, const DepthGuess& guess);
 
-// Are there things that move by themselves, yet have the motion of what is at rest?
-Finding find_objects(const Scene& scene, const DepthGuess& guess);
+// Are there things that move by themselves, yet have the motion of what is at rest? `coarse`: motion is of half the
+// size, which gives thin things that of what is behind them.
+Finding find_objects(const Scene& scene, const DepthGuess& guess, bool coarse);
 
 // Is the picture encoded for a screen, and was it filtered already?
 Finding find_encoding(const Scene& scene);

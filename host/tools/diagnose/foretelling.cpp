@@ -9,7 +9,7 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr int kWantedPlaces = 6000;
+constexpr int kWantedPlaces = 4000;
 constexpr float kLeastGradient = .01f;  // of light in a pixel
 constexpr int kBlocks = 6;              // of a picture's side
 
@@ -39,15 +39,25 @@ Plane plane_of(const DiagnosedFrame& frame, float scale) {
     const float value = clean(frame.luminance[i]) * scale;
     sharp.values[i] = std::sqrt(value / (1 + value));
   }
+  // 1 2 1 along rows, then along columns; borders go on.
+  const auto width = static_cast<std::size_t>(frame.render.width);
+  const auto height = static_cast<std::size_t>(frame.render.height);
   Plane across = sharp, soft = sharp;
-  std::size_t i = 0;
-  for (int y = 0; y < frame.render.height; ++y)
-    for (int x = 0; x < frame.render.width; ++x, ++i)
-      across.values[i] = .5f * at(sharp, x, y) + .25f * (at(sharp, x - 1, y) + at(sharp, x + 1, y));
-  i = 0;
-  for (int y = 0; y < frame.render.height; ++y)
-    for (int x = 0; x < frame.render.width; ++x, ++i)
-      soft.values[i] = .5f * at(across, x, y) + .25f * (at(across, x, y - 1) + at(across, x, y + 1));
+  for (std::size_t y = 0; y < height; ++y) {
+    const float* from = &sharp.values[y * width];
+    float* to = &across.values[y * width];
+    for (std::size_t x = 1; x + 1 < width; ++x)
+      to[x] = .5f * from[x] + .25f * (from[x - 1] + from[x + 1]);
+    for (const std::size_t x : {std::size_t{0}, width - 1})
+      to[x] = .5f * from[x] + .25f * (from[x > 0 ? x - 1 : 0] + from[std::min(x + 1, width - 1)]);
+  }
+  for (std::size_t y = 0; y < height; ++y) {
+    const float* from = &across.values[y * width];
+    const float* above = y > 0 ? from - width : from;
+    const float* below = y + 1 < height ? from + width : from;
+    for (std::size_t x = 0; x < width; ++x)
+      soft.values[y * width + x] = .5f * from[x] + .25f * (above[x] + below[x]);
+  }
   return soft;
 }
 
@@ -57,27 +67,26 @@ std::array<float, 4> catmull_rom(float t) {
           .5f * (t3 - t2)};
 }
 
-// At texel coordinates within the plane.
+// At texel coordinates within the plane, which are not negative.
 float sample(const Plane& plane, float x, float y) {
-  const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
+  const int x0 = static_cast<int>(x), y0 = static_cast<int>(y);
   const auto wx = catmull_rom(x - static_cast<float>(x0)), wy = catmull_rom(y - static_cast<float>(y0));
   const bool inside = x0 >= 1 && y0 >= 1 && x0 + 2 < plane.extent.width && y0 + 2 < plane.extent.height;
-  float sum = 0;
+  std::array<float, 4> columns = {};
   for (int j = 0; j < 4; ++j) {
-    float row = 0;
+    const float weight = wy[static_cast<std::size_t>(j)];
     if (inside) {
       const float* texels =
           &plane.values[static_cast<std::size_t>(y0 + j - 1) * static_cast<std::size_t>(plane.extent.width) +
                         static_cast<std::size_t>(x0 - 1)];
-      for (int i = 0; i < 4; ++i)
-        row += wx[static_cast<std::size_t>(i)] * texels[i];
+      for (std::size_t i = 0; i < 4; ++i)
+        columns[i] += weight * texels[i];
     } else {
       for (int i = 0; i < 4; ++i)
-        row += wx[static_cast<std::size_t>(i)] * at(plane, x0 + i - 1, y0 + j - 1);
+        columns[static_cast<std::size_t>(i)] += weight * at(plane, x0 + i - 1, y0 + j - 1);
     }
-    sum += wy[static_cast<std::size_t>(j)] * row;
   }
-  return sum;
+  return wx[0] * columns[0] + wx[1] * columns[1] + wx[2] * columns[2] + wx[3] * columns[3];
 }
 
 float gradient(const Plane& plane, int x, int y) {
@@ -125,6 +134,22 @@ std::vector<Place> places_of(const DiagnosedFrame& frame, const Plane& plane) {
     }
   }
   return places;
+}
+
+// The earlier frame's light where a place was; -1 where that is out of the picture.
+float light_before(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift, std::size_t i) {
+  const Place& place = pair.places[i];
+  const float x = (static_cast<float>(place.x) + .5f - motion[i].x) * pair.ratio.x - .5f + shift.x;
+  const float y = (static_cast<float>(place.y) + .5f - motion[i].y) * pair.ratio.y - .5f + shift.y;
+  const bool inside = x >= 0 && y >= 0 && x <= static_cast<float>(before.extent.width - 1) &&
+                      y <= static_cast<float>(before.extent.height - 1);
+  return inside ? std::max(sample(before, x, y), 0.0f) : -1;
+}
+
+float square_error(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift, std::size_t i) {
+  const float light = light_before(pair, before, motion, shift, i);
+  const float error = light < 0 ? kMostError : std::min(std::abs(light - pair.places[i].light), kMostError);
+  return error * error;
 }
 
 Vec2 finite(Vec2 v) {
@@ -180,35 +205,25 @@ std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::ve
   return pairs;
 }
 
-std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
-                                  std::size_t stride) {
-  std::vector<float> light;
-  const float right = static_cast<float>(before.extent.width - 1);
-  const float bottom = static_cast<float>(before.extent.height - 1);
-  for (std::size_t i = 0; i < pair.places.size(); i += stride) {
-    const Place& place = pair.places[i];
-    const float x = (static_cast<float>(place.x) + .5f - motion[i].x) * pair.ratio.x - .5f + shift.x;
-    const float y = (static_cast<float>(place.y) + .5f - motion[i].y) * pair.ratio.y - .5f + shift.y;
-    const bool inside = x >= 0 && y >= 0 && x <= right && y <= bottom;
-    light.push_back(inside ? std::max(sample(before, x, y), 0.0f) : -1);
-  }
+std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift) {
+  std::vector<float> light(pair.places.size());
+  for (std::size_t i = 0; i < light.size(); ++i)
+    light[i] = light_before(pair, before, motion, shift, i);
   return light;
 }
 
 std::vector<float> foretell(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
                             std::size_t stride) {
-  std::vector<float> errors = foretold_light(pair, before, motion, shift, stride);
-  for (std::size_t i = 0; i < errors.size(); ++i) {
-    const float error = errors[i] < 0
-                            ? kMostError
-                            : std::min(std::abs(errors[i] - pair.places[i * stride].light), kMostError);
-    errors[i] = error * error;
-  }
+  std::vector<float> errors;
+  errors.reserve(pair.places.size() / stride + 1);
+  for (std::size_t i = 0; i < pair.places.size(); i += stride)
+    errors.push_back(square_error(pair, before, motion, shift, i));
   return errors;
 }
 
-Vec2 best_shift(const Pair& pair, const Plane& before, const Motion& motion) {
-  const std::size_t stride = std::max<std::size_t>(pair.places.size() / 500, 1);
+double least_error(const Pair& pair, const Plane& before, const Motion& motion) {
+  constexpr std::size_t kEnough = 250;
+  const std::size_t stride = std::max<std::size_t>(pair.places.size() / kEnough, 1);
   Vec2 best;
   double least = -1;
   const auto search = [&](Vec2 centre, float step, int reach) {
@@ -216,15 +231,15 @@ Vec2 best_shift(const Pair& pair, const Plane& before, const Motion& motion) {
       for (int i = -reach; i <= reach; ++i) {
         const Vec2 shift = {centre.x + step * static_cast<float>(i), centre.y + step * static_cast<float>(j)};
         double sum = 0;
-        for (const float error : foretell(pair, before, motion, shift, stride))
-          sum += error;
+        for (std::size_t p = 0; p < pair.places.size() && (least < 0 || sum < least); p += stride)
+          sum += square_error(pair, before, motion, shift, p);
         if (least < 0 || sum < least) least = sum, best = shift;
       }
     }
   };
   search({}, .5f, 2);
   search(best, .25f, 1);
-  return best;
+  return least;
 }
 
 Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames, const Foretold& one,
@@ -233,6 +248,7 @@ Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> 
   double sum_one = 0, sum_other = 0, sum = 0, squares = 0;
   std::size_t blocks = 0, better = 0, counted = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
+    if (one.errors.empty() || other.errors.empty()) break;
     if (one.errors[p].empty() || other.errors[p].empty()) continue;
     const Extent extent = frames[pairs[p].now].render;
     struct Block {

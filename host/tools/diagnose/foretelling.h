@@ -58,15 +58,14 @@ std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::ve
 
 // Returns the earlier frame's light where each place was, 0 and more; -1 where that is out of the picture. `shift`:
 // this frame's jitter, in the earlier frame's pixels, less that frame's.
-std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
-                                  std::size_t stride = 1);
+std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift);
 
 // Returns the squared errors of that; a place that left the picture is wholly wrong.
 std::vector<float> foretell(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift,
                             std::size_t stride = 1);
 
-// The shift within a pixel and a quarter that foretells best.
-Vec2 best_shift(const Pair& pair, const Plane& before, const Motion& motion);
+// Returns the sum of those of some hundred places under the shift that foretells best, within a pixel and a quarter.
+double least_error(const Pair& pair, const Plane& before, const Motion& motion);
 
 // How one guess compares with another, at the places where they differ.
 struct Comparison {

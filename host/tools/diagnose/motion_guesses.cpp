@@ -82,11 +82,13 @@ Vec2 factors_of(const DiagnosedInput& input, const MotionGuess& guess, Extent ex
 Motion motion_of(const Pair& pair, const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
   const Vec2 factors = factors_of(input, guess, extent);
   Motion motion;
+  motion.reserve(pair.places.size());
   for (const Place& place : pair.places) {
     const Vec2 own = place.velocity[1];
     Vec2 v = place.velocity[static_cast<std::size_t>(1 + guess.later)];
     // Another surface has come here, which says nothing of when motion was written.
-    if (std::hypot(v.x - own.x, v.y - own.y) > .5f * std::hypot(own.x, own.y)) v = own;
+    const Vec2 off = {v.x - own.x, v.y - own.y};
+    if (off.x * off.x + off.y * off.y > .25f * (own.x * own.x + own.y * own.y)) v = own;
     if (guess.swapped) std::swap(v.x, v.y);
     motion.push_back({v.x * factors.x, v.y * factors.y});
   }
