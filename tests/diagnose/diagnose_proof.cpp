@@ -2,11 +2,11 @@
 // Breaks whole sequences in every way that diagnose() knows and counts what it says of them. No test: run by hand with
 // patterns of whole frames, as quincunx-dump --sequence writes them.
 //
-//   diagnose_proof [--pairs N] [--varied] [--only TEXT] [--open] [--threads N] [+]PATTERN ...
+//   diagnose_proof [--pairs N] [--varied] [--only TEXT] [--every] [--threads N] [+]PATTERN ...
 //
 // +: the sky rests as drawn, and that is said. --pairs: every Nth pair of faults instead of none and one. --varied:
 // each case three times: as drawn, with noise, with 8-bit velocity. --only: faults whose names hold TEXT. What was not
-// named and not left open (--open: that, too) is printed with all findings; then come counts by fault and by variation,
+// named and not left open (--every: every case) is printed with all findings; then come counts by fault and by variation,
 // and what was mistaken for what. A fault that changes nothing, such as one of motion where nothing moves, has no
 // effect; nothing may be said of it.
 #include <fmt/format.h>
@@ -39,8 +39,8 @@ constexpr const char* kVariations[] = {"as drawn", "noise of 16 samples a pixel"
 struct Mode {
   std::size_t pairs = 0;  // every so manieth pair of faults; 0: none and one
   bool varied = false;
-  bool open = false;  // prints those, too
-  std::string only;   // faults whose names hold this
+  bool every = false;  // prints each case
+  std::string only;    // faults whose names hold this
   int threads = 1;
 };
 
@@ -233,9 +233,9 @@ class Proof {
     if (outcome == "ok" && expected.empty() && !faults.empty()) count = {.idle = 1};
     counts_[row] += count;
     by_variation_[one.variation] += count;
-    if (outcome == "ok" || (outcome == "open" && !mode_.open)) return;
+    if ((outcome == "ok" || outcome == "open") && !mode_.every) return;
     const std::string said = testing::named(diagnosis);
-    if (outcome != "open") ++confusions_[broken + " -> " + said];
+    if (outcome != "open" && outcome != "ok") ++confusions_[broken + " -> " + said];
     fmt::print("{:4} {} {}: {} -> {} {:.2f}s", outcome, one.sequence->pattern,
                kVariations[static_cast<std::size_t>(one.variation)], broken, said, took.count());
     for (const Finding& finding : diagnosis.findings)
@@ -282,7 +282,7 @@ int run(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     mode.varied |= argument == "--varied";
-    mode.open |= argument == "--open";
+    mode.every |= argument == "--every";
     if (argument == "--pairs" && i + 1 < argc) {
       mode.pairs = static_cast<std::size_t>(std::max(std::atoi(argv[++i]), 1));
     } else if (argument == "--only" && i + 1 < argc) {

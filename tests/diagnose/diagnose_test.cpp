@@ -37,6 +37,7 @@ struct Shot {
   tools::Jitter jitter = tools::Jitter::kHalton;
   float noise = 0;
   bool plate = false;  // coloured; the columns are plain, and so is a plate that moves by itself before them
+  bool rods = false;   // in place of the plate, three of little more than a pixel
 };
 
 // A smooth pattern with waves from some four pixels on.
@@ -88,7 +89,8 @@ class Stage {
         const double u = across(x + .5 + frame.jitter.x), v = down(y + .5 + frame.jitter.y);
         const bool column = std::sin(2.2 * (u * kColumns + now.x)) > .3;
         const double plate_x = u * kPlate + now.x - kPlateMoves * n + 1.5;
-        const bool plate = shot_.plate && plate_x > 0 && plate_x < 1.2 && std::abs(v) < .3;
+        const bool within = shot_.rods ? plate_x < 2.1 && std::fmod(plate_x, .7) < .032 : plate_x < 1.2;
+        const bool plate = shot_.plate && plate_x > 0 && within && std::abs(v) < .3;
         const double z = plate ? kPlate : column ? kColumns : kWall;
         const double size = z / pixels(1);  // of a pixel there
         float light = .3f;
@@ -171,6 +173,29 @@ TEST(Diagnose, NamesEveryFault) {
     const Diagnosis diagnosis = tools::diagnose(frames, input);
     EXPECT_EQ(testing::named(diagnosis), fault.name);
     EXPECT_TRUE(diagnosis.wrong()) << fault.name;
+  }
+}
+
+TEST(Diagnose, FindsThinThingsAtRest) {
+  const Frames whole = Stage({.plate = true, .rods = true}).frames();
+  EXPECT_EQ(testing::named(diagnosis_of(whole)), "none");
+  for (const bool zero : {false, true}) {
+    Frames frames = whole;
+    testing::stop_objects(frames, kNear, zero);
+    EXPECT_EQ(testing::named(diagnosis_of(frames)), "objects: at rest") << zero;
+  }
+}
+
+TEST(Diagnose, NamesFaultsOfMotionByTheCamera) {
+  const Frames whole =
+      Stage({.textured = false, .noise = .6f}).frames();  // nothing follows from the last frame
+  EXPECT_EQ(testing::named(diagnosis_of(whole)), "none");
+  EXPECT_EQ(finding(diagnosis_of(whole), "velocity").verdict, Verdict::kRight);
+  for (const Fault& fault : testing::faults(kNear)) {
+    if (!fault.name.starts_with("velocity: ") || fault.name.ends_with("in it")) continue;
+    Frames frames = whole;
+    fault.apply(frames);
+    EXPECT_EQ(testing::named(diagnosis_of(frames)), fault.name);
   }
 }
 

@@ -176,6 +176,14 @@ void find_wrong(Finding& finding, const std::string& fault, const std::string& f
 
 }  // namespace
 
+std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& input,
+                                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs) {
+  MotionAnswer told;
+  for (const DiagnosedFrame& frame : frames)
+    told.jitter.push_back(frame.jitter);
+  return camera_motion_of({frames, input, planes, pairs, told}, {input.depth_kind});
+}
+
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
                                       int back) {
   const auto now = matrix_at(scene.frames, pair.now, guess.camera);

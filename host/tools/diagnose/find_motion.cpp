@@ -175,6 +175,58 @@ std::vector<MotionGuess> toggled(const MotionGuess& guess) {
   return rivals;
 }
 
+// What depth and camera, as the input says them, say of motion, whether or not it foretells.
+struct CameraWord {
+  std::optional<MotionGuess> guess = {};  // nothing where motion is not the camera's under any
+  std::vector<Comparison> over = {};      // its toggled() rivals, in their order
+};
+
+CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Extent extent,
+                          const std::vector<Pair>& pairs, Frames frames, const std::vector<Motion>& camera) {
+  constexpr float kMoves = .25f, kAgrees = .04f, kAgreesPart = .06f;  // pixels; more, of the motion
+  constexpr double kMost = .6;                                        // of what moves
+  const auto apart = [&](const std::vector<Motion>& motion) {
+    Foretold result = {.motion = &motion,
+                       .shift = std::vector<Vec2>(pairs.size()),
+                       .errors = std::vector<std::vector<float>>(pairs.size())};
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      for (std::size_t i = 0; i < camera[p].size(); ++i) {
+        const Vec2 off = {motion[p][i].x - camera[p][i].x, motion[p][i].y - camera[p][i].y};
+        const bool drawn = pairs[p].places[i].velocity[1] != Vec2{};
+        result.errors[p].push_back(drawn ? std::min(off.x * off.x + off.y * off.y, 1.0f) : 0);
+      }
+    }
+    return result;
+  };
+  std::vector<MotionGuess> guesses = motion_guesses(input, extent);
+  std::erase_if(guesses, [](const MotionGuess& guess) { return guess.later != 0; });
+  std::vector<std::vector<Motion>> fields;
+  for (const MotionGuess& guess : guesses)
+    fields.push_back(search.motion(guess));
+  std::vector<Candidate> candidates;
+  for (std::size_t g = 0; g < guesses.size(); ++g)
+    candidates.push_back({faults_of(guesses[g]).size(), g, apart(fields[g])});
+  const std::size_t chosen = choose(pairs, frames, candidates);
+  const Foretold& best = candidates[chosen].foretold;
+  double moving = 0, agree = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    for (std::size_t i = 0; i < camera[p].size(); ++i) {
+      const Vec2 moved = camera[p][i];
+      const float length = std::sqrt(moved.x * moved.x + moved.y * moved.y);
+      if (!(length > kMoves) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
+      moving += 1, agree += std::sqrt(best.errors[p][i]) < kAgrees + kAgreesPart * length ? 1 : 0;
+    }
+  }
+  constexpr double kLeast = 100;
+  if (moving < kLeast || agree < kMost * moving) return {};
+  CameraWord word = {.guess = guesses[chosen]};
+  for (const MotionGuess& rival : toggled(*word.guess)) {
+    const std::vector<Motion> field = search.motion(rival);
+    word.over.push_back(compare(pairs, frames, best, apart(field)));
+  }
+  return word;
+}
+
 // All guesses, foretold, and the one to believe.
 struct Guesses {
   std::vector<MotionGuess> motions;
@@ -265,12 +317,31 @@ void choose_guess(const Search& search, const std::vector<Pair>& pairs, Frames f
   guesses.chosen = choose(pairs, frames, guesses.candidates);
 }
 
+// Believes the camera instead where the frames do not say clearly otherwise.
+void heed_camera(const Search& search, const std::vector<Pair>& pairs, Frames frames, const CameraWord& word,
+                 Guesses& guesses) {
+  if (!word.guess || *word.guess == guesses.motion()) return;
+  const auto known = std::find(guesses.motions.begin(), guesses.motions.end(), *word.guess);
+  const auto m = static_cast<std::size_t>(known - guesses.motions.begin());
+  if (known == guesses.motions.end()) return;
+  std::vector<Candidate> candidates;
+  for (std::size_t j = 0; j < guesses.jitters.size(); ++j) {
+    candidates.push_back(guesses.candidates[guesses.index(m, j)]);
+    candidates.back().faults -= faults_of(*known).size();
+    candidates.back().foretold = foretold(search, guesses, m, j);
+  }
+  const std::size_t j = choose(pairs, frames, candidates);
+  if (!clear(search.compared(guesses.best(), candidates[j].foretold))) guesses.chosen = guesses.index(m, j);
+}
+
 // Returns how the chosen motion compares with those that may be mistaken for it.
 Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const Guesses& guesses,
-                        Extent extent) {
+                        const CameraWord& word, Extent extent) {
   const MotionGuess& motion = guesses.motion();
+  const std::vector<MotionGuess> toggles = toggled(motion);
   Rivals rivals;
-  for (const MotionGuess& rival : toggled(motion)) {
+  for (std::size_t r = 0; r < toggles.size(); ++r) {
+    const MotionGuess& rival = toggles[r];
     if (same(input, rival, motion, extent)) continue;
     const std::vector<Motion> field = search.motion(rival);
     MotionGuess change = rival;
@@ -280,17 +351,19 @@ Rivals rivals_of_motion(const Search& search, const DiagnosedInput& input, const
     const Comparison compared =
         search.compared(guesses.best(), search.foretold(field, guesses.jitter(), rival.later));
     // Whose motion it is says nothing of what it means.
-    if (change.later == 0 || !clear(compared)) rivals.add(compared, faults_of(change));
+    if (change.later != 0 && clear(compared)) continue;
+    const bool by_camera = word.guess == motion && change.later == 0 && !clear(compared);
+    rivals.add(by_camera ? word.over[r] : compared, faults_of(change));
   }
   return rivals;
 }
 
 // `mixed`: the jitter is in the motion though that is not said, or is not though it is.
-Finding judge_motion(const Search& search, const DiagnosedInput& input, Guesses& guesses, bool mixed,
-                     Extent extent) {
+Finding judge_motion(const Search& search, const DiagnosedInput& input, Guesses& guesses,
+                     const CameraWord& word, bool mixed, Extent extent) {
   const MotionGuess& motion = guesses.motion();
   Finding finding = {.subject = "velocity", .says = tools::name_of(input.units.convention)};
-  const Rivals rivals = rivals_of_motion(search, input, guesses, extent);
+  const Rivals rivals = rivals_of_motion(search, input, guesses, word, extent);
   rivals.judge(finding);
   if (motion == MotionGuess{} && !mixed) return finding;
   finding.verdict = Verdict::kWrong;
@@ -352,9 +425,18 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   Guesses guesses;
   guesses.motions = {{}};
   guesses.jitters = jitter_guesses(frames, input);
-  if (has_motion) guesses.motions = best_guesses(search, motion_guesses(input, extent));
+  CameraWord word;
+  if (has_motion) {
+    guesses.motions = best_guesses(search, motion_guesses(input, extent));
+    word = word_of_camera(search, input, extent, pairs, frames,
+                          stated_camera_motion(frames, input, planes, pairs));
+    const auto& known = guesses.motions;
+    if (word.guess && std::find(known.begin(), known.end(), *word.guess) == known.end())
+      guesses.motions.push_back(*word.guess);
+  }
   foretell_all(search, guesses);
   choose_guess(search, pairs, frames, guesses);
+  heed_camera(search, pairs, frames, word, guesses);
 
   MotionAnswer answer = {.motion = guesses.fields[guesses.chosen_motion()], .shift = guesses.best().shift};
   JitterGuess jitter = guesses.jitter();
@@ -367,7 +449,7 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
     if (mixed) jitter = said ? JitterGuess{} : *within;
   }
   Finding motion = {.subject = "velocity", .says = "none"};
-  if (has_motion) motion = judge_motion(search, input, guesses, mixed, extent);
+  if (has_motion) motion = judge_motion(search, input, guesses, word, mixed, extent);
   const Finding moved = judge_jitter(search, guesses, jitter, mixed);
   answer.findings = {motion, moved};
   answer.knows_motion = motion.verdict != Verdict::kUnknown;

@@ -66,6 +66,10 @@ struct DepthGuess {
 // Judges depth and camera; returns the guess to believe.
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);
 
+// Returns the motion of each pair's places by depth and camera as the input says them; none where it says neither.
+std::vector<Motion> stated_camera_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
+                                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
+
 // Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0); nothing
 // where that is not known.
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
