@@ -253,7 +253,7 @@ inline std::vector<Fault> faults(float near_plane) {
        }},
       {"exposure: jump",
        [](Frames& frames) {
-         for (std::size_t i = frames.size() / 2; i < frames.size(); ++i)
+         for (std::size_t i = frames.size() * 2 / 3; i < frames.size(); ++i)
            for (std::size_t k = 0; k < frames[i].luminance.size(); ++k) {
              frames[i].luminance[k] *= 1.2f;
              for (std::size_t c = 0; c < 3 && !frames[i].colour.empty(); ++c)

@@ -176,6 +176,23 @@ void find_wrong(Finding& finding, const std::string& fault, const std::string& f
 
 }  // namespace
 
+bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
+            const std::vector<Motion>& camera) {
+  constexpr float kMoves = .25f, kRoom = .04f, kRoomPart = .06f;  // pixels; more, of the motion
+  constexpr double kMost = .6, kLeast = 100;
+  double moving = 0, agree = 0;
+  for (std::size_t p = 0; p < pairs.size(); ++p) {
+    for (std::size_t i = 0; i < camera[p].size(); ++i) {
+      const Vec2 moved = camera[p][i], off = {motion[p][i].x - moved.x, motion[p][i].y - moved.y};
+      const float length = std::sqrt(moved.x * moved.x + moved.y * moved.y);
+      if (!(length > kMoves) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
+      moving += 1;
+      agree += std::sqrt(off.x * off.x + off.y * off.y) < kRoom + kRoomPart * length ? 1 : 0;
+    }
+  }
+  return moving >= kLeast && agree >= kMost * moving;
+}
+
 std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& input,
                                          const std::vector<Plane>& planes, const std::vector<Pair>& pairs) {
   MotionAnswer told;
@@ -221,7 +238,16 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   std::vector<Candidate> candidates;
   for (std::size_t g = 0; g < guesses.size(); ++g)
     candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold(scene, motions[g], step)});
-  const std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
+  std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
+  const Camera whose = guesses[chosen].camera;
+  if (scene.motion.knows_motion && (whose == Camera::kLast || whose == Camera::kNext) &&
+      !agrees(scene.pairs, scene.motion.motion, motions[chosen])) {
+    // A camera that is nearer the motion, yet not its own.
+    for (std::size_t g = 1; g < guesses.size(); ++g)
+      if (guesses[g].camera == Camera::kLast || guesses[g].camera == Camera::kNext)
+        candidates[g].foretold.errors.clear();
+    chosen = choose(scene.pairs, scene.frames, candidates);
+  }
   const DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {

@@ -65,8 +65,8 @@ std::vector<Step> steps_of(const Scene& scene) {
 }  // namespace
 
 void find_light(const Scene& scene, std::vector<Finding>& findings, std::vector<std::int64_t>& cuts_before) {
-  constexpr double kJump = .1;                       // stops
-  constexpr double kFollows = .7, kIsAnother = .35;  // correlations
+  constexpr double kJump = .1;                                        // stops
+  constexpr double kFollows = .7, kMayFollow = .5, kIsAnother = .35;  // correlations
   const std::vector<Step> steps = steps_of(scene);
   Finding exposure = {.subject = "exposure", .says = "steady"}, cuts = {.subject = "cuts", .says = "marked"};
   std::vector<double> all, correlations;
@@ -78,6 +78,7 @@ void find_light(const Scene& scene, std::vector<Finding>& findings, std::vector<
     std::vector<std::int64_t> unmarked;
     bool doubt = false;
     for (const Step& step : steps) {
+      if (step.correlation < kMayFollow) cuts.verdict = Verdict::kUnknown;
       const double both = step.overall / step.stops;
       if (step.correlation < kIsAnother) {
         unmarked.push_back(step.number);

@@ -183,8 +183,6 @@ struct CameraWord {
 
 CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Extent extent,
                           const std::vector<Pair>& pairs, Frames frames, const std::vector<Motion>& camera) {
-  constexpr float kMoves = .25f, kAgrees = .04f, kAgreesPart = .06f;  // pixels; more, of the motion
-  constexpr double kMost = .6;                                        // of what moves
   const auto apart = [&](const std::vector<Motion>& motion) {
     Foretold result = {.motion = &motion,
                        .shift = std::vector<Vec2>(pairs.size()),
@@ -199,7 +197,11 @@ CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Ext
     return result;
   };
   std::vector<MotionGuess> guesses = motion_guesses(input, extent);
-  std::erase_if(guesses, [](const MotionGuess& guess) { return guess.later != 0; });
+  // A near plane elsewhere makes motion longer or shorter, too.
+  const bool lengths = input.depth_kind == DepthKind::kLinear;
+  std::erase_if(guesses, [&](const MotionGuess& guess) {
+    return guess.later != 0 || (guess.unit != Unit::kStated && !lengths);
+  });
   std::vector<std::vector<Motion>> fields;
   for (const MotionGuess& guess : guesses)
     fields.push_back(search.motion(guess));
@@ -208,17 +210,7 @@ CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Ext
     candidates.push_back({faults_of(guesses[g]).size(), g, apart(fields[g])});
   const std::size_t chosen = choose(pairs, frames, candidates);
   const Foretold& best = candidates[chosen].foretold;
-  double moving = 0, agree = 0;
-  for (std::size_t p = 0; p < pairs.size(); ++p) {
-    for (std::size_t i = 0; i < camera[p].size(); ++i) {
-      const Vec2 moved = camera[p][i];
-      const float length = std::sqrt(moved.x * moved.x + moved.y * moved.y);
-      if (!(length > kMoves) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
-      moving += 1, agree += std::sqrt(best.errors[p][i]) < kAgrees + kAgreesPart * length ? 1 : 0;
-    }
-  }
-  constexpr double kLeast = 100;
-  if (moving < kLeast || agree < kMost * moving) return {};
+  if (!agrees(pairs, fields[chosen], camera)) return {};
   CameraWord word = {.guess = guesses[chosen]};
   for (const MotionGuess& rival : toggled(*word.guess)) {
     const std::vector<Motion> field = search.motion(rival);
@@ -317,7 +309,7 @@ void choose_guess(const Search& search, const std::vector<Pair>& pairs, Frames f
   guesses.chosen = choose(pairs, frames, guesses.candidates);
 }
 
-// Believes the camera instead where the frames do not say clearly otherwise.
+// Believes the camera instead where the frames do not say clearly otherwise, or only by more faults.
 void heed_camera(const Search& search, const std::vector<Pair>& pairs, Frames frames, const CameraWord& word,
                  Guesses& guesses) {
   if (!word.guess || *word.guess == guesses.motion()) return;

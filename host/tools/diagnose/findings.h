@@ -70,6 +70,11 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);
 std::vector<Motion> stated_camera_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
                                          const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
 
+// Whether most of what moves does so as the camera moves it: exactly, which no other motion does by chance. Motion of 0
+// was not drawn.
+bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
+            const std::vector<Motion>& camera);
+
 // Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0); nothing
 // where that is not known.
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
