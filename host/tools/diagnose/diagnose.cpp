@@ -53,7 +53,7 @@ std::vector<DiagnosedFrame> with_motion_of(Frames frames, int later) {
 
 void add_lateness(Finding& velocity, const Lateness& lateness) {
   const MotionGuess late = {.later = lateness.later};
-  if (velocity.verdict != Verdict::kWrong) velocity.margin_db = 0;
+  if (velocity.verdict != Verdict::kWrong) weigh(velocity, {});
   velocity.verdict = Verdict::kWrong;
   velocity.faults.emplace_back("frame");
   velocity.fits += (velocity.fits.empty() ? "" : ", ") + text_of(late);

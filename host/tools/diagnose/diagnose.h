@@ -58,6 +58,7 @@ struct Finding {
   std::string fits = {};                 // what the frames say; empty: as the input
   std::vector<std::string> open = {};  // faults that these frames cannot show: nothing differs, or too little
   double margin_db = 0;     // how much better that foretells than the next best; 0: not a prediction
+  double certainty = 0;     // standard errors of that, over blocks of the pictures
   double share = 0;         // of the pairs of frames that say so
   std::string option = {};  // what mends it
 };

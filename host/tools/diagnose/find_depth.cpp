@@ -80,7 +80,7 @@ float step_of(const Scene& scene) {
 }
 
 // `step`: as of step_of().
-Foretold foretold(const Scene& scene, const std::vector<Motion>& motion, float step) {
+Foretold foretold_of(const Scene& scene, const std::vector<Motion>& motion, float step) {
   Foretold result = {.motion = &motion,
                      .shift = scene.motion.shift,
                      .errors = std::vector<std::vector<float>>(motion.size())};
@@ -164,14 +164,21 @@ float fitting_near(const Scene& scene, DepthKind kind) {
   return best;
 }
 
+// Whether colours are foretold better than by no motion.
+bool betters_rest(const Scene& scene, const Foretold& foretold) {
+  std::vector<Motion> rest;
+  for (const Pair& pair : scene.pairs)
+    rest.emplace_back(pair.places.size());
+  return clear(compare(scene.pairs, scene.frames, foretold, foretold_of(scene, rest, 0)));
+}
+
 void find_wrong(Finding& finding, const std::string& fault, const std::string& fits,
                 const std::string& option, const Comparison& against) {
   finding.verdict = Verdict::kWrong;
   finding.faults = {fault};
   finding.fits = fits;
   finding.option = option;
-  finding.margin_db = against.margin_db;
-  finding.share = against.share;
+  weigh(finding, against);
 }
 
 }  // namespace
@@ -237,17 +244,22 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   const float step = step_of(scene);
   std::vector<Candidate> candidates;
   for (std::size_t g = 0; g < guesses.size(); ++g)
-    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold(scene, motions[g], step)});
+    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold_of(scene, motions[g], step)});
   std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
-  const Camera whose = guesses[chosen].camera;
-  if (scene.motion.knows_motion && (whose == Camera::kLast || whose == Camera::kNext) &&
-      !agrees(scene.pairs, scene.motion.motion, motions[chosen])) {
-    // A camera that is nearer the motion, yet not its own.
+  const auto fine = [&](std::size_t g) {  // may be nearer the motion by chance
+    return guesses[g].near_factor != 1 || guesses[g].camera == Camera::kLast ||
+           guesses[g].camera == Camera::kNext;
+  };
+  const auto explains = [&](std::size_t g) {
+    return !scene.motion.knows_motion || agrees(scene.pairs, scene.motion.motion, motions[g]);
+  };
+  if (fine(chosen) && !explains(chosen)) {
     for (std::size_t g = 1; g < guesses.size(); ++g)
-      if (guesses[g].camera == Camera::kLast || guesses[g].camera == Camera::kNext)
-        candidates[g].foretold.errors.clear();
+      if (fine(g)) candidates[g].foretold.errors.clear();
     chosen = choose(scene.pairs, scene.frames, candidates);
   }
+  if (chosen != 0 && !scene.motion.knows_motion && !betters_rest(scene, candidates[chosen].foretold))
+    chosen = 0;
   const DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {
@@ -260,11 +272,13 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   for (const float factor : {.5f, 2.0f}) {
     if (best.kind == DepthKind::kLinear) break;
     const auto motion = camera_motion_of(scene, {best.kind, best.camera, best.near_factor * factor});
-    kinds.add(compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold(scene, motion, step)),
-              {"near plane"});
+    kinds.add(
+        compare(scene.pairs, scene.frames, candidates[chosen].foretold, foretold_of(scene, motion, step)),
+        {"near plane"});
   }
   kinds.judge(depth);
   cameras.judge(camera);
+  if (!explains(chosen)) depth.verdict = camera.verdict = Verdict::kUnknown;
   const Comparison against =
       compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
   if (best.kind != input.depth_kind) {

@@ -375,8 +375,7 @@ Finding judge_motion(const Search& search, const DiagnosedInput& input, Guesses&
   }
   const std::size_t jitter = motion == MotionGuess{} ? 0 : guesses.chosen_jitter();
   const Comparison compared = search.compared(guesses.best(), foretold(search, guesses, 0, jitter));
-  finding.margin_db = compared.margin_db;
-  finding.share = compared.share;
+  weigh(finding, compared);
   return finding;
 }
 
@@ -402,8 +401,7 @@ Finding judge_jitter(const Search& search, Guesses& guesses, const JitterGuess& 
                                         : "--jitter FILE, with what --diagnose --json prints";
   const Foretold& told = foretold(search, guesses, guesses.chosen_motion(), 0);
   const Comparison compared = search.compared(guesses.best(), told);
-  finding.margin_db = compared.margin_db;
-  finding.share = compared.share;
+  weigh(finding, compared);
   return finding;
 }
 

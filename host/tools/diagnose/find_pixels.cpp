@@ -389,7 +389,7 @@ Finding find_objects(const Scene& scene, const DepthGuess& guess, bool coarse) {
     finding.faults = {"at rest"};
     finding.fits = "some move by themselves, with the motion of what is at rest";
     finding.option = "write the motion of everything that moves";
-  } else if (moving > .005 * pixels && sudden < kFew * pixels) {
+  } else if (scene.motion.knows_motion && moving > .005 * pixels && sudden < kFew * pixels) {
     finding.verdict = Verdict::kRight;
     finding.share = 1 - votes.share();
   }

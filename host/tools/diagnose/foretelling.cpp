@@ -298,6 +298,12 @@ Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> 
   return result;
 }
 
+void weigh(Finding& finding, const Comparison& comparison) {
+  finding.margin_db = comparison.margin_db;
+  finding.certainty = comparison.certainty;
+  finding.share = comparison.share;
+}
+
 bool clear(const Comparison& comparison, double least_db) {
   if (comparison.places < 60) return false;
   const double least = least_db + 100.0 / static_cast<double>(comparison.places);
@@ -320,6 +326,9 @@ std::size_t choose(std::span<const Pair> pairs, std::span<const DiagnosedFrame> 
     }
     chosen = best;
   }
+  const bool moved = candidates[chosen].motion != candidates[0].motion;
+  const auto against = compare(pairs, frames, candidates[chosen].foretold, candidates[0].foretold);
+  if (!clear(against, moved ? kLeastMotionDb : kLeastDb)) return 0;
   // A fault more that is not needed goes again: one with fewer may do almost as well, yet have been no clear gain.
   constexpr double kAlmost = .7;
   const auto over = [&](std::size_t one, std::size_t other) {
@@ -345,8 +354,7 @@ void Rivals::add(const Comparison& compared, const std::vector<std::string>& fau
 
 void Rivals::judge(Finding& finding) const {
   finding.verdict = beaten > 0 ? Verdict::kRight : Verdict::kUnknown;
-  finding.margin_db = nearest.margin_db;
-  finding.share = nearest.share;
+  weigh(finding, nearest);
   finding.open = open;
 }
 

@@ -86,6 +86,9 @@ struct Foretold {
 Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames, const Foretold& one,
                    const Foretold& other);
 
+// Gives a finding the figures of what decided it.
+void weigh(Finding& finding, const Comparison& comparison);
+
 // The least margin by which a guess is believed: many places make small ones certain. Other motion than is said must be
 // better by more, since some surfaces foretell badly whatever moves them: thin ones, and those that mirror.
 inline constexpr double kLeastDb = .3, kLeastMotionDb = 1;

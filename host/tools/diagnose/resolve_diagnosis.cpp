@@ -253,17 +253,19 @@ Diagnosis diagnose(const ResolveTask& task, const DiagnosedSequence& sequence) {
 
 std::string diagnosis_text(std::span<const DiagnosedFrame> frames, const Diagnosis& diagnosis) {
   const auto line = [](const std::string& a, const std::string& b, const std::string& c, const std::string& d,
-                       const std::string& e) {
-    const std::string text = fmt::format("{:<16} {:<12} {:<16} {:>8} {:>6}", a, b, c, d, e);
+                       const std::string& e, const std::string& f) {
+    const std::string text = fmt::format("{:<16} {:<12} {:<16} {:>8} {:>9} {:>6}", a, b, c, d, e, f);
     return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
   };
   std::string text = frames.empty()
                          ? "No frame to look at\n"
                          : fmt::format("Frames {} to {}\n", frames.front().number, frames.back().number);
-  text += line("", "", "input says", "margin", "share");
+  text += line("", "", "input says", "margin", "certainty", "share");
+  constexpr double kMost = 99;  // standard errors
   for (const Finding& finding : diagnosis.findings) {
     text += line(finding.subject, name_of(finding.verdict), finding.says,
                  finding.margin_db > 0 ? fmt::format("{:.1f} dB", finding.margin_db) : "",
+                 finding.margin_db > 0 ? fmt::format("{:.0f} s.e.", std::min(finding.certainty, kMost)) : "",
                  finding.share > 0 ? fmt::format("{:.0f} %", 100 * finding.share) : "");
     if (!finding.fits.empty()) text += fmt::format("{:<16} fits: {}\n", "", finding.fits);
     if (!finding.option.empty()) text += fmt::format("{:<16} mends it: {}\n", "", finding.option);
@@ -305,6 +307,7 @@ std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis) 
                         {"fits", finding.fits},
                         {"not_shown", finding.open},
                         {"margin_db", finding.margin_db},
+                        {"certainty", finding.certainty},
                         {"share", finding.share},
                         {"option", finding.option}});
   }
