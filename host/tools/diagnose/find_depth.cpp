@@ -184,7 +184,7 @@ void find_wrong(Finding& finding, const std::string& fault, const std::string& f
 }  // namespace
 
 bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
-            const std::vector<Motion>& camera) {
+            const std::vector<Motion>& camera, float step) {
   constexpr float kMoves = .25f, kRoom = .04f, kRoomPart = .06f;  // pixels; more, of the motion
   constexpr double kMost = .6, kLeast = 100;
   double moving = 0, agree = 0;
@@ -192,9 +192,9 @@ bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
     for (std::size_t i = 0; i < camera[p].size(); ++i) {
       const Vec2 moved = camera[p][i], off = {motion[p][i].x - moved.x, motion[p][i].y - moved.y};
       const float length = std::sqrt(moved.x * moved.x + moved.y * moved.y);
-      if (!(length > kMoves) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
+      if (!(length > std::max(kMoves, 2 * step)) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
       moving += 1;
-      agree += std::sqrt(off.x * off.x + off.y * off.y) < kRoom + kRoomPart * length ? 1 : 0;
+      agree += std::sqrt(off.x * off.x + off.y * off.y) < kRoom + kRoomPart * length + step / 2 ? 1 : 0;
     }
   }
   return moving >= kLeast && agree >= kMost * moving;
@@ -246,20 +246,12 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   for (std::size_t g = 0; g < guesses.size(); ++g)
     candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold_of(scene, motions[g], step)});
   std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
-  const auto fine = [&](std::size_t g) {  // may be nearer the motion by chance
-    return guesses[g].near_factor != 1 || guesses[g].camera == Camera::kLast ||
-           guesses[g].camera == Camera::kNext;
+  const auto explains = [&](std::size_t g) {  // any may be nearer the motion by chance
+    return scene.motion.knows_motion ? agrees(scene.pairs, scene.motion.motion, motions[g], step)
+                                     : g == 0 || betters_rest(scene, candidates[g].foretold);
   };
-  const auto explains = [&](std::size_t g) {
-    return !scene.motion.knows_motion || agrees(scene.pairs, scene.motion.motion, motions[g]);
-  };
-  if (fine(chosen) && !explains(chosen)) {
-    for (std::size_t g = 1; g < guesses.size(); ++g)
-      if (fine(g)) candidates[g].foretold.errors.clear();
-    chosen = choose(scene.pairs, scene.frames, candidates);
-  }
-  if (chosen != 0 && !scene.motion.knows_motion && !betters_rest(scene, candidates[chosen].foretold))
-    chosen = 0;
+  const bool explained = explains(chosen);
+  if (!explained) chosen = 0;
   const DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {
@@ -278,7 +270,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   }
   kinds.judge(depth);
   cameras.judge(camera);
-  if (!explains(chosen)) depth.verdict = camera.verdict = Verdict::kUnknown;
+  if (!explained) depth.verdict = camera.verdict = Verdict::kUnknown;
   const Comparison against =
       compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
   if (best.kind != input.depth_kind) {

@@ -71,9 +71,9 @@ std::vector<Motion> stated_camera_motion(std::span<const DiagnosedFrame> frames,
                                          const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
 
 // Whether most of what moves does so as the camera moves it: exactly, which no other motion does by chance. Motion of 0
-// was not drawn.
+// was not drawn. `step`: pixels between neighbouring values, where motion is stored in steps.
 bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
-            const std::vector<Motion>& camera);
+            const std::vector<Motion>& camera, float step = 0);
 
 // Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0); nothing
 // where that is not known.
