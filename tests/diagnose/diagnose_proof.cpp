@@ -6,9 +6,9 @@
 //
 // +: the sky rests as drawn, and that is said. --pairs: every Nth pair of faults instead of none and one. --varied:
 // each case three times: as drawn, with noise, with 8-bit velocity. --only: faults whose names hold TEXT. What was not
-// named and not left open (--every: every case) is printed with all findings; then come counts by fault and by variation,
-// and what was mistaken for what. A fault that changes nothing, such as one of motion where nothing moves, has no
-// effect; nothing may be said of it.
+// named and not left open (--every: every case) is printed with all findings; then come counts by fault and by
+// variation, and what was mistaken for what. A fault that changes nothing, such as one of motion where nothing moves,
+// has no effect; nothing may be said of it.
 #include <fmt/format.h>
 
 #include <algorithm>

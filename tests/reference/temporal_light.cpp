@@ -244,7 +244,8 @@ TileLight memory_of(const LightInputs& in, int x, int y) {
   const auto light_at = [&](int column, int row) -> const TileLight& {
     return in.before[index_of(in.tiles_x, column, row)].light;
   };
-  TileLight light = light_at(place_before(x, kTile, step[0], in.tiles_x), place_before(y, kTile, step[1], in.tiles_y));
+  TileLight light =
+      light_at(place_before(x, kTile, step[0], in.tiles_x), place_before(y, kTile, step[1], in.tiles_y));
   for (int row = 0; row < 2; ++row) {
     for (int column = 0; column < 2; ++column) {
       const int from_x = place_before(2 * x + column, kTile / 2, step[0], 2 * in.tiles_x);

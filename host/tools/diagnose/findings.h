@@ -75,8 +75,8 @@ std::vector<Motion> stated_camera_motion(std::span<const DiagnosedFrame> frames,
 bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
             const std::vector<Motion>& camera, float step = 0);
 
-// Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0); nothing
-// where that is not known.
+// Returns how the camera moved to the later frame of a pair, from so many frames before it (after: less than 0);
+// nothing where that is not known.
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
                                       int back = 1);
 
