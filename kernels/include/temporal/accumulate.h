@@ -50,16 +50,8 @@ static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count
 
 // Returns which samples are outliers, of those of pixels whose history is known.
 static inline int8 are_held_back(EightTexels history, float8 confidence, EightTexels samples) {
-  int8 held = confidence >= CONFIDENCE_MIN;
-  UNROLL(8)
-  for (int i = 0; i < 8; ++i) {
-    const float4 known = first_texel(history), sample = first_texel(samples);
-    if (!is_valid(sample) || !is_outlier(sample, outlier_range(known))) held.s0 = 0;
-    held = NEXT_LANES(held);
-    history = push_texel(history, known);
-    samples = push_texel(samples, sample);
-  }
-  return held;
+  const SampleLanes lanes = compare_lanes(samples);
+  return (confidence >= CONFIDENCE_MIN) & are_outliers(&lanes, outlier_range(history));
 }
 
 // Returns m + (s - m) part, and in w their confidence.
@@ -84,13 +76,8 @@ static inline EightTexels accumulate(EightTexels history, float8 known, float8 i
   return sum;
 }
 
-// Returns the alphas of eight samples.
-static inline float8 alphas(EightTexels samples) {
-  return (float8)(samples.left.s37bf, samples.right.s37bf);
-}
-
 // Returns the updated alpha.
 static inline float8 accumulate_alpha(float8 history, float8 known, float8 inertia, EightTexels samples,
                                       float8 weight) {
-  return history + (alphas(samples) - history) * sample_parts(known, inertia, weight);
+  return history + (last_channels(samples) - history) * sample_parts(known, inertia, weight);
 }

@@ -59,24 +59,44 @@ static inline float luma_weight(float4 sample) {
 // Several side by side are held back for a frame: a fault of one frame then never reaches history, and what stays, or
 // comes back soon, is late by one frame.
 
-// Limits beyond which a sample is an outlier.
-typedef struct OutlierRange {
-  float most, least;
-} OutlierRange;
+// What is compared of eight samples.
+typedef struct SampleLanes {
+  float8 luma;                // negative channels included
+  float8 brightest, darkest;  // channels of colour
+  int8 valid;
+} SampleLanes;
 
-static inline float largest_magnitude(float4 colour) {
-  return max(max(fabs(colour.x), fabs(colour.y)), fabs(colour.z));
+static inline float8 luma_of(EightTexels texels) {
+  return 0.25f * (reds(texels) + blues(texels)) + 0.5f * greens(texels);
 }
 
-static inline OutlierRange outlier_range(float4 history) {
-  const float light = largest_magnitude(history);
+static inline int8 magnitude_bits(float8 value) {
+  return as_int8(value) & 0x7fffffff;
+}
+
+static inline SampleLanes compare_lanes(EightTexels samples) {
+  const float8 red = reds(samples), green = greens(samples), blue = blues(samples);
+  const int8 largest = max(max(magnitude_bits(red), magnitude_bits(green)),
+                           max(magnitude_bits(blue), magnitude_bits(last_channels(samples))));
+  const SampleLanes lanes = {luma_of(samples), max(max(red, green), blue), min(min(red, green), blue),
+                             largest < INVALID_BITS};
+  return lanes;
+}
+
+// Limits beyond which samples are outliers.
+typedef struct OutlierRange {
+  float8 most, least;
+} OutlierRange;
+
+static inline OutlierRange outlier_range(EightTexels history) {
+  const float8 light = max(max(fabs(reds(history)), fabs(greens(history))), fabs(blues(history)));
   const OutlierRange range = {OUTLIER_RATIO_MIN * (light + OUTLIER_FLOOR), -(light + NEGATIVE_OUTLIER_FLOOR)};
   return range;
 }
 
-// Returns whether a valid sample is one.
-static inline bool is_outlier(float4 sample, OutlierRange range) {
-  return max(max(sample.x, sample.y), sample.z) > range.most || min(min(sample.x, sample.y), sample.z) < range.least;
+// Returns which samples are valid and outliers.
+static inline int8 are_outliers(const SampleLanes* samples, OutlierRange range) {
+  return samples->valid & ((samples->brightest > range.most) | (samples->darkest < range.least));
 }
 
 // ---- The sample of this frame nearest to each of eight output pixels of a row, in one tile.

@@ -153,8 +153,12 @@ static inline float8 blues(EightTexels texels) {
   return (float8)(texels.left.s26ae, texels.right.s26ae);
 }
 
-static inline float8 confidences(EightTexels texels) {
+static inline float8 last_channels(EightTexels texels) {
   return (float8)(texels.left.s37bf, texels.right.s37bf);
+}
+
+static inline float8 confidences(EightTexels texels) {
+  return last_channels(texels);
 }
 
 // Finite values. Halves are rounded to the nearest, not dithered: the samples differ by more than their steps.

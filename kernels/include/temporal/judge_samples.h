@@ -21,7 +21,7 @@
 enum { kJudgedAtOnce = 6 };  // samples of a row
 enum { kHistoryAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
-#define FIRST_LANES ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
+#define LANE_NUMBERS ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
 
 // The lane on the left, and on the right, of each; meaningless in the outermost one.
 #define LEFT_LANES(lanes) ((lanes).s70123456)
@@ -37,23 +37,8 @@ typedef struct Past {
 
 // ---- Rows of samples.
 
-// Eight samples of a row.
-typedef struct SampleRow {
-  float8 luma;                // negative channels included
-  float8 brightest, darkest;  // channels of colour
-  int8 valid;
-} SampleRow;
-
-static inline float8 channel_luma(float8 red, float8 green, float8 blue) {
-  return 0.25f * (red + blue) + 0.5f * green;
-}
-
-static inline int8 magnitude_bits(float8 value) {
-  return as_int8(value) & 0x7fffffff;
-}
-
 // Loads the samples from (x, y) on, clamped to the viewport's edge.
-static inline SampleRow load_sample_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int y) {
+static inline SampleLanes load_sample_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int y) {
   const int row = clamp(y, 0, frame->height - 1);
   EightTexels texels;
   if (x >= 0 && x + 8 <= frame->width) {
@@ -61,35 +46,30 @@ static inline SampleRow load_sample_row(COLOUR_TEXELS colour, const SourceFrame*
     texels.left = load_colour4(colour, from, x);
     texels.right = load_colour4(colour, from, x + 4);
   } else {
-    texels = load_samples(colour, frame->colour, clamp(x + FIRST_LANES, 0, frame->width - 1), row);
+    texels = load_samples(colour, frame->colour, clamp(x + LANE_NUMBERS, 0, frame->width - 1), row);
   }
-  const float8 red = reds(texels), green = greens(texels), blue = blues(texels);
-  const int8 largest = max(max(magnitude_bits(red), magnitude_bits(green)),
-                           max(magnitude_bits(blue), magnitude_bits(confidences(texels))));
-  const SampleRow samples = {channel_luma(red, green, blue), max(max(red, green), blue), min(min(red, green), blue),
-                             largest < INVALID_BITS};
-  return samples;
+  return compare_lanes(texels);
 }
 
 // The four neighbours of each sample of a row.
 typedef struct Neighbours {
-  SampleRow left, right, above, below;
+  SampleLanes left, right, above, below;
 } Neighbours;
 
-static inline SampleRow from_left(const SampleRow* row) {
-  const SampleRow moved = {LEFT_LANES(row->luma), LEFT_LANES(row->brightest), LEFT_LANES(row->darkest),
+static inline SampleLanes from_left(const SampleLanes* row) {
+  const SampleLanes moved = {LEFT_LANES(row->luma), LEFT_LANES(row->brightest), LEFT_LANES(row->darkest),
                            LEFT_LANES(row->valid)};
   return moved;
 }
 
-static inline SampleRow from_right(const SampleRow* row) {
-  const SampleRow moved = {RIGHT_LANES(row->luma), RIGHT_LANES(row->brightest), RIGHT_LANES(row->darkest),
+static inline SampleLanes from_right(const SampleLanes* row) {
+  const SampleLanes moved = {RIGHT_LANES(row->luma), RIGHT_LANES(row->brightest), RIGHT_LANES(row->darkest),
                            RIGHT_LANES(row->valid)};
   return moved;
 }
 
 // Returns the neighbours that are shaded: on a checkerboard the diagonal ones.
-static inline Neighbours neighbours_of(const SampleRow* above, const SampleRow* own, const SampleRow* below,
+static inline Neighbours neighbours_of(const SampleLanes* above, const SampleLanes* own, const SampleLanes* below,
                                        bool is_checkerboard) {
   if (is_checkerboard) {
     const Neighbours diagonal = {from_left(above), from_right(above), from_left(below), from_right(below)};
@@ -97,10 +77,6 @@ static inline Neighbours neighbours_of(const SampleRow* above, const SampleRow* 
   }
   const Neighbours beside = {from_left(own), from_right(own), *above, *below};
   return beside;
-}
-
-static inline int8 are_outliers(const SampleRow* samples, float8 most, float8 least) {
-  return samples->valid & ((samples->brightest > most) | (samples->darkest < least));
 }
 
 // ---- Where they are in history.
@@ -173,12 +149,12 @@ static inline int8 are_of_near_layer(const Past* past, DEPTH_TEXELS depth, Texel
 
 // ---- Evidence.
 
-// CellEvidence, summed over rows in each lane.
+// CellEvidence of each lane's samples.
 typedef struct CellRows {
   float8 brightening, brighter, count;
 } CellRows;
 
-// TileEvidence, summed over rows in each lane.
+// TileEvidence of each lane's samples; of both rows of cells.
 typedef struct TileRowsEvidence {
   CellRows upper, lower;
   float8 light, history_error, neighbour_error, outliers;
@@ -195,13 +171,12 @@ static inline float8 where(int8 lanes, float8 value) {
   return select((float8)(0.0f), value, lanes);
 }
 
-// Adds what eight samples say of their history; of those that are not `judged` all but the neighbours is unknown.
+// Adds what eight samples say of their history; those that are not `judged` say nothing.
 static inline void add_row(TileRowsEvidence* evidence, const TemporalTileParams* params, EightTexels history,
-                           const SampleRow* above, const SampleRow* own, const SampleRow* below, int8 judged,
+                           const SampleLanes* above, const SampleLanes* own, const SampleLanes* below, int8 judged,
                            bool is_upper) {
   judged &= fabs(confidences(history)) >= JUDGED_CONFIDENCE_MIN;
-  const float8 red = reds(history), green = greens(history), blue = blues(history);
-  const float8 luma = max(own->luma, 0.0f), known = max(channel_luma(red, green, blue), 0.0f);
+  const float8 luma = max(own->luma, 0.0f), known = max(luma_of(history), 0.0f);
   const float8 scale = 1.0f / (1.0f + luma + known);
   const float8 change = (luma - known) * scale;
   const float8 one = where(judged, (float8)(1.0f));
@@ -218,12 +193,11 @@ static inline void add_row(TileRowsEvidence* evidence, const TemporalTileParams*
   const float8 beside = max(0.25f * (near.left.luma + near.right.luma + near.above.luma + near.below.luma), 0.0f);
   evidence->neighbour_error += where(judged & all_valid, fabs(luma - beside) / (1.0f + luma + beside));
 
-  const float8 light = max(max(fabs(red), fabs(green)), fabs(blue));
-  const float8 most = OUTLIER_RATIO_MIN * (light + OUTLIER_FLOOR), least = -(light + NEGATIVE_OUTLIER_FLOOR);
-  const int8 outliers = judged & are_outliers(own, most, least);
+  const OutlierRange range = outlier_range(history);
+  const int8 outliers = judged & are_outliers(own, range);
   if (!any_lane(outliers)) return;
-  const int8 beside_count = are_outliers(&near.left, most, least) + are_outliers(&near.right, most, least) +
-                            are_outliers(&near.above, most, least) + are_outliers(&near.below, most, least);
+  const int8 beside_count = are_outliers(&near.left, range) + are_outliers(&near.right, range) +
+                            are_outliers(&near.above, range) + are_outliers(&near.below, range);  // each counts -1
   evidence->outliers += where(outliers & (beside_count <= -2), (float8)(1.0f));
 }
 
@@ -242,6 +216,12 @@ static inline float8 sum_lanes(float8 a, float8 b, float8 c, float8 d, float8 e,
   return (float8)(abcd.even + abcd.odd, efgh.even + efgh.odd);
 }
 
+static inline void add_to_cell(CellEvidence* cell, float brightening, float brighter, float count) {
+  cell->brightening += brightening;
+  cell->brighter += brighter;
+  cell->count += count;
+}
+
 // Adds sums over rows whose lanes at `left` lie in the left cells.
 static inline void add_rows(TileEvidence* tile, const TileRowsEvidence* rows, int8 left) {
   const float8 changes = sum_lanes(where(left, rows->upper.brightening), where(~left, rows->upper.brightening),
@@ -251,18 +231,10 @@ static inline void add_rows(TileEvidence* tile, const TileRowsEvidence* rows, in
                                   where(left, rows->lower.brighter), where(~left, rows->lower.brighter),
                                   where(left, rows->upper.count), where(~left, rows->upper.count),
                                   where(left, rows->lower.count), where(~left, rows->lower.count));
-  tile->cells[0].brightening += changes.s0;
-  tile->cells[1].brightening += changes.s1;
-  tile->cells[2].brightening += changes.s2;
-  tile->cells[3].brightening += changes.s3;
-  tile->cells[0].brighter += counts.s0;
-  tile->cells[1].brighter += counts.s1;
-  tile->cells[2].brighter += counts.s2;
-  tile->cells[3].brighter += counts.s3;
-  tile->cells[0].count += counts.s4;
-  tile->cells[1].count += counts.s5;
-  tile->cells[2].count += counts.s6;
-  tile->cells[3].count += counts.s7;
+  add_to_cell(&tile->cells[0], changes.s0, counts.s0, counts.s4);
+  add_to_cell(&tile->cells[1], changes.s1, counts.s1, counts.s5);
+  add_to_cell(&tile->cells[2], changes.s2, counts.s2, counts.s6);
+  add_to_cell(&tile->cells[3], changes.s3, counts.s3, counts.s7);
   tile->brightening += (changes.s0 + changes.s1) + (changes.s2 + changes.s3);
   tile->light += changes.s4;
   tile->history_error += changes.s5;
@@ -277,19 +249,19 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
                                  TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                  TileReprojection tile, SampleRange samples, int first) {
   const int x = first - 1, width = params->output_width, height = params->output_height;
-  const int8 columns = clamp(x + FIRST_LANES, 0, params->frame.width - 1);
-  const int8 middle = FIRST_LANES >= 1 & FIRST_LANES <= min(samples.last.x - x, (int)kJudgedAtOnce);
-  const float8 place_x = convert_float8(x + FIRST_LANES) * params->spacing_x + params->start_x;
+  const int8 columns = clamp(x + LANE_NUMBERS, 0, params->frame.width - 1);
+  const int8 middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
+  const float8 place_x = convert_float8(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
   TileRowsEvidence rows = no_rows_evidence();
-  SampleRow above = load_sample_row(colour, &params->frame, x, samples.first.y - 1);
-  SampleRow own = load_sample_row(colour, &params->frame, x, samples.first.y);
+  SampleLanes above = load_sample_row(colour, &params->frame, x, samples.first.y - 1);
+  SampleLanes own = load_sample_row(colour, &params->frame, x, samples.first.y);
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
     will_read_colour(colour, params->frame.colour, x + kColourAhead, y + 1);
-    const SampleRow below = load_sample_row(colour, &params->frame, x, y + 1);
+    const SampleLanes below = load_sample_row(colour, &params->frame, x, y + 1);
     const float place_y = (float)y * params->spacing_y + params->start_y;
     float8 at_x = place_x, at_y = (float8)(place_y);
     int8 judged = middle & own.valid & find_in_history(past, params, tile, columns, x, y, &at_x, &at_y);
-    judged &= at_x >= 0.0f & at_y >= 0.0f & at_x < (float)width & at_y < (float)height;
+    judged &= (at_x >= 0.0f) & (at_y >= 0.0f) & (at_x < (float)width) & (at_y < (float)height);
     if (params->parity >= 0) judged &= ((columns + y) & 1) == params->parity;
 #if LAYERS
     if (past->splits != 0) judged &= ~are_of_near_layer(past, depth, depth_layout, params, columns, y);
