@@ -207,9 +207,8 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
       .type_name("K");
   app.add_option_function<std::string>(
          "--memory", [&options](const std::string& text) { options.memory = parse_bytes("--memory", text); },
-         "Of histories that --two-way keeps; those beyond go into temporary files in TMPDIR or /var/tmp, for "
-         "the "
-         "same pixels (default: 4GB)")
+         "Of histories that --two-way keeps; those beyond go into temporary files in TMPDIR or /var/tmp, "
+         "for the same pixels (default: 4GB)")
       .type_name("SIZE");
   app.add_option_function<std::string>(
          "--noise",

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "bench/harness/clocks.h"
+#include "random.h"
 #include "tools/image/half.h"
 
 namespace quincunx::bench {
@@ -18,24 +19,17 @@ double now_ms() {
       .count();
 }
 
-// Returns a number in (0, 1] that depends on nothing but its arguments.
-double chance(std::uint32_t time, std::uint32_t pixel, std::uint32_t sample) {
-  std::uint32_t h = time * 0x9e3779b9u ^ pixel * 0x85ebca6bu ^ sample * 0xc2b2ae35u;
-  h = (h ^ h >> 16) * 0x2c1b3c6du;
-  h = (h ^ h >> 12) * 0x297a2d39u;
-  return ((h ^ h >> 15) + 1.) * 0x1p-32;
-}
-
 // Multiplies the light of each pixel by a gamma factor of mean 1 and variance 1 / samples.
 Status add_noise(const Device& device, const FrameInputs& inputs, int samples, std::uint32_t time) {
   const Extent extent = inputs.render_extent;
   std::vector<std::uint16_t> colour(static_cast<std::size_t>(extent.area()) * 4);
   if (Status status = device.download(inputs.colour, extent, colour.data()); !status.ok()) return status;
   for (std::size_t i = 0; i < colour.size(); i += 4) {
-    double sum = 0;
+    scenes::Random random(time, i);
+    float sum = 0;
     for (int sample = 0; sample < samples; ++sample)
-      sum -= std::log(chance(time, static_cast<std::uint32_t>(i / 4), static_cast<std::uint32_t>(sample)));
-    const auto factor = static_cast<float>(sum / samples);
+      sum -= std::log(1 - random.unit());
+    const float factor = sum / static_cast<float>(samples);
     for (std::size_t c = i; c < i + 3; ++c)
       colour[c] = tools::to_half(factor * tools::from_half(colour[c]));
   }
