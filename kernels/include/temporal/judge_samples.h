@@ -37,6 +37,11 @@ typedef struct Past {
 
 // ---- Rows of samples.
 
+// Returns eight columns from x on, clamped to the viewport's edge.
+static inline int8 columns_from(int x, const SourceFrame* frame) {
+  return clamp(x + LANE_NUMBERS, (int8)(0), (int8)(frame->width - 1));
+}
+
 // Loads the samples from (x, y) on, clamped to the viewport's edge.
 static inline SampleLanes load_sample_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int y) {
   const int row = clamp(y, 0, frame->height - 1);
@@ -46,7 +51,7 @@ static inline SampleLanes load_sample_row(COLOUR_TEXELS colour, const SourceFram
     texels.left = load_colour4(colour, from, x);
     texels.right = load_colour4(colour, from, x + 4);
   } else {
-    texels = load_samples(colour, frame->colour, clamp(x + LANE_NUMBERS, 0, frame->width - 1), row);
+    texels = load_samples(colour, frame->colour, columns_from(x, frame), row);
   }
   return compare_lanes(texels);
 }
@@ -249,7 +254,7 @@ static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, D
                                  TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                  TileReprojection tile, SampleRange samples, int first) {
   const int x = first - 1, width = params->output_width, height = params->output_height;
-  const int8 columns = clamp(x + LANE_NUMBERS, 0, params->frame.width - 1);
+  const int8 columns = columns_from(x, &params->frame);
   const int8 middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
   const float8 place_x = convert_float8(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
   TileRowsEvidence rows = no_rows_evidence();
