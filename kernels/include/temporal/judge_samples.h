@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the samples of a tile say of the history at their places. Eight columns of a row lie in the lanes of a vector:
-// the middle six are judged, and the outer two are only their neighbours.
+// What the samples of a tile say of the history at their places. On a CPU eight columns of a row lie in the lanes of a
+// vector: the middle six are judged, and the outer two are only their neighbours. Elsewhere samples come one by one:
+// the same code for vectors takes Mesa's compiler four times as long.
 //
 // Option: LAYERS  0 (default) | 1: samples of a near layer do not judge
 #pragma once
@@ -18,14 +19,25 @@
 #define LAYERS 0
 #endif
 
-enum { kJudgedAtOnce = 6 };  // samples of a row
+#if ON_CPU
+typedef float8 Lanes;
+typedef int8 LaneBits;
+enum { kLanes = 8, kJudgedAtOnce = 6 };  // samples of a row
+#define FIRST_LANE(lanes) ((lanes).s0)
+#define TURN_LANES(lanes) NEXT_LANES(lanes)
+#define EACH_LANE(call) EIGHT_TIMES(call)
+#define CONVERT_LANES(lanes) convert_int8(lanes)
+#else
+typedef float Lanes;
+typedef int LaneBits;
+enum { kLanes = 1, kJudgedAtOnce = 1 };
+#define FIRST_LANE(lanes) (lanes)
+#define TURN_LANES(lanes) (lanes)
+#define EACH_LANE(call) call
+#define CONVERT_LANES(lanes) convert_int(lanes)
+#endif
+
 enum { kHistoryAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
-
-#define LANE_NUMBERS ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
-
-// The lane on the left, and on the right, of each; meaningless in the outermost one.
-#define LEFT_LANES(lanes) ((lanes).s70123456)
-#define RIGHT_LANES(lanes) NEXT_LANES(lanes)
 
 // The previous frame, as far as it is known, and how to get there.
 typedef struct Past {
@@ -35,41 +47,134 @@ typedef struct Past {
   __global const LayerSplit* splits;  // one for each sample of a split tile, else null
 } Past;
 
-// ---- Rows of samples.
+// ---- Where samples are in history.
 
-// Returns eight columns from x on, clamped to the viewport's edge.
-static inline int8 columns_from(int x, const SourceFrame* frame) {
-  return clamp(x + LANE_NUMBERS, (int8)(0), (int8)(frame->width - 1));
+#if MOTION
+// Loads the trust of the first lane's sample, and turns to the next.
+static inline void load_next_trust(const Past* past, const TemporalTileParams* params, LaneBits* columns, int y,
+                                   Lanes* trust) {
+  FIRST_LANE(*trust) = past->reprojection[4 * texel_index(params->reprojection, FIRST_LANE(*columns), y) + 2];
+  *trust = TURN_LANES(*trust);
+  *columns = TURN_LANES(*columns);
 }
 
-// Loads the samples from (x, y) on, clamped to the viewport's edge.
-static inline SampleLanes load_sample_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int y) {
-  const int row = clamp(y, 0, frame->height - 1);
-  EightTexels texels;
-  if (x >= 0 && x + 8 <= frame->width) {
-    COLOUR_ROW from = colour_row(colour, frame->colour, row);
-    texels.left = load_colour4(colour, from, x);
-    texels.right = load_colour4(colour, from, x + 4);
-  } else {
-    texels = load_samples(colour, frame->colour, columns_from(x, frame), row);
+// Moves the first lane's place by its sample's motion and the phase of the texels there, and turns to the next.
+static inline void follow_next_motion(const Past* past, const TemporalTileParams* params, LaneBits* columns, int y,
+                                      Lanes* at_x, Lanes* at_y) {
+  const int sample = 4 * texel_index(params->reprojection, FIRST_LANE(*columns), y);
+  const float before_x = FIRST_LANE(*at_x) + past->reprojection[sample] * params->motion_x;
+  const float before_y = FIRST_LANE(*at_y) + past->reprojection[sample + 1] * params->motion_y;
+  __global const TileReprojection* source = past->previous_tiles + tile_at(params, before_x, before_y);
+  FIRST_LANE(*at_x) = before_x - source->phase_x;
+  FIRST_LANE(*at_y) = before_y - source->phase_y;
+  *at_x = TURN_LANES(*at_x);
+  *at_y = TURN_LANES(*at_y);
+  *columns = TURN_LANES(*columns);
+}
+#endif
+
+// Moves samples of row y to their places in the previous history, output pixels. Returns which are trusted.
+static inline LaneBits find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile,
+                                       LaneBits columns, int y, Lanes* at_x, Lanes* at_y) {
+  Lanes trust = 1.0f;
+  if (tile.is_rigid) {
+    *at_x -= tile.phase_x + (float)tile.step_x;
+    *at_y -= tile.phase_y + (float)tile.step_y;
   }
-  return compare_lanes(texels);
+#if MOTION
+  if (!tile.is_trusted) EACH_LANE(load_next_trust(past, params, &columns, y, &trust));
+  if (!tile.is_rigid) EACH_LANE(follow_next_motion(past, params, &columns, y, at_x, at_y));
+#endif
+  return trust > JUDGING_TRUST_MIN;
 }
+
+#if LAYERS
+// Returns which samples show the far layer, or the only one: history that is judged knows nothing of a near one.
+static inline LaneBits are_of_far_layer(const Past* past, DEPTH_TEXELS depth, TexelLayout layout,
+                                        const TemporalTileParams* params, LaneBits columns, int y) {
+  Lanes far = 0.0f;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const LayerSplit split = past->splits[y * params->frame.width + FIRST_LANE(columns)];
+    const bool is_far = !is_split(split) || load_depth(depth, layout, FIRST_LANE(columns), y) < between_of(split);
+    FIRST_LANE(far) = is_far ? 1.0f : 0.0f;
+    far = TURN_LANES(far);
+    columns = TURN_LANES(columns);
+  }
+  return far > 0.0f;
+}
+#endif
+
+// Returns which samples of row y, at these places, may judge history, and the index of the texel of each.
+static inline LaneBits find_judged(const Past* past, DEPTH_TEXELS depth, TexelLayout depth_layout,
+                                   const TemporalTileParams* params, TileReprojection tile, LaneBits columns, int y,
+                                   Lanes place_x, float place_y, LaneBits* index) {
+  const int width = params->output_width, height = params->output_height;
+  Lanes at_x = place_x, at_y = place_y;
+  LaneBits judged = find_in_history(past, params, tile, columns, y, &at_x, &at_y);
+  judged &= (at_x >= 0.0f) & (at_y >= 0.0f) & (at_x < (float)width) & (at_y < (float)height);
+  if (params->parity >= 0) judged &= ((columns + y) & 1) == params->parity;
+#if LAYERS
+  if (past->splits != 0) judged &= are_of_far_layer(past, depth, depth_layout, params, columns, y);
+#endif
+  *index = select((LaneBits)(0), CONVERT_LANES(at_y) * width + CONVERT_LANES(at_x), judged);
+  return judged;
+}
+
+// ---- Evidence.
+
+// CellEvidence and TileEvidence of each lane's samples, but for outliers.
+typedef struct LaneEvidence {
+  Lanes brightening, brighter, count, light, history_error, neighbour_error;
+} LaneEvidence;
+
+static inline Lanes where(LaneBits lanes, Lanes value) {
+  return select((Lanes)(0.0f), value, lanes);
+}
+
+// Returns what samples say of history by their own luma, history's, and that of their neighbours' mean, which counts
+// where all four are valid. What is not `judged` says nothing.
+static inline LaneEvidence judge_lanes(Lanes own, Lanes known, Lanes beside, LaneBits all_valid, LaneBits judged) {
+  const Lanes scale = 1.0f / (1.0f + own + known);
+  const Lanes change = (own - known) * scale;
+  LaneEvidence evidence;
+  evidence.count = where(judged, (Lanes)(1.0f));
+  evidence.brightening = where(judged, change);
+  evidence.brighter =
+      where(change > LUMA_CHANGE_MIN, evidence.count) - where(change < -LUMA_CHANGE_MIN, evidence.count);
+  evidence.light = where(judged, known * scale);
+  evidence.history_error = where(judged, fabs(change));
+  evidence.neighbour_error = where(judged & all_valid, fabs(own - beside) / (1.0f + own + beside));
+  return evidence;
+}
+
+static inline void add_to_cell(CellEvidence* cell, float brightening, float brighter, float count) {
+  cell->brightening += brightening;
+  cell->brighter += brighter;
+  cell->count += count;
+}
+
+#if ON_CPU
+// The evidence of a tile's rows, those of upper and of lower cells.
+typedef struct RowsEvidence {
+  LaneEvidence upper, lower;
+  float8 outliers;
+} RowsEvidence;
 
 // The four neighbours of each sample of a row.
 typedef struct Neighbours {
   SampleLanes left, right, above, below;
 } Neighbours;
 
+// The lane on the left of each; meaningless in the outermost one, as in from_right().
 static inline SampleLanes from_left(const SampleLanes* row) {
-  const SampleLanes moved = {LEFT_LANES(row->luma), LEFT_LANES(row->brightest), LEFT_LANES(row->darkest),
-                           LEFT_LANES(row->valid)};
+  const SampleLanes moved = {row->luma.s70123456, row->brightest.s70123456, row->darkest.s70123456,
+                             row->valid.s70123456};
   return moved;
 }
 
 static inline SampleLanes from_right(const SampleLanes* row) {
-  const SampleLanes moved = {RIGHT_LANES(row->luma), RIGHT_LANES(row->brightest), RIGHT_LANES(row->darkest),
-                           RIGHT_LANES(row->valid)};
+  const SampleLanes moved = {NEXT_LANES(row->luma), NEXT_LANES(row->brightest), NEXT_LANES(row->darkest),
+                             NEXT_LANES(row->valid)};
   return moved;
 }
 
@@ -84,126 +189,36 @@ static inline Neighbours neighbours_of(const SampleLanes* above, const SampleLan
   return beside;
 }
 
-// ---- Where they are in history.
-
-#if MOTION
-static inline void push_reprojection(EightTexels* found, __global const float* row, int8* x) {
-  *found = push_texel(*found, vload4(x->s0, row));
-  *x = NEXT_LANES(*x);
+// Loads the samples of row y from column x on; `columns` are the same, and both are clamped to the viewport.
+static inline SampleLanes load_row(COLOUR_TEXELS colour, const SourceFrame* frame, int x, int8 columns, int y) {
+  const int row = clamp(y, 0, frame->height - 1);
+  if (x < 0 || x + kLanes > frame->width) return compare_lanes(load_samples(colour, frame->colour, columns, row));
+  COLOUR_ROW from = colour_row(colour, frame->colour, row);
+  const EightTexels texels = {load_colour4(colour, from, x), load_colour4(colour, from, x + 4)};
+  return compare_lanes(texels);
 }
 
-// Loads Reprojection of the samples at `columns`, which lie side by side from x on unless some are clamped.
-static inline EightTexels load_reprojections(const Past* past, const TemporalTileParams* params, int8 columns, int x,
-                                             int y) {
-  __global const float* row = past->reprojection + 4 * row_index(params->reprojection, y);
-  if (x >= 0 && x + 8 <= params->frame.width) {
-    const EightTexels found = {vload16(0, row + 4 * x), vload16(0, row + 4 * (x + 4))};
-    return found;
-  }
-  EightTexels found = no_texels();
-  EIGHT_TIMES(push_reprojection(&found, row, &columns));
-  return found;
-}
-
-static inline void subtract_next_phase(const Past* past, const TemporalTileParams* params, float8* at_x,
-                                       float8* at_y) {
-  const int source = tile_at(params, at_x->s0, at_y->s0);
-  at_x->s0 -= past->previous_tiles[source].phase_x;
-  at_y->s0 -= past->previous_tiles[source].phase_y;
-  *at_x = NEXT_LANES(*at_x);
-  *at_y = NEXT_LANES(*at_y);
-}
-#endif
-
-// Moves eight samples to their places in the previous history, output pixels. Returns which are trusted.
-static inline int8 find_in_history(const Past* past, const TemporalTileParams* params, TileReprojection tile,
-                                   int8 columns, int x, int y, float8* at_x, float8* at_y) {
-  int8 trusted = (int8)(-1);
-#if MOTION
-  if (!tile.is_trusted) {
-    const EightTexels found = load_reprojections(past, params, columns, x, y);
-    trusted = blues(found) > JUDGING_TRUST_MIN;
-    if (!tile.is_rigid) {
-      *at_x += reds(found) * params->motion_x;
-      *at_y += greens(found) * params->motion_y;
-      EIGHT_TIMES(subtract_next_phase(past, params, at_x, at_y));
-    }
-  }
-#endif
-  if (tile.is_rigid) {
-    *at_x -= tile.phase_x + (float)tile.step_x;
-    *at_y -= tile.phase_y + (float)tile.step_y;
-  }
-  return trusted;
-}
-
-#if LAYERS
-// Returns which samples show a near layer, of which the layer of history that is judged knows nothing.
-static inline int8 are_of_near_layer(const Past* past, DEPTH_TEXELS depth, TexelLayout layout,
-                                     const TemporalTileParams* params, int8 columns, int y) {
-  int8 near = (int8)(0);
-  for (int lane = 0; lane < 8; ++lane) {
-    const LayerSplit split = past->splits[y * params->frame.width + columns.s0];
-    near.s0 = is_split(split) && !(load_depth(depth, layout, columns.s0, y) < between_of(split)) ? -1 : 0;
-    near = NEXT_LANES(near);
-    columns = NEXT_LANES(columns);
-  }
-  return near;
-}
-#endif
-
-// ---- Evidence.
-
-// CellEvidence of each lane's samples.
-typedef struct CellRows {
-  float8 brightening, brighter, count;
-} CellRows;
-
-// TileEvidence of each lane's samples; of both rows of cells.
-typedef struct TileRowsEvidence {
-  CellRows upper, lower;
-  float8 light, history_error, neighbour_error, outliers;
-} TileRowsEvidence;
-
-static inline TileRowsEvidence no_rows_evidence(void) {
-  const float8 none = (float8)(0.0f);
-  const CellRows rows = {none, none, none};
-  const TileRowsEvidence evidence = {rows, rows, none, none, none, none};
-  return evidence;
-}
-
-static inline float8 where(int8 lanes, float8 value) {
-  return select((float8)(0.0f), value, lanes);
-}
-
-// Adds what eight samples say of their history; those that are not `judged` say nothing.
-static inline void add_row(TileRowsEvidence* evidence, const TemporalTileParams* params, EightTexels history,
-                           const SampleLanes* above, const SampleLanes* own, const SampleLanes* below, int8 judged,
-                           bool is_upper) {
+// Adds what the samples of a row say.
+static inline void add_row(RowsEvidence* rows, EightTexels history, const SampleLanes* own, const Neighbours* near,
+                           int8 judged, bool is_upper) {
   judged &= fabs(confidences(history)) >= JUDGED_CONFIDENCE_MIN;
-  const float8 luma = max(own->luma, 0.0f), known = max(luma_of(history), 0.0f);
-  const float8 scale = 1.0f / (1.0f + luma + known);
-  const float8 change = (luma - known) * scale;
-  const float8 one = where(judged, (float8)(1.0f));
-  const float8 brighter = where(change > LUMA_CHANGE_MIN, one) - where(change < -LUMA_CHANGE_MIN, one);
-  CellRows* rows = is_upper ? &evidence->upper : &evidence->lower;
-  rows->brightening += where(judged, change);
-  rows->brighter += brighter;
-  rows->count += one;
-  evidence->light += where(judged, known * scale);
-  evidence->history_error += where(judged, fabs(change));
-
-  const Neighbours near = neighbours_of(above, own, below, params->parity >= 0);
-  const int8 all_valid = near.left.valid & near.right.valid & near.above.valid & near.below.valid;
-  const float8 beside = max(0.25f * (near.left.luma + near.right.luma + near.above.luma + near.below.luma), 0.0f);
-  evidence->neighbour_error += where(judged & all_valid, fabs(luma - beside) / (1.0f + luma + beside));
-
+  const float8 beside = 0.25f * (near->left.luma + near->right.luma + near->above.luma + near->below.luma);
+  const LaneEvidence found =
+      judge_lanes(max(own->luma, 0.0f), max(luma_of(history), 0.0f), max(beside, 0.0f),
+                  near->left.valid & near->right.valid & near->above.valid & near->below.valid, judged);
+  LaneEvidence* sum = is_upper ? &rows->upper : &rows->lower;
+  sum->brightening += found.brightening;
+  sum->brighter += found.brighter;
+  sum->count += found.count;
+  sum->light += found.light;
+  sum->history_error += found.history_error;
+  sum->neighbour_error += found.neighbour_error;
   const OutlierRange range = outlier_range(history);
   const int8 outliers = judged & are_outliers(own, range);
   if (!any_lane(outliers)) return;
-  const int8 beside_count = are_outliers(&near.left, range) + are_outliers(&near.right, range) +
-                            are_outliers(&near.above, range) + are_outliers(&near.below, range);  // each counts -1
-  evidence->outliers += where(outliers & (beside_count <= -2), (float8)(1.0f));
+  const int8 beside_count = are_outliers(&near->left, range) + are_outliers(&near->right, range) +
+                            are_outliers(&near->above, range) + are_outliers(&near->below, range);  // each counts -1
+  rows->outliers += where(outliers & (beside_count <= -2), (float8)(1.0f));
 }
 
 static inline float8 add_halves(float8 a, float8 b) {
@@ -221,67 +236,103 @@ static inline float8 sum_lanes(float8 a, float8 b, float8 c, float8 d, float8 e,
   return (float8)(abcd.even + abcd.odd, efgh.even + efgh.odd);
 }
 
-static inline void add_to_cell(CellEvidence* cell, float brightening, float brighter, float count) {
-  cell->brightening += brightening;
-  cell->brighter += brighter;
-  cell->count += count;
-}
-
-// Adds sums over rows whose lanes at `left` lie in the left cells.
-static inline void add_rows(TileEvidence* tile, const TileRowsEvidence* rows, int8 left) {
-  const float8 changes = sum_lanes(where(left, rows->upper.brightening), where(~left, rows->upper.brightening),
-                                   where(left, rows->lower.brightening), where(~left, rows->lower.brightening),
-                                   rows->light, rows->history_error, rows->neighbour_error, rows->outliers);
-  const float8 counts = sum_lanes(where(left, rows->upper.brighter), where(~left, rows->upper.brighter),
-                                  where(left, rows->lower.brighter), where(~left, rows->lower.brighter),
-                                  where(left, rows->upper.count), where(~left, rows->upper.count),
-                                  where(left, rows->lower.count), where(~left, rows->lower.count));
+// Adds rows whose lanes at `left` lie in the left cells.
+static inline void add_rows(TileEvidence* tile, const RowsEvidence* rows, int8 left) {
+  const LaneEvidence *upper = &rows->upper, *lower = &rows->lower;
+  const float8 changes =
+      sum_lanes(where(left, upper->brightening), where(~left, upper->brightening), where(left, lower->brightening),
+                where(~left, lower->brightening), upper->light + lower->light,
+                upper->history_error + lower->history_error, upper->neighbour_error + lower->neighbour_error,
+                rows->outliers);
+  const float8 counts = sum_lanes(where(left, upper->brighter), where(~left, upper->brighter),
+                                  where(left, lower->brighter), where(~left, lower->brighter),
+                                  where(left, upper->count), where(~left, upper->count),
+                                  where(left, lower->count), where(~left, lower->count));
   add_to_cell(&tile->cells[0], changes.s0, counts.s0, counts.s4);
   add_to_cell(&tile->cells[1], changes.s1, counts.s1, counts.s5);
   add_to_cell(&tile->cells[2], changes.s2, counts.s2, counts.s6);
   add_to_cell(&tile->cells[3], changes.s3, counts.s3, counts.s7);
   tile->brightening += (changes.s0 + changes.s1) + (changes.s2 + changes.s3);
+  tile->brighter += (counts.s0 + counts.s1) + (counts.s2 + counts.s3);
+  tile->count += (counts.s4 + counts.s5) + (counts.s6 + counts.s7);
   tile->light += changes.s4;
   tile->history_error += changes.s5;
   tile->neighbour_error += changes.s6;
   tile->outliers += changes.s7;
-  tile->brighter += (counts.s0 + counts.s1) + (counts.s2 + counts.s3);
-  tile->count += (counts.s4 + counts.s5) + (counts.s6 + counts.s7);
 }
 
-// Judges history by the samples of a tile, at most kJudgedAtOnce columns from column `first` on.
+// Adds what the tile's samples in at most kJudgedAtOnce columns from `first` on say.
 static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
                                  TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
                                  TileReprojection tile, SampleRange samples, int first) {
-  const int x = first - 1, width = params->output_width, height = params->output_height;
-  const int8 columns = columns_from(x, &params->frame);
-  const int8 middle = (LANE_NUMBERS >= 1) & (LANE_NUMBERS <= min(samples.last.x - x, (int)kJudgedAtOnce));
-  const float8 place_x = convert_float8(x + LANE_NUMBERS) * params->spacing_x + params->start_x;
-  TileRowsEvidence rows = no_rows_evidence();
-  SampleLanes above = load_sample_row(colour, &params->frame, x, samples.first.y - 1);
-  SampleLanes own = load_sample_row(colour, &params->frame, x, samples.first.y);
+  const SourceFrame* frame = &params->frame;
+  const int8 lanes = (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const int x = first - 1;  // the left neighbour
+  const int8 columns = clamp(x + lanes, (int8)(0), (int8)(frame->width - 1));
+  const int8 middle = (lanes >= 1) & (lanes <= min(samples.last.x - x, (int)kJudgedAtOnce));
+  const float8 place_x = convert_float8(x + lanes) * params->spacing_x + params->start_x;
+  const LaneEvidence none = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f};
+  RowsEvidence rows = {none, none, 0.0f};
+  SampleLanes above = load_row(colour, frame, x, columns, samples.first.y - 1);
+  SampleLanes own = load_row(colour, frame, x, columns, samples.first.y);
   for (int y = samples.first.y; y <= samples.last.y; ++y) {
-    will_read_colour(colour, params->frame.colour, x + kColourAhead, y + 1);
-    const SampleLanes below = load_sample_row(colour, &params->frame, x, y + 1);
+    will_read_colour(colour, frame->colour, x + kColourAhead, y + 1);
+    const SampleLanes below = load_row(colour, frame, x, columns, y + 1);
     const float place_y = (float)y * params->spacing_y + params->start_y;
-    float8 at_x = place_x, at_y = (float8)(place_y);
-    int8 judged = middle & own.valid & find_in_history(past, params, tile, columns, x, y, &at_x, &at_y);
-    judged &= (at_x >= 0.0f) & (at_y >= 0.0f) & (at_x < (float)width) & (at_y < (float)height);
-    if (params->parity >= 0) judged &= ((columns + y) & 1) == params->parity;
-#if LAYERS
-    if (past->splits != 0) judged &= ~are_of_near_layer(past, depth, depth_layout, params, columns, y);
-#endif
+    int8 index;
+    int8 judged = find_judged(past, depth, depth_layout, params, tile, columns, y, place_x, place_y, &index);
+    judged &= middle & own.valid;
     if (any_lane(judged)) {
-      const int8 index = select((int8)(0), convert_int8(at_y) * width + convert_int8(at_x), judged);
       will_read_history(past->history, index.s1 + kHistoryAhead);
-      const bool is_upper = (int)place_y % kTemporalTile < kTemporalCell;
-      add_row(&rows, params, gather_history(past->history, index), &above, &own, &below, judged, is_upper);
+      const Neighbours near = neighbours_of(&above, &own, &below, params->parity >= 0);
+      add_row(&rows, gather_history(past->history, index), &own, &near, judged,
+              (int)place_y % kTemporalTile < kTemporalCell);
     }
     above = own;
     own = below;
   }
   add_rows(evidence, &rows, convert_int8(place_x) % kTemporalTile < kTemporalCell);
 }
+#else
+// Adds what the tile's samples in column x say.
+static inline void judge_columns(TileEvidence* evidence, COLOUR_TEXELS colour, DEPTH_TEXELS depth,
+                                 TexelLayout depth_layout, const Past* past, const TemporalTileParams* params,
+                                 TileReprojection tile, SampleRange samples, int x) {
+  const SourceFrame* frame = &params->frame;
+  const int aside = params->parity >= 0 ? 1 : 0;  // the shaded neighbours on a checkerboard are the diagonal ones
+  const float place_x = (float)x * params->spacing_x + params->start_x;
+  for (int y = samples.first.y; y <= samples.last.y; ++y) {
+    const float place_y = (float)y * params->spacing_y + params->start_y;
+    int index;
+    if (!find_judged(past, depth, depth_layout, params, tile, x, y, place_x, place_y, &index)) continue;
+    const float4 before = load_history(past->history, index);
+    const float4 own = sample_at(colour, frame, x, y);
+    if (fabs(before.w) < JUDGED_CONFIDENCE_MIN || !is_valid(own)) continue;
+    // The sample and its neighbours in the first five lanes.
+    const EightTexels five = {
+        (float16)(own, sample_at(colour, frame, x - 1, y - aside), sample_at(colour, frame, x + 1, y + aside),
+                  sample_at(colour, frame, x + aside, y - 1)),
+        (float16)(sample_at(colour, frame, x - aside, y + 1), before, before, before)};
+    const SampleLanes all = compare_lanes(five);
+    const float beside = 0.25f * (all.luma.s1 + all.luma.s2 + all.luma.s3 + all.luma.s4);
+    const int all_valid = all.valid.s1 & all.valid.s2 & all.valid.s3 & all.valid.s4;
+    const LaneEvidence found =
+        judge_lanes(max(all.luma.s0, 0.0f), max(all.luma.s5, 0.0f), max(beside, 0.0f), all_valid, 1);
+    evidence->brightening += found.brightening;
+    evidence->brighter += found.brighter;
+    evidence->count += found.count;
+    evidence->light += found.light;
+    evidence->history_error += found.history_error;
+    evidence->neighbour_error += found.neighbour_error;
+    const int row = (int)place_y % kTemporalTile / kTemporalCell;
+    const int column = (int)place_x % kTemporalTile / kTemporalCell;
+    add_to_cell(&evidence->cells[2 * row + column], found.brightening, found.brighter, found.count);
+    const EightTexels known = {(float16)(before, before, before, before), (float16)(before, before, before, before)};
+    const int8 outliers = are_outliers(&all, outlier_range(known));
+    if (outliers.s0 != 0 && outliers.s1 + outliers.s2 + outliers.s3 + outliers.s4 <= -2) evidence->outliers += 1.0f;
+  }
+}
+#endif
 
 // Returns what a tile's samples say of history.
 static inline TileEvidence judge_history(COLOUR_TEXELS colour, DEPTH_TEXELS depth, TexelLayout depth_layout,
