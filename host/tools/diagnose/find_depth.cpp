@@ -252,7 +252,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   };
   const bool explained = explains(chosen);
   if (!explained) chosen = 0;
-  const DepthGuess best = guesses[chosen];
+  DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {
     const Comparison compared =
@@ -287,6 +287,8 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
     find_wrong(camera, "frame", best.camera == Camera::kLast ? "the last frame's" : "the next frame's",
                "write the camera and the motion of one frame", against);
   }
+  best.tells_camera = camera.verdict != Verdict::kUnknown &&
+                      std::find(camera.open.begin(), camera.open.end(), "transposed") == camera.open.end();
   findings.push_back(depth);
   findings.push_back(camera);
   return best;

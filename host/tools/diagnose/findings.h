@@ -61,6 +61,7 @@ struct DepthGuess {
   DepthKind kind;
   Camera camera = Camera::kStated;
   float near_factor = 1;  // the near plane's distance, over what the input says; counts for device depth
+  bool tells_camera = false;  // the frames do, and not a transposed one as well
 };
 
 // Judges depth and camera; returns the guess to believe.
