@@ -34,9 +34,10 @@ probe.wait();
 
 const std::string kJson = R"({"wrong": true, "findings": [
   {"subject": "velocity", "verdict": "wrong", "faults": ["sign of y"], "says": "fsr2", "fits": "y the other way",
-   "not_shown": ["frame"], "margin_db": 2.5, "share": 1, "option": "--velocity-convention nuke"},
+   "not_shown": ["frame"], "margin_db": 2.5, "certainty": 16.4, "share": 1,
+   "option": "--velocity-convention nuke"},
   {"subject": "cuts", "verdict": "cannot tell", "faults": [], "says": "marked", "fits": "", "not_shown": [],
-   "margin_db": 0, "share": 0, "option": ""}]})";
+   "margin_db": 0, "certainty": 0, "share": 0, "option": ""}]})";
 
 class DiagnosisPage : public testing::PageInBrowser {
  protected:
@@ -62,8 +63,8 @@ TEST_F(DiagnosisPage, ShowsFindingsAndWhereTheInputFails) {
   EXPECT_EQ(saw["lead"], "shot/a.%04d.exr: velocity wrong.");
   ASSERT_EQ(saw["rows"].size(), 2u);
   EXPECT_EQ(saw["rows"][0], Json({"velocity", "wrong", "fsr2", "y the other way",
-                                  "--velocity-convention nuke", "2.50 dB", "100 %", "frame"}));
-  EXPECT_EQ(saw["rows"][1], Json({"cuts", "cannot tell", "marked", "", "", "", "", ""}));
+                                  "--velocity-convention nuke", "2.50 dB", "16 s.e.", "100 %", "frame"}));
+  EXPECT_EQ(saw["rows"][1], Json({"cuts", "cannot tell", "marked", "", "", "", "", "", ""}));
   EXPECT_EQ(saw["pictures"], true);
   EXPECT_EQ(saw["frames"], Json({2, 2, 2}));
   EXPECT_EQ(saw["pixels"][0], Json({255, 255, 255}));

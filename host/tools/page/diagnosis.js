@@ -25,7 +25,8 @@ class FailureViewer extends PictureViewer {
 
 function row(finding) {
   const cells = [finding.subject, finding.verdict, finding.says, finding.fits, finding.option,
-    finding.margin_db > 0 ? `${number(finding.margin_db)} dB` : "", finding.share > 0 ? `${Math.round(100 * finding.share)} %` : "", finding.not_shown.join(", ")];
+    ...(finding.margin_db > 0 ? [`${number(finding.margin_db)} dB`, `${Math.round(Math.min(finding.certainty, 99))} s.e.`] : ["", ""]),
+    finding.share > 0 ? `${Math.round(100 * finding.share)} %` : "", finding.not_shown.join(", ")];
   return el("tr", {}, ...cells.map((text, i) => el("td", {}, finding.verdict === "wrong" && i === 1 ? el("b", {}, text) : i === 4 ? el("code", {}, text) : text)));
 }
 
