@@ -218,11 +218,26 @@ TEST(Diagnose, NamesFaultsOfMotionAndJitterTogether) {
   }
 }
 
+TEST(Diagnose, KnowsCamerasAndDepthByTheirFormWhereNothingMoves) {
+  Frames whole = Stage({.moves = false}).frames();
+  for (DiagnosedFrame& frame : whole)  // a floor, nearer than 1: so may be any kind
+    for (std::size_t i = 0; i < frame.depth.size(); ++i)
+      frame.depth[i] = 1 / (1.5f + .03f * static_cast<float>(i / kRender.width));
+  EXPECT_EQ(testing::named(diagnosis_of(whole)), "none");
+  EXPECT_EQ(finding(diagnosis_of(whole), "depth").verdict, Verdict::kRight);
+  for (const Fault& fault : testing::faults(kNear)) {
+    if (fault.name != "camera: transposed" && fault.name != "depth: kind") continue;
+    Frames frames = whole;
+    fault.apply(frames);
+    EXPECT_EQ(testing::named(diagnosis_of(frames)), fault.name);
+  }
+}
+
 TEST(Diagnose, SaysWhatItCannotTell) {
   Diagnosis still = diagnosis_of(Stage({.moves = false}).frames());
   EXPECT_EQ(finding(still, "velocity").verdict, Verdict::kUnknown);
   EXPECT_EQ(finding(still, "jitter").verdict, Verdict::kRight);
-  EXPECT_EQ(finding(still, "depth").verdict, Verdict::kUnknown);
+  EXPECT_EQ(finding(still, "camera").verdict, Verdict::kUnknown);
 
   const Diagnosis across = diagnosis_of(Stage({.only_across = true}).frames());
   EXPECT_EQ(finding(across, "velocity").verdict, Verdict::kRight);

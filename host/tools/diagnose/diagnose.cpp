@@ -69,10 +69,11 @@ void doubt_frame(Finding& camera) {
 }
 
 // `cuts`: frames before which cuts are missing; that finding is the last.
-Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
-                  const std::vector<Pair>& pairs, std::vector<std::int64_t>& cuts) {
-  const MotionAnswer motion = find_motion(frames, input, planes, pairs);
-  const Scene scene = {frames, input, planes, pairs, motion, light_scale(frames)};
+Diagnosis examine(Frames frames, const DiagnosedInput& input, const Form& form,
+                  const std::vector<Plane>& planes, const std::vector<Pair>& pairs,
+                  std::vector<std::int64_t>& cuts) {
+  const MotionAnswer motion = find_motion(frames, input, form, planes, pairs);
+  const Scene scene = {frames, input, form, planes, pairs, motion, light_scale(frames)};
   Diagnosis diagnosis = {motion.findings, motion.mend};
   const DepthGuess depth = find_depth(scene, diagnosis.findings);
   if (!has_fault(motion.findings.front(), "frame")) {  // which lies beside its surfaces
@@ -92,19 +93,19 @@ Diagnosis examine(Frames frames, const DiagnosedInput& input, const std::vector<
 }
 
 // With motion that belongs to the frames it is with.
-Diagnosis diagnose_aligned(Frames frames, const DiagnosedInput& input) {
+Diagnosis diagnose_aligned(Frames frames, const DiagnosedInput& input, const Form& form) {
   if (frames.empty()) return {};
   const std::vector<Plane> planes = planes_of(frames);
   std::vector<Pair> pairs = pairs_of(frames, planes);
   std::vector<std::int64_t> cuts;
-  Diagnosis diagnosis = examine(frames, input, planes, pairs, cuts);
+  Diagnosis diagnosis = examine(frames, input, form, planes, pairs, cuts);
   if (cuts.empty()) return diagnosis;
   // Once more without what is no pair; that there are cuts remains.
   const Finding found = diagnosis.findings.back();
   std::erase_if(pairs, [&](const Pair& pair) {
     return std::find(cuts.begin(), cuts.end(), frames[pair.now].number) != cuts.end();
   });
-  diagnosis = examine(frames, input, planes, pairs, cuts);
+  diagnosis = examine(frames, input, form, planes, pairs, cuts);
   diagnosis.findings.back() = found;
   return diagnosis;
 }
@@ -145,15 +146,18 @@ std::vector<FailureMap> failure_maps(Frames frames, const DiagnosedInput& input,
   return maps;
 }
 
-Diagnosis diagnose(Frames frames, const DiagnosedInput& input) {
+Diagnosis diagnose(Frames frames, const DiagnosedInput& said) {
   if (frames.empty()) return {};
+  const Form form = form_of(frames, said);
+  DiagnosedInput input = said;
+  input.depth_kind = form.kind.value_or(said.depth_kind);
   const Lateness lateness = find_lateness(frames, input);
   if (lateness.later == 0) {
-    Diagnosis diagnosis = diagnose_aligned(frames, input);
+    Diagnosis diagnosis = diagnose_aligned(frames, input, form);
     if (lateness.known) std::erase(diagnosis.findings.front().open, "frame");
     return diagnosis;
   }
-  Diagnosis diagnosis = diagnose_aligned(with_motion_of(frames, lateness.later), input);
+  Diagnosis diagnosis = diagnose_aligned(with_motion_of(frames, lateness.later), input, form);
   if (!diagnosis.findings.empty()) add_lateness(diagnosis.findings.front(), lateness);
   return diagnosis;
 }

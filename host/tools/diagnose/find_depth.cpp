@@ -19,17 +19,116 @@ const DiagnosedFrame* beside(Frames frames, std::size_t i, int later) {
   return frame.number == frames[i].number + later && frame.world_to_ndc ? &frame : nullptr;
 }
 
-std::optional<Matrix> matrix_at(Frames frames, std::size_t i, Camera camera) {
-  const int later = camera == Camera::kLast ? -1 : camera == Camera::kNext ? 1 : 0;
-  const DiagnosedFrame* frame = beside(frames, i, later);
-  if (frame == nullptr) return std::nullopt;
-  Matrix matrix = *frame->world_to_ndc;
-  if (camera == Camera::kTransposed) {
-    for (std::size_t row = 0; row < 4; ++row)
-      for (std::size_t column = 0; column < row; ++column)
-        std::swap(matrix[4 * row + column], matrix[4 * column + row]);
-  }
+Matrix transposed(Matrix matrix) {
+  for (std::size_t row = 0; row < 4; ++row)
+    for (std::size_t column = 0; column < row; ++column)
+      std::swap(matrix[4 * row + column], matrix[4 * column + row]);
   return matrix;
+}
+
+std::optional<Matrix> matrix_at(const Scene& scene, std::size_t i, Camera camera) {
+  const int later = camera == Camera::kLast ? -1 : camera == Camera::kNext ? 1 : 0;
+  const DiagnosedFrame* frame = beside(scene.frames, i, later);
+  if (frame == nullptr) return std::nullopt;
+  return scene.form.transposed.value_or(false) ? transposed(*frame->world_to_ndc) : *frame->world_to_ndc;
+}
+
+// Whether a matrix is that of a camera with a lens: strictly, or so that it may be one.
+struct CameraForm {
+  bool is = false;
+  bool may_be = false;
+};
+
+CameraForm camera_form(const Matrix& m, Extent extent) {
+  using Vector = std::array<double, 3>;
+  const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  Vector x = {m[0], m[4], m[8]}, y = {m[1], m[5], m[9]};
+  const Vector w = {m[3], m[7], m[11]};
+  const double ahead = std::sqrt(dot(w, w));
+  if (!(ahead > 0)) return {};
+  const double right = dot(x, w) / dot(w, w), up = dot(y, w) / dot(w, w);  // the lens may be shifted
+  for (std::size_t k = 0; k < 3; ++k)
+    x[k] -= right * w[k], y[k] -= up * w[k];
+  const double across = std::sqrt(dot(x, x)), down = std::sqrt(dot(y, y));
+  const double skew = std::abs(dot(x, y)) / (across * down);
+  const double aspect = across * extent.width / (down * extent.height);  // of a pixel
+  const auto within = [&](double unit, double right_angle, double square) {
+    return std::abs(std::log(ahead)) < unit && skew < right_angle && std::abs(std::log(aspect)) < square;
+  };
+  constexpr double kShift = 1;  // half pictures
+  return {.is = within(.01, .001, .7) && std::abs(right) < kShift && std::abs(up) < kShift,
+          .may_be = within(.1, .05, 1.6)};
+}
+
+// Whether matrices are those of cameras only if they are transposed, or only if not; nothing where either may be.
+std::optional<bool> find_transposed(Frames frames) {
+  std::size_t plain = 0, turned = 0;
+  for (const DiagnosedFrame& frame : frames) {
+    if (!frame.world_to_ndc) continue;
+    const CameraForm as_is = camera_form(*frame.world_to_ndc, frame.render);
+    const CameraForm other = camera_form(transposed(*frame.world_to_ndc), frame.render);
+    plain += as_is.is && !other.may_be ? 1 : 0;
+    turned += other.is && !as_is.may_be ? 1 : 0;
+  }
+  constexpr double kMost = .9;
+  if (static_cast<double>(plain) >= kMost * static_cast<double>(frames.size())) return false;
+  if (static_cast<double>(turned) >= kMost * static_cast<double>(frames.size())) return true;
+  return std::nullopt;
+}
+
+// What three neighbours in a row of a flat surface say, of those that say anything.
+struct Flatness {
+  std::size_t affine = 0;
+  std::size_t inverse = 0;  // 1 / value is affine
+
+  void add(double a, double b, double c) {
+    constexpr double kNear = .2, kLeastBend = 1e-5;  // parts of the value: floats have it to 1e-7
+    constexpr double kStraight = .25;                // of the bend
+    if (!(a > 0 && b > 0 && c > 0) || std::abs(c - a) > 2 * kNear * b) return;
+    const double as_is = a - 2 * b + c, inverted = -b * b * (1 / a - 2 / b + 1 / c);
+    const double bend = std::abs(as_is - inverted);
+    if (!(bend > kLeastBend * b)) return;
+    affine += std::abs(as_is) < kStraight * bend ? 1 : 0;
+    inverse += std::abs(inverted) < kStraight * bend ? 1 : 0;
+  }
+};
+
+// Device depth lies between 0 and 1, and most of a picture is more than two near planes away.
+std::optional<DepthKind> find_kind(Frames frames) {
+  constexpr std::size_t kLeast = 50;
+  constexpr double kMost = .85, kSide = .9;
+  std::size_t beyond = 0, low = 0, high = 0;
+  Flatness reversed, device;
+  for (const DiagnosedFrame& frame : frames) {
+    const auto width = static_cast<std::size_t>(frame.render.width);
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      const float value = frame.depth[i];
+      if (!std::isfinite(value)) continue;
+      beyond += value > 1 ? 1 : 0;
+      low += value > 0 && value < .5f ? 1 : 0;
+      high += value >= .5f && value < 1 ? 1 : 0;
+      for (const std::size_t step : {std::size_t{1}, width}) {
+        if (step == 1 ? i % width + 2 >= width : i + 2 * width >= frame.depth.size()) continue;
+        const double a = frame.depth[i], b = frame.depth[i + step], c = frame.depth[i + 2 * step];
+        if (!(a < 1 && b < 1 && c < 1)) continue;
+        reversed.add(a, b, c);
+        device.add(1 - a, 1 - b, 1 - c);
+      }
+    }
+  }
+  const auto most = [](std::size_t part, std::size_t other, double share) {
+    return static_cast<double>(part) >= share * static_cast<double>(part + other);
+  };
+  if (beyond + low + high == 0) return std::nullopt;
+  if (most(beyond, low + high, kMost)) return DepthKind::kLinear;
+  if (beyond * 1000 > low + high) return std::nullopt;
+  const std::size_t affine = std::max(reversed.affine, device.affine);
+  if (affine + reversed.inverse < kLeast) return std::nullopt;
+  if (most(reversed.inverse, affine, kMost)) return DepthKind::kLinear;
+  if (!most(affine, reversed.inverse, kMost)) return std::nullopt;
+  if (most(low, high, kSide)) return DepthKind::kDeviceReversed;
+  if (most(high, low, kSide)) return DepthKind::kDevice;
+  return std::nullopt;
 }
 
 // Motion of a guess at all pairs; empty for a pair that it says nothing of.
@@ -103,21 +202,17 @@ Foretold foretold_of(const Scene& scene, const std::vector<Motion>& motion, floa
   return result;
 }
 
-std::vector<std::string> faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
-  std::vector<std::string> faults;
-  if (guess.near_factor != 1) faults.emplace_back("near plane");
-  if (guess.kind != input.depth_kind) faults.emplace_back("depth kind");
-  if (guess.camera == Camera::kTransposed) faults.emplace_back("transposed");
-  if (guess.camera == Camera::kLast || guess.camera == Camera::kNext) faults.emplace_back("frame");
-  return faults;
+std::size_t faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
+  return (guess.near_factor != 1 ? 1u : 0u) + (guess.kind != input.depth_kind ? 1u : 0u) +
+         (guess.camera != Camera::kStated ? 1u : 0u);
 }
 
-// The input's word first.
-std::vector<DepthGuess> depth_guesses(DepthKind stated) {
+// The input's word first; other kinds only where depth's form does not say which it is.
+std::vector<DepthGuess> depth_guesses(DepthKind stated, bool known) {
   std::vector<DepthGuess> guesses = {{stated}};
   for (const DepthKind kind : {DepthKind::kLinear, DepthKind::kDevice, DepthKind::kDeviceReversed}) {
-    for (const Camera camera : {Camera::kStated, Camera::kTransposed, Camera::kLast, Camera::kNext}) {
-      if (kind != stated || camera != Camera::kStated) guesses.push_back({kind, camera});
+    for (const Camera camera : {Camera::kStated, Camera::kLast, Camera::kNext}) {
+      if (kind == stated ? camera != Camera::kStated : !known) guesses.push_back({kind, camera});
     }
   }
   return guesses;
@@ -174,10 +269,12 @@ bool betters_rest(const Scene& scene, const Foretold& foretold) {
 
 void find_wrong(Finding& finding, const std::string& fault, const std::string& fits,
                 const std::string& option, const Comparison& against) {
+  if (finding.verdict != Verdict::kWrong) finding.fits = finding.option = {};
+  const char* comma = finding.fits.empty() ? "" : ", ";
   finding.verdict = Verdict::kWrong;
-  finding.faults = {fault};
-  finding.fits = fits;
-  finding.option = option;
+  finding.faults.push_back(fault);
+  finding.fits += comma + fits;
+  finding.option += (option.starts_with("--") && *comma != 0 ? " " : comma) + option;
   weigh(finding, against);
 }
 
@@ -200,19 +297,23 @@ bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
   return moving >= kLeast && agree >= kMost * moving;
 }
 
-std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& input,
+Form form_of(Frames frames, const DiagnosedInput& input) {
+  return {input.depth_kind, find_kind(frames), find_transposed(frames)};
+}
+
+std::vector<Motion> stated_camera_motion(Frames frames, const DiagnosedInput& input, const Form& form,
                                          const std::vector<Plane>& planes, const std::vector<Pair>& pairs) {
   MotionAnswer told;
   for (const DiagnosedFrame& frame : frames)
     told.jitter.push_back(frame.jitter);
-  return camera_motion_of({frames, input, planes, pairs, told}, {input.depth_kind});
+  return camera_motion_of({frames, input, form, planes, pairs, told}, {input.depth_kind});
 }
 
 std::optional<CameraMotion> camera_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
                                       int back) {
-  const auto now = matrix_at(scene.frames, pair.now, guess.camera);
+  const auto now = matrix_at(scene, pair.now, guess.camera);
   const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(pair.now) - back);
-  const auto before = matrix_at(scene.frames, other, guess.camera);
+  const auto before = matrix_at(scene, other, guess.camera);
   if (!now || !before) return std::nullopt;
   return camera_motion(*now, *before, scene.input.near_plane * guess.near_factor);
 }
@@ -228,10 +329,10 @@ Vec2 camera_moves(const CameraMotion& camera, Vec2 at, float depth, Extent exten
 
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   const DiagnosedInput& input = scene.input;
-  Finding depth = {.subject = "depth",
-                   .says = scene.frames[0].depth.empty() ? "none" : name_of(input.depth_kind)};
+  const Form& form = scene.form;
+  Finding depth = {.subject = "depth", .says = scene.frames[0].depth.empty() ? "none" : name_of(form.stated)};
   Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
-  std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind);
+  std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind, form.kind.has_value());
   if (scene.motion.knows_motion && input.depth_kind != DepthKind::kLinear) {
     constexpr float kLeast = 1.1f;
     const float factor = fitting_near(scene, input.depth_kind);
@@ -244,7 +345,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   const float step = step_of(scene);
   std::vector<Candidate> candidates;
   for (std::size_t g = 0; g < guesses.size(); ++g)
-    candidates.push_back({faults_of(input, guesses[g]).size(), g, foretold_of(scene, motions[g], step)});
+    candidates.push_back({faults_of(input, guesses[g]), g, foretold_of(scene, motions[g], step)});
   std::size_t chosen = choose(scene.pairs, scene.frames, candidates);
   const auto explains = [&](std::size_t g) {  // any may be nearer the motion by chance
     return scene.motion.knows_motion ? agrees(scene.pairs, scene.motion.motion, motions[g], step)
@@ -252,14 +353,14 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   };
   const bool explained = explains(chosen);
   if (!explained) chosen = 0;
-  DepthGuess best = guesses[chosen];
+  const DepthGuess best = guesses[chosen];
   Rivals kinds, cameras;
   for (std::size_t g = 0; g < guesses.size(); ++g) {
     const Comparison compared =
         compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[g].foretold);
     if (guesses[g].camera == best.camera && guesses[g].kind != best.kind) kinds.add(compared, {"kind"});
     if (guesses[g].kind == best.kind && guesses[g].camera != best.camera && guesses[g].near_factor == 1)
-      cameras.add(compared, {guesses[g].camera == Camera::kTransposed ? "transposed" : "frame"});
+      cameras.add(compared, {"frame"});
   }
   for (const float factor : {.5f, 2.0f}) {
     if (best.kind == DepthKind::kLinear) break;
@@ -271,9 +372,15 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   kinds.judge(depth);
   cameras.judge(camera);
   if (!explained) depth.verdict = camera.verdict = Verdict::kUnknown;
+  if (!form.transposed) camera.open.emplace_back("transposed");
+  if (form.kind) {
+    depth.verdict = Verdict::kRight;
+    if (!explained && best.kind != DepthKind::kLinear) depth.open = {"near plane"};
+  }
+  if (form.transposed && explained && scene.motion.knows_motion) camera.verdict = Verdict::kRight;
   const Comparison against =
       compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
-  if (best.kind != input.depth_kind) {
+  if (best.kind != form.stated) {
     const char* kind = name_of(best.kind);
     find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), against);
   }
@@ -281,14 +388,12 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
     const std::string near_plane = fmt::format("{:.4g}", input.near_plane * best.near_factor);
     find_wrong(depth, "near plane", "a near plane at " + near_plane, "--near " + near_plane, against);
   }
-  if (best.camera == Camera::kTransposed)
-    find_wrong(camera, "transposed", "its transpose", "write it for row vectors", against);
-  if (best.camera == Camera::kLast || best.camera == Camera::kNext) {
+  if (form.transposed.value_or(false))
+    find_wrong(camera, "transposed", "its transpose", "write it for row vectors", {});
+  if (best.camera != Camera::kStated) {
     find_wrong(camera, "frame", best.camera == Camera::kLast ? "the last frame's" : "the next frame's",
                "write the camera and the motion of one frame", against);
   }
-  best.tells_camera = camera.verdict != Verdict::kUnknown &&
-                      std::find(camera.open.begin(), camera.open.end(), "transposed") == camera.open.end();
   findings.push_back(depth);
   findings.push_back(camera);
   return best;

@@ -407,8 +407,8 @@ Finding judge_jitter(const Search& search, Guesses& guesses, const JitterGuess& 
 
 }  // namespace
 
-MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::vector<Plane>& planes,
-                         const std::vector<Pair>& pairs) {
+MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const Form& form,
+                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs) {
   const Search search(frames, input, planes, pairs);
   const bool has_motion = !frames[0].velocity.empty();
   const Extent extent = frames[0].render;
@@ -419,7 +419,7 @@ MotionAnswer find_motion(Frames frames, const DiagnosedInput& input, const std::
   if (has_motion) {
     guesses.motions = best_guesses(search, motion_guesses(input, extent));
     word = word_of_camera(search, input, extent, pairs, frames,
-                          stated_camera_motion(frames, input, planes, pairs));
+                          stated_camera_motion(frames, input, form, planes, pairs));
     const auto& known = guesses.motions;
     if (word.guess && std::find(known.begin(), known.end(), *word.guess) == known.end())
       guesses.motions.push_back(*word.guess);

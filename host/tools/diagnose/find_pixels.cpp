@@ -327,7 +327,7 @@ Finding find_sky(const Scene& scene, const DepthGuess& guess) {
   constexpr float kFarDepth = 1e-9f;  // as far_velocity.cl has it
   constexpr float kLeastMotion = .25f;
   Finding finding = {.subject = "sky", .says = scene.input.sky_moves ? "moved" : "as drawn"};
-  if (!guess.tells_camera || scene.frames[0].depth.empty() || scene.frames[0].velocity.empty() ||
+  if (!scene.form.transposed || scene.frames[0].depth.empty() || scene.frames[0].velocity.empty() ||
       scene.input.sky_moves)
     return finding;
   Votes votes;

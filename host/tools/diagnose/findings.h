@@ -27,6 +27,16 @@ struct Lateness {
 
 Lateness find_lateness(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input);
 
+// What depth and matrices are by themselves, whatever moves. On a flat surface device depth is affine in the picture,
+// and so is the inverse of linear depth; a camera's axes are perpendicular, and it looks along a unit vector.
+struct Form {
+  DepthKind stated = DepthKind::kLinear;
+  std::optional<DepthKind> kind = {};
+  std::optional<bool> transposed = {};
+};
+
+Form form_of(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input);
+
 // What motion and jitter are, looked at together, because each hides the other's mistakes.
 struct MotionAnswer {
   std::vector<Finding> findings = {};
@@ -40,12 +50,13 @@ struct MotionAnswer {
 };
 
 MotionAnswer find_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
-                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
+                         const Form& form, const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
 
 // What the other parts look at.
 struct Scene {
   std::span<const DiagnosedFrame> frames;
-  const DiagnosedInput& input;
+  const DiagnosedInput& input;  // its depth is of the kind that the form says
+  const Form& form;
   const std::vector<Plane>& planes;
   const std::vector<Pair>& pairs;
   const MotionAnswer& motion;
@@ -55,21 +66,21 @@ struct Scene {
 // Returns the pixels by which what a pixel of a pair's later frame shows has moved, by its own channels as they fit.
 Vec2 own_motion(const Scene& scene, const Pair& pair, int x, int y);
 
-enum class Camera : std::uint8_t { kStated, kTransposed, kLast, kNext };
+enum class Camera : std::uint8_t { kStated, kLast, kNext };
 
 struct DepthGuess {
   DepthKind kind;
   Camera camera = Camera::kStated;
   float near_factor = 1;  // the near plane's distance, over what the input says; counts for device depth
-  bool tells_camera = false;  // the frames do, and not a transposed one as well
 };
 
 // Judges depth and camera; returns the guess to believe.
 DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings);
 
-// Returns the motion of each pair's places by depth and camera as the input says them; none where it says neither.
+// Returns the motion of each pair's places by depth and camera; none where the input says neither.
 std::vector<Motion> stated_camera_motion(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
-                                         const std::vector<Plane>& planes, const std::vector<Pair>& pairs);
+                                         const Form& form, const std::vector<Plane>& planes,
+                                         const std::vector<Pair>& pairs);
 
 // Whether most of what moves does so as the camera moves it: exactly, which no other motion does by chance. Motion of 0
 // was not drawn. `step`: pixels between neighbouring values, where motion is stored in steps.
