@@ -68,11 +68,13 @@ void doubt_frame(Finding& camera) {
     camera = {.subject = camera.subject, .says = camera.says, .open = {"frame"}};
 }
 
-// `cuts`: frames before which cuts are missing; that finding is the last.
+// `shapes`: pairs of depth. `cuts`: frames before which cuts are missing; that finding is the last.
 Diagnosis examine(Frames frames, const DiagnosedInput& input, const Form& form,
                   const std::vector<Plane>& planes, const std::vector<Pair>& pairs,
-                  std::vector<std::int64_t>& cuts) {
-  const MotionAnswer motion = find_motion(frames, input, form, planes, pairs);
+                  const std::vector<Pair>& shapes, std::vector<std::int64_t>& cuts) {
+  std::vector<Pair> all = pairs;
+  all.insert(all.end(), shapes.begin(), shapes.end());
+  const MotionAnswer motion = find_motion(frames, input, form, planes, all);
   const Scene scene = {frames, input, form, planes, pairs, motion, light_scale(frames)};
   Diagnosis diagnosis = {motion.findings, motion.mend};
   const DepthGuess depth = find_depth(scene, diagnosis.findings);
@@ -95,17 +97,19 @@ Diagnosis examine(Frames frames, const DiagnosedInput& input, const Form& form,
 // With motion that belongs to the frames it is with.
 Diagnosis diagnose_aligned(Frames frames, const DiagnosedInput& input, const Form& form) {
   if (frames.empty()) return {};
-  const std::vector<Plane> planes = planes_of(frames);
-  std::vector<Pair> pairs = pairs_of(frames, planes);
+  std::vector<Plane> planes = planes_of(frames);
+  std::vector<Pair> pairs = pairs_of(frames, planes), shapes = add_shapes(frames, input, planes);
   std::vector<std::int64_t> cuts;
-  Diagnosis diagnosis = examine(frames, input, form, planes, pairs, cuts);
+  Diagnosis diagnosis = examine(frames, input, form, planes, pairs, shapes, cuts);
   if (cuts.empty()) return diagnosis;
   // Once more without what is no pair; that there are cuts remains.
   const Finding found = diagnosis.findings.back();
-  std::erase_if(pairs, [&](const Pair& pair) {
-    return std::find(cuts.begin(), cuts.end(), frames[pair.now].number) != cuts.end();
-  });
-  diagnosis = examine(frames, input, form, planes, pairs, cuts);
+  for (std::vector<Pair>* of_cuts : {&pairs, &shapes}) {
+    std::erase_if(*of_cuts, [&](const Pair& pair) {
+      return std::find(cuts.begin(), cuts.end(), frames[pair.now].number) != cuts.end();
+    });
+  }
+  diagnosis = examine(frames, input, form, planes, pairs, shapes, cuts);
   diagnosis.findings.back() = found;
   return diagnosis;
 }

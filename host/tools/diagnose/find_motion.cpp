@@ -39,7 +39,7 @@ class Search {
       const auto before = jitter_at(frames_, input_, jitter, pair.now - 1);
       if (!now || !before || (later > 0 && !pair.has_next) || (later < 0 && !pair.has_second)) continue;
       result.shift[p] = {now->x * pair.ratio.x - before->x, now->y * pair.ratio.y - before->y};
-      result.errors[p] = foretell(pair, planes_[pair.now - 1], motion[p], result.shift[p], stride);
+      result.errors[p] = foretell(pair, planes_[pair.before], motion[p], result.shift[p], stride);
     }
     return result;
   }
@@ -57,7 +57,7 @@ class Search {
     const std::size_t stride = std::max<std::size_t>(pairs_.size() / kEnough, 1);
     double sum = 0;
     for (std::size_t p = 0; p < pairs_.size() && sum <= most; p += stride)
-      sum += tools::least_error(pairs_[p], planes_[pairs_[p].now - 1], motion[p]);
+      sum += tools::least_error(pairs_[p], planes_[pairs_[p].before], motion[p]);
     return sum;
   }
 

@@ -32,12 +32,18 @@ struct Place {
 
 // Two consecutive frames.
 struct Pair {
-  std::size_t now = 0;  // index of the later frame; the earlier is the one before it
-  Vec2 ratio = {1, 1};  // sizes of the earlier frame's in the later's
+  std::size_t now = 0;     // index of the later frame; the earlier is the one before it
+  std::size_t before = 0;  // index of the earlier's plane
+  Vec2 ratio = {1, 1};     // sizes of the earlier frame's in the later's
   bool has_next = false;
   bool has_second = false;  // the frame before the earlier one
   std::vector<Place> places;
 };
+
+// Else it is of shapes: planes and pairs of depth come after those of light.
+inline bool is_of_light(const Pair& pair) {
+  return pair.before + 1 == pair.now;
+}
 
 // Pixels of the later frame by which each place has moved since the earlier one.
 using Motion = std::vector<Vec2>;
@@ -53,8 +59,12 @@ bool follows(std::span<const DiagnosedFrame> frames, std::size_t i);
 // The pair of a frame that follows, without places.
 Pair pair_of(std::span<const DiagnosedFrame> frames, std::size_t now);
 
-// Pairs of the frames, with places.
+// Pairs of light, with places.
 std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::vector<Plane>& planes);
+
+// Adds planes of depth, as light is, and returns the pairs that they make: their places are the near sides of rims.
+std::vector<Pair> add_shapes(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
+                             std::vector<Plane>& planes);
 
 // Returns the earlier frame's light where each place was, 0 and more; -1 where that is out of the picture. `shift`:
 // this frame's jitter, in the earlier frame's pixels, less that frame's.
@@ -83,6 +93,7 @@ struct Foretold {
   std::vector<std::vector<float>> errors;
 };
 
+// By light and shapes, or by light alone, whichever is clearer.
 Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames, const Foretold& one,
                    const Foretold& other);
 
