@@ -282,7 +282,7 @@ void find_wrong(Finding& finding, const std::string& fault, const std::string& f
 
 bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
             const std::vector<Motion>& camera, float step) {
-  constexpr float kMoves = .25f, kRoom = .04f, kRoomPart = .06f;  // pixels; more, of the motion
+  constexpr float kMoves = .1f, kRoom = .02f, kRoomPart = .06f;  // pixels; more, of the motion
   constexpr double kMost = .6, kLeast = 100;
   double moving = 0, agree = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {

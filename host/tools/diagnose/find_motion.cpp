@@ -185,6 +185,7 @@ CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Ext
                           const std::vector<Pair>& pairs, Frames frames, const std::vector<Motion>& camera) {
   const auto apart = [&](const std::vector<Motion>& motion) {
     Foretold result = {.motion = &motion,
+                       .apart = .05f,
                        .shift = std::vector<Vec2>(pairs.size()),
                        .errors = std::vector<std::vector<float>>(pairs.size())};
     for (std::size_t p = 0; p < pairs.size(); ++p) {
