@@ -170,20 +170,17 @@ void take_velocity(std::span<const DiagnosedFrame> frames, Pair& pair) {
   }
 }
 
-// The mean square of the jitter's steps.
-double steps_of(const Foretold& foretold) {
-  double sum = 0;
-  for (const Vec2 shift : foretold.shift)
-    sum += shift.x * shift.x + shift.y * shift.y;
-  return sum / std::max<double>(static_cast<double>(foretold.shift.size()), 1);
-}
-
-// Whether two guesses differ in how long the jitter's steps are, and in nothing else. Shapes cannot tell that: their
-// rims leap a pixel or stay, and the shorter step is right the more often.
+// Whether two guesses differ in how long a step of the jitter is. Shapes cannot tell that: their rims leap a pixel or
+// stay, and the shorter step is right the more often.
 bool differ_in_length(const Foretold& one, const Foretold& other) {
-  constexpr double kOther = 1.2;
-  const double a = steps_of(one), b = steps_of(other);
-  return one.motion == other.motion && std::max(a, b) > kOther * std::min(a, b);
+  constexpr float kOther = 1.2f;  // of the squares
+  for (std::size_t p = 0; p < std::min(one.errors.size(), other.errors.size()); ++p) {
+    if (one.errors[p].empty() || other.errors[p].empty()) continue;
+    const Vec2 x = one.shift[p], y = other.shift[p];
+    const float a = x.x * x.x + x.y * x.y, b = y.x * y.x + y.y * y.y;
+    if (std::max(a, b) > kOther * std::min(a, b)) return true;
+  }
+  return false;
 }
 
 Comparison compare_alike(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames,
@@ -384,6 +381,12 @@ std::size_t choose(std::span<const Pair> pairs, std::span<const DiagnosedFrame> 
   const bool moved = candidates[chosen].motion != candidates[0].motion;
   const auto against = compare(pairs, frames, candidates[chosen].foretold, candidates[0].foretold);
   if (!clear(against, moved ? kLeastMotionDb : kLeastDb)) return 0;
+  // None is believed where another jitter, as simple, may be it as well.
+  for (const Candidate& other : candidates) {
+    if (other.faults != candidates[chosen].faults || other.motion != candidates[chosen].motion) continue;
+    const auto over_other = compare_alike(pairs, frames, candidates[chosen].foretold, other.foretold);
+    if (over_other.places > 0 && over_other.margin_db < kLeastDb) return 0;
+  }
   // A fault more that is not needed goes again: one with fewer may do almost as well, yet have been no clear gain.
   constexpr double kAlmost = .7;
   const auto over = [&](std::size_t one, std::size_t other) {
