@@ -218,16 +218,16 @@ std::vector<DepthGuess> depth_guesses(DepthKind stated, bool known) {
   return guesses;
 }
 
-// Returns the factor of the near plane with which depth of this kind tells the motion best: that of linear depth has
-// no effect.
-float fitting_near(const Scene& scene, DepthKind kind) {
+// Returns the factor of the near plane with which depth of this kind tells the motion best under a camera: that of
+// linear depth has no effect.
+float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
   constexpr std::size_t kEnough = 300;  // places of a pair
   const auto error = [&](float factor) {
     double sum = 0;
     for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
       const Pair& pair = scene.pairs[p];
       const DiagnosedFrame& frame = scene.frames[pair.now];
-      const auto camera = camera_of(scene, pair, {kind, Camera::kStated, factor});
+      const auto camera = camera_of(scene, pair, {kind, which, factor});
       if (!camera || frame.depth.empty()) continue;
       const Vec2 jitter = scene.motion.jitter[pair.now];
       const std::size_t stride = std::max<std::size_t>(pair.places.size() / kEnough, 1);
@@ -333,11 +333,11 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   Finding depth = {.subject = "depth", .says = scene.frames[0].depth.empty() ? "none" : name_of(form.stated)};
   Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
   std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind, form.kind.has_value());
-  if (scene.motion.knows_motion && input.depth_kind != DepthKind::kLinear) {
+  for (const Camera which : {Camera::kStated, Camera::kLast, Camera::kNext}) {
     constexpr float kLeast = 1.1f;
-    const float factor = fitting_near(scene, input.depth_kind);
-    if (factor > kLeast || factor * kLeast < 1)
-      guesses.push_back({input.depth_kind, Camera::kStated, factor});
+    if (!scene.motion.knows_motion || input.depth_kind == DepthKind::kLinear) break;
+    const float factor = fitting_near(scene, input.depth_kind, which);
+    if (factor > kLeast || factor * kLeast < 1) guesses.push_back({input.depth_kind, which, factor});
   }
   std::vector<std::vector<Motion>> motions;
   for (const DepthGuess& guess : guesses)
