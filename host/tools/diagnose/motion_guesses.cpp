@@ -186,8 +186,9 @@ std::vector<JitterGuess> jitter_guesses(Frames frames, const DiagnosedInput& inp
         if (swapped || x || y) guesses.push_back({swapped, x, y});
     }
     const float scale = static_cast<float>(frames[0].render.width) / static_cast<float>(input.output.width);
-    for (const float factor : {0.0f, .5f, 2.0f, scale})
-      if (std::abs(factor - 1) > .1f) guesses.push_back({.factor = factor});
+    for (const float factor : {0.0f, .5f, 2.0f})
+      guesses.push_back({.factor = factor});
+    if (std::abs(scale - 1) > .1f && scale != .5f) guesses.push_back({.factor = scale});
     guesses.push_back({.later = -1});
     guesses.push_back({.later = 1});
   }
