@@ -207,17 +207,6 @@ std::size_t faults_of(const DiagnosedInput& input, const DepthGuess& guess) {
          (guess.camera != Camera::kStated ? 1u : 0u);
 }
 
-// The input's word first; other kinds only where depth's form does not say which it is.
-std::vector<DepthGuess> depth_guesses(DepthKind stated, bool known) {
-  std::vector<DepthGuess> guesses = {{stated}};
-  for (const DepthKind kind : {DepthKind::kLinear, DepthKind::kDevice, DepthKind::kDeviceReversed}) {
-    for (const Camera camera : {Camera::kStated, Camera::kLast, Camera::kNext}) {
-      if (kind == stated ? camera != Camera::kStated : !known) guesses.push_back({kind, camera});
-    }
-  }
-  return guesses;
-}
-
 // Returns the factor of the near plane with which depth of this kind tells the motion best under a camera: that of
 // linear depth has no effect.
 float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
@@ -257,6 +246,22 @@ float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
   for (const float step : {.125f, .03f, .008f})
     search(best, step, 4);
   return best;
+}
+
+// The input's word first; other kinds only where depth's form does not say which it is.
+std::vector<DepthGuess> depth_guesses(const Scene& scene) {
+  const DepthKind stated = scene.input.depth_kind;
+  std::vector<DepthGuess> guesses = {{stated}};
+  for (const Camera camera : {Camera::kStated, Camera::kLast, Camera::kNext}) {
+    for (const DepthKind kind : {DepthKind::kLinear, DepthKind::kDevice, DepthKind::kDeviceReversed}) {
+      if (kind == stated ? camera != Camera::kStated : !scene.form.kind) guesses.push_back({kind, camera});
+    }
+    constexpr float kLeast = 1.1f;
+    if (!scene.motion.knows_motion || stated == DepthKind::kLinear) continue;
+    const float factor = fitting_near(scene, stated, camera);
+    if (factor > kLeast || factor * kLeast < 1) guesses.push_back({stated, camera, factor});
+  }
+  return guesses;
 }
 
 // Whether colours are foretold better than by no motion.
@@ -332,13 +337,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
   const Form& form = scene.form;
   Finding depth = {.subject = "depth", .says = scene.frames[0].depth.empty() ? "none" : name_of(form.stated)};
   Finding camera = {.subject = "camera", .says = scene.frames[0].world_to_ndc ? "worldToNDC" : "none"};
-  std::vector<DepthGuess> guesses = depth_guesses(input.depth_kind, form.kind.has_value());
-  for (const Camera which : {Camera::kStated, Camera::kLast, Camera::kNext}) {
-    constexpr float kLeast = 1.1f;
-    if (!scene.motion.knows_motion || input.depth_kind == DepthKind::kLinear) break;
-    const float factor = fitting_near(scene, input.depth_kind, which);
-    if (factor > kLeast || factor * kLeast < 1) guesses.push_back({input.depth_kind, which, factor});
-  }
+  const std::vector<DepthGuess> guesses = depth_guesses(scene);
   std::vector<std::vector<Motion>> motions;
   for (const DepthGuess& guess : guesses)
     motions.push_back(camera_motion_of(scene, guess));
@@ -382,7 +381,7 @@ DepthGuess find_depth(const Scene& scene, std::vector<Finding>& findings) {
       compare(scene.pairs, scene.frames, candidates[chosen].foretold, candidates[0].foretold);
   if (best.kind != form.stated) {
     const char* kind = name_of(best.kind);
-    find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), against);
+    find_wrong(depth, "kind", kind, fmt::format("--depth-kind {}", kind), form.kind ? Comparison{} : against);
   }
   if (best.near_factor != 1) {
     const std::string near_plane = fmt::format("{:.4g}", input.near_plane * best.near_factor);
