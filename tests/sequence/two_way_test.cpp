@@ -19,8 +19,11 @@ using tools::TwoWayWindow;
 
 std::vector<ScannedFrame> scanned(std::int64_t first, std::int64_t last, std::int64_t wanted_from = 0) {
   std::vector<ScannedFrame> frames;
-  for (std::int64_t number = first; number <= last; ++number)
-    frames.push_back({.number = number, .wanted = number >= wanted_from, .reset = number == first});
+  for (std::int64_t number = first; number <= last; ++number) {
+    const bool is_first = number == first;
+    frames.push_back(
+        {.number = number, .wanted = number >= wanted_from, .reset = is_first, .opens = is_first});
+  }
   return frames;
 }
 
@@ -30,7 +33,7 @@ TEST(TwoWayWindows, FollowTheNumbersAndLookAheadWithinAShot) {
   EXPECT_EQ(two_way_windows({}, 8), Windows());
   EXPECT_EQ(two_way_windows(scanned(5, 5), 8), (Windows{{0, 0, 0}}));
   EXPECT_EQ(two_way_windows(scanned(0, 59), 8), (Windows{{0, 23, 31}, {24, 47, 55}, {48, 59, 59}}));
-  EXPECT_EQ(two_way_windows(scanned(20, 30), 2), (Windows{{0, 3, 5}, {4, 10, 10}}));
+  EXPECT_EQ(two_way_windows(scanned(20, 60), 2), (Windows{{0, 3, 25}, {4, 27, 29}, {28, 40, 40}}));
   EXPECT_EQ(two_way_windows(scanned(0, 40, 30), 4), (Windows{{30, 40, 40}}));  // the rest is history
   auto frames = scanned(0, 30);
   frames[10].reset = true;  // a cut
@@ -38,6 +41,28 @@ TEST(TwoWayWindows, FollowTheNumbersAndLookAheadWithinAShot) {
   for (std::size_t i = 21; i < frames.size(); ++i)
     frames[i].wanted = false;  // they are looked ahead to
   EXPECT_EQ(two_way_windows(frames, 8), (Windows{{0, 9, 9}, {10, 20, 30}}));
+  frames = scanned(0, 60);
+  frames[20].reset = true;  // a bad frame before it, which may show only later
+  EXPECT_EQ(two_way_windows(frames, 8), (Windows{{0, 19, 19}, {20, 23, 31}, {24, 47, 55}, {48, 60, 60}}));
+  frames[20].opens = true;
+  EXPECT_EQ(two_way_windows(frames, 8), (Windows{{0, 19, 19}, {20, 23, 51}, {24, 47, 55}, {48, 60, 60}}));
+}
+
+TEST(TwoWayWindows, SeeNoFurtherThanIsNeeded) {
+  const auto last_seen = [](std::int64_t first, std::int64_t first_wanted, std::int64_t last_wanted,
+                            std::int64_t last_asked) {
+    tools::SequenceScan scan = {scanned(first, 99, first_wanted)};
+    for (ScannedFrame& frame : scan.frames)
+      frame.wanted = frame.wanted && frame.number <= last_wanted;
+    drop_unseen(scan, last_asked, 8);
+    return scan.frames.back().number;
+  };
+  EXPECT_EQ(last_seen(0, 0, 47, 47), 55);
+  EXPECT_EQ(last_seen(0, 0, 30, 47), 55);  // the others are there already
+  EXPECT_EQ(last_seen(23, 23, 23, 23), 54);
+  EXPECT_EQ(last_seen(23, 23, 24, 24), 54);
+  EXPECT_EQ(last_seen(23, 24, 24, 24), 32);
+  EXPECT_EQ(last_seen(23, 23, 22, 24), 99);  // none is wanted
 }
 
 class BothWays : public testing::SequenceTest {
@@ -239,7 +264,7 @@ TEST_F(BothWays, WithoutHistoryThereIsNoFuture) {
   write_all(1, 12);
   const auto listing = resolve("'{}/f.%04d.exr' -n --frames 1-6 --warm-up 0 --json");
   EXPECT_NE(listing.out.find("\"history_only\": []"), std::string::npos) << listing.out;
-  EXPECT_NE(resolve("'{}/f.%04d.exr' -n --frames 1-3").out.find("Read      11 frames: 1-11"),
+  EXPECT_NE(resolve("'{}/f.%04d.exr' -n --frames 1-3").out.find("Read      12 frames: 1-12"),
             std::string::npos);
 }
 
@@ -327,6 +352,17 @@ TEST_F(BothWays, FramesThatAreOnlyLookedAheadToCountAsInAWholeRun) {
   EXPECT_FALSE(std::filesystem::exists(output(4, "third")));
 }
 
+TEST_F(BothWays, AShotsFirstFrameLooksAsFarAheadWhereverItIs) {
+  write_all(22, 60);
+  write(46, {"forward.u", "forward.v"}, 1, 1, kRender, true);
+  EXPECT_NE(resolve("'{}/f.%04d.exr' -n --frames 22-24").out.find("Read      32 frames: 22-53"),
+            std::string::npos);
+  resolve_to("u", "");
+  for (const char* chunk : {"22-23", "24-47"})
+    resolve_to("chunk", fmt::format("--frames {}", chunk));
+  expect_same_files(22, 47, "chunk");
+}
+
 TEST_F(BothWays, FramesMayHaveOtherSizes) {
   const auto write_sizes = [this](const std::vector<std::string>& next) {
     for (int number = 1; number <= 20; ++number)
@@ -370,7 +406,7 @@ TEST_F(BothWays, AFrameAheadThatCannotBeReadIsNamedOnce) {
   const auto stopped = resolve(run);
   EXPECT_EQ(stopped.exit_code, 1);
   EXPECT_EQ(times_named(stopped.err), 1) << stopped.err;
-  expect_same_files(1, 23, "b");  // their window looks ahead to 31
+  expect_same_files(1, 23, "b");  // their window looks ahead to 32
   EXPECT_FALSE(std::filesystem::exists(output(24, "b")));
   const auto skipped = resolve(run + " --resume --skip-bad-frames");
   EXPECT_EQ(skipped.exit_code, 0) << skipped.err;

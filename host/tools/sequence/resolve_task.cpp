@@ -136,12 +136,12 @@ std::vector<std::int64_t> to_read(const ResolveOptions& options, const ResolveTa
   std::vector<std::int64_t> read = with_history(task.asked, warm_up, first);
   const int reach = std::max(warm_up, history), ahead = task.format.two_way;
   // What begins without history ends without future: it may be another shot.
-  if (ahead > 0) read = with_future(task.input, task.asked, read, std::min(ahead, warm_up));
+  if (ahead > 0) read = with_future(task.input, task.asked, read, std::min(ahead_of_first(ahead), warm_up));
   std::erase_if(read, [&](std::int64_t number) {
     const auto next = std::lower_bound(left.begin(), left.end(), number);
     if (next != left.end() && *next - reach <= number) return false;
     if (ahead == 0 || next == left.begin()) return true;
-    return number >= (*std::prev(next) / kWindowFrames + 1) * kWindowFrames + ahead;
+    return number >= (*std::prev(next) / kWindowFrames + 1) * kWindowFrames + ahead_of_first(ahead);
   });
   return read;
 }
@@ -255,6 +255,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   const std::vector<std::int64_t> left = left_to_do(options, task);
   const std::vector<std::int64_t> read = to_read(options, task, left, history);
   task.scan = scan_sequence(task.input, task.format, read, left, options.threads);
+  if (task.format.two_way > 0) drop_unseen(task.scan, task.asked.back(), task.format.two_way);
   task.format.background = task.scan.background();
   for (const ScannedFrame& frame : task.scan.frames) {
     if (task.format.two_way == 0 || !frame.problem.empty() || task.plan.reads_history(frame.render)) continue;

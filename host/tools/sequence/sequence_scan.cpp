@@ -84,6 +84,15 @@ std::vector<std::int64_t> numbers_of(const std::vector<ScannedFrame>& frames, Ke
   return numbers;
 }
 
+std::int64_t window_of(const ScannedFrame& frame) {
+  return frame.number / kWindowFrames;
+}
+
+// What a shot's first frame asks for, if a window begins with one.
+std::int64_t farthest_of_first(const ScannedFrame& begin, int ahead) {
+  return begin.opens ? begin.number + ahead_of_first(ahead) : 0;
+}
+
 bool all_good(const std::vector<ScannedFrame>& frames, bool ScannedFrame::*fact) {
   return std::all_of(frames.begin(), frames.end(),
                      [&](const ScannedFrame& frame) { return frame.*fact || !frame.problem.empty(); });
@@ -186,22 +195,36 @@ std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, in
 
 std::vector<TwoWayWindow> two_way_windows(std::span<const ScannedFrame> good, int ahead) {
   std::vector<TwoWayWindow> windows;
-  const auto window_of = [&](std::size_t i) { return good[i].number / kWindowFrames; };
   for (std::size_t begin = 0, end; begin < good.size(); begin = end) {
     const auto follows = [&](std::size_t i) { return i < good.size() && !good[i].reset; };
     std::optional<TwoWayWindow> window;
-    for (end = begin; end == begin || (follows(end) && window_of(end) == window_of(begin)); ++end) {
+    for (end = begin; end == begin || (follows(end) && window_of(good[end]) == window_of(good[begin]));
+         ++end) {
       if (!good[end].wanted) continue;
       if (!window) window = TwoWayWindow{end, end, end};
       window->last = end;
     }
     if (!window) continue;
-    const std::int64_t farthest = (window_of(begin) + 1) * kWindowFrames - 1 + ahead;
+    const std::int64_t farthest = std::max((window_of(good[begin]) + 1) * kWindowFrames - 1 + ahead,
+                                           farthest_of_first(good[begin], ahead));
     for (window->turn = end - 1; follows(window->turn + 1) && good[window->turn + 1].number <= farthest;)
       ++window->turn;
     windows.push_back(*window);
   }
   return windows;
+}
+
+void drop_unseen(SequenceScan& scan, std::int64_t last_asked, int ahead) {
+  std::vector<ScannedFrame>& frames = scan.frames;
+  const auto is_wanted = [](const ScannedFrame& frame) { return frame.wanted; };
+  const auto last = std::find_if(frames.rbegin(), frames.rend(), is_wanted);
+  if (last == frames.rend()) return;
+  const auto begin =
+      std::find_if(last, frames.rend(), [](const ScannedFrame& frame) { return frame.reset; }).base() - 1;
+  std::int64_t farthest = last_asked + ahead;
+  if (window_of(*std::find_if(begin, frames.end(), is_wanted)) == window_of(*begin))
+    farthest = std::max(farthest, farthest_of_first(*begin, ahead));
+  std::erase_if(frames, [farthest](const ScannedFrame& frame) { return frame.number > farthest; });
 }
 
 SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& format,
@@ -232,8 +255,8 @@ SequenceScan scan_sequence(const FramePattern& pattern, const SequenceFormat& fo
   for (std::size_t i = 0; i < scan.frames.size(); ++i) {
     ScannedFrame& frame = scan.frames[i];
     const ScannedFrame* before = i > 0 ? &scan.frames[i - 1] : nullptr;
-    const bool follows = before != nullptr && before->number + 1 == frame.number && before->problem.empty();
-    frame.reset = frame.reset || !follows;
+    frame.opens = frame.reset || before == nullptr || before->number + 1 != frame.number;
+    frame.reset = frame.opens || !before->problem.empty();
     if (frame.reset) continue;
     const auto parts = [](const ScannedFrame& one) {
       return Vec2{one.jitter.x / static_cast<float>(one.render.width),

@@ -27,6 +27,7 @@ struct ScannedFrame {
   Vec2 jitter_since = {};    // less that of the frame before, in parts of the picture; 0 after a reset
   Vec2 jitter_until = {};    // the same, less that of the next frame
   bool reset = false;        // nothing of the frame before may be used: a cut, or it is not there
+  bool opens = false;        // a shot: what is before, if anything, is no bad frame
   std::string problem = {};  // empty: none; else one sentence that names the file
 };
 
@@ -71,9 +72,18 @@ std::vector<std::int64_t> with_future(const FramePattern& pattern, std::span<con
 // The first frame of the sequence at or before `wanted`, which reaches back at most `warm_up` frames.
 std::int64_t first_in_reach(const FramePattern& pattern, std::int64_t wanted, int warm_up);
 
+// How many frames a shot's first one knows, where `ahead` are asked for: as many wherever in a window it lies.
+constexpr int ahead_of_first(int ahead) {
+  return static_cast<int>(kWindowFrames) - 1 + ahead;
+}
+
 // The windows with wanted frames, in order. None reaches over a reset, and none looks further ahead than `ahead` frames
-// beyond its last place. Pure.
+// beyond its last place, unless a shot's first frame needs it. Pure.
 std::vector<TwoWayWindow> two_way_windows(std::span<const ScannedFrame> good, int ahead);
+
+// Takes away the frames that are more than `ahead` ones beyond the last that is asked for, unless the window where the
+// last wanted one's shot begins sees them. Pure.
+void drop_unseen(SequenceScan& scan, std::int64_t last_asked, int ahead);
 
 // Reads the headers of `read`, and where their pixels lie, with so many threads. `wanted`: those to be resolved,
 // ascending.
