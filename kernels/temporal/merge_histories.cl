@@ -2,7 +2,8 @@
 // merge_histories: makes one history of two, of the frames up to this one and of those from this one on, both at the
 // pixels' centres. With a of confidence W, b of confidence V and t(c) = c / (1 + max(red, green, blue, 0)):
 //   t(m) = l t(a) + (1 - l) t(b),  l = f(W) / (f(W) + f(V)),  f(W) = W^2 / (W + 1) + .001
-//   Its confidence is W + V, negative (two layers) where one of them is. Alpha is merged without t.
+//   Its confidence is W + V, negative (two layers) where one of them is. There f(W) = (W / (W + 1))^2 + .001: W tells
+//   nothing of the near layer's coverage, where both may err. Alpha is merged without t.
 //
 //   params        in   extent, layout
 //   centred       in   RGBA32F or RGBA16F, output extent: the picture of history, layers laid together, not smoothed
@@ -29,8 +30,9 @@
 
 #define MERGE_WEIGHT_MIN 1e-3f  // of what nothing is known of: seeds still count, all alike
 
-static inline float merge_weight(float confidence) {
-  return confidence * confidence / (confidence + 1.0f) + MERGE_WEIGHT_MIN;
+static inline float merge_weight(float confidence, bool has_layers) {
+  const float part = confidence / (confidence + 1.0f);
+  return part * (has_layers ? part : confidence) + MERGE_WEIGHT_MIN;
 }
 
 static inline float brightest_of(float4 colour) {
@@ -66,11 +68,13 @@ __kernel void merge_histories(const MergeParams params, RESOLVED_TEXELS centred,
       const AlphaPlane plane = {other_alpha, params.width, params.height};
       second.w = load_alpha(plane, index);
 #endif
-      const float weight = merge_weight(fabs(confidence)), second_weight = merge_weight(fabs(texel.w));
+      const bool has_layers = (as_int(confidence) | as_int(texel.w)) < 0;
+      const float weight = merge_weight(fabs(confidence), has_layers);
+      const float second_weight = merge_weight(fabs(texel.w), has_layers);
       const float4 tone = tone_of(made), second_tone = tone_of(second);
       made = untone(tone + (second_tone - tone) * (second_weight / (weight + second_weight)));
       const float sum = fabs(confidence) + fabs(texel.w);
-      confidence = (as_int(confidence) | as_int(texel.w)) < 0 ? -sum : sum;
+      confidence = has_layers ? -sum : sum;
     }
     store_history(merged, index, (float4)(made.xyz, confidence));
 #if ALPHA

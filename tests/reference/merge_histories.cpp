@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // merge_histories: what two histories of one pixel, both at its centre, come to. In tone space, for own a of confidence
-// W and other b of V: m = l a + (1 - l) b, l = f(W) / (f(W) + f(V)), f(W) = W^2 / (W + 1) + .001.
+// W and other b of V: m = l a + (1 - l) b, l = f(W) / (f(W) + f(V)), f(W) = W^2 / (W + 1) + .001. Where one of them has
+// two layers, f(W) = (W / (W + 1))^2 + .001.
 #include <cmath>
 #include <cstddef>
 
@@ -13,9 +14,9 @@ constexpr double kMergeWeightMin = 1e-3;  // of what nothing is known of
 constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
 
 template <typename Real>
-Real weight_of(double confidence) {
+Real weight_of(double confidence, bool layered) {
   const Real known = std::abs(confidence);
-  return known * known / (known + 1) + kMergeWeightMin;
+  return (layered ? known / (known + 1) : known) * known / (known + 1) + kMergeWeightMin;
 }
 
 template <typename Real>
@@ -34,7 +35,9 @@ PixelOf<Real> tone_of(const Pixel& texel) {
 
 template <typename Real>
 HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const HistoryTexel<double>& other) {
-  const Real known = weight_of<Real>(own.texel[3]), other_known = weight_of<Real>(other.texel[3]);
+  const bool layered = std::signbit(own.texel[3]) || std::signbit(other.texel[3]);
+  const Real known = weight_of<Real>(own.texel[3], layered);
+  const Real other_known = weight_of<Real>(other.texel[3], layered);
   const Real share = other_known / (known + other_known);
   const PixelOf<Real> tone = tone_of<Real>(own.texel), other_tone = tone_of<Real>(other.texel);
   PixelOf<Real> mixed = {};
@@ -45,7 +48,6 @@ HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const Histor
   for (std::size_t c = 0; c < 3; ++c)
     merged.texel[c] = mixed[c] / rest;
   const Real sum = Real(std::abs(own.texel[3])) + std::abs(other.texel[3]);
-  const bool layered = std::signbit(own.texel[3]) || std::signbit(other.texel[3]);
   merged.texel[3] = layered ? -sum : sum;
   merged.alpha = own.alpha + (Real(other.alpha) - own.alpha) * share;
   return merged;
