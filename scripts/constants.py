@@ -33,7 +33,7 @@ SCALE, OUTPUT, START, FRAMES, TRUTH = 0.5, "320x180", {"cut": 3.85}, 24, 2
 SCORED = "8-23"  # frames
 QUALITY = ["SHARPENING", "EDGE_SMOOTHING", "EDGE_SHARPENING", "EDGE_GRADIENT", "LONG_CUBIC"]  # preset quality alone
 
-LIGHT, TILES = "temporal/temporal_light.cl", "temporal/temporal_tiles.cl"
+LIGHT, JUDGE = "temporal/temporal_light.cl", "include/temporal/judge_samples.h"
 # Each rule: what stands in for which text of which kernel where it is off. White space counts as one blank.
 RULES = {
     "relighting of 3x3 tiles": [(LIGHT, "float gain = changes &&", "float gain = false &&")],
@@ -45,31 +45,18 @@ RULES = {
     "… only after two frames": [
         (LIGHT, "tile.persistence * change.direction > PERSISTENCE_MIN", "tile.persistence > -2.0f")],
     "… changes of luma below .01 do not count": [
-        (TILES, "(change > LUMA_CHANGE_MIN ? 1.0f : 0.0f) - (change < -LUMA_CHANGE_MIN ? 1.0f : 0.0f)",
-         "(change > 0.0f ? 1.0f : 0.0f) - (change < 0.0f ? 1.0f : 0.0f)")],
+        (JUDGE, "where(change > LUMA_CHANGE_MIN, evidence.count) - where(change < -LUMA_CHANGE_MIN, evidence.count);",
+         "where(change > 0.0f, evidence.count) - where(change < 0.0f, evidence.count);")],
     "relighting of the whole picture": [
         (LIGHT, "const bool relit = is_widespread && is_relit(&whole);", "const bool relit = false && is_relit(&whole);")],
-    "rejection by error": [(LIGHT, "const float by_error = waits ? sure_error : error;", "const float by_error = 0.0f;")],
-    "… not where it may be a change of light": [
-        (LIGHT, "const bool incoherent = fabs(sum->brightening) < ERROR_COHERENCE_MAX * sum->history_error;",
-         "const bool incoherent = true;")],
     "rejection by cut": [
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
-    "rejection by change": [
-        (LIGHT, "return is_agreed ?", "return false ?")],
-    "… of cells": [(LIGHT, "max(by_tile, by_cell)", "by_tile")],
-    "… above flicker": [(LIGHT, " + USUAL_FLICKER * flicker + ", " + ")],
-    "… above the neighbours' error": [(LIGHT, "return USUAL_NEIGHBOUR_ERROR * neighbour_error + ", "return ")],
-    "… by a test of signs": [(LIGHT, "return is_agreed ?", "return true ?")],
+    "judging of cells": [(LIGHT, "if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {", "if (false) {")],
+    "… that change by more than they flicker": [
+        (LIGHT, "if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {", "if (tile.gain == 1.0f) {")],
     "rigid tiles wait for a second frame": [
         (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],
-    "… unless the first is beyond doubt": [
-        (LIGHT, "return max(min(suspected, before) - CONFIRMATION_COST, suspected - SINGLE_FRAME_REJECT_MIN);",
-         "return min(suspected, before) - CONFIRMATION_COST;")],
-    "… unless one was confirmed lately": [
-        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
-         "const bool waits = tiles[i].is_rigid;")],
     "outliers are held back": [(LIGHT, "tile.holds_back = around.sum.outliers > 0.0f &&", "tile.holds_back = false &&")],
     "… only the first of late": [(LIGHT, "around.recent_outliers < OUTLIER_REARM_MAX", "true")],
 }

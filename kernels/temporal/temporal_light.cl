@@ -6,16 +6,16 @@
 //              changes its sign before that. Where the whole picture changes one way the gain is given at once. Where
 //              surfaces move apart a change of light cannot be told from one of surface: the gain is 1, or the whole
 //              picture's
-//   rejection  the largest of three, clamped to [0, 1]:
-//     by error   history foretells the samples much worse than their neighbours do, and not because light has changed
-//                or aliasing flickers
+//   rejection  of each cell the larger of two, clamped to [0, 1]:
+//     judged     by a small network, from what the samples of the cell, of the cells and of the tiles around say, and
+//                said of late: how far they differ from history, which way, and by how much more than neighbours do.
+//                Where the gain is not 1, or the cell has not changed by more than it flickers, it is not asked. A very
+//                large change is one whatever the network says
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
-//     by change  the samples of the tile, or of a cell, agree that it is brighter or darker now, by more than its
-//                aliasing has shown in flicker and in the neighbours' error, as at the edge of a moving shadow
+//     confirmed  in a rigid tile, around which nothing was confirmed lately, what is judged waits for a second frame
+//                that says the same: each place of the jitter can look like a change of its own
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
 //              (outliers): gain is 1 and rejection 0 then
-//   confirmed  in a rigid tile, around which no suspicion was confirmed lately, rejection by error and by
-//              change wait for a second frame, because each place of the jitter can look like a change of its own
 //
 //   tiles_x, tiles_y  in   how many tiles there are
 //   tiles             in   TileReprojection of each tile: motion edges, whether it is rigid, and where it was
@@ -26,12 +26,13 @@
 // Options: none
 // Reference: tests/reference/temporal_light.cpp
 #include "temporal/constants.h"
+#include "temporal/judge_weights.h"
 #include "temporal/tile.h"
 
 // The evidence of 3x3 tiles.
 typedef struct EvidenceAround {
   TileEvidence sum;
-  float change;  // sum of the magnitudes of the brightenings
+  float change;                         // sum of the magnitudes of the brightenings
   float confirmation, recent_outliers;  // the most, in the previous frame
   bool has_motion_edge;
 } EvidenceAround;
@@ -87,59 +88,99 @@ static inline bool is_relit(const TotalLight* total) {
   return fabs(whole) > WHOLE_COHERENCE_MIN * change && fabs(whole) > RELIGHT_CHANGE_MIN * light;
 }
 
-// Returns how far the mean brightening alternates: the smaller of two frames' whose signs differ.
-static inline float alternation(float now, float before) {
-  return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
-}
-
-static inline float suspicion_by_error(const TileEvidence* sum, float flicker) {
-  const float usual = ERROR_FLOOR + ERROR_FLICKER * flicker;  // of a sample
-  const float allowed = ERROR_RATIO_MIN * sum->neighbour_error + usual * max(sum->count, 1.0f);
-  const bool incoherent = fabs(sum->brightening) < ERROR_COHERENCE_MAX * sum->history_error;
-  return incoherent ? max((sum->history_error - allowed) / allowed, 0.0f) : 0.0f;
-}
-
 static inline float rejection_by_cut(const TotalLight* total) {
   const float error = (float)total->history_error, usual = (float)total->neighbour_error;
   if (!(error > CUT_ERROR_MIN * (float)total->light)) return 0.0f;
   return (error - CUT_RATIO_MIN * usual) / (CUT_RATIO_RANGE * usual + 1.0f);
 }
 
-// Returns how much change of a tile or cell is usual.
-static inline float usual_change(float neighbour_error, float flicker) {
-  return USUAL_NEIGHBOUR_ERROR * neighbour_error + USUAL_FLICKER * flicker + USUAL_CHANGE;
+// Returns how far the mean brightening alternates: the smaller of two frames' whose signs differ.
+static inline float alternation(float now, float before) {
+  return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
-// `range`: by how much more than is usual it rejects wholly, as a part of that.
-static inline float suspicion_by_change(float mean_brightening, float brighter, float count, float usual,
-                                        float range) {
-  // A test of signs, corrected as for few samples: three must all agree.
-  const float majority = fabs(brighter) - 1.0f;
-  const bool is_agreed = majority > 0.0f && majority * majority >= SIGN_TEST_MIN * count;
-  return is_agreed ? max((fabs(mean_brightening) - usual) / (range * usual), 0.0f) : 0.0f;
+// The evidence of a cell and of the eight around it, inside the picture.
+typedef struct CellsAround {
+  float means[9];  // brightening / count of each, row by row; 0 of none
+  CellEvidence sum;
+} CellsAround;
+
+// Those of cell (x, y) of the picture.
+static inline CellsAround cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y) {
+  CellsAround around = {{0.0f}, {0.0f, 0.0f, 0.0f}};
+  for (int i = 0; i < 9; ++i) {
+    const int column = x + i % 3 - 1, row = y + i / 3 - 1;
+    if (column < 0 || row < 0 || column >= 2 * tiles_x || row >= 2 * tiles_y) continue;
+    const CellEvidence cell = evidence[row / 2 * tiles_x + column / 2].cells[row % 2 * 2 + column % 2];
+    around.means[i] = cell.brightening / max(cell.count, 1.0f);
+    around.sum.brightening += cell.brightening;
+    around.sum.brighter += cell.brighter;
+    around.sum.count += cell.count;
+  }
+  return around;
 }
 
-// Returns what is left of a suspicion that waits for a second frame: positive if confirmed.
-static inline float confirm(float suspected, float before) {
-  return max(min(suspected, before) - CONFIRMATION_COST, suspected - SINGLE_FRAME_REJECT_MIN);
+// Returns the largest mean of three cells in a row through the middle one, in four directions, with brightenings turned
+// by `direction`: the edge of a shadow is a line.
+static inline float mean_of_line(const CellsAround* cells, float direction) {
+  float sum = -INFINITY;
+  for (int i = 0; i < 4; ++i)
+    sum = max(sum, (cells->means[i] + cells->means[4] + cells->means[8 - i]) * direction);
+  return sum / 3.0f;
 }
 
-// The same of a suspicion by change, with its sign, if the previous frame's has it, too.
-static inline float confirm_change(float suspected, float before) {
-  return confirm(fabs(suspected), suspected * before > 0.0f ? fabs(before) : 0.0f);
+// The network's weights, by training (scripts/train_judge.py).
+__constant float kInputWeights[JUDGE_INPUTS * JUDGE_HIDDEN] = {JUDGE_INPUT_WEIGHTS};
+__constant float kBiases[JUDGE_HIDDEN] = {JUDGE_BIASES};
+__constant float kOutputWeights[JUDGE_HIDDEN] = {JUDGE_OUTPUT_WEIGHTS};
+
+// Returns how far the history of a cell is to be rejected, not clamped.
+static inline float judge(const float* inputs) {
+  float16 hidden = vload16(0, kBiases);
+  for (int i = 0; i < JUDGE_INPUTS; ++i)
+    hidden += clamp(inputs[i], -JUDGE_INPUT_MAX, JUDGE_INPUT_MAX) * vload16(i, kInputWeights);
+  hidden = max(hidden, 0.0f) * vload16(0, kOutputWeights);
+  const float8 eight = hidden.lo + hidden.hi;
+  const float4 four = eight.lo + eight.hi;
+  return four.x + four.y + four.z + four.w + JUDGE_OUTPUT_BIAS;
 }
 
-// What a cell has changed by, and how usual that is. It is not rejected.
-static inline CellLight cell_light(CellEvidence evidence, CellLight before, float neighbour_error) {
+// The same of a cell with evidence `own` and memory `before`, in a tile of such flicker, by what its own tile and the
+// 3x3 tiles around say, too. Whether it has become brighter or darker does not matter.
+static inline float judge_cell(const CellsAround* cells, CellEvidence own, CellLight now, CellLight before,
+                               float flicker, const TileEvidence* tile, const TileEvidence* tiles) {
+  const float direction = now.mean_brightening < 0.0f ? -1.0f : 1.0f;
+  const float of_tiles = max(tiles->count, 1.0f), usual = tiles->neighbour_error / of_tiles + JUDGE_ERROR_FLOOR;
+  const float per_usual = 1.0f / usual, per_sample = per_usual / max(tile->count, 1.0f);
+  const float around = max(cells->sum.count, 1.0f);
+  const float inputs[JUDGE_INPUTS] = {
+      fabs(now.mean_brightening) * per_usual,
+      direction * cells->sum.brightening / around * per_usual,
+      mean_of_line(cells, direction) * per_usual,
+      direction * before.mean_brightening * per_usual,
+      direction * before.drift * per_usual,
+      now.flicker * per_usual,
+      flicker * per_usual,
+      tile->history_error * per_sample,
+      tiles->history_error / of_tiles * per_usual,
+      direction * own.brighter / max(own.count, 1.0f),
+      direction * cells->sum.brighter / around,
+      usual,
+      fabs(now.mean_brightening),
+      tile->neighbour_error * per_sample,
+      own.count,
+  };
+  return judge(inputs);
+}
+
+// What is known of a cell of which nothing is rejected yet.
+static inline CellLight cell_light(CellEvidence evidence, CellLight before) {
   CellLight cell;
-  cell.rejection = 0.0f;
+  cell.rejection = cell.suspicion = 0.0f;
   cell.mean_brightening = evidence.brightening / max(evidence.count, 1.0f);
   cell.flicker = FLICKER_MEMORY * before.flicker +
                  (1.0f - FLICKER_MEMORY) * alternation(cell.mean_brightening, before.mean_brightening);
-  const float usual = usual_change(neighbour_error, cell.flicker);
-  cell.suspected_change = copysign(
-      suspicion_by_change(cell.mean_brightening, evidence.brighter, evidence.count, usual, CELL_CHANGE_RANGE),
-      cell.mean_brightening);
+  cell.drift = DRIFT_MEMORY * before.drift + cell.mean_brightening;
   return cell;
 }
 
@@ -177,8 +218,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
 
   // Relighting gain.
   const bool changes = is_change_of_light(&change, &around);
-  tile.persistence = PERSISTENCE_MEMORY * before.persistence +
-                     (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
+  tile.persistence =
+      PERSISTENCE_MEMORY * before.persistence + (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   float gain = changes && tile.persistence * change.direction > PERSISTENCE_MIN ? 1.0f + change.relative : 1.0f;
   const bool is_widespread = (float)whole.changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
   const bool relit = is_widespread && is_relit(&whole);
@@ -186,42 +227,31 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
     gain = 1.0f + (float)whole.brightening / (float)whole.light;  // surer than what one tile finds
   tile.gain = clamp(gain, 1.0f / GAIN_MAX, GAIN_MAX);
 
-  // Suspicions. Where the light has changed, a change is none.
-  const float mean_error = around.sum.neighbour_error / max(around.sum.count, 1.0f);
-  float flicker = 0.0f, sure_of_cells = 0.0f;
+  // Rejection. Where the light has changed, history follows it.
+  float flicker = 0.0f;
   for (int c = 0; c < 4; ++c) {
-    tile.cells[c] = cell_light(own.cells[c], before.cells[c], mean_error);
-    if (tile.gain != 1.0f) tile.cells[c].suspected_change = 0.0f;
+    tile.cells[c] = cell_light(own.cells[c], before.cells[c]);
     flicker += 0.25f * tile.cells[c].flicker;
-    sure_of_cells =
-        max(sure_of_cells, confirm_change(tile.cells[c].suspected_change, before.cells[c].suspected_change));
   }
-  const float mean_brightening = own.brightening / max(own.count, 1.0f);
-  const float error = suspicion_by_error(&around.sum, flicker);
-  const float changed = tile.gain == 1.0f
-                            ? suspicion_by_change(mean_brightening, own.brighter, own.count,
-                                                  usual_change(mean_error, flicker), TILE_CHANGE_RANGE)
-                            : 0.0f;
-  tile.suspected_error = error;
-  tile.suspected_change = copysign(changed, mean_brightening);
-  const float sure_error = confirm(error, before.suspected_error);
-  const float sure_change = confirm_change(tile.suspected_change, before.suspected_change);
-  tile.confirmation = max(max(sure_error, sure_change), sure_of_cells) > 0.0f
-                          ? 1.0f
-                          : CONFIRMATION_MEMORY * before.confirmation;
-
-  // Rejection.
-  const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
-  const float by_error = waits ? sure_error : error;
-  const float by_change = waits ? sure_change : changed;
   const float by_cut = is_widespread && !relit ? rejection_by_cut(&whole) : 0.0f;
-  const float by_tile = max(max(by_error, by_change), by_cut);
+  const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
+  tile.confirmation = CONFIRMATION_MEMORY * before.confirmation;
   tile.rejection = 0.0f;
   for (int c = 0; c < 4; ++c) {
     CellLight* cell = &tile.cells[c];
-    const float by_cell = waits ? confirm_change(cell->suspected_change, before.cells[c].suspected_change)
-                                : fabs(cell->suspected_change);
-    cell->rejection = clamp(max(by_tile, by_cell), 0.0f, 1.0f);
+    const float changed = fabs(cell->mean_brightening);
+    float judged = 0.0f;
+    if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {
+      const CellsAround cells = cells_around(evidence, tiles_x, tiles_y, 2 * x + c % 2, 2 * y + c / 2);
+      judged = judge_cell(&cells, own.cells[c], *cell, before.cells[c], flicker, &own, &around.sum);
+      judged = clamp(max(judged, (changed - SUDDEN_CHANGE_MIN) / SUDDEN_CHANGE_RANGE), 0.0f, 1.0f);
+    }
+    cell->suspicion = copysign(judged, cell->mean_brightening);
+    const float suspected = before.cells[c].suspicion;
+    const float sure =
+        cell->suspicion * suspected > 0.0f ? max(2.0f * min(judged, fabs(suspected)) - 1.0f, 0.0f) : 0.0f;
+    if (sure > 0.0f) tile.confirmation = 1.0f;
+    cell->rejection = clamp(max(waits ? sure : judged, by_cut), 0.0f, 1.0f);
     tile.rejection = max(tile.rejection, cell->rejection);
   }
   const float cut = clamp(by_cut, 0.0f, 1.0f);

@@ -49,8 +49,6 @@ KernelTile to_kernel(const reference::Tile& tile) {
                                    .cut = number(light.cut),
                                    .new_cut = number(light.new_cut),
                                    .persistence = number(light.persistence),
-                                   .suspected_error = number(light.suspected_error),
-                                   .suspected_change = number(light.suspected_change),
                                    .confirmation = number(light.confirmation),
                                    .recent_outliers = number(light.recent_outliers),
                                    .holds_back = light.holds_back ? 1 : 0,
@@ -60,8 +58,8 @@ KernelTile to_kernel(const reference::Tile& tile) {
     static_cast<TileEvidence&>(made).cells[i] = {number(cell.brightening), static_cast<float>(cell.brighter),
                                                  static_cast<float>(cell.count)};
     const auto& lit = light.cells[i];
-    static_cast<TileLight&>(made).cells[i] = {number(lit.rejection), number(lit.suspected_change),
-                                              number(lit.mean_brightening), number(lit.flicker)};
+    static_cast<TileLight&>(made).cells[i] = {number(lit.rejection), number(lit.mean_brightening),
+                                              number(lit.flicker), number(lit.suspicion), number(lit.drift)};
   }
   return made;
 }
@@ -105,8 +103,6 @@ reference::Tile to_reference(const KernelTile& tile) {
                 .cut = number(tile.cut),
                 .new_cut = number(tile.new_cut),
                 .persistence = number(tile.persistence),
-                .suspected_error = number(tile.suspected_error),
-                .suspected_change = number(tile.suspected_change),
                 .confirmation = number(tile.confirmation),
                 .recent_outliers = number(tile.recent_outliers),
                 .holds_back = tile.holds_back != 0,
@@ -116,8 +112,8 @@ reference::Tile to_reference(const KernelTile& tile) {
     made.evidence.cells[i] = {number(cell.brightening), static_cast<int>(cell.count),
                               static_cast<int>(cell.brighter)};
     const CellLight& lit = tile.TileLight::cells[i];
-    made.light.cells[i] = {number(lit.rejection), number(lit.suspected_change), number(lit.mean_brightening),
-                           number(lit.flicker)};
+    made.light.cells[i] = {number(lit.rejection), number(lit.mean_brightening), number(lit.flicker),
+                           number(lit.suspicion), number(lit.drift)};
   }
   return made;
 }

@@ -60,9 +60,10 @@ using TileEvidence = TileEvidenceOf<double>;
 template <typename Real>
 struct CellLightOf {
   Real rejection = 0;         // of history, in [0, 1]
-  Real suspected_change = 0;  // as TileLightOf's
   Real mean_brightening = 0;  // mean over the samples
   Real flicker = 0;           // how far that goes to and fro from frame to frame: aliasing
+  Real suspicion = 0;         // rejection by this frame alone, with the sign of the mean
+  Real drift = 0;             // its sum over frames, which fades
 };
 
 // The conclusions from the evidence.
@@ -71,11 +72,8 @@ struct TileLightOf {
   Real gain = 1;       // relighting gain: history times this has this frame's light
   Real rejection = 0;  // the largest of its cells'
   Real cut = 0,
-       new_cut = 0;      // how far the whole picture is another one, now or of late, and by how much more
-  Real persistence = 0;  // in [-1, 1]: of a coherent change of light, over frames
-  // Rejection by error and by change as it would be by this frame alone, from 0 on; that by change with the sign of the
-  // change.
-  Real suspected_error = 0, suspected_change = 0;
+       new_cut = 0;          // how far the whole picture is another one, now or of late, and by how much more
+  Real persistence = 0;      // in [-1, 1]: of a coherent change of light, over frames
   Real confirmation = 0;     // 1 where a suspicion is confirmed; it fades
   Real recent_outliers = 0;  // 1 where samples are outliers, or beside; it fades
   bool holds_back = false;   // outliers are held back: they are the first ones
@@ -154,20 +152,11 @@ TileEvidenceOf<Real> as(const TileEvidence& e) {
 }
 template <typename Real>
 TileLightOf<Real> as(const TileLight& l) {
-  TileLightOf<Real> made{l.gain,
-                         l.rejection,
-                         l.cut,
-                         l.new_cut,
-                         l.persistence,
-                         l.suspected_error,
-                         l.suspected_change,
-                         l.confirmation,
-                         l.recent_outliers,
-                         l.holds_back,
-                         {}};
+  TileLightOf<Real> made{l.gain,         l.rejection,       l.cut,        l.new_cut, l.persistence,
+                         l.confirmation, l.recent_outliers, l.holds_back, {}};
   for (std::size_t i = 0; i < 4; ++i) {
     const CellLightOf<double>& cell = l.cells[i];
-    made.cells[i] = {cell.rejection, cell.suspected_change, cell.mean_brightening, cell.flicker};
+    made.cells[i] = {cell.rejection, cell.mean_brightening, cell.flicker, cell.suspicion, cell.drift};
   }
   return made;
 }

@@ -15,20 +15,20 @@
 //                of its cells were `step` texels ago, clamped to the picture
 //   flicker      of a cell: f <- .9 f + .1 a, a the smaller |mean| of this frame and of the previous one where
 //                their signs differ, else 0; of a tile: the mean of its cells'
-//   rejection    of each cell the largest of three, each within [0, 1]; a suspicion below 0 is 0, and its confirmed
-//                part is max(min(s, s') - 1, s - 4), s' that of the previous frame, 0 if of the other sign of mean
-//     by error   (E - e) / e, e = 1.6 N + (.002 + 2 f) n, f of the tile, where |B| < .5 E; where it waits its
-//                confirmed part
-//     by change  (|mean| - T) / (T / 2), of a cell (|mean| - T) / (1.5 T), T = .3 N / n + 6 f + .01, where
-//                gain = 1 and (|b| - 1)^2 >= 1.1 k; where it waits its confirmed part; the larger of the tile's and
-//                the cell's
+//   drift        of a cell: d <- .7 d + mean
+//   rejection    of each cell the larger of two, within [0, 1]
+//     judged     where gain = 1 and |mean| > 4 f: the network of judge_weights.h, of a cell's inputs
+//                as judge_cell() lists them, in units of u = N / n + .02 and turned to the sign of its mean
+//                At least (|mean| - .3) / .2 there
+//     waits      where the tile is rigid and the nine tiles' confirmation was below .3, max(2 min(s, s') - 1, 0) in
+//                place of s, s and s' of what was judged in this frame and in the previous one; 0 if the signs of their
+//                means differ
 //     by cut     (E' - 1.25 N') / (.35 N' + 1) of the whole picture's sums, where E' > .03 L', it is not
 //                relit, and the change is widespread
-//   confirmation 1 where the confirmed part of any suspicion is above 0, else u <- .97 u
+//   confirmation 1 where 2 min(s, s') - 1 > 0 in a cell, else u <- .97 u
 //   recent outliers  1 where one of the nine tiles has outliers, else a <- .9 a
 //   holds back   there, if none of the nine had recent outliers >= .15 in the previous frame,
 //                and the picture is neither relit nor cut; gain = 1 and rejection = 0 then
-//   waits        where the tile is rigid, and in the nine tiles the previous frame's confirmation is below .3
 // Source: found by measuring (docs/lab/temporal.md): the gain is worth 4.7 dB on moving light and 6.8 dB on steps
 // of the whole picture.
 #include <algorithm>
@@ -36,6 +36,7 @@
 #include <cstddef>
 
 #include "temporal.h"
+#include "temporal/judge_weights.h"
 
 namespace quincunx::reference {
 namespace {
@@ -51,21 +52,15 @@ constexpr double kLightSumMin = 1e-6;       // against a division by 0
 constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 
 // Rejection.
-constexpr double kErrorRatioMin = 1.6;            // times N: history foretells worse than the neighbours do
-constexpr double kErrorFloor = .002;              // for each sample
-constexpr double kErrorFlicker = 2;               // times flicker, for each sample
-constexpr double kErrorCoherenceMax = .5;         // |B| / E below which the error is no change of light
-constexpr double kSignTestMin = 1.1;              // (|b| - 1)^2 / samples: a test of signs
-constexpr double kUsualNeighbourError = .3;       // part of the neighbours' mean error, which is usual
-constexpr double kUsualFlicker = 6;               // times flicker
-constexpr double kUsualChange = .01;              // mean change of luma of a sample
-constexpr double kTileChangeRange = .5;           // times what is usual, over which rejection grows to 1
-constexpr double kCellChangeRange = 1.5;          // the same of a cell
+constexpr double kJudgeErrorFloor = .02;          // added to the neighbours' mean error, the unit of changes
+constexpr double kJudgeInputMax = 8;              // of each input's magnitude
 constexpr double kFlickerMemory = .9;             // each frame: about ten
-constexpr double kConfirmationCost = 1;           // taken from the suspicion that two frames share
-constexpr double kSingleFrameRejectMin = 4;       // suspicion of one frame that needs no other
+constexpr double kSuddenChangeMin = .3;           // |mean| from which on it is rejected in any case
+constexpr double kSuddenChangeRange = .2;         // over which that grows to 1
 constexpr double kConfirmationMemory = .97;       // each frame
 constexpr double kRigidTileConfirmationMax = .3;  // below it a rigid tile waits for a second frame
+constexpr double kDriftMemory = .7;               // each frame
+constexpr double kFlickerRatioMin = 4;            // |mean| / flicker: less is no change
 constexpr double kCutRatioMin = 1.25;   // E / N of the whole picture from which on it may be another one
 constexpr double kCutRatioRange = .35;  // times N, over which rejection grows to 1
 constexpr double kCutErrorMin = .03;    // part of the whole picture's light
@@ -138,37 +133,9 @@ void relight(const Sums<Real>& sums, const TotalLightOf<Real>& total, bool is_re
   light.gain = clamp(light.gain, 1 / kGainMax, kGainMax);
 }
 
-// History foretells the samples worse than their neighbours do, and not by a change of light.
-template <typename Real>
-Real suspicion_by_error(const Sums<Real>& sums, const Real& flicker) {
-  if (abs(sums.brightening) >= kErrorCoherenceMax * sums.history_error) return 0;
-  const Real usual = kErrorFloor + kErrorFlicker * flicker;
-  const Real allowed = kErrorRatioMin * sums.neighbour_error + usual * std::max(sums.count, 1);
-  return max((sums.history_error - allowed) / allowed, 0);
-}
-
-// How much change is usual of a tile or cell.
-template <typename Real>
-Real usual_change(const Sums<Real>& sums, const Real& flicker) {
-  return kUsualNeighbourError * (sums.neighbour_error / std::max(sums.count, 1)) + kUsualFlicker * flicker +
-         kUsualChange;
-}
-
-// The samples of a tile or cell agree that it is brighter or darker now, by more than aliasing has shown so far. With
-// the sign of the change.
-template <typename Real, typename Evidence>
-Real suspicion_by_change(const Evidence& evidence, const Real& usual, double range) {
-  const int majority = std::abs(evidence.brighter) - 1;
-  if (majority <= 0 || majority * majority < kSignTestMin * evidence.count) return 0;
-  const Real mean = evidence.brightening / std::max(evidence.count, 1);
-  const Real suspected = max((abs(mean) - usual) / (range * usual), 0);
-  return mean < 0 ? -suspected : suspected;
-}
-
 // A cell that is not rejected.
 template <typename Real>
-CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const CellLightOf<Real>& before,
-                             const Sums<Real>& sums) {
+CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const CellLightOf<Real>& before) {
   CellLightOf<Real> cell;
   cell.mean_brightening = evidence.brightening / std::max(evidence.count, 1);
   Real alternation = 0;
@@ -176,51 +143,66 @@ CellLightOf<Real> cell_light(const CellEvidenceOf<Real>& evidence, const CellLig
     alternation = min(abs(cell.mean_brightening), abs(before.mean_brightening));
   const Real memory = kFlickerMemory;
   cell.flicker = memory * before.flicker + (1 - memory) * alternation;
-  cell.suspected_change = suspicion_by_change(evidence, usual_change(sums, cell.flicker), kCellChangeRange);
+  cell.drift = kDriftMemory * before.drift + cell.mean_brightening;
   return cell;
 }
 
-// Returns the rest of a suspicion where a second frame must confirm it.
+// The network: rejection, not clamped.
 template <typename Real>
-Real confirm(const Real& suspected, const Real& before) {
-  return max(min(suspected, before) - kConfirmationCost, suspected - kSingleFrameRejectMin);
-}
-
-// The same of a change, with its sign: the previous frame's counts if it went the same way.
-template <typename Real>
-Real confirm_change(const Real& suspected, const Real& before) {
-  return confirm(abs(suspected), suspected * before > 0 ? abs(before) : Real(0));
-}
-
-// Suspicions, their confirmation, and rejection. Where the light has changed, a change is no suspicion.
-template <typename Real>
-void suspect(const TileEvidenceOf<Real>& evidence, const TileLightOf<Real>& before, const Sums<Real>& sums,
-             bool is_rigid, const Real& by_cut, TileLightOf<Real>& light) {
-  Real flicker = 0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    light.cells[i] = cell_light(evidence.cells[i], before.cells[i], sums);
-    flicker += .25 * light.cells[i].flicker;
-    if (light.gain != 1) light.cells[i].suspected_change = 0;
+Real judge(const std::array<Real, JUDGE_INPUTS>& inputs) {
+  constexpr std::array<float, JUDGE_INPUTS* JUDGE_HIDDEN> weights = {JUDGE_INPUT_WEIGHTS};
+  constexpr std::array<float, JUDGE_HIDDEN> biases = {JUDGE_BIASES}, of_hidden = {JUDGE_OUTPUT_WEIGHTS};
+  Real rejection = static_cast<double>(JUDGE_OUTPUT_BIAS);
+  for (std::size_t h = 0; h < biases.size(); ++h) {
+    Real hidden = static_cast<double>(biases[h]);
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      hidden += clamp(inputs[i], -kJudgeInputMax, kJudgeInputMax) *
+                static_cast<double>(weights[i * JUDGE_HIDDEN + h]);
+    rejection += max(hidden, 0) * static_cast<double>(of_hidden[h]);
   }
-  light.suspected_error = suspicion_by_error(sums, flicker);
-  if (light.gain == 1)
-    light.suspected_change = suspicion_by_change(evidence, usual_change(sums, flicker), kTileChangeRange);
+  return rejection;
+}
 
-  const bool waits = is_rigid && sums.confirmation < kRigidTileConfirmationMax;
-  const auto sure_of = [](const auto& now, const auto& then) {
-    return confirm_change(now.suspected_change, then.suspected_change);
+// That of cell (x, y) of the picture.
+template <typename Real>
+Real judge_cell(const LightInputs& in, int x, int y, const Sums<Real>& sums, const CellLightOf<Real>& now,
+                const CellLightOf<Real>& before, const Real& tile_flicker) {
+  const auto cell_at = [&](int column, int row) -> CellEvidenceOf<Real> {
+    if (column < 0 || row < 0 || column >= 2 * in.tiles_x || row >= 2 * in.tiles_y) return {};
+    const Tile& tile = in.tiles[index_of(in.tiles_x, column / 2, row / 2)];
+    return as<Real>(tile.evidence).cells[static_cast<std::size_t>(row % 2 * 2 + column % 2)];
   };
-  const Real sure = max(confirm(light.suspected_error, before.suspected_error), sure_of(light, before));
-  const Real by_tile = max(waits ? sure : max(light.suspected_error, abs(light.suspected_change)), by_cut);
-  Real surest = sure;
-  for (std::size_t i = 0; i < 4; ++i) {
-    CellLightOf<Real>& cell = light.cells[i];
-    const Real sure_of_cell = sure_of(cell, before.cells[i]);
-    surest = max(surest, sure_of_cell);
-    cell.rejection = clamp(max(by_tile, waits ? sure_of_cell : abs(cell.suspected_change)), 0, 1);
-    light.rejection = max(light.rejection, cell.rejection);
+  const auto mean_at = [&](int column, int row) {
+    const CellEvidenceOf<Real> cell = cell_at(column, row);
+    return cell.brightening / std::max(cell.count, 1);
+  };
+  CellEvidenceOf<Real> around{};
+  for (int row = y - 1; row <= y + 1; ++row) {
+    for (int column = x - 1; column <= x + 1; ++column) {
+      const CellEvidenceOf<Real> cell = cell_at(column, row);
+      around.brightening += cell.brightening;
+      around.brighter += cell.brighter;
+      around.count += cell.count;
+    }
   }
-  light.confirmation = surest > 0 ? Real(1) : kConfirmationMemory * before.confirmation;
+  const int sign = now.mean_brightening < 0 ? -1 : 1;
+  const auto line = [&](int dx, int dy) {
+    return sign * (mean_at(x - dx, y - dy) + mean_at(x, y) + mean_at(x + dx, y + dy)) / 3;
+  };
+  const Real longest = max(max(line(1, 1), line(0, 1)), max(line(-1, 1), line(1, 0)));
+
+  const CellEvidenceOf<Real> own = cell_at(x, y);
+  const auto tile = as<Real>(in.tiles[index_of(in.tiles_x, x / 2, y / 2)].evidence);
+  const auto mean_of = [](const Real& sum, int count) { return sum / std::max(count, 1); };
+  const Real unit = mean_of(sums.neighbour_error, sums.count) + kJudgeErrorFloor;
+  const Real majority = sign * own.brighter, majority_around = sign * around.brighter;
+  return judge<Real>({abs(now.mean_brightening) / unit,
+                      sign * mean_of(around.brightening, around.count) / unit, longest / unit,
+                      sign * before.mean_brightening / unit, sign * before.drift / unit, now.flicker / unit,
+                      tile_flicker / unit, mean_of(tile.history_error, tile.count) / unit,
+                      mean_of(sums.history_error, sums.count) / unit, mean_of(majority, own.count),
+                      mean_of(majority_around, around.count), unit, abs(now.mean_brightening),
+                      mean_of(tile.neighbour_error, tile.count) / unit, Real(own.count)});
 }
 
 // Over the whole picture history foretells no better than the neighbours: it shows another picture.
@@ -271,7 +253,30 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
   const bool relit = is_relit(total, is_widespread);
   relight(sums, total, relit, before, light);
   const Real by_cut = is_widespread && !relit ? rejection_by_cut(total) : Real(0);
-  suspect(evidence, before, sums, in.tiles[i].reprojection.is_rigid, by_cut, light);
+  Real flicker = 0;
+  for (std::size_t c = 0; c < 4; ++c) {
+    light.cells[c] = cell_light(evidence.cells[c], before.cells[c]);
+    flicker += .25 * light.cells[c].flicker;
+  }
+  const bool waits = in.tiles[i].reprojection.is_rigid && Real(sums.confirmation) < kRigidTileConfirmationMax;
+  light.confirmation = kConfirmationMemory * before.confirmation;
+  for (int c = 0; c < 4; ++c) {
+    const auto n = static_cast<std::size_t>(c);
+    CellLightOf<Real>& cell = light.cells[n];
+    const Real change = abs(cell.mean_brightening);
+    Real judged = 0;
+    if (light.gain == 1 && change > kFlickerRatioMin * cell.flicker) {
+      judged = judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker);
+      judged = clamp(max(judged, (change - kSuddenChangeMin) / kSuddenChangeRange), 0, 1);
+    }
+    cell.suspicion = cell.mean_brightening < 0 ? -judged : judged;
+    const Real suspected = before.cells[n].suspicion;
+    Real sure = 0;
+    if (cell.suspicion * suspected > 0) sure = max(2 * min(judged, abs(suspected)) - 1, 0);
+    if (sure > 0) light.confirmation = 1;
+    cell.rejection = clamp(max(waits ? sure : judged, by_cut), 0, 1);
+    light.rejection = max(light.rejection, cell.rejection);
+  }
   light.cut = max(by_cut, kCutMemory * before.cut);
   light.new_cut = max(by_cut - before.cut, 0);
   light.recent_outliers = sums.outliers > 0 ? Real(1) : kOutlierMemory * before.recent_outliers;

@@ -40,12 +40,6 @@
 #define WHOLE_COHERENCE_MIN 0.8f      // as RELIGHT_COHERENCE_MIN, of the whole picture [S]
 #define LIGHT_SUM_MIN 1e-6f           // luma [N]
 
-// ---- temporal_light: rejection by error.
-#define ERROR_RATIO_MIN 1.6f       // history's error / the neighbours' [S]
-#define ERROR_FLOOR 0.002f         // luma of each sample: less is no error [S]
-#define ERROR_FLICKER 2.0f         // of flicker: what aliasing lets samples and history differ by [S]
-#define ERROR_COHERENCE_MAX 0.5f   // of the error: if more of it is brightening it may be a change of light [S]
-
 // ---- temporal_light: rejection by cut. In cuts the ratio is 1.66 or more; textures finer than the samples have as
 // much as long as history is new, and up to 1.44 later. So it is soft: what is rejected is new again.
 #define CUT_RATIO_MIN 1.25f   // history's error / the neighbours', of the whole picture [S]
@@ -53,20 +47,16 @@
 #define CUT_ERROR_MIN 0.03f   // of the light: less is no error [S]
 #define CUT_MEMORY 0.9f       // a frame: where each seems another picture there is no cut [S]
 
-// ---- temporal_light: rejection by change.
-#define SIGN_TEST_MIN 1.1f          // squared standard deviations of a fair coin: the samples' majority [S]
-#define TILE_CHANGE_RANGE 0.5f      // of what is usual: by how much more a tile rejects wholly [S]
-#define CELL_CHANGE_RANGE 1.5f      // the same of a cell, which knows less [S]
-#define USUAL_NEIGHBOUR_ERROR 0.3f  // of the neighbours' error: that much change is usual [S]
-#define USUAL_FLICKER 6.0f          // of flicker: an aliased cell is more often near its mean than far [S]
-#define USUAL_CHANGE 0.01f          // luma: usual anyway [S]
-#define FLICKER_MEMORY 0.9f         // a frame. Without flicker -.08 dB, still -.8 [S]
-
-// ---- temporal_light: rigid tiles wait for a second frame.
-#define CONFIRMATION_COST 1.0f            // of a suspicion that two frames share [S]
-#define SINGLE_FRAME_REJECT_MIN 4.0f      // suspicion of one frame that needs no other [S]
+// ---- temporal_light: judging cells; judge_weights.h has the network.
+#define JUDGE_ERROR_FLOOR 0.02f  // luma: added to the neighbours' error, in which changes are measured [S]
+#define JUDGE_INPUT_MAX 8.0f     // of each input's magnitude [S]
+#define FLICKER_RATIO_MIN 4.0f   // change of a cell / its flicker: of less none is rejected; pan +.3 dB [S]
+#define SUDDEN_CHANGE_MIN 0.3f   // relative luma: from here on a change is rejected whatever the network says [S]
+#define SUDDEN_CHANGE_RANGE 0.2f // by how much more wholly [S]
 #define CONFIRMATION_MEMORY 0.97f         // a frame [S]
 #define RIGID_TILE_CONFIRMATION_MAX 0.3f  // reached 40 frames after the last confirmed suspicion [S]
+#define DRIFT_MEMORY 0.7f        // a frame [S]
+#define FLICKER_MEMORY 0.9f      // a frame [S]
 
 // ---- Outliers: samples that are held back for a frame.
 #define OUTLIER_RATIO_MIN 5.0f        // of history's brightest channel and the floor [S]

@@ -59,7 +59,7 @@ typedef struct TileEvidence {
   float neighbour_error;  // |s - n|: the neighbours' error as a forecast of it
   float count;            // number of judged samples
   float brighter;         // how many of them are brighter than history by more than noise, less those that are darker
-  float outliers;        // how many of them, with two of their neighbours, are outliers
+  float outliers;         // how many of them, with two of their neighbours, are outliers
   CellEvidence cells[4];  // row by row
 } TileEvidence;
 QUINCUNX_CHECK_SIZE(TileEvidence, 28 + 4 * 12);
@@ -74,28 +74,26 @@ static inline TileEvidence no_evidence(void) {
 // What is to be done about the history of a cell.
 typedef struct CellLight {
   float rejection;         // how far history is brought into the range of this frame's samples, in [0, 1]
-  float suspected_change;  // as TileLight's
   float mean_brightening;  // CellEvidence's brightening / count, for the next frame
   float flicker;           // how far that alternates from frame to frame, averaged over frames: aliasing
+  float suspicion;         // rejection as this frame alone would have it, with mean_brightening's sign
+  float drift;             // its sum over frames, which fades: how far history has lagged behind of late
 } CellLight;
 
 // Whether the light of a tile has changed, and what is to be done about its history.
 typedef struct TileLight {
-  float gain;         // the relighting gain: history's light times this is this frame's; 1 where light has not changed
-  float rejection;    // the largest of its cells'
-  float cut;          // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
-  float new_cut;      // by how much it is that more than of late
-  float persistence;  // how far a change of light persists over frames, in [-1, 1]: positive where it brightens
-  // Rejection by error and by change as this frame alone would have it, from 0 up and not clamped, for the next frame
-  // to confirm. That by change has the sign of the change: positive where the tile brightens.
-  float suspected_error, suspected_change;
-  float confirmation;    // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
+  float gain;          // the relighting gain: history's light times this is this frame's; 1 where light has not changed
+  float rejection;     // the largest of its cells'
+  float cut;           // how far the whole picture is another one, in [0, 1], or was of late: it fades over frames
+  float new_cut;       // by how much it is that more than of late
+  float persistence;   // how far a change of light persists over frames, in [-1, 1]: positive where it brightens
+  float confirmation;  // 1 in a frame that confirms a suspicion of the previous one; it fades over frames
   float recent_outliers;  // 1 in a frame with outliers in it or beside it; it fades over frames
   // 0 or 1: outliers are held back, because no frame of late had any: they may be faults of one frame.
   int holds_back;
   CellLight cells[4];
 } TileLight;
-QUINCUNX_CHECK_SIZE(TileLight, 40 + 4 * 16);
+QUINCUNX_CHECK_SIZE(TileLight, 32 + 4 * 20);
 
 // The evidence of the whole picture, in units of 1 / kLightUnits of a tile's mean, or larger ones where tiles are so
 // many that an int would overflow: whether the light has changed everywhere, or the picture is another one.
