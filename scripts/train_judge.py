@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Trains the network of temporal_light, which judges history cell by cell: kernels/include/temporal/judge_weights.h.
 
-  scripts/train_judge.py                    draws scenes, trains, writes the header: about half an hour on two cores
+  scripts/train_judge.py      draws scenes, trains from the present weights on: about half an hour on two cores
 
 Needs a static build (--build), and Debian's python3-torch and python3-openimageio. Scenes are drawn once, with truth,
 and kept in --work. In each round they are resolved by the weights so far, by a temporal_light that prints its inputs
@@ -123,8 +123,8 @@ def draw_flat(folder, name):
         planes = [np.ones_like(x), np.full_like(x, 10), back_x / 2, -back_y / 2]
         write("%s/frame.%04d.exr" % (folder, frame), ("R", "G", "B", "A", "Z", "backward.u", "backward.v"),
               np.concatenate([light(x, y, frame)] + [plane[..., None] for plane in planes], -1),
-              (("quincunx:jitter", oiio.TypeDesc(oiio.FLOAT, oiio.VEC2), jitter), ("quincunx:depthKind", "", "linear"), ("quincunx:near", "", 0.1),
-               ("quincunx:version", "int", 1), ("quincunx:frameIndex", "int", frame)))
+              (("quincunx:jitter", oiio.TypeDesc(oiio.FLOAT, oiio.VEC2), jitter), ("quincunx:depthKind", "", "linear"),
+               ("quincunx:near", "", 0.1), ("quincunx:version", "int", 1), ("quincunx:frameIndex", "int", frame)))
         x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
         truth = sum(light(x + (i + generator.random(x.shape)) / 3, y + (j + generator.random(x.shape)) / 3, frame)
                     for i in range(3) for j in range(3)) / 9
@@ -193,7 +193,8 @@ def how_wrong(frame, before, truth):
     columns, rows = SIZE[0] // CELL, SIZE[1] // CELL
     cell = np.clip((y // CELL).astype(int), 0, rows - 1) * columns + np.clip((x // CELL).astype(int), 0, columns - 1)
     number = np.bincount(cell[counts], minlength=rows * columns)
-    return np.where(number > 0, np.bincount(cell[counts], wrong[counts], rows * columns) / np.maximum(number, 1), np.nan)
+    sums = np.bincount(cell[counts], wrong[counts], rows * columns)
+    return np.where(number > 0, sums / np.maximum(number, 1), np.nan)
 
 
 def print_inputs(path, text):
