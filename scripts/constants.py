@@ -135,14 +135,14 @@ class Programs:
         return program
 
 
-def draw(build, work, scene):
-    """Draws a scene as a sequence with truth, unless it is there. Returns its folder."""
-    folder = os.path.join(work, "sequences", scene)
+def draw(build, work, scene, output=OUTPUT, scale=SCALE, frames=FRAMES, truth=TRUTH, name=None):
+    """Draws a scene as a sequence with truth, unless it is there. Returns its folder, called `name` or as the scene."""
+    folder = os.path.join(work, "sequences", name or scene)
     if not os.path.exists(os.path.join(folder, "done")):
         os.makedirs(folder, exist_ok=True)
-        subprocess.run([os.path.join(build, "bin/quincunx-dump"), "--scene", scene, "--output", OUTPUT, "--scale",
-                        str(SCALE), "--jitter", "halton", "--start", str(START.get(scene, 1)), "--frames", str(FRAMES),
-                        "--truth", str(TRUTH), "--sequence", folder + "/frame.%04d.exr", "-q"], check=True)
+        subprocess.run([os.path.join(build, "bin/quincunx-dump"), "--scene", scene, "--output", output, "--scale",
+                        str(scale), "--jitter", "halton", "--start", str(START.get(scene, 1)), "--frames", str(frames),
+                        "--truth", str(truth), "--sequence", folder + "/frame.%04d.exr", "-q"], check=True)
         open(os.path.join(folder, "done"), "w", encoding="utf-8").close()
     return folder
 

@@ -8,8 +8,8 @@ and kept in --work. In each round they are resolved by the weights so far, by a 
 (scripts/constants.py links it; the tree stays as it is), and the weights are trained anew, always from the same seed.
 
 A cell's history is as wrong as the picture before, where the cell was, differs from truth now: both in tone space,
-means of 3x3 pixels, at the cell's samples, divided by the larger brightness. Wrong by WRONG[0] is rejected by nothing,
-by WRONG[1] wholly. Cells beside a motion edge are left out.
+means of 3x3 pixels, at the cell's samples, divided by the mean of their brightest channels. What is wrong by less than
+WRONG[0] is not to be rejected, from WRONG[1] on wholly. Cells beside a motion edge are left out.
 """
 import argparse
 import concurrent.futures
@@ -134,16 +134,13 @@ def draw_flat(folder, name):
 def draw(build, work, item):
     """Draws a sequence with truth, unless it is there. Returns its folder."""
     scene, (output, scale), _ = item
-    folder = os.path.join(work, "sequences", "%s-%s-%s" % (scene, output, scale))
+    name = "%s-%s-%s" % (scene, output, scale)
+    if scene not in FLAT:
+        return constants.draw(build, work, scene, output, scale, FRAMES, 2 if output == SHARP[0] else 4, name)
+    folder = os.path.join(work, "sequences", name)
     if not os.path.exists(os.path.join(folder, "done")):
         os.makedirs(folder, exist_ok=True)
-        if scene in FLAT:
-            draw_flat(folder, scene)
-        else:
-            subprocess.run([os.path.join(build, "bin/quincunx-dump"), "--scene", scene, "--output", output, "--scale",
-                            str(scale), "--jitter", "halton", "--start", "1", "--frames", str(FRAMES), "--truth",
-                            "2" if output == SHARP[0] else "4", "--sequence", folder + "/frame.%04d.exr", "-q"],
-                           check=True)
+        draw_flat(folder, scene)
         open(os.path.join(folder, "done"), "w", encoding="utf-8").close()
     return folder
 

@@ -9,11 +9,11 @@
 //   rejection  of each cell the larger of two, clamped to [0, 1]:
 //     judged     by a small network, from what the samples of the cell, of the cells and of the tiles around say, and
 //                said of late: how far they differ from history, which way, and by how much more than neighbours do.
-//                Where the gain is not 1, or the cell has not changed by more than it flickers, it is not asked. A very
-//                large change is one whatever the network says
+//                It is not asked where the gain is not 1, or the cell flickers too much for its change to tell
+//                anything. A very large change rejects whatever the network says. In a rigid tile, around which nothing
+//                was confirmed lately, this waits for a second frame that says the same: each place of the jitter can
+//                look like a change of its own
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
-//     confirmed  in a rigid tile, around which nothing was confirmed lately, what is judged waits for a second frame
-//                that says the same: each place of the jitter can look like a change of its own
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
 //              (outliers): gain is 1 and rejection 0 then
 //
@@ -32,7 +32,7 @@
 // The evidence of 3x3 tiles.
 typedef struct EvidenceAround {
   TileEvidence sum;
-  float change;                         // sum of the magnitudes of the brightenings
+  float change;  // sum of the magnitudes of the brightenings
   float confirmation, recent_outliers;  // the most, in the previous frame
   bool has_motion_edge;
 } EvidenceAround;
@@ -173,10 +173,9 @@ static inline float judge_cell(const CellsAround* cells, CellEvidence own, CellL
   return judge(inputs);
 }
 
-// What is known of a cell of which nothing is rejected yet.
+// What is known of a cell, but for its suspicion and rejection.
 static inline CellLight cell_light(CellEvidence evidence, CellLight before) {
   CellLight cell;
-  cell.rejection = cell.suspicion = 0.0f;
   cell.mean_brightening = evidence.brightening / max(evidence.count, 1.0f);
   cell.flicker = FLICKER_MEMORY * before.flicker +
                  (1.0f - FLICKER_MEMORY) * alternation(cell.mean_brightening, before.mean_brightening);
@@ -218,8 +217,8 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
 
   // Relighting gain.
   const bool changes = is_change_of_light(&change, &around);
-  tile.persistence =
-      PERSISTENCE_MEMORY * before.persistence + (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
+  tile.persistence = PERSISTENCE_MEMORY * before.persistence +
+                     (changes ? (1.0f - PERSISTENCE_MEMORY) * change.direction : 0.0f);
   float gain = changes && tile.persistence * change.direction > PERSISTENCE_MIN ? 1.0f + change.relative : 1.0f;
   const bool is_widespread = (float)whole.changed > WHOLE_CHANGED_TILES_MIN * (float)(tiles_x * tiles_y);
   const bool relit = is_widespread && is_relit(&whole);

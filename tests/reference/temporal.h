@@ -63,7 +63,7 @@ struct CellLightOf {
   Real mean_brightening = 0;  // mean over the samples
   Real flicker = 0;           // how far that goes to and fro from frame to frame: aliasing
   Real suspicion = 0;         // rejection by this frame alone, with the sign of the mean
-  Real drift = 0;             // its sum over frames, which fades
+  Real drift = 0;             // sum of the mean over frames, which fades
 };
 
 // The conclusions from the evidence.

@@ -77,7 +77,7 @@ typedef struct CellLight {
   float mean_brightening;  // CellEvidence's brightening / count, for the next frame
   float flicker;           // how far that alternates from frame to frame, averaged over frames: aliasing
   float suspicion;         // rejection as this frame alone would have it, with mean_brightening's sign
-  float drift;             // its sum over frames, which fades: how far history has lagged behind of late
+  float drift;             // sum of mean_brightening over frames, which fades: how far history lagged behind of late
 } CellLight;
 
 // Whether the light of a tile has changed, and what is to be done about its history.
