@@ -30,7 +30,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
         break()
       endif()
     endforeach()
-    string(APPEND arrays "constexpr unsigned char kText${index}[] = {  // ${name}\n    ${bytes}0x00};\n\n")
+    string(APPEND arrays "  static constexpr unsigned char kText${index}[] = {  // ${name}\n    ${bytes}0x00};\n\n")
     string(APPEND rows "      {\"${name}\", text_of(kText${index})},\n")
     math(EXPR index "${index} + 1")
   endforeach()
@@ -40,16 +40,11 @@ if(CMAKE_SCRIPT_MODE_FILE)
 #include <cstddef>
 
 namespace ${namespace} {
-namespace {
-
-${arrays}template <std::size_t N>
-std::string_view text_of(const unsigned char (&bytes)[N]) {
-  return {reinterpret_cast<const char*>(bytes), N - 1};  // without the final zero
-}
-
-}  // namespace
 
 std::span<const EmbeddedFile> ${function}() {
+${arrays}  const auto text_of = []<std::size_t N>(const unsigned char (&bytes)[N]) {
+    return std::string_view(reinterpret_cast<const char*>(bytes), N - 1);  // without the final zero
+  };
   static const EmbeddedFile files[] = {
 ${rows}  };
   return files;

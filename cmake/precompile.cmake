@@ -1,4 +1,4 @@
-# Precompiled headers: they halve the time of a build.
+# Precompiled headers: they save time where files are compiled one by one, as those of the tests are.
 #
 #   quincunx_precompile(TARGET product)    cmake/precompiled/product.h
 #   quincunx_precompile(TARGET tests)      that and GoogleTest

@@ -264,7 +264,7 @@ std::vector<EGLDeviceEXT> egl_devices(std::string* error) {
   return devices;
 }
 
-void note(std::string* tried, const std::string& what, const std::string& error) {
+void note_failure(std::string* tried, const std::string& what, const std::string& error) {
   *tried += fmt::format("{}{}: {}", tried->empty() ? "" : "; ", what, error);
 }
 
@@ -298,12 +298,12 @@ Result<Context> Context::create(Platform platform, Api api) {
   if (platform != Platform::kSurfaceless) {
     std::string error;
     const std::vector<EGLDeviceEXT> devices = egl_devices(&error);
-    if (!error.empty()) note(&tried, "device platform", error);
+    if (!error.empty()) note_failure(&tried, "device platform", error);
     for (std::size_t i = 0; i < devices.size(); ++i) {
       auto impl = std::make_unique<Impl>();
       error = impl->open(EGL_PLATFORM_DEVICE_EXT, devices[i], Platform::kDevice, api);
       if (!error.empty()) {
-        note(&tried, fmt::format("device platform, device {}", i), error);
+        note_failure(&tried, fmt::format("device platform, device {}", i), error);
       } else if (!impl->info.software) {
         return Context(std::move(impl));
       } else if (!software) {
@@ -318,7 +318,7 @@ Result<Context> Context::create(Platform platform, Api api) {
       error = impl->open(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, Platform::kSurfaceless, api);
     }
     if (error.empty()) return Context(std::move(impl));
-    note(&tried, "surfaceless platform", error);
+    note_failure(&tried, "surfaceless platform", error);
   }
   if (software) {
     if (Status status = software->make_current(); !status.ok()) return status;

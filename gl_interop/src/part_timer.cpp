@@ -14,7 +14,7 @@
 namespace quincunx::gl {
 namespace {
 
-constexpr double kLeastMs = 1e-6;  // a part without work may come back as 0, which no controller takes
+constexpr double kLeastPartMs = 1e-6;  // a part without work may come back as 0, which no controller takes
 
 double stamp_ms(GLuint query) {
   GLuint64 nanoseconds = 0;
@@ -107,7 +107,7 @@ std::optional<TimedFrame> PartTimer::poll() {
   impl_->first = (impl_->first + 1) % impl_->slots.size();
   --impl_->count;
   TimedFrame result = slot.part;
-  result.gpu_ms = std::max(result.gpu_ms, kLeastMs);
+  result.gpu_ms = std::max(result.gpu_ms, kLeastPartMs);
   return result;
 }
 

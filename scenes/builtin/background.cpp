@@ -12,7 +12,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
 constexpr float kHub = 3.4f;  // height of the wind wheel's hub
 
 void add_colonnade(MeshBuilder& stone, Random& random) {

@@ -12,9 +12,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
-constexpr float kTau = glm::two_pi<float>();
-
 // Square mirrors in rings on a dark ball, no two quite alike: each flashes where it throws a lamp's light at
 // the eye.
 void add_mirror_ball(SceneAssembly& assembly, glm::vec3 centre, float radius, int cycles, Random& random) {

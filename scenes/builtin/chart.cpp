@@ -3,7 +3,6 @@
 // pixels of a 1280 x 720 picture, from its top left corner.
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "builtin/glyphs.h"
 #include "builtin/scene_assembly.h"
@@ -13,7 +12,6 @@ namespace quincunx::scenes {
 
 namespace {
 
-constexpr float kTau = glm::two_pi<float>();
 constexpr glm::vec2 kPicture{1280, 720};
 constexpr float kMetresPerPixel = 0.01f;
 constexpr float kLayer = 0.002f;  // metres between what lies on top of each other

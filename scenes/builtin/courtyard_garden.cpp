@@ -11,8 +11,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr float kTau = glm::two_pi<float>();
-
 struct Tree {
   glm::vec3 foot{0};
   float trunk = 1.3f;   // metres to where the crown begins

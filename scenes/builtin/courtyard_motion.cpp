@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "builtin/courtyard.h"
 #include "random.h"
@@ -11,7 +10,6 @@ namespace quincunx::scenes {
 
 namespace {
 
-constexpr float kTau = glm::two_pi<float>();
 constexpr float kTrack = 2.35f;  // radius of the rails round the fountain
 constexpr glm::vec3 kBrazier{-3.1f, 0, 4.9f};
 

@@ -10,7 +10,6 @@ namespace quincunx::scenes {
 
 namespace {
 
-constexpr float kTau = glm::two_pi<float>();
 constexpr float kSharpCosine = 0.82f;  // cos 35 degrees
 
 int pieces_of(float length, float cell) {

@@ -10,12 +10,15 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <glm/gtc/constants.hpp>
 #include <span>
 #include <vector>
 
 #include "scene.h"
 
 namespace quincunx::scenes {
+
+inline constexpr float kTau = glm::two_pi<float>();
 
 // The place and the paint of what is added next.
 struct Pen {

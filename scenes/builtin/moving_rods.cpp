@@ -10,7 +10,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
 constexpr float kHalf = 6;  // metres: rods end outside the picture, wherever they slide
 
 // Parallel rods in the plane z = 0 about the origin, of two thicknesses by turns.

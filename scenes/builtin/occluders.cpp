@@ -2,7 +2,6 @@
 // Objects and shadows that pass over what stands still: `occluders`, `shadows` and `runners`.
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 
 #include "builtin/props.h"
 #include "builtin/scenes.h"
@@ -10,8 +9,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
-constexpr float kTau = glm::two_pi<float>();
 constexpr glm::vec3 kEye(0, 1.7f, 5.5f);
 
 // Objects on a circle about the camera: they cross the picture at a steady speed, leave it and come back,

@@ -11,9 +11,6 @@ namespace quincunx::scenes {
 
 namespace {
 
-constexpr double kDuration = 8;
-constexpr float kTau = glm::two_pi<float>();
-
 struct Seedling {  // what one particle was given at birth
   glm::vec3 from;
   glm::vec3 velocity;

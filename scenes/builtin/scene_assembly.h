@@ -15,6 +15,9 @@
 
 namespace quincunx::scenes {
 
+inline constexpr double kDuration =
+    8;  // seconds after which a scene repeats, unless it has a reason for others
+
 class SceneAssembly {
  public:
   Scene scene;

@@ -11,8 +11,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
-
 // A mast of four legs with crossed stays, its foot at the pen.
 void add_mast(MeshBuilder& iron, float height, float foot) {
   constexpr int kStages = 9;

@@ -2,7 +2,6 @@
 // Wheels that turn before a wall of text: `wheel` and `spokes`.
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <string_view>
 
 #include "builtin/props.h"
@@ -11,8 +10,6 @@
 namespace quincunx::scenes {
 namespace {
 
-constexpr double kDuration = 8;
-constexpr float kTau = glm::two_pi<float>();
 constexpr float kGapAtSeam = 0.6f;  // cap heights between the last letter and the first
 
 struct WheelMaterials {
@@ -109,7 +106,7 @@ Scene make_wheel(std::uint64_t seed) {
 
 namespace {
 
-constexpr float kWall = -1.6f;
+constexpr float kFarWall = -1.6f;
 
 struct Spokes {
   glm::vec3 centre;
@@ -138,7 +135,7 @@ void add_lettered_wall(SceneAssembly& assembly, std::uint64_t seed) {
   MeshBuilder& wall = assembly.still(
       assembly.add_surface("limewash", plaster_surface(512, seed), SceneAssembly::Detail::kColour));
   wall.pen.uv_per_metre = 1 / 4.0f;
-  wall.patch({-8, -2, kWall}, {16, 0, 0}, {0, 8, 0});
+  wall.patch({-8, -2, kFarWall}, {16, 0, 0}, {0, 8, 0});
   MeshBuilder& ink = assembly.still(assembly.add(plain_material("ink", glm::vec3(0.03f), 0.9f)));
   struct Line {
     float y;
@@ -159,7 +156,7 @@ void add_lettered_wall(SceneAssembly& assembly, std::uint64_t seed) {
   for (const Line& line : kLines) {
     const TextStyle style{line.cap_height, 0, Align::kCentre};
     for (const Polyline& path : text_strokes(line.text, {0, line.y}, style))
-      ink.stroke(path, 0.14f * line.cap_height, kWall + 0.004f);
+      ink.stroke(path, 0.14f * line.cap_height, kFarWall + 0.004f);
   }
 }
 
@@ -175,7 +172,7 @@ Scene make_spokes(std::uint64_t seed) {
   MeshBuilder& axle = assembly.still(steel);
   for (const Spokes& wheel : kWheels) {
     add_spokes(assembly, steel, wheel);
-    axle.rod({wheel.centre.x, wheel.centre.y, kWall}, wheel.centre + glm::vec3(0, 0, 0.09f), 0.02f, 12);
+    axle.rod({wheel.centre.x, wheel.centre.y, kFarWall}, wheel.centre + glm::vec3(0, 0, 0.09f), 0.02f, 12);
   }
 
   Scene& scene = assembly.scene;

@@ -28,10 +28,10 @@ namespace quincunx::scenes {
 namespace {
 
 constexpr std::array<Method, 3> kMethods = {Method::kBilinear, Method::kQuincunx, Method::kTemporal};
-constexpr int kPlaces = 3;
+constexpr int kPlacesShown = 3;
 constexpr Extent kPart = {80, 60};
 constexpr int kShownWidth = 320;  // of an enlarged part
-constexpr int kTimedFrames = 8;
+constexpr int kFramesTimed = 8;
 constexpr int kTruthSamples = 8;
 
 struct Shown {
@@ -62,7 +62,7 @@ class WhyPicture {
     feed_.scale = scale;
     feed_.fps = options.fps;
     feed_.warm_up = kWarmUpFrames;
-    feed_.frames = kTimedFrames;
+    feed_.frames = kFramesTimed;
     feed_.seconds = options.start + feed_.warm_up / feed_.fps;
     render_ = stage.sequence().at(0).render;
   }
@@ -192,7 +192,7 @@ class WhyPicture {
          .thumbnail_width = kShownWidth});
     const Extent part = {std::min(options_.output.width, kPart.width),
                          std::min(options_.output.height, kPart.height)};
-    for (const Place place : largest_parts(options_.output, spread(), part, kPlaces)) {
+    for (const Place place : largest_parts(options_.output, spread(), part, kPlacesShown)) {
       if (Status status = add_row(sheet, place, part); !status.ok()) return status;
     }
     return sheet.write(options_.why);

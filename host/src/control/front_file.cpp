@@ -19,7 +19,7 @@
 namespace quincunx {
 namespace {
 
-constexpr const char* kVersionKey = "quincunx_error_front";
+constexpr const char* kFrontVersionKey = "quincunx_error_front";
 constexpr const char* kColumns[] = {"class",       "method",           "scale",
                                     "flip",        "flip_spread",      "psnr_db",
                                     "psnr_spread", "ms_per_megapixel", "ms_spread"};
@@ -96,10 +96,10 @@ std::optional<Result<ErrorFront>> read_front(const FrontKey& key, const fs::path
 
 std::string ErrorFront::to_json() const {
   nlohmann::ordered_json head = {
-      {kVersionKey, kFormat},     {"device", source_.device},
-      {"driver", source_.driver}, {"scene", source_.scene},
-      {"date", source_.date},     {"command", source_.command},
-      {"truth", source_.truth},   {"output", {source_.output_extent.width, source_.output_extent.height}},
+      {kFrontVersionKey, kFormat}, {"device", source_.device},
+      {"driver", source_.driver},  {"scene", source_.scene},
+      {"date", source_.date},      {"command", source_.command},
+      {"truth", source_.truth},    {"output", {source_.output_extent.width, source_.output_extent.height}},
       {"columns", kColumns}};
   std::string text = "{\n";
   for (const auto& [key, value] : head.items())
@@ -117,8 +117,9 @@ Result<ErrorFront> ErrorFront::from_json(const std::string& text) {
   const auto refuse = [](const std::string& what) { return Status::invalid("error front: " + what); };
   try {
     const nlohmann::json root = nlohmann::json::parse(text);
-    if (root.at(kVersionKey) != kFormat)
-      return refuse(fmt::format("version {} cannot be read, only {}", root.at(kVersionKey).dump(), kFormat));
+    if (root.at(kFrontVersionKey) != kFormat)
+      return refuse(
+          fmt::format("version {} cannot be read, only {}", root.at(kFrontVersionKey).dump(), kFormat));
     if (root.at("columns") != nlohmann::json(kColumns))
       return refuse(fmt::format("the columns are {}; they must be {}", root.at("columns").dump(),
                                 nlohmann::json(kColumns).dump()));

@@ -10,7 +10,7 @@
 namespace quincunx {
 namespace {
 
-constexpr int kLargestSide = 32768;
+constexpr int kLargestOutput = 32768;
 constexpr double kMaxScale = 2;
 
 struct Range {
@@ -88,9 +88,10 @@ class Walk {
 
 Status check(const LadderSettings& settings) {
   const Extent output = settings.output_extent;
-  if (output.width < 1 || output.height < 1 || output.width > kLargestSide || output.height > kLargestSide) {
+  if (output.width < 1 || output.height < 1 || output.width > kLargestOutput ||
+      output.height > kLargestOutput) {
     return Status::invalid(fmt::format("output_extent is {}x{}; both sides must lie in [1, {}]", output.width,
-                                       output.height, kLargestSide));
+                                       output.height, kLargestOutput));
   }
   if (!(settings.min_scale > 0 && settings.min_scale <= kMaxScale)) {
     return Status::invalid(
@@ -100,9 +101,9 @@ Status check(const LadderSettings& settings) {
     return Status::invalid(fmt::format("max_scale is {}; it must lie in [{}, {}], the first being min_scale",
                                        settings.max_scale, settings.min_scale, kMaxScale));
   }
-  if (settings.step < 1 || settings.step > kLargestSide) {
+  if (settings.step < 1 || settings.step > kLargestOutput) {
     return Status::invalid(
-        fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestSide));
+        fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestOutput));
   }
   if (settings.min_extent.width < 1 || settings.min_extent.height < 1) {
     return Status::invalid(fmt::format("min_extent is {}x{}; both sides must be at least 1",

@@ -231,7 +231,7 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
 
 namespace {
 
-const char* view_option(TemporalView view) {
+const char* layer_view_option(TemporalView view) {
   switch (view) {
     case TemporalView::kLayers:
       return "LAYERS";
@@ -268,7 +268,7 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
   const PixelFormat history = settings.temporal.history;
   list.passes.push_back(
       {.kernel = "display_layers",
-       .options = fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}", view_option(settings.temporal.view),
+       .options = fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}", layer_view_option(settings.temporal.view),
                               scale_options(settings), precision_of(history)),
        .reason = "the second layer: the near one laid over the picture",
        .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},

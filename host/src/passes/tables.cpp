@@ -173,7 +173,7 @@ double widening(int render, int output) {
   return std::max(1.0, static_cast<double>(render) / output);
 }
 
-struct Axis {
+struct FilterAxis {
   const Filter& filter;
   int render;
   int taps;
@@ -182,7 +182,7 @@ struct Axis {
 };
 
 // `u`: the texel coordinate of the pixel's centre, so that texel i is |i - u| away.
-void fill_pixel(const Axis& axis, double u, FilterSpan& span, float* weights) {
+void fill_pixel(const FilterAxis& axis, double u, FilterSpan& span, float* weights) {
   constexpr double kLeastWeight = 0x1p-25;
   const int last = axis.render - 1;
   const int left = static_cast<int>(std::floor(u));
@@ -231,8 +231,8 @@ int filter_inner(int render, int output) {
 
 void fill_filter(const Filter& filter, int render, int output, double jitter, FilterSpan* spans,
                  float* weights) {
-  const Axis axis{filter, render, filter_taps(filter, render, output), filter_inner(render, output),
-                  widening(render, output)};
+  const FilterAxis axis{filter, render, filter_taps(filter, render, output), filter_inner(render, output),
+                        widening(render, output)};
   for (int x = 0; x < output; ++x) {
     // (2x + 1) * render is an integer: one rounding, and none at all where the quotient is a double.
     const double centre = (2.0 * x + 1) * render / (2.0 * output);

@@ -17,12 +17,9 @@ namespace quincunx::tools {
 namespace {
 
 // Dark and neutral, so that the pictures' colours are judged against grey; one warm accent.
-constexpr Rgb kBackground{24, 24, 26};
 constexpr Rgb kCardBackground{34, 34, 37};
 constexpr Rgb kBarTrack{52, 52, 56};
 constexpr Rgb kAccent{232, 163, 61};
-constexpr Rgb kBright{236, 236, 238};
-constexpr Rgb kDim{150, 150, 156};
 
 constexpr int kMargin = 40;
 constexpr int kGap = 20;
@@ -147,9 +144,10 @@ void draw_caption(Canvas& canvas, const TextPainter& painter, int x, int y, int 
   const std::string right = fit(painter, caption.right, kCaptionSize, Face::kSans, inner);
   const int left_width = inner - painter.width(right, kCaptionSize, Face::kSans) - kCaptionInset;
   const std::string left = fit(painter, caption.left, kCaptionSize, Face::kSansBold, std::max(left_width, 0));
-  painter.draw(canvas, x + kCaptionInset, y + kCaptionBaseline, left, kCaptionSize, Face::kSansBold, kBright);
+  painter.draw(canvas, x + kCaptionInset, y + kCaptionBaseline, left, kCaptionSize, Face::kSansBold,
+               kBrightText);
   painter.draw(canvas, x + width - kCaptionInset, y + kCaptionBaseline, right, kCaptionSize, Face::kSans,
-               kDim, Align::kRight);
+               kDimText, Align::kRight);
 }
 
 }  // namespace
@@ -201,15 +199,15 @@ Status ContactSheet::write(const std::string& path) const {
       std::clamp(settings_.columns > 0 ? settings_.columns : columns_for(count, cell), 1, count);
   const int rows = (count + columns - 1) / columns;
   const int width = 2 * kMargin + columns * cell.width - kGap;
-  Canvas canvas({width, 2 * kMargin + kHeaderHeight + rows * cell.height - kGap}, kBackground);
+  Canvas canvas({width, 2 * kMargin + kHeaderHeight + rows * cell.height - kGap}, kCanvasBackground);
 
   const int inner = width - 2 * kMargin;
   painter.draw(canvas, kMargin, kMargin + 30,
                fit(painter, settings_.title, kTitleSize, Face::kSansBold, inner), kTitleSize, Face::kSansBold,
-               kBright);
+               kBrightText);
   painter.draw(canvas, kMargin, kMargin + 62,
                fit(painter, settings_.subtitle, kSubtitleSize, Face::kSans, inner), kSubtitleSize,
-               Face::kSans, kDim);
+               Face::kSans, kDimText);
   for (int i = 0; i < count; ++i) {
     const Thumbnail& thumbnail = thumbnails_[i];
     const int x = kMargin + i % columns * cell.width;

@@ -11,15 +11,12 @@
 namespace quincunx::tools {
 namespace {
 
-constexpr Rgb kBackground{24, 24, 26};
-constexpr Rgb kBright{236, 236, 238};
-constexpr Rgb kDim{150, 150, 156};
 constexpr int kLeastWidth = 480;
 constexpr int kInset = 12;
 constexpr int kTextSize = 14;
 constexpr int kTitleBaseline = 22;
 constexpr int kBarTop = 32;
-constexpr int kBarHeight = 12;
+constexpr int kScaleHeight = 12;
 constexpr int kTickBaseline = 60;
 constexpr int kLegendHeight = 70;
 constexpr int kWheelSize = 58;
@@ -89,7 +86,7 @@ template <typename ColourAt>
 Canvas canvas_with_legend(Extent extent, const std::string& title, const ColourAt& colour_at) {
   const int factor = std::max(1, (kLeastWidth + extent.width - 1) / extent.width);
   const Extent shown = {extent.width * factor, extent.height * factor};
-  Canvas canvas({shown.width, shown.height + kLegendHeight}, kBackground);
+  Canvas canvas({shown.width, shown.height + kLegendHeight}, kCanvasBackground);
   for (int y = 0; y < extent.height; ++y) {
     for (int x = 0; x < extent.width; ++x) {
       const auto index =
@@ -98,7 +95,7 @@ Canvas canvas_with_legend(Extent extent, const std::string& title, const ColourA
     }
   }
   TextPainter().draw(canvas, kInset, shown.height + kTitleBaseline, title, kTextSize, Face::kSansBold,
-                     kBright);
+                     kBrightText);
   return canvas;
 }
 
@@ -148,7 +145,7 @@ Canvas scalar_picture(Extent extent, std::span<const float> values, const Scalar
   const int width = canvas.extent.width - 2 * kInset;
   for (int x = 0; x < width; ++x) {
     const float t = static_cast<float>(x) / static_cast<float>(width - 1);
-    canvas.fill(kInset + x, top + kBarTop, {1, kBarHeight}, colour_of(scale.map, t));
+    canvas.fill(kInset + x, top + kBarTop, {1, kScaleHeight}, colour_of(scale.map, t));
   }
   const TextPainter painter;
   constexpr int kTicks = 5;
@@ -157,7 +154,7 @@ Canvas scalar_picture(Extent extent, std::span<const float> values, const Scalar
     const std::string label = fmt::format("{:.3g}", value_at(scale, t));
     const int label_width = painter.width(label, kTextSize, Face::kSans);
     const int x = kInset + static_cast<int>(t * static_cast<float>(width - label_width));
-    painter.draw(canvas, x, top + kTickBaseline, label, kTextSize, Face::kSans, kDim);
+    painter.draw(canvas, x, top + kTickBaseline, label, kTextSize, Face::kSans, kDimText);
   }
   return canvas;
 }
@@ -179,7 +176,7 @@ Canvas vector_picture(Extent extent, std::span<const Vec2> vectors, float longes
   }
   TextPainter().draw(canvas, kInset, top + kTitleBaseline + 24,
                      fmt::format("hue: direction; rim of the wheel: {:.3g} {} and more", longest, unit),
-                     kTextSize, Face::kSans, kDim);
+                     kTextSize, Face::kSans, kDimText);
   return canvas;
 }
 
@@ -193,9 +190,9 @@ Canvas class_picture(Extent extent, std::span<const int> classes, std::span<cons
   const int top = canvas.extent.height - kLegendHeight;
   int x = kInset;
   for (const ClassColour& entry : palette) {
-    canvas.fill(x, top + kBarTop + 4, {kBarHeight, kBarHeight}, entry.colour);
-    x += kBarHeight + 6;
-    painter.draw(canvas, x, top + kBarTop + 15, entry.name, kTextSize, Face::kSans, kDim);
+    canvas.fill(x, top + kBarTop + 4, {kScaleHeight, kScaleHeight}, entry.colour);
+    x += kScaleHeight + 6;
+    painter.draw(canvas, x, top + kBarTop + 15, entry.name, kTextSize, Face::kSans, kDimText);
     x += painter.width(entry.name, kTextSize, Face::kSans) + 2 * kInset;
   }
   return canvas;

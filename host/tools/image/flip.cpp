@@ -23,7 +23,7 @@ constexpr float kKneeValue = 0.95f;
 constexpr double kFeatureWidth = 0.082;  // degrees, peak to trough of the detector of edges and points
 
 using Colour = std::array<float, 3>;
-using Plane = std::vector<float>;
+using Raster = std::vector<float>;
 
 // Linear RGB to XYZ relative to the white of D65: every row sums to 1.
 constexpr std::array<std::array<double, 3>, 3> kWhite = [] {
@@ -74,13 +74,13 @@ Matrix from_white() {
 // The opponent space YCxCz without its scales and offset, which every filter here, summing to 1, keeps:
 // luminance, red against green and blue against yellow.
 struct Opponent {
-  Plane y, cx, cz;
+  Raster y, cx, cz;
 };
 
 Opponent opponent(std::span<const float> srgb) {
   const Matrix matrix = to_white();
   Opponent planes;
-  for (Plane* plane : {&planes.y, &planes.cx, &planes.cz})
+  for (Raster* plane : {&planes.y, &planes.cx, &planes.cz})
     plane->reserve(srgb.size() / 3);
   for (std::size_t i = 0; i < srgb.size(); i += 3) {
     const Colour xyz =
@@ -96,10 +96,10 @@ Opponent opponent(std::span<const float> srgb) {
 using Kernel = std::vector<float>;
 
 // Separable; what lies outside the picture equals its nearest pixel inside.
-Plane filtered(const Plane& source, Extent extent, const Kernel& across, const Kernel& down) {
+Raster filtered(const Raster& source, Extent extent, const Kernel& across, const Kernel& down) {
   const int radius = static_cast<int>(across.size() / 2);
   const auto width = static_cast<std::size_t>(extent.width);
-  Plane rows(source.size());
+  Raster rows(source.size());
   std::vector<float> padded(width + 2 * static_cast<std::size_t>(radius));
   for (std::size_t start = 0; start < source.size(); start += width) {
     const float* row = source.data() + start;
@@ -111,7 +111,7 @@ Plane filtered(const Plane& source, Extent extent, const Kernel& across, const K
         rows[start + x] += across[i] * padded[x + i];
     }
   }
-  Plane result(source.size());
+  Raster result(source.size());
   for (int y = 0; y < extent.height; ++y) {
     float* out = result.data() + static_cast<std::size_t>(y) * width;
     for (int i = -radius; i <= radius; ++i) {
@@ -180,7 +180,7 @@ class Viewing {
     picture.cx = blurred(picture.cx, extent, kRedGreen);
     const float narrow = mass(kBlueYellowNarrow);
     const float wide = mass(kBlueYellowWide);
-    const Plane first = blurred(picture.cz, extent, kBlueYellowNarrow);
+    const Raster first = blurred(picture.cz, extent, kBlueYellowNarrow);
     picture.cz = blurred(picture.cz, extent, kBlueYellowWide);
     for (std::size_t i = 0; i < first.size(); ++i)
       picture.cz[i] = (narrow * first[i] + wide * picture.cz[i]) / (narrow + wide);
@@ -211,7 +211,7 @@ class Viewing {
     return static_cast<float>(gaussian.a * std::sqrt(pi / gaussian.b)) * sum * sum;
   }
 
-  Plane blurred(const Plane& plane, Extent extent, const Gaussian& gaussian) const {
+  Raster blurred(const Raster& plane, Extent extent, const Gaussian& gaussian) const {
     const Kernel kernel = bell(gaussian);
     const Kernel unit = scaled(kernel, 1 / sum_of(kernel));
     return filtered(plane, extent, unit, unit);
@@ -249,10 +249,10 @@ Colour seen_colour(const Opponent& picture, std::size_t i) {
   return hunt_lab(rgb);
 }
 
-Plane colour_difference(const Opponent& a, const Opponent& b) {
+Raster colour_difference(const Opponent& a, const Opponent& b) {
   const float largest = std::pow(distance(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kColourExponent);
   const float knee = kKnee * largest;
-  Plane difference(a.y.size());
+  Raster difference(a.y.size());
   for (std::size_t i = 0; i < difference.size(); ++i) {
     const float error = std::pow(distance(seen_colour(a, i), seen_colour(b, i)), kColourExponent);
     difference[i] = error < knee ? kKneeValue / knee * error
@@ -262,20 +262,21 @@ Plane colour_difference(const Opponent& a, const Opponent& b) {
 }
 
 // Length of the response to a detector laid along x and along y.
-Plane feature_strength(const Plane& luminance, Extent extent, const Kernel& smooth, const Kernel& detector) {
-  Plane strength = filtered(luminance, extent, detector, smooth);
-  const Plane down = filtered(luminance, extent, smooth, detector);
+Raster feature_strength(const Raster& luminance, Extent extent, const Kernel& smooth,
+                        const Kernel& detector) {
+  Raster strength = filtered(luminance, extent, detector, smooth);
+  const Raster down = filtered(luminance, extent, smooth, detector);
   for (std::size_t i = 0; i < strength.size(); ++i)
     strength[i] = std::hypot(strength[i], down[i]);
   return strength;
 }
 
-Plane feature_difference(const Plane& a, const Plane& b, Extent extent, const Detectors& detectors) {
+Raster feature_difference(const Raster& a, const Raster& b, Extent extent, const Detectors& detectors) {
   const auto& [smooth, edge, point] = detectors;
-  Plane difference = feature_strength(a, extent, smooth, edge);
-  const Plane edges = feature_strength(b, extent, smooth, edge);
-  const Plane points_a = feature_strength(a, extent, smooth, point);
-  const Plane points_b = feature_strength(b, extent, smooth, point);
+  Raster difference = feature_strength(a, extent, smooth, edge);
+  const Raster edges = feature_strength(b, extent, smooth, edge);
+  const Raster points_a = feature_strength(a, extent, smooth, point);
+  const Raster points_b = feature_strength(b, extent, smooth, point);
   for (std::size_t i = 0; i < difference.size(); ++i) {
     const float larger = std::max(std::abs(difference[i] - edges[i]), std::abs(points_a[i] - points_b[i]));
     difference[i] = std::pow(larger / std::numbers::sqrt2_v<float>, kFeatureExponent);
@@ -290,10 +291,10 @@ std::vector<float> flip_map(Extent extent, std::span<const float> picture, std::
   const Viewing viewing(pixels_per_degree);
   Opponent a = opponent(picture);
   Opponent b = opponent(truth);
-  const Plane features = feature_difference(a.y, b.y, extent, viewing.detectors());
+  const Raster features = feature_difference(a.y, b.y, extent, viewing.detectors());
   viewing.blur(a, extent);
   viewing.blur(b, extent);
-  Plane map = colour_difference(a, b);
+  Raster map = colour_difference(a, b);
   for (std::size_t i = 0; i < map.size(); ++i)
     map[i] = std::pow(map[i], 1 - features[i]);
   return map;

@@ -38,7 +38,7 @@ Status cannot_write(const std::string& path, const std::string& reason) {
   return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
 }
 
-Status cannot_read(const std::string& path, const std::string& reason) {
+Status cannot_decode(const std::string& path, const std::string& reason) {
   return Status::io(fmt::format("'{}' cannot be read: {}", path, reason));
 }
 
@@ -163,11 +163,11 @@ void write_channels(Imf::OutputFile& file, Extent extent, std::span<const Channe
 Result<LoadedImage> read_png(const std::string& path) {
   png_image file = {};
   file.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&file, path.c_str()) == 0) return cannot_read(path, file.message);
+  if (png_image_begin_read_from_file(&file, path.c_str()) == 0) return cannot_decode(path, file.message);
   file.format &= PNG_FORMAT_FLAG_ALPHA | PNG_FORMAT_FLAG_COLOR;  // 8 bits, in that order
   std::vector<std::uint8_t> texels(PNG_IMAGE_SIZE(file));
   if (png_image_finish_read(&file, nullptr, texels.data(), 0, nullptr) == 0)
-    return cannot_read(path, file.message);
+    return cannot_decode(path, file.message);
   LoadedImage image;
   image.extent = {static_cast<int>(file.width), static_cast<int>(file.height)};
   image.channels = (file.format & PNG_FORMAT_FLAG_COLOR) != 0 ? std::vector<std::string>{"R", "G", "B"}
@@ -183,7 +183,7 @@ Result<LoadedImage> read_exr(const std::string& path) {
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
   const ImagePart& part = reader->header().parts.front();
-  if (part.deep) return cannot_read(path, "it holds deep pixels; a flat image is needed");
+  if (part.deep) return cannot_decode(path, "it holds deep pixels; a flat image is needed");
   LoadedImage image = {.extent = part.display.extent,
                        .channels = {},
                        .stored = {},

@@ -68,7 +68,7 @@ ImagePart describe(const Imf::Header& header) {
   return part;
 }
 
-std::size_t size_of(ChannelType type) {
+std::size_t bytes_of(ChannelType type) {
   return type == ChannelType::kHalf ? 2 : 4;
 }
 
@@ -125,7 +125,7 @@ void read_wide_rows(Imf::InputPart& input, const ImagePart& part, const Targets&
     const int end = std::min(begin + kBandRows, bottom);
     Imf::FrameBuffer buffer;
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      const std::size_t texel = size_of(targets[i].type);
+      const std::size_t texel = bytes_of(targets[i].type);
       buffer.insert(part.channels[targets[i].from.channel].name,
                     slice_at(data.x, begin, targets[i].type, plane_of(i), texel, texel * width));
     }
@@ -133,7 +133,7 @@ void read_wide_rows(Imf::InputPart& input, const ImagePart& part, const Targets&
     input.readPixels(begin, end - 1);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       const ChannelTarget& target = targets[i];
-      const std::size_t texel = size_of(target.type);
+      const std::size_t texel = bytes_of(target.type);
       for (int y = begin; y < end; ++y) {
         const std::byte* from = plane_of(i) + ((y - begin) * width + (left - data.x)) * texel;
         std::byte* to = static_cast<std::byte*>(target.data) + (y - part.display.y) * target.row_stride +

@@ -17,6 +17,10 @@ struct Rgb {
   std::uint8_t b = 0;
 };
 
+constexpr Rgb kCanvasBackground{24, 24, 26};
+constexpr Rgb kBrightText{236, 236, 238};
+constexpr Rgb kDimText{150, 150, 156};
+
 // An opaque RGB picture, sRGB encoded, top row first.
 struct Canvas {
   Canvas(Extent size, Rgb background);

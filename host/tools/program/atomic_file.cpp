@@ -28,7 +28,7 @@ std::string temporary_name(const std::filesystem::path& path) {
   return (path.parent_path() / name).string();
 }
 
-Status cannot_write(const std::string& path, const std::string& reason) {
+Status cannot_store(const std::string& path, const std::string& reason) {
   return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
 }
 
@@ -41,19 +41,19 @@ bool is_number(std::string_view text) {
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
   const std::filesystem::path target(path);
   std::error_code error;
-  if (!target.has_filename()) return cannot_write(path, "the path names no file");
-  if (std::filesystem::is_directory(target, error)) return cannot_write(path, "it is a folder");
+  if (!target.has_filename()) return cannot_store(path, "the path names no file");
+  if (std::filesystem::is_directory(target, error)) return cannot_store(path, "it is a folder");
   if (target.has_parent_path()) {
     std::filesystem::create_directories(target.parent_path(), error);
     if (error) {
-      return cannot_write(path, fmt::format("folder '{}' cannot be made: {}", target.parent_path().string(),
+      return cannot_store(path, fmt::format("folder '{}' cannot be made: {}", target.parent_path().string(),
                                             error.message()));
     }
   }
   // Opened once here so that a folder without write permission is reported before any work is done.
   std::string temporary = temporary_name(target);
   const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) return cannot_write(path, std::strerror(errno));
+  if (descriptor < 0) return cannot_store(path, std::strerror(errno));
   ::flock(descriptor, LOCK_EX | LOCK_NB);  // where files cannot be locked, none is taken for abandoned
   return AtomicFile(path, std::move(temporary), descriptor);
 }
@@ -85,7 +85,7 @@ Status AtomicFile::commit() {
   std::filesystem::rename(temporary_, path_, error);
   if (error) {
     discard();
-    return cannot_write(path_, error.message());
+    return cannot_store(path_, error.message());
   }
   temporary_.clear();
   discard();
@@ -122,12 +122,12 @@ Status write_text(const std::string& path, std::string_view text) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file.ok()) return file.status();
   std::FILE* stream = std::fopen(file->temporary_path().c_str(), "wb");
-  if (stream == nullptr) return cannot_write(path, std::strerror(errno));
+  if (stream == nullptr) return cannot_store(path, std::strerror(errno));
   const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
   const int write_error = errno;
   // fclose() is where a full disk shows for a short file.
-  if (std::fclose(stream) != 0) return cannot_write(path, std::strerror(errno));
-  if (!written) return cannot_write(path, std::strerror(write_error));
+  if (std::fclose(stream) != 0) return cannot_store(path, std::strerror(errno));
+  if (!written) return cannot_store(path, std::strerror(write_error));
   return file->commit();
 }
 

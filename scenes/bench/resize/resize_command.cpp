@@ -41,7 +41,7 @@ Json json_of(const TargetFrames& row) {
 constexpr const char* kRandomPath = "random:0.5,1";
 
 // The plan checks names and numbers and knows the methods; here it is one of a scene and a method.
-Result<BenchPlan> plan_of(BenchOptions options) {
+Result<BenchPlan> resize_plan_of(BenchOptions options) {
   if (options.methods.empty()) {
     for (const BenchMethod& method : all_methods()) {
       if (method.is_default) options.methods = {method.name};
@@ -146,7 +146,7 @@ void add_resize_options(tools::CommandLine& app, ResizeOptions& options) {
 }
 
 Result<ResizeResult> run_resize(const BenchOptions& options) {
-  auto plan = plan_of(options);
+  auto plan = resize_plan_of(options);
   if (!plan.ok()) return plan.status();
   auto stage = open_stage(plan.value(), options);
   if (!stage.ok()) return stage.status();

@@ -19,7 +19,7 @@
 namespace quincunx::bench {
 namespace {
 
-double squared_error_of(double decibels) {
+double mean_square_of(double decibels) {
   return std::pow(10, -decibels / 10);  // 0 for an infinite ratio
 }
 
@@ -119,8 +119,8 @@ void add_parts(SceneTruth& truth) {
 void QualityTally::add(tools::MeasuredPicture picture, const tools::MeasuredPicture& truth,
                        const tools::MeasuredPicture* previous_truth, const FrameMasks& masks) {
   const tools::PictureScores scores = tools::measure(picture, truth);
-  error_ += squared_error_of(scores.psnr_tone_mapped);
-  error_linear_ += squared_error_of(scores.psnr_linear);
+  error_ += mean_square_of(scores.psnr_tone_mapped);
+  error_linear_ += mean_square_of(scores.psnr_linear);
   ssim_ += scores.ssim;
   flip_ += scores.flip;
   p99_ += scores.error_p99;

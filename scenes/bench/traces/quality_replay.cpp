@@ -46,7 +46,7 @@ SceneMix between(const SceneMix& a, const SceneMix& b, double part) {
   return mix;
 }
 
-double normal(Random& random) {  // the sum of twelve uniform ones
+double rough_normal(Random& random) {  // the sum of twelve uniform ones
   double sum = -6;
   for (int i = 0; i < 12; ++i)
     sum += static_cast<double>(random.unit());
@@ -346,9 +346,9 @@ ErrorFront front_of(const ScriptedMachine& machine, double target_ms, double out
   for (FrontPoint& point : points) {
     const std::string method = name_of(point.method);
     const auto flip = flips.try_emplace({point.scene_class, method}, 0);
-    if (flip.second) flip.first->second = std::exp(kFlipDeviation * normal(random));
+    if (flip.second) flip.first->second = std::exp(kFlipDeviation * rough_normal(random));
     const auto cost = costs.try_emplace(method, 0);
-    if (cost.second) cost.first->second = factor * std::exp(kCostDeviation * normal(random));
+    if (cost.second) cost.first->second = factor * std::exp(kCostDeviation * rough_normal(random));
     point.flip = std::min(1.0, point.flip * flip.first->second);
     point.ms_per_megapixel *= cost.first->second;
     point.ms_spread *= cost.first->second;

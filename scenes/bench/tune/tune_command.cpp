@@ -31,7 +31,7 @@ std::string copies_or_none(double copies) {
 }
 
 // A figure that there may not be.
-Json number_or_null(double value) {
+Json number_if_positive(double value) {
   return value > 0 ? Json(value) : Json();
 }
 
@@ -184,8 +184,8 @@ std::string json_of(const TuneResult& result) {
   for (const TunedStorage& storage : result.storages) {
     root["storages"].push_back({{"method", storage.method},
                                 {"buffers_copies", storage.buffers},
-                                {"images_copies", number_or_null(storage.images)},
-                                {"float_history_copies", number_or_null(storage.float_history)}});
+                                {"images_copies", number_if_positive(storage.images)},
+                                {"float_history_copies", number_if_positive(storage.float_history)}});
   }
   return root.dump(1) + "\n";
 }

@@ -122,18 +122,18 @@ class StoredCopies {
   std::vector<unsigned char> texels_;
 };
 
-struct Way {
+struct StorageWay {
   ResolveService service;
   Storage storage;      // storage of its inputs
   Samples copies = {};  // whole frames, in copies of the same round
 };
 
-Result<Way> open_way(const Device& device, const ResolvePlan& like, const ResolveSettings& settings) {
+Result<StorageWay> open_way(const Device& device, const ResolvePlan& like, const ResolveSettings& settings) {
   const auto plan = plan_for(like.needs, settings);
   if (!plan.ok()) return plan.status();
   auto service = ResolveService::create(device, plan.value());
   if (!service.ok()) return service.status();
-  Way way{std::move(service).value(), settings.targets.storage};
+  StorageWay way{std::move(service).value(), settings.targets.storage};
   way.service.allow_timing_waits(true);
   return way;
 }
@@ -147,12 +147,12 @@ double sum_of(const PassTimes& times) {
 
 // Buffers, images where the device has them, float history where there is one.
 struct Ways {
-  std::optional<Way> buffers, images, floats;
+  std::optional<StorageWay> buffers, images, floats;
 };
 
 Result<Ways> open_ways(const Device& device, const ResolvePlan& plan) {
   Ways ways;
-  const auto open = [&](std::optional<Way>& way, const ResolveSettings& settings) -> Status {
+  const auto open = [&](std::optional<StorageWay>& way, const ResolveSettings& settings) -> Status {
     auto made = open_way(device, plan, settings);
     if (!made.ok()) return made.status();
     way.emplace(std::move(made).value());
@@ -187,7 +187,7 @@ Result<TunedStorage> time_storage(const scenes::FrameSource& stage, const TuneCa
     if (!copied.ok()) return copied.status();
     const auto copy_ms = stand->time_copy();
     if (!copy_ms.ok()) return copy_ms.status();
-    for (std::optional<Way>* way : {&ways->buffers, &ways->images, &ways->floats}) {
+    for (std::optional<StorageWay>* way : {&ways->buffers, &ways->images, &ways->floats}) {
       if (!*way) continue;
       PassTimes times;
       const FrameInputs& own = (*way)->storage == drawn ? inputs.value() : copied.value();
@@ -196,7 +196,7 @@ Result<TunedStorage> time_storage(const scenes::FrameSource& stage, const TuneCa
     }
     stand->feed().release();
   }
-  const auto median = [](const std::optional<Way>& way) { return way ? median_of(way->copies) : 0; };
+  const auto median = [](const std::optional<StorageWay>& way) { return way ? median_of(way->copies) : 0; };
   return TunedStorage{what.name, median(ways->buffers), median(ways->images), median(ways->floats)};
 }
 
