@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # On a fresh Debian: installs what is missing, builds, and renders the default scene into out/.
 #
-#   ./run.sh                     240 frames at 1280x720, the render scale sweeping 0.5, 1, 0.71; methods beside truth
+#   ./run.sh                     120 frames at 1280x720, the render scale sweeping 0.5, 1, 0.71; methods beside truth
 #   ./run.sh --list-scenes       anything else is handed to quincunx-render instead of that
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -15,10 +15,10 @@ if (($# > 0)); then
   exec build/release/bin/quincunx-render "$@"
 fi
 
-say "Rendering 240 frames of the default scene into out/ (about a minute on two cores)."
+say "Rendering 120 frames of the default scene into out/ (half a minute on two cores)."
 started=$SECONDS
-build/release/bin/quincunx-render --frames 240 --fps 30 --output 1280x720 --scale-path sweep \
-  --out "out/frame.%04d.png" --contact-sheet out/contact_sheet.png --exr-frame 120 --report out/report
+build/release/bin/quincunx-render --frames 120 --fps 30 --output 1280x720 --scale-path sweep \
+  --out "out/frame.%04d.png" --contact-sheet out/contact_sheet.png --exr-frame 60 --report out/report
 say "Drawing once more by three methods, and truth: out/why.png (half a minute)."
 build/release/bin/quincunx-render -q --why out/why.png
 say
