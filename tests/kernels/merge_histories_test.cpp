@@ -52,13 +52,25 @@ class MergeHistories : public ::testing::TestWithParam<Formats> {
     return made;
   }
 
+  // The near layer of each texel: coverages beyond 0 and 1, too, and every confidence beside every coverage.
+  static reference::NearLayer near_of(std::size_t texel) {
+    constexpr std::array kCoverages = {.3, 0.0, 1.0, .75, -.25, 1.5, .05};
+    constexpr std::array kConfidences = {.8, 0.0, 6.0, 32.0, .1};
+    return {testing::stored_value(GetParam().history, kCoverages.at(texel % kCoverages.size())),
+            testing::stored_value(PixelFormat::kRGBA16F, kConfidences.at(texel % kConfidences.size()))};
+  }
+
   // `other` empty: there is none.
   Texels merge(const Texels& own, const Texels& other, Extent extent) {
     const PixelFormat format = GetParam().history;
-    std::vector<Pixel> picture, confidences, others;
+    std::vector<Pixel> picture, confidences, near, states, others;
     std::vector<double> alphas;
     for (const HistoryTexel<double>& texel : own) {
       picture.push_back({texel.texel[0], texel.texel[1], texel.texel[2], texel.alpha});
+      const bool layered = std::signbit(texel.texel[3]);
+      const reference::NearLayer layer = near_of(confidences.size());
+      near.push_back({NAN, NAN, NAN, layered ? layer.coverage : NAN});
+      states.push_back({NAN, NAN, layered ? layer.confidence : NAN, NAN});
       confidences.push_back({NAN, NAN, NAN, texel.texel[3]});
     }
     for (const HistoryTexel<double>& texel : other) {
@@ -71,6 +83,8 @@ class MergeHistories : public ::testing::TestWithParam<Formats> {
     }
     const auto buffer = [](const std::vector<unsigned char>& bytes) { return testing::to_device(bytes); };
     const cl::Buffer known = buffer(testing::encode(format, confidences));
+    const cl::Buffer near_layer = buffer(testing::encode(format, near));
+    const cl::Buffer near_states = buffer(testing::encode(PixelFormat::kRGBA16F, states));
     const cl::Buffer second = buffer(testing::encode(format, others));
     const cl::Buffer second_alpha = buffer(testing::encode_plane(format, alphas));
     const std::size_t bytes = own.size() * bytes_per_pixel(format);
@@ -83,6 +97,8 @@ class MergeHistories : public ::testing::TestWithParam<Formats> {
         {}, {}, extent, {},
         {{Resource::kCentred, rig.image(GetParam().picture, Storage::kBuffer, extent, picture, 1e30, false)},
          {Resource::kHistory, {.memory = known()}},
+         {Resource::kNearHistory, {.memory = near_layer()}},
+         {Resource::kLayerStates, {.memory = near_states()}},
          {Resource::kOtherHistory, {.memory = second()}},
          {Resource::kOtherAlpha, {.memory = second_alpha()}},
          {Resource::kMergedHistory, {.memory = merged()}},
@@ -111,7 +127,7 @@ TEST_P(MergeHistories, MatchesTheReferenceOnEveryPatternAndSize) {
       const auto expected =
           testing::expected_pixels(extent.width, extent.height, [&]<typename Real>(Real, int x, int y) {
             const auto at = static_cast<std::size_t>(y * extent.width + x);
-            const auto merged = reference::merge_histories<Real>(own[at], other[at]);
+            const auto merged = reference::merge_histories<Real>(own[at], near_of(at), other[at]);
             return std::array<Real, 5>{merged.texel[0], merged.texel[1], merged.texel[2], merged.texel[3],
                                        merged.alpha};
           });
@@ -131,12 +147,15 @@ TEST_P(MergeHistories, MatchesTheReferenceOnEveryPatternAndSize) {
   }
 }
 
-TEST_P(MergeHistories, WithItselfItIsTwiceAsSure_small) {
+TEST_P(MergeHistories, WithItselfOneLayerIsTwiceAsSure_small) {
   const Extent extent{33, 9};
   const Texels own = texels(Pattern::kNoise, extent, 3, GetParam().history);
   const Texels made = merge(own, own, extent);
-  for (std::size_t i = 0; i < made.size(); ++i)
-    ASSERT_EQ(made[i].texel[3], 2 * own[i].texel[3]) << i;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (!std::signbit(own[i].texel[3])) {
+      ASSERT_EQ(made[i].texel[3], 2 * own[i].texel[3]) << i;
+    }
+  }
 }
 
 TEST_P(MergeHistories, WithoutAnotherHistoryItStaysWhatItIs) {
@@ -144,7 +163,15 @@ TEST_P(MergeHistories, WithoutAnotherHistoryItStaysWhatItIs) {
   const Texels own = texels(Pattern::kNoise, extent, 3, GetParam().picture);
   const Texels made = merge(own, {}, extent);
   for (std::size_t i = 0; i < made.size(); ++i) {
-    for (std::size_t c = 0; c < 4; ++c)
+    const double confidence = own[i].texel[3], near = -near_of(i).confidence;
+    ASSERT_EQ(std::signbit(made[i].texel[3]), std::signbit(confidence)) << i;
+    if (!std::signbit(confidence)) {
+      ASSERT_EQ(made[i].texel[3], confidence) << i;
+    } else {  // within rounding to halves
+      ASSERT_GE(made[i].texel[3], 1.001 * std::min(confidence, near) - 1e-4) << i;
+      ASSERT_LE(made[i].texel[3], .999 * std::max(confidence, near) + 1e-4) << i;
+    }
+    for (std::size_t c = 0; c < 3; ++c)
       ASSERT_EQ(made[i].texel[c], testing::stored_value(GetParam().history, own[i].texel[c])) << i;
     ASSERT_EQ(made[i].alpha, testing::stored_value(GetParam().history, own[i].alpha)) << i;
   }

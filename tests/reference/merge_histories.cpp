@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // merge_histories: what two histories of one pixel, both at its centre, come to. In tone space, for own a of confidence
-// W and other b of V: m = l a + (1 - l) b, l = f(W) / (f(W) + f(V)), f(W) = W^2 / (W + 1) + .001. Where one of them has
-// two layers, f(W) = (W / (W + 1))^2 + .001.
+// W and other b of V: m = l a + (1 - l) b, l = f(W) / (f(W) + f(V)), f(W) = W^2 / (W + 1) + .001. Where a has two
+// layers, F of the far one and N of the near one of coverage c, W = 1 / ((1 - c) / (F + .1) + c / (N + .1)) - .1.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,12 +12,22 @@ namespace quincunx::reference {
 namespace {
 
 constexpr double kMergeWeightMin = 1e-3;  // of what nothing is known of
+constexpr double kLayerConfidence = .1;   // added to what is known of each of two layers
 constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
 
 template <typename Real>
-Real weight_of(double confidence, bool layered) {
-  const Real known = std::abs(confidence);
-  return (layered ? known / (known + 1) : known) * known / (known + 1) + kMergeWeightMin;
+Real weight_of(const Real& confidence) {
+  return confidence * confidence / (confidence + 1) + kMergeWeightMin;
+}
+
+// The confidence of both layers together, where there are two.
+template <typename Real>
+Real confidence_of(const HistoryTexel<double>& own, const NearLayer& near) {
+  const Real known = std::abs(own.texel[3]);
+  if (!std::signbit(own.texel[3])) return known;
+  const Real far = known + kLayerConfidence, nearer = Real(near.confidence) + kLayerConfidence;
+  const Real coverage = std::clamp(near.coverage, 0.0, 1.0);
+  return max(far * nearer / (nearer + coverage * (far - nearer)) - kLayerConfidence, 0);
 }
 
 template <typename Real>
@@ -34,10 +45,11 @@ PixelOf<Real> tone_of(const Pixel& texel) {
 }  // namespace
 
 template <typename Real>
-HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const HistoryTexel<double>& other) {
+HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const NearLayer& near,
+                                   const HistoryTexel<double>& other) {
   const bool layered = std::signbit(own.texel[3]) || std::signbit(other.texel[3]);
-  const Real known = weight_of<Real>(own.texel[3], layered);
-  const Real other_known = weight_of<Real>(other.texel[3], layered);
+  const Real confidence = confidence_of<Real>(own, near);
+  const Real known = weight_of<Real>(confidence), other_known = weight_of<Real>(std::abs(other.texel[3]));
   const Real share = other_known / (known + other_known);
   const PixelOf<Real> tone = tone_of<Real>(own.texel), other_tone = tone_of<Real>(other.texel);
   PixelOf<Real> mixed = {};
@@ -47,13 +59,15 @@ HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const Histor
   HistoryTexel<Real> merged;
   for (std::size_t c = 0; c < 3; ++c)
     merged.texel[c] = mixed[c] / rest;
-  const Real sum = Real(std::abs(own.texel[3])) + std::abs(other.texel[3]);
+  const Real sum = confidence + std::abs(other.texel[3]);
   merged.texel[3] = layered ? -sum : sum;
   merged.alpha = own.alpha + (Real(other.alpha) - own.alpha) * share;
   return merged;
 }
 
-template HistoryTexel<double> merge_histories(const HistoryTexel<double>&, const HistoryTexel<double>&);
-template HistoryTexel<Bounded> merge_histories(const HistoryTexel<double>&, const HistoryTexel<double>&);
+template HistoryTexel<double> merge_histories(const HistoryTexel<double>&, const NearLayer&,
+                                              const HistoryTexel<double>&);
+template HistoryTexel<Bounded> merge_histories(const HistoryTexel<double>&, const NearLayer&,
+                                               const HistoryTexel<double>&);
 
 }  // namespace quincunx::reference

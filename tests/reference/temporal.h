@@ -230,9 +230,15 @@ template <typename Real>
 PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
                                const DisplayOptions& options, int x, int y);
 
+// Of a texel of two layers.
+struct NearLayer {
+  double coverage = 0, confidence = 0;
+};
+
 // merge_histories: what two histories of a pixel, both at its centre, come to; `own` is that of the frame's service.
 template <typename Real>
-HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const HistoryTexel<double>& other);
+HistoryTexel<Real> merge_histories(const HistoryTexel<double>& own, const NearLayer& near,
+                                   const HistoryTexel<double>& other);
 
 // (1 - t / 8)^8, close to exp(-t); 0 from t = 8 on.
 template <typename Real>

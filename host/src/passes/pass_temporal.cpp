@@ -290,7 +290,9 @@ class MergeHistoriesPass : public Pass {
                              .centred = layout_of(frame[Resource::kCentred]),
                              .columns_per_item = columns_per_item(shape(), frame.output.width),
                              .has_other = frame.merges ? 1 : 0};
-    bind(params, frame[Resource::kCentred], frame[Resource::kHistory], frame[Resource::kOtherHistory],
+    bind(params, frame[Resource::kCentred], frame[Resource::kHistory],
+         view_or(frame, Resource::kNearHistory, Resource::kHistory),
+         view_or(frame, Resource::kLayerStates, Resource::kHistory), frame[Resource::kOtherHistory],
          view_or(frame, Resource::kOtherAlpha, Resource::kOtherHistory), frame[Resource::kMergedHistory],
          view_or(frame, Resource::kMergedAlpha, Resource::kMergedHistory));
     launch(frame, frame.output, params.columns_per_item, event);
@@ -319,6 +321,10 @@ void plan_merge_histories(const PlanFacts& facts, PassList& list) {
   shown.uses.push_back(
       {Resource::kCentredTiles, Access::kAccumulate, Area::kTiles, {}, sizeof(TileReprojection)});
   shown.uses.push_back({Resource::kMergedHistory, Access::kRead, Area::kOutput, history});
+  if (facts.has_layers()) {
+    merge.uses.push_back({Resource::kNearHistory, Access::kRead, Area::kOutput, history});
+    merge.uses.push_back({Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes});
+  }
   if (facts.accumulates_alpha()) {
     merge.uses.push_back({Resource::kOtherAlpha, Access::kUpdate, Area::kOutput, {}, alpha});
     merge.uses.push_back({Resource::kMergedAlpha, Access::kWrite, Area::kOutput, {}, alpha});
