@@ -7,11 +7,15 @@
 //        and v are sums over the 3x3 pixels around it and the own ones
 //   Where light is smooth, or noise is less than told, s is small, and texture stays. A pixel of which no channel
 //   moves keeps its colour bit by bit.
+//   Where the surfaces' albedo is known, all this is done with each channel over max(albedo, 0) + .02, or where that
+//   would be more than 32768, with 32768.
 //
 //   params   in   extents, layouts
+//   albedo_layout, has_albedo  in  0: nothing is known of it
 //   noise    in   variance of a sample, in parts of its square
 //   source   in   RGBA32F or RGBA16F, output extent, linear, premultiplied; a buffer. NaN counts as 0, what is larger
 //                 than 65504 as that
+//   albedo   in   format and extent as source; a buffer. Read only where it is known
 //   history  in   the layer of this frame: of its texels the confidence alone
 //   output   out  as source, alpha unchanged; another buffer
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
@@ -78,9 +82,38 @@ static inline float16 confidences_around(HistoryLayer layer, int x, int y) {
   return vload16(0, stored);
 }
 
-static inline void load_noisy_row(NoisyRow* row, RESOLVED_TEXELS source, HistoryLayer layer,
-                                  const RefineParams* params, float noise, int x, int y) {
-  const ToneRow t = tone_of(light_row(source, params, x, y));
+// The picture, and what it is divided by.
+typedef struct NoisyPicture {
+  RESOLVED_TEXELS source;
+  RESOLVED_TEXELS albedo;
+  RefineParams params, albedo_params;
+  bool has_albedo;
+} NoisyPicture;
+
+static inline float16 divisor_of(float16 albedo, float16 light) {
+  return max(max(albedo, 0.0f) + DENOISED_ALBEDO_FLOOR, fabs(light) * (1.0f / DENOISED_LIGHT_MAX));
+}
+
+// What a row of the picture, `light`, is divided by.
+static inline LightRow divisors_of(const NoisyPicture* picture, LightRow light, int x, int y) {
+  if (!picture->has_albedo) return row_of_ones();
+  const LightRow albedo = light_row(picture->albedo, &picture->albedo_params, x, y);
+  const LightRow divisors = {divisor_of(albedo.red, light.red), divisor_of(albedo.green, light.green),
+                             divisor_of(albedo.blue, light.blue)};
+  return divisors;
+}
+
+static inline ToneRow tone_over(LightRow light, LightRow divisors) {
+  light.red /= divisors.red;
+  light.green /= divisors.green;
+  light.blue /= divisors.blue;
+  return tone_of(light);
+}
+
+static inline void load_noisy_row(NoisyRow* row, const NoisyPicture* picture, HistoryLayer layer, float noise, int x,
+                                  int y) {
+  const LightRow light = light_row(picture->source, &picture->params, x, y);
+  const ToneRow t = tone_over(light, divisors_of(picture, light, x, y));
   const float16 rest = 1.0f - max(max(max(t.red, t.green), t.blue), 0.0f);
   const float16 weight = fabs(confidences_around(layer, x, y)) + DENOISED_CONFIDENCE_FLOOR;
   const float16 square = t.red * t.red + t.green * t.green + t.blue * t.blue;
@@ -128,10 +161,11 @@ static inline float8 likeness(const NoisyRow* middle, float8 part, int dx, int d
 }
 
 // Denoises the pixels from (x, y) on, of the row in the middle.
-static inline void denoise_row(const NoisyRow* middle, RESOLVED_TEXELS source, OUTPUT_TEXELS output,
-                               const RefineParams* params, int x, int y) {
-  const LightRow light = light_row(source, params, x, y);
-  const ToneRow own = tone_of(light);
+static inline void denoise_row(const NoisyRow* middle, const NoisyPicture* picture, OUTPUT_TEXELS output, int x,
+                               int y) {
+  const LightRow light = light_row(picture->source, &picture->params, x, y);
+  const LightRow divisors = divisors_of(picture, light, x, y);
+  const ToneRow own = tone_over(light, divisors);
   const float8 part = shown_part(middle), zero = (float8)(0.0f);
   float8 red = zero, green = zero, blue = zero, sum = zero;
   for (int dy = -kReach; dy <= kReach; ++dy) {
@@ -144,23 +178,26 @@ static inline void denoise_row(const NoisyRow* middle, RESOLVED_TEXELS source, O
       sum += weight;
     }
   }
-  store_tone8(output, source, params, x, y, light, own, at_pixels(own.red) + red / sum,
+  store_tone8(output, picture->source, &picture->params, x, y, light, divisors, own, at_pixels(own.red) + red / sum,
               at_pixels(own.green) + green / sum, at_pixels(own.blue) + blue / sum);
 }
 
-__kernel void temporal_denoise(const RefineParams params, float noise, RESOLVED_TEXELS source,
-                               HISTORY_TEXELS history, OUTPUT_TEXELS output) {
+__kernel void temporal_denoise(const RefineParams params, const TexelLayout albedo_layout, int has_albedo, float noise,
+                               RESOLVED_TEXELS source, RESOLVED_TEXELS albedo, HISTORY_TEXELS history,
+                               OUTPUT_TEXELS output) {
   const int top = get_global_id(1) * kRefineBlock;
   if (top >= params.height) return;
 
   const HistoryLayer layer = {history, params.width, params.height};
+  NoisyPicture picture = {source, albedo, params, params, has_albedo != 0};
+  picture.albedo_params.source = albedo_layout;
   const int stride = (int)get_global_size(0) * kRefineBlock;
   const int bottom = min(top + kRefineBlock, params.height);
   for (int x = get_global_id(0) * kRefineBlock; x < params.width; x += stride) {
     NoisyRow rows[kRows];
     for (int i = 0; i < kRows; ++i)
-      load_noisy_row(rows + i, source, layer, &params, noise, x, top - kMiddle + i);
+      load_noisy_row(rows + i, &picture, layer, noise, x, top - kMiddle + i);
     for (int y = top; y < bottom; ++y)
-      denoise_row(rows + y - top + kMiddle, source, output, &params, x, y);
+      denoise_row(rows + y - top + kMiddle, &picture, output, x, y);
   }
 }

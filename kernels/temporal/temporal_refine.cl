@@ -115,7 +115,7 @@ static inline void refine_row(const ToneRow* rows, LightRow light, EightStrength
   const float8 red = refined(rows[1].red, rows[2].red, rows[3].red, edges, by);
   const float8 green = refined(rows[1].green, rows[2].green, rows[3].green, edges, by);
   const float8 blue = refined(rows[1].blue, rows[2].blue, rows[3].blue, edges, by);
-  store_tone8(output, source, params, x, y, light, rows[2], red, green, blue);
+  store_tone8(output, source, params, x, y, light, row_of_ones(), rows[2], red, green, blue);
 }
 
 __kernel void temporal_refine(const RefineParams params, RESOLVED_TEXELS source, HISTORY_TEXELS history,

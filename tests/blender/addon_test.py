@@ -109,6 +109,7 @@ class Rendering(AddOn):
                          ["OPEN_EXR_MULTILAYER", "RGBA", "32", "ZIP"])
         layer, cycles = seen["view_layers"][0], seen["cycles"]
         self.assertTrue(layer["use_pass_combined"] and layer["use_pass_z"] and layer["use_pass_vector"])
+        self.assertTrue(layer["cycles"]["denoising_store_passes"])
         self.assertEqual((cycles["filter_width"], cycles["pixel_filter_type"]), (0.01, "BLACKMAN_HARRIS"))
         self.assertTrue(cycles["use_animated_seed"])
         self.assertEqual(err, "quincunx: the sky stands still\n")

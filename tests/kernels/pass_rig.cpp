@@ -33,6 +33,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
                   .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,
                   .merges = merges_,
+                  .albedo = albedo_,
                   .focus = focus_,
                   .focus_extent = facts_.settings.focus.extent,
                   .output = output,

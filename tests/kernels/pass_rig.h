@@ -32,6 +32,9 @@ class PassRig {
   // Sets whether the runs to come merge two histories.
   void set_merges(bool merges) { merges_ = merges; }
 
+  // Sets the albedo of the pictures to come; none at first.
+  void set_albedo(const ImageView& albedo) { albedo_ = albedo; }
+
   // On viewports and an output of any size; the inputs of both frames are bound, `bound` adds what else the pass uses.
   // `previous_output`: of the history; {0, 0}: the output.
   void run(const FrameInputs& current, const FrameInputs& previous, Extent output, Counter counter,
@@ -41,6 +44,7 @@ class PassRig {
   PlanFacts facts_;
   const FocusInputs* focus_ = nullptr;
   bool merges_ = false;
+  ImageView albedo_;
   std::unique_ptr<Pass> pass_;
 };
 

@@ -61,6 +61,8 @@ class TemporalPicture : public ::testing::TestWithParam<Case> {
     cl::Buffer history(testing::impl().context, CL_MEM_READ_WRITE, bytes.size());
     testing::impl().queue.enqueueWriteBuffer(history, CL_TRUE, 0, bytes.size(), bytes.data());
     const ImageView source = rig.image(format(), Storage::kBuffer, extent, pixels, outside, tight);
+    if (!albedo_.empty())
+      pass.set_albedo(rig.image(format(), Storage::kBuffer, extent, albedo_, outside, tight));
     const ImageView view = rig.output(format(), extent);
     pass.run({}, {}, extent, {},
              {{denoises() ? Resource::kNoisy : Resource::kUnrefined, source},
@@ -94,12 +96,13 @@ class TemporalPicture : public ::testing::TestWithParam<Case> {
   }
 
   void compare(const std::vector<Pixel>& pixels, Extent extent, const std::string& what) {
-    const reference::Picture picture = stored(pixels, extent);
+    const reference::Picture picture = stored(pixels, extent), albedo = stored(albedo_, extent);
     const std::vector<double> confidences = every_kind(extent);
     const auto expected =
         testing::expected_pixels(extent.width, extent.height, [&]<typename Real>(Real, int x, int y) {
           if (denoises())
-            return reference::temporal_denoise<Real>(picture, confidences, GetParam().noise, x, y);
+            return reference::temporal_denoise<Real>(picture, albedo_.empty() ? nullptr : &albedo,
+                                                     confidences, GetParam().noise, x, y);
           return reference::temporal_refine<Real>(picture, confidences, x, y);
         });
     const std::vector<Pixel> actual = refined(pixels, extent);
@@ -112,6 +115,8 @@ class TemporalPicture : public ::testing::TestWithParam<Case> {
       }
     }
   }
+
+  std::vector<Pixel> albedo_;  // empty: it is not known
 };
 
 class TemporalRefine : public TemporalPicture {};
@@ -129,6 +134,12 @@ TEST_P(TemporalPicture, MatchesTheReferenceOnEveryPatternAndSize) {
         pixel[3] = std::isfinite(pixel[3]) ? pixel[3] : 1;
       compare(pixels, extent, what);
       if (HasFatalFailure()) return;
+      if (!denoises()) continue;
+      albedo_ = testing::pattern_pixels(Pattern::kNoise, extent, 9);
+      albedo_.front() = {-1, 0, kNan, 0};
+      compare(pixels, extent, what + ", albedo");
+      if (HasFatalFailure()) return;
+      albedo_.clear();
     }
   }
 }
@@ -285,6 +296,29 @@ TEST_P(TemporalDenoise, WhatNoiseDoesNotExplainStays) {
     for (std::size_t i = 0; i < shown.size(); ++i)
       ASSERT_NEAR(shown[i][0], picture[i][0], most) << i;
   }
+}
+
+// A board of black and white that noise hides, under even light.
+TEST_P(TemporalDenoise, NoiseFadesFromSurfacesWhoseAlbedoIsKnown) {
+  const Extent extent{48, 32};
+  const double confidence = 4;
+  const std::vector<double> known(static_cast<std::size_t>(extent.area()), confidence);
+  auto noisy = noisy_picture(extent, confidence, GetParam().noise, 48, .5);
+  const auto board = picture_of(extent, [](int x, int y) { return (x + y) % 2 == 0 ? .3 : .9; });
+  for (std::size_t i = 0; i < noisy.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c)
+      noisy[i][c] *= board[i][0] + .02;
+  const auto error = [&](const std::vector<Pixel>& pixels) {
+    double sum = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      sum += std::pow(pixels[i][0] - .5 * (board[i][0] + .02), 2);
+    return sum;
+  };
+  const double without = error(refined(noisy, extent, known));
+  albedo_ = board;
+  const double with = error(refined(noisy, extent, known));
+  EXPECT_LT(with, .25 * error(noisy));
+  EXPECT_LT(with, .5 * without);
 }
 
 std::vector<Case> all_formats(float noise) {

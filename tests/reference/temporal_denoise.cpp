@@ -59,9 +59,9 @@ struct NoisyPicture {
 }  // namespace
 
 template <typename Real>
-PixelOf<Real> temporal_denoise(const Picture& picture, const std::vector<double>& confidences, double noise,
-                               int x, int y) {
-  const NoisyPicture<Real> noisy{TonePicture<Real>(picture), picture, confidences, noise};
+PixelOf<Real> temporal_denoise(const Picture& picture, const Picture* albedo,
+                               const std::vector<double>& confidences, double noise, int x, int y) {
+  const NoisyPicture<Real> noisy{TonePicture<Real>(picture, albedo), picture, confidences, noise};
   const Real part = noisy.shown_part(x, y);
   const PixelOf<Real> own = noisy.tone.at(x, y);
   PixelOf<Real> sum = {};
@@ -85,13 +85,17 @@ PixelOf<Real> temporal_denoise(const Picture& picture, const std::vector<double>
       weights += weight;
     }
   }
-  PixelOf<Real> denoised = {};
-  for (std::size_t c = 0; c < 3; ++c)
+  PixelOf<Real> denoised = {}, factors = {};
+  for (std::size_t c = 0; c < 3; ++c) {
     denoised[c] = own[c] + sum[c] / weights;
-  return light_of(denoised, picture, x, y);
+    factors[c] = noisy.tone.divisor(x, y, c);
+  }
+  return light_of(denoised, picture, x, y, factors);
 }
 
-template PixelOf<double> temporal_denoise(const Picture&, const std::vector<double>&, double, int, int);
-template PixelOf<Bounded> temporal_denoise(const Picture&, const std::vector<double>&, double, int, int);
+template PixelOf<double> temporal_denoise(const Picture&, const Picture*, const std::vector<double>&, double,
+                                          int, int);
+template PixelOf<Bounded> temporal_denoise(const Picture&, const Picture*, const std::vector<double>&, double,
+                                           int, int);
 
 }  // namespace quincunx::reference

@@ -15,6 +15,8 @@
 //   v   noise (1 - max(t, 0))^2 |t|^2 / w
 //   s   min(sum of |t - mean of four neighbours|^2 / (sum of v + 10^-12), .7), sums over the 5x5 pixels around
 //   d   sum of |t_q - t_p|^2, n sum of v_p + v_q, over the 3x3 places around both pixels
+// Where albedo is known, each channel is divided by max(albedo, 0) + .02 before all this (by more, if it came to more
+// than 32768), and multiplied afterwards.
 // Source: Buades, Coll and Morel, "A non-local algorithm for image denoising", 2005.
 #pragma once
 
@@ -29,6 +31,8 @@
 namespace quincunx::reference {
 
 constexpr double kFiniteHalfMax = 65504;
+constexpr double kAlbedoFloor = .02;
+constexpr double kOverAlbedoMax = 32768;
 constexpr double kToneRestMin = 0x1p-16;  // least 1 - tone, against a division by 0 on the way back
 
 // What stands for a value that is not finite.
@@ -39,20 +43,27 @@ inline double cleaned(double value) {
 template <typename Real>
 class TonePicture {
  public:
-  explicit TonePicture(const Picture& picture) : picture_(picture) {}
+  // `albedo`: null, or of the picture's size: divides it.
+  explicit TonePicture(const Picture& picture, const Picture* albedo = nullptr)
+      : picture_(picture), albedo_(albedo) {}
+
+  Real divisor(int x, int y, std::size_t channel) const {
+    if (albedo_ == nullptr) return 1;
+    const Real known = Real(std::max(cleaned(pixel_of(*albedo_, x, y)[channel]), 0.0)) + kAlbedoFloor;
+    return max(known, Real(std::abs(cleaned(pixel_of(picture_, x, y)[channel]))) / kOverAlbedoMax);
+  }
 
   // Clamped to the edge.
   PixelOf<Real> at(int x, int y) const {
-    const int column = std::clamp(x, 0, picture_.width - 1);
-    const int row = std::clamp(y, 0, picture_.height - 1);
-    const Pixel& pixel = picture_.pixels[index_of(picture_.width, column, row)];
+    const Pixel& pixel = pixel_of(picture_, x, y);
     PixelOf<Real> colour = {};
-    double brightest = 0;
+    Real brightest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
       colour[c] = cleaned(pixel[c]);
-      brightest = std::max(brightest, cleaned(pixel[c]));
+      if (albedo_ != nullptr) colour[c] = colour[c] / divisor(x, y, c);
+      brightest = max(brightest, colour[c]);
     }
-    const Real scale = 1 / (1 + Real(brightest));
+    const Real scale = 1 / (1 + brightest);
     return {colour[0] * scale, colour[1] * scale, colour[2] * scale, 0};
   }
 
@@ -62,16 +73,23 @@ class TonePicture {
   }
 
  private:
+  static const Pixel& pixel_of(const Picture& picture, int x, int y) {
+    const int column = std::clamp(x, 0, picture.width - 1), row = std::clamp(y, 0, picture.height - 1);
+    return picture.pixels[index_of(picture.width, column, row)];
+  }
+
   const Picture& picture_;
+  const Picture* albedo_;
 };
 
 // The way back from tone space; alpha is that of the picture's pixel.
 template <typename Real>
-PixelOf<Real> light_of(const PixelOf<Real>& tone, const Picture& picture, int x, int y) {
+PixelOf<Real> light_of(const PixelOf<Real>& tone, const Picture& picture, int x, int y,
+                       const PixelOf<Real>& factors = {1, 1, 1, 1}) {
   const Real scale = 1 / max(1 - max(max(max(tone[0], tone[1]), tone[2]), 0), kToneRestMin);
   PixelOf<Real> light = {};
   for (std::size_t c = 0; c < 3; ++c)
-    light[c] = min(max(tone[c] * scale, -kFiniteHalfMax), kFiniteHalfMax);
+    light[c] = min(max(tone[c] * (scale * factors[c]), -kFiniteHalfMax), kFiniteHalfMax);
   light[3] = picture.pixels[index_of(picture.width, x, y)][3];
   return light;
 }
@@ -80,7 +98,7 @@ PixelOf<Real> light_of(const PixelOf<Real>& tone, const Picture& picture, int x,
 template <typename Real>
 PixelOf<Real> temporal_refine(const Picture& picture, const std::vector<double>& confidences, int x, int y);
 template <typename Real>
-PixelOf<Real> temporal_denoise(const Picture& picture, const std::vector<double>& confidences, double noise,
-                               int x, int y);
+PixelOf<Real> temporal_denoise(const Picture& picture, const Picture* albedo,
+                               const std::vector<double>& confidences, double noise, int x, int y);
 
 }  // namespace quincunx::reference

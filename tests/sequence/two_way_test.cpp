@@ -72,6 +72,7 @@ class BothWays : public testing::SequenceTest {
 
   float noise_ = 0;      // variance of a sample, of its square
   std::string samples_;  // as Cycles has them; empty: it does not
+  std::string albedo_;   // layer of it; empty: there is none
 
   struct Seen {
     float light[3], distance, speed_x, speed_y;  // output pixels a frame
@@ -108,6 +109,8 @@ class BothWays : public testing::SequenceTest {
                          static_cast<float>(halton(number % 16, 3))};
     std::vector<std::string> names = {"R", "G", "B", "A", "Z", "backward.u", "backward.v"};
     names.insert(names.end(), next.begin(), next.end());
+    for (const char* channel : {".R", ".G", ".B"})
+      if (!albedo_.empty()) names.push_back(albedo_ + channel);
     std::vector<std::vector<float>> planes(names.size());
     const double step_x = 1. * kPicture.width / render.width, step_y = 1. * kPicture.height / render.height;
     for (int y = 0; y < render.height; ++y) {
@@ -125,7 +128,10 @@ class BothWays : public testing::SequenceTest {
                                 -u,
                                 -v,
                                 sign * u,
-                                sign * v};
+                                sign * v,
+                                seen.light[0],
+                                seen.light[1],
+                                seen.light[2]};
         for (std::size_t c = 0; c < planes.size(); ++c)
           planes[c].push_back(values[c]);
       }
@@ -257,6 +263,30 @@ TEST_F(BothWays, NoiseThatIsToldIsTakenOutOfWhatIsShown) {
   EXPECT_NE(resolve("'{}/f.%04d.exr' --explain --noise 4").out.find("\n  temporal_denoise "),
             std::string::npos);
   EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain").out.find("temporal_denoise"), std::string::npos);
+}
+
+TEST_F(BothWays, AlbedoKeepsWhatSurfacesShowFromWhatIsDenoised) {
+  noise_ = .25f;
+  write_all(1, 10);
+  resolve_to("noisy", "");
+  resolve_to("without", "--noise 4");
+  for (const char* layer : {"Albedo", "ViewLayer.Denoising Albedo"}) {
+    albedo_ = layer;
+    write_all(1, 10);
+    EXPECT_NE(
+        resolve("'{}/f.%04d.exr' -n --noise 4").out.find(fmt::format("; albedo {0}.R,{0}.G,{0}.B;", layer)),
+        std::string::npos);
+    resolve_to("with", "--noise 4");
+    for (int number = 1; number <= 10; ++number)
+      EXPECT_GT(psnr_of("with", number), psnr_of("without", number) + .3) << layer << " " << number;
+  }
+  resolve_to("spilled", "--noise 4 --memory 0MB");
+  resolve_to("clean", "");
+  for (int number = 1; number <= 10; ++number) {
+    EXPECT_EQ(colours(output(number, "spilled")), colours(output(number, "with"))) << number;
+    EXPECT_EQ(colours(output(number, "clean")), colours(output(number, "noisy"))) << number;
+  }
+  EXPECT_EQ(resolve("'{}/f.%04d.exr' -n --noise 4 --two-way 0").out.find("albedo"), std::string::npos);
 }
 
 // What is read without history is a shot of its own: the frames after it may be another.

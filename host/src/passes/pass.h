@@ -47,6 +47,7 @@ struct PassFrame {
   bool has_history = false;
   bool merges = false;                 // facts.two_way: there is another history
   bool keeps_merged = false;           // the same: the merged one is read afterwards
+  ImageView albedo = {};               // of what the picture shows, as that lies; null: it is not known
   const FocusInputs* focus = nullptr;  // null: the frame has none
   Extent focus_extent = {};            // the plan's
   Extent output = {};                  // this frame's

@@ -355,8 +355,10 @@ class TemporalDenoisePass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Resource denoised = denoised_of(facts());
-    bind(refine_params(frame, Resource::kNoisy, denoised), facts().settings.temporal.noise,
-         frame[Resource::kNoisy], frame[displayed_history_of(facts())], frame[denoised]);
+    const ImageView& albedo = frame.albedo ? frame.albedo : frame[Resource::kNoisy];
+    bind(refine_params(frame, Resource::kNoisy, denoised), layout_of(albedo), frame.albedo ? 1 : 0,
+         facts().settings.temporal.noise, frame[Resource::kNoisy], albedo,
+         frame[displayed_history_of(facts())], frame[denoised]);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }

@@ -57,7 +57,7 @@ struct ResolveService::Impl {
                        const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
   // What TwoWay does, in two_way.cpp.
-  FrameReport show(const FrameInputs& inputs, const FrameOutputs& outputs);
+  FrameReport show(const FrameInputs& inputs, const FrameOutputs& outputs, const ImageView& albedo);
   Status write(const KeptHistory& kept, Resource texels, Resource alpha);
   Status read_merged(KeptHistory& kept);
 

@@ -48,7 +48,8 @@ Status ResolveService::Impl::read_merged(KeptHistory& kept) {
   }
 }
 
-FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs) {
+FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOutputs& outputs,
+                                       const ImageView& albedo) {
   FrameReport refused;
   try {
     const cl::CommandQueue& queue = device.impl()->queue;
@@ -62,6 +63,7 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOut
     const FrameInputs current = native_inputs(picture.plan().settings, inputs);
     const FrameOutputs made = native_outputs(picture.plan().settings, outputs);
     PassFrame frame = picture.chain().frame(current, nullptr, made, counted);
+    frame.albedo = albedo;
     frame[Resource::kVelocity] = shown_velocity.view();
     frame[Resource::kDepth] = shown_depth.view();
     picture.chain().show(frame, made, slot.report, slot.passes.data());
@@ -127,7 +129,7 @@ Status TwoWay::turn(ResolveService& backward, const ResolveService& forward) {
 }
 
 FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, const KeptHistory& kept,
-                         const FrameOutputs& outputs) {
+                         const FrameOutputs& outputs, const ImageView& albedo) {
   ResolveService::Impl& impl = *service.impl_;
   FrameReport report;
   report.status = impl.write(kept, Resource::kMergedHistory, Resource::kMergedAlpha);
@@ -137,7 +139,7 @@ FrameReport TwoWay::show(ResolveService& service, const FrameInputs& inputs, con
     if (report.ok())
       report.status = impl.device.upload(impl.shown_depth.view(), inputs.render_extent, kept.depth.data());
   }
-  return report.ok() ? impl.show(inputs, outputs) : report;
+  return report.ok() ? impl.show(inputs, outputs, albedo) : report;
 }
 
 }  // namespace quincunx

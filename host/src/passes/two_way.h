@@ -38,9 +38,10 @@ class QUINCUNX_API TwoWay {
   // `backward` with `reset`, and have plans that differ in nothing but what follows history.
   static Status turn(ResolveService& backward, const ResolveService& forward);
 
-  // Makes the picture of a history. `inputs`: the frame's, without images.
+  // Makes the picture of a history. `inputs`: the frame's, without images. `albedo`: as FrameOutputs::linear, what part
+  // of light the surfaces in the picture throw back, for plans that denoise; null: it is not known.
   static FrameReport show(ResolveService& service, const FrameInputs& inputs, const KeptHistory& kept,
-                          const FrameOutputs& outputs);
+                          const FrameOutputs& outputs, const ImageView& albedo = {});
 };
 
 }  // namespace quincunx

@@ -260,6 +260,8 @@ class SmallRender:
             (cycles, "pixel_filter_type", "BLACKMAN_HARRIS"), (cycles, "filter_width", FILTER_WIDTH),
             (cycles, "use_animated_seed", True),  # else all frames have the same noise
         ]
+        if not cycles.use_denoising:
+            wanted.append((layer.cycles, "denoising_store_passes", True))  # albedo, for --noise
         return [setting for setting in wanted if hasattr(setting[0], setting[1])]
 
     def change(self):

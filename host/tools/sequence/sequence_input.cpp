@@ -127,6 +127,18 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
 }
 
 // A channel that is read if the command line names it, or if it has its usual name.
+// Channels of a layer that is called "albedo", or "Denoising Albedo" as Cycles has it; empty names where there is none.
+std::array<std::string, 3> albedo_channels_in(const ImageHeader& header) {
+  for (const std::string& layer : colour_layers(header)) {
+    std::string name = layer.substr(layer.rfind('.') + 1);  // of all, where there is no dot
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    const bool known = name == "albedo" || name == "denoising albedo";
+    if (known && has_all(header, layer + ".", {"R", "G", "B"}))
+      return {layer + ".R", layer + ".G", layer + ".B"};
+  }
+  return {};
+}
+
 std::string optional_channel(const std::optional<std::string>& wanted, const std::string& usual,
                              const ImageHeader& first) {
   if (wanted) return *wanted;
@@ -169,6 +181,8 @@ Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& 
   }
   if (names.has_depth()) places.depth = search.find(names.depth);
   if (names.has_reactive()) places.reactive = search.find(names.reactive);
+  for (std::size_t i = 0; i < 3 && names.has_albedo(); ++i)
+    places.albedo[i] = search.find(names.albedo[i]);
   if (!search.status().ok()) return search.status();
   places.display = *search.display();
   places.dwa = search.dwa();
@@ -203,6 +217,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
     return status;
   format.channels.depth = optional_channel(input.depth, kDepthChannel, first);
   format.channels.reactive = optional_channel(input.reactive, kReactiveChannel, first);
+  format.channels.albedo = albedo_channels_in(first);
   const bool goes_on = first.find(kForwardChannels[0]) && first.find(kForwardChannels[1]);
   format.next_velocity = input.next_velocity.value_or(goes_on ? kForwardChannels : format.next_velocity);
   format.depth_kind = input.depth_kind.value_or(attributes.depth_kind.value_or(DepthKind::kLinear));
@@ -265,6 +280,8 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
   const bool possible = plan.accumulates() && plan.settings.temporal.view == TemporalView::kPicture;
   const bool known = format.next_motion == NextMotion::kChannels || format.next_motion == NextMotion::kCamera;
   format.two_way = input.two_way.value_or(possible && known ? kDefaultAhead : 0);
+  const bool denoises = format.two_way > 0 && plan.settings.temporal.noise > 0;
+  if (!denoises) format.channels.albedo = {};
   if (format.two_way > 0 && !possible) {
     return Status::invalid(
         fmt::format("--two-way merges the histories of method temporal, and this is {}; say --two-way 0",
@@ -309,6 +326,8 @@ std::string summary_of(const SequenceFormat& format) {
     if (format.depth_kind == DepthKind::kLinear) text += fmt::format(", near {}", format.near_plane);
   }
   if (channels.has_reactive()) text += fmt::format("; reactive {}", channels.reactive);
+  if (channels.has_albedo())
+    text += fmt::format("; albedo {},{},{}", channels.albedo[0], channels.albedo[1], channels.albedo[2]);
   if (format.two_way > 0) text += two_way_text(format);
   return text + fmt::format("; jitter {}", format.jitter.text());
 }

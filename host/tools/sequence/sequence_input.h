@@ -22,10 +22,12 @@ struct ChannelNames {
   std::array<std::string, 2> velocity;                       // both or none
   std::string depth;
   std::string reactive;
+  std::array<std::string, 3> albedo;  // all or none: what part of light the surfaces throw back
 
   bool has_velocity() const { return !velocity[0].empty(); }
   bool has_depth() const { return !depth.empty(); }
   bool has_reactive() const { return !reactive.empty(); }
+  bool has_albedo() const { return !albedo[0].empty(); }
 };
 
 // "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
@@ -41,6 +43,7 @@ struct ChannelPlaces {
   std::array<std::optional<ChannelPlace>, 2> velocity;
   std::optional<ChannelPlace> depth;
   std::optional<ChannelPlace> reactive;
+  std::array<std::optional<ChannelPlace>, 3> albedo;
   ImageWindow display;  // display window of the parts in use
   bool half_colour = true;
   bool background = true;  // colour covers the display window, and there is no alpha

@@ -70,10 +70,12 @@ void allocate(SequenceFrame& frame, const ChannelNames& names, std::size_t colou
   frame.velocity.resize(names.has_velocity() ? pixels : 0);
   frame.depth.resize(names.has_depth() ? pixels : 0);
   frame.reactive.resize(names.has_reactive() ? pixels : 0);
+  frame.albedo.resize(names.has_albedo() ? frame.colour.size() : 0);
 }
 
 void clear(SequenceFrame& frame, DepthKind depth_kind, std::vector<float>& mask) {
   std::fill(frame.colour.begin(), frame.colour.end(), std::byte{0});
+  std::fill(frame.albedo.begin(), frame.albedo.end(), std::byte{0});
   std::fill(frame.velocity.begin(), frame.velocity.end(), Vec2{});
   std::fill(frame.depth.begin(), frame.depth.end(), nothing_seen(depth_kind));
   std::fill(mask.begin(), mask.end(), 0.0f);
@@ -96,6 +98,8 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
   for (std::size_t i = 0; i < 2 && !frame.velocity.empty(); ++i)
     targets.add(places.velocity[i], ChannelType::kFloat, &frame.velocity.data()->x + i, sizeof(Vec2));
   targets.add(places.depth, ChannelType::kFloat, frame.depth.data(), sizeof(float));
+  for (std::size_t i = 0; i < 3 && !frame.albedo.empty(); ++i)
+    targets.add(places.albedo[i], colour_type, frame.albedo.data() + i * texel, 4 * texel);
   targets.add(places.reactive, ChannelType::kFloat, mask.data(), sizeof(float));
   if (leave_pixels_open(reader.header(), targets.all())) clear(frame, format.depth_kind, mask);
   if (Status status = reader.read(targets.all()); !status.ok()) return status;

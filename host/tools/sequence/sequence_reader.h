@@ -25,6 +25,7 @@ struct SequenceFrame {
   std::vector<Vec2> velocity;          // uv, this - previous position, +v down; empty where not read
   std::vector<float> depth;            // reversed infinite; empty where not read
   std::vector<std::uint8_t> reactive;  // empty where not read
+  std::vector<std::byte> albedo;       // as colour; empty where not read
   std::optional<Matrix> world_to_ndc;
   std::optional<RecordedFrame> recorded;  // then the images above are empty
   std::vector<Attribute> kept;            // the file's (camera, rate and the like); the resolved frame's too

@@ -69,11 +69,22 @@ Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device&
     ResolveSettings settings = plan.settings;  // of history alone
     settings.blur.shutter = settings.sharpness = 0;
     settings.output.present = false;
-    const auto backward_plan = plan_for(plan.needs, settings);
-    if (!backward_plan.ok()) return backward_plan.status();
-    auto backward = TwoWay::create(device, backward_plan.value());
+    const auto make = [&](const SceneNeeds& needs) -> Result<ResolveService> {
+      const auto made_plan = plan_for(needs, settings);
+      return made_plan.ok() ? TwoWay::create(device, made_plan.value()) : made_plan.status();
+    };
+    auto backward = make(plan.needs);
     if (!backward.ok()) return backward.status();
     resolver->backward_.emplace(Stream{std::move(backward).value()});
+    settings.temporal.noise = 0;
+    SceneNeeds opaque = plan.needs;
+    opaque.background = true;
+    for (Stream* stream : {&resolver->forward_, &*resolver->backward_}) {
+      if (!resolver->job_.format.channels.has_albedo()) break;
+      auto albedo = make(opaque);
+      if (!albedo.ok()) return albedo.status();
+      stream->albedo.emplace(std::move(albedo).value());
+    }
   }
   if (Status status = resolver->allocate(); !status.ok()) return status;
   return resolver;
@@ -98,6 +109,9 @@ Status SequenceResolver::allocate(Stream& stream) const {
     if (plan.reads_reactive) {
       if (Status status = make(frame.reactive, PixelFormat::kR8); !status.ok()) return status;
     }
+    if (stream.albedo) {
+      if (Status status = make(frame.albedo, plan.settings.colour); !status.ok()) return status;
+    }
   }
   return {};
 }
@@ -111,6 +125,11 @@ Status SequenceResolver::allocate() {
   auto linear = device_.allocate(plan.settings.output_extent, plan.settings.output.linear);
   if (!linear.ok()) return linear.status();
   linear_ = std::move(linear).value();
+  if (forward_.albedo) {
+    auto albedo = device_.allocate(plan.settings.output_extent, plan.settings.output.linear);
+    if (!albedo.ok()) return albedo.status();
+    albedo_ = std::move(albedo).value();
+  }
   if (!presents()) return {};
   auto made = device_.allocate(plan.settings.output_extent, PixelFormat::kRGBA8, plan.presented_storage());
   if (made.ok()) presented_ = std::move(made).value();
@@ -124,6 +143,7 @@ Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& t
   if (Status status = copy(to.colour, frame.colour.data()); !status.ok()) return status;
   if (Status status = copy(to.velocity, frame.velocity.data()); !status.ok()) return status;
   if (Status status = copy(to.depth, frame.depth.data()); !status.ok()) return status;
+  if (Status status = copy(to.albedo, frame.albedo.data()); !status.ok()) return status;
   return copy(to.reactive, frame.reactive.data());
 }
 
@@ -293,6 +313,18 @@ Status SequenceResolver::deliver(const SequenceFrame& frame, const ScannedFrame&
   return {};
 }
 
+// As TwoWay::add(), for the albedo of the frame that the stream took last.
+Status SequenceResolver::add_albedo(Stream& stream, FrameInputs inputs, std::size_t index, bool merges,
+                                    bool keeps) {
+  if (!stream.albedo) return {};
+  inputs.colour = stream.ring[static_cast<std::size_t>((stream.count - 1) % 2)].albedo.view();
+  auto history = merges ? histories_.take(~index) : KeptHistory();
+  if (!history.ok()) return history.status();
+  const FrameReport report = TwoWay::add(*stream.albedo, inputs, merges, keeps ? &history.value() : nullptr);
+  if (!report.ok()) return report.status;
+  return keeps ? histories_.put(~index, std::move(history).value()) : Status();
+}
+
 Status SequenceResolver::add_forward(std::size_t index) {
   const ScannedFrame& scanned = good_[index];
   const auto taken = take(scanned, false);
@@ -305,6 +337,8 @@ Status SequenceResolver::add_forward(std::size_t index) {
   KeptHistory history;
   kept.report = TwoWay::add(forward_.service, inputs.value(), false, scanned.wanted ? &history : nullptr);
   if (!kept.report.ok()) return kept.report.status;
+  if (Status status = add_albedo(forward_, inputs.value(), index, false, scanned.wanted); !status.ok())
+    return status;
   if (scanned.wanted) {
     if (Status status = histories_.put(index, std::move(history)); !status.ok()) return status;
     kept.frame.number = frame.number;
@@ -350,11 +384,15 @@ Status SequenceResolver::add_backward(std::size_t index, const TwoWayWindow& win
   const FrameReport report =
       TwoWay::add(backward_->service, inputs.value(), merges, merges ? &history.value() : nullptr);
   if (!report.ok()) return report.status;
+  if (Status status = add_albedo(*backward_, inputs.value(), index, merges, merges); !status.ok())
+    return status;
   if (merges) {
     if (Status status = histories_.put(index, std::move(history).value()); !status.ok()) return status;
   }
   if (forward_.last == scanned.number) {
-    if (Status status = TwoWay::turn(backward_->service, forward_.service); !status.ok()) return status;
+    Status status = TwoWay::turn(backward_->service, forward_.service);
+    if (status.ok() && forward_.albedo) status = TwoWay::turn(*backward_->albedo, *forward_.albedo);
+    if (!status.ok()) return status;
   }
   outcome_.resolve_ms.push_back(ms_since(start));
   ahead_->release();
@@ -368,8 +406,15 @@ Status SequenceResolver::show(std::size_t index) {
   const KeptFrame& kept = found->second;
   const auto history = histories_.take(index);
   if (!history.ok()) return history.status();
-  const FrameReport report =
-      TwoWay::show(forward_.service, kept.inputs, history.value(), {linear_.view(), presented_.view()});
+  if (forward_.albedo) {
+    const auto albedo = histories_.take(~index);
+    if (!albedo.ok()) return albedo.status();
+    const FrameReport shown =
+        TwoWay::show(*forward_.albedo, kept.inputs, albedo.value(), {albedo_.view(), {}});
+    if (!shown.ok()) return shown.status;
+  }
+  const FrameReport report = TwoWay::show(forward_.service, kept.inputs, history.value(),
+                                          {linear_.view(), presented_.view()}, albedo_.view());
   if (!report.ok()) return report.status;
   if (Status status = deliver(kept.frame, good_[index], kept.report); !status.ok()) return status;
   kept_.erase(found);
@@ -382,6 +427,8 @@ void SequenceResolver::collect_reports() {
     outcome_.reports.push_back(*report);
   while (auto report = backward_ ? backward_->service.next_completed() : std::nullopt)
     outcome_.reports.push_back(*report);
+  while (forward_.albedo && (forward_.albedo->next_completed() || backward_->albedo->next_completed())) {
+  }
 }
 
 Status SequenceResolver::finish() {

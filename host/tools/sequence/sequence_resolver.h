@@ -63,7 +63,7 @@ class SequenceResolver {
 
  private:
   struct DeviceFrame {
-    Image colour, velocity, depth, reactive;
+    Image colour, velocity, depth, reactive, albedo;
   };
 
   // In host memory; what nobody wants is empty.
@@ -75,14 +75,16 @@ class SequenceResolver {
   // Frames one after another, forwards or backwards.
   struct Stream {
     ResolveService service;
-    std::array<DeviceFrame, 2> ring = {};      // this frame and the one before
-    std::array<UploadedFrame, 2> played = {};  // the same, where they are recorded
-    std::int64_t last = -1;                    // the frame that was resolved before; -1: none
+    std::optional<ResolveService> albedo = {};  // where albedo is read: has it for its colour
+    std::array<DeviceFrame, 2> ring = {};       // this frame and the one before
+    std::array<UploadedFrame, 2> played = {};   // the same, where they are recorded
+    std::int64_t last = -1;                     // the frame that was resolved before; -1: none
     std::optional<Matrix> last_world_to_ndc = {};
     std::int64_t count = 0;  // dispatched
   };
 
-  // A frame that was resolved forwards and is not shown yet. Its history is among `histories_`.
+  // A frame that was resolved forwards and is not shown yet. Its history is among `histories_`, that of its albedo
+  // under ~index.
   struct KeptFrame {
     SequenceFrame frame;  // without images, but velocity where scores ask for it
     FrameInputs inputs;   // without images
@@ -112,6 +114,7 @@ class SequenceResolver {
   Result<SequenceFrame*> take(const ScannedFrame& scanned, bool backward);
   Status resolve_frame(const ScannedFrame& scanned);
   Status add_forward(std::size_t index);
+  Status add_albedo(Stream& stream, FrameInputs inputs, std::size_t index, bool merges, bool keeps);
   Status add_backward(std::size_t index, const TwoWayWindow& window);
   void turn_motion(SequenceFrame& frame, const ScannedFrame& scanned);
   Status show(std::size_t index);
@@ -139,6 +142,7 @@ class SequenceResolver {
   MotionSamples later_;  // of the frame that was read before, backwards, where its motion is turned
   Image linear_;         // the resolved picture, blurred where the plan blurs
   Image presented_;
+  Image albedo_;  // of the picture, where it is read
   SequenceWatch watch_;
   std::chrono::steady_clock::time_point last_delivery_;
   SequenceOutcome outcome_;

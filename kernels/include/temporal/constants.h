@@ -111,5 +111,7 @@
 // ---- temporal_denoise.
 #define DENOISED_CONFIDENCE_FLOOR 0.03f  // weights: pixels of which nothing is known count, too [S]
 #define DENOISED_PART_MAX 0.7f           // of the variance that the noise told gives; 1.5: -.14 dB [S]
+#define DENOISED_ALBEDO_FLOOR 0.02f      // what is black may be lit by a mirror; .1: -.2 dB at 1 sample [S]
+#define DENOISED_LIGHT_MAX 32768.0f      // light over albedo: tone space can bring back twice that [N]
 #define DENOISED_VARIANCE_MIN 1e-12f     // squared tone, of 25 pixels [N]
 #define DENOISED_DISTANCE_MIN 1e-7f      // squared tone, of 9 pixels: what rounding to halves moves [N]

@@ -73,6 +73,11 @@ static inline LightRow light_row(RESOLVED_TEXELS source, const RefineParams* par
   return light;
 }
 
+static inline LightRow row_of_ones(void) {
+  const LightRow ones = {(float16)(1.0f), (float16)(1.0f), (float16)(1.0f)};
+  return ones;
+}
+
 static inline ToneRow tone_of(LightRow light) {
   const float16 scale = 1.0f / (1.0f + max(max(max(light.red, light.green), light.blue), 0.0f));
   ToneRow tone = {light.red * scale, light.green * scale, light.blue * scale, (float16)(0.0f)};
@@ -98,17 +103,17 @@ static inline void store_light8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, co
   }
 }
 
-// Stores the pixels from (x, y) on, whose light was `light` and tone `before`. Those of which no channel has moved keep
-// their light.
+// Stores the pixels from (x, y) on, whose light was `light` and tone `before`, that of light over `factors`. Those of
+// which no channel has moved keep their light.
 static inline void store_tone8(OUTPUT_TEXELS output, RESOLVED_TEXELS source, const RefineParams* params,
-                               int x, int y, LightRow light, ToneRow before, float8 red, float8 green,
-                               float8 blue) {
+                               int x, int y, LightRow light, LightRow factors, ToneRow before, float8 red,
+                               float8 green, float8 blue) {
   const int8 stays =
       (red == at_pixels(before.red)) & (green == at_pixels(before.green)) & (blue == at_pixels(before.blue));
   const float8 brightest = max(max(max(red, green), blue), 0.0f);
   const float8 scale = 1.0f / max(1.0f - brightest, TONE_REST_MIN);
   store_light8(output, source, params, x, y, min(params->width - x, (int)kRefineBlock),
-               light_of(red, scale, at_pixels(light.red), stays),
-               light_of(green, scale, at_pixels(light.green), stays),
-               light_of(blue, scale, at_pixels(light.blue), stays));
+               light_of(red, scale * at_pixels(factors.red), at_pixels(light.red), stays),
+               light_of(green, scale * at_pixels(factors.green), at_pixels(light.green), stays),
+               light_of(blue, scale * at_pixels(factors.blue), at_pixels(light.blue), stays));
 }

@@ -107,7 +107,7 @@ def reset(folder):
         use_lock_interface=False, use_border=False, use_multiview=False, frame_map_old=100, frame_map_new=100,
         image_settings=image)
     layer = Owner(name="ViewLayer", use=True, use_pass_combined=False, use_pass_z=False, use_pass_vector=False,
-                  depsgraph=None)
+                  depsgraph=None, cycles=Owner(denoising_store_passes=False))
     cycles = Owner(pixel_filter_type="BOX", filter_width=1.5, use_animated_seed=False, use_denoising=False)
     choices = Owner(percent=50, method="temporal", options="", draft=False, keep=False)
     scene = Scene(name="Scene", render=render, cycles=cycles, view_layers=[layer], timeline_markers=[], frame_start=1,
