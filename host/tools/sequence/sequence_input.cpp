@@ -126,7 +126,6 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
   return {};
 }
 
-// A channel that is read if the command line names it, or if it has its usual name.
 // Channels of a layer that is called "albedo", or "Denoising Albedo" as Cycles has it; empty names where there is none.
 std::array<std::string, 3> albedo_channels_in(const ImageHeader& header) {
   for (const std::string& layer : colour_layers(header)) {
@@ -139,6 +138,7 @@ std::array<std::string, 3> albedo_channels_in(const ImageHeader& header) {
   return {};
 }
 
+// A channel that is read if the command line names it, or if it has its usual name.
 std::string optional_channel(const std::optional<std::string>& wanted, const std::string& usual,
                              const ImageHeader& first) {
   if (wanted) return *wanted;
