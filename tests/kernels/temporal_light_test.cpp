@@ -146,6 +146,11 @@ std::vector<reference::TileLight> with_spread(Findings found) {
   return lights_of(found);
 }
 
+bool some_cell_differs(const reference::TileLight& one, const reference::TileLight& other) {
+  const auto same = [](const auto& a, const auto& b) { return a.rejection == b.rejection; };
+  return !std::equal(one.cells.begin(), one.cells.end(), other.cells.begin(), same);
+}
+
 // How many tiles meet what: each finding is taken away to see what it changes.
 struct Met {
   int tiles = 0, decided = 0, relit = 0, rejected = 0;
@@ -174,7 +179,7 @@ struct Met {
       alternating += even[i].cells[0].flicker > 0 ? 1 : 0;
       of_flicker += rejection != wild[i].rejection ? 1 : 0;
       of_one_cell += rejection > expected[i].value.cells[0].rejection ? 1 : 0;
-      of_drift += rejection != sudden[i].rejection ? 1 : 0;
+      of_drift += some_cell_differs(expected[i].value, sudden[i]) ? 1 : 0;
       confirmed += expected[i].value.confirmation == 1 ? 1 : 0;
       hidden_by_waiting += rejection < confirmed_lately[i].rejection ? 1 : 0;
       held_back += expected[i].value.holds_back ? 1 : 0;
