@@ -104,10 +104,9 @@ static inline LightRow divisors_of(const NoisyPicture* picture, LightRow light, 
 }
 
 static inline ToneRow tone_over(LightRow light, LightRow divisors) {
-  light.red /= divisors.red;
-  light.green /= divisors.green;
-  light.blue /= divisors.blue;
-  return tone_of(light);
+  // Not into the parameter: Mesa 22.3 changes the caller's as well.
+  const LightRow over = {light.red / divisors.red, light.green / divisors.green, light.blue / divisors.blue};
+  return tone_of(over);
 }
 
 static inline void load_noisy_row(NoisyRow* row, const NoisyPicture* picture, HistoryLayer layer, float noise, int x,
