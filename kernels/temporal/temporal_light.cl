@@ -15,7 +15,7 @@
 //                look like a change of its own
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
-//              (outliers): gain is 1 and rejection 0 then
+//              (outliers): gain is 1 and rejection 0 then, and cells remember what they did before
 //
 //   tiles_x, tiles_y  in   how many tiles there are
 //   tiles             in   TileReprojection of each tile: motion edges, whether it is rigid, and where it was
@@ -263,8 +263,10 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
       around.sum.outliers > 0.0f && around.recent_outliers < OUTLIER_REARM_MAX && !relit && !(by_cut > 0.0f);
   if (tile.holds_back) {
     tile.rejection = 0.0f;
-    for (int c = 0; c < 4; ++c)
+    for (int c = 0; c < 4; ++c) {
+      tile.cells[c] = before.cells[c];
       tile.cells[c].rejection = 0.0f;
+    }
     tile.gain = 1.0f;
   }
   return tile;
