@@ -57,6 +57,9 @@ RULES = {
     "rigid tiles wait for a second frame": [
         (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],
+    "… unless one was confirmed lately": [
+        (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
+         "const bool waits = tiles[i].is_rigid;")],
     "outliers are held back": [(LIGHT, "tile.holds_back = around.sum.outliers > 0.0f &&", "tile.holds_back = false &&")],
     "… only the first of late": [(LIGHT, "around.recent_outliers < OUTLIER_REARM_MAX", "true")],
 }

@@ -29,7 +29,10 @@ ROOT = constants.ROOT
 HEADER = "kernels/include/temporal/judge_weights.h"
 KERNEL = "temporal/temporal_light.cl"
 SIZE, CELL = (640, 360), 4  # output pixels
-INPUTS, HIDDEN, INPUT_MAX = 15, 16, 8.0
+INPUTS, HIDDEN = 15, 16
+INPUT_MAX = next(float(value.rstrip("f")) for name, value, _ in constants.constants("temporal/constants.h")
+                 if name == "JUDGE_INPUT_MAX")
+LEVEL = RISE = 0.25  # rejection at even odds, and by how much it rises with their logarithm
 CAUTION, WEIGHT_MAX = 0.3, 30  # the second: of a single cell
 STEPS, BATCH, RATE = 5000, 500, 4e-3  # BATCH: cells of each sequence
 # Runs of each sequence: the first frame, and how many to the one in which all is kept or rejected.
@@ -183,12 +186,18 @@ def draw(build, work, item):
     return folder
 
 
+def read(path):
+    """Returns the pixels of an EXR, height x width x channels, and the channels' names."""
+    file = oiio.ImageInput.open(path)
+    spec = file.spec()
+    pixels = np.asarray(file.read_image("float")).reshape(spec.height, spec.width, -1)
+    file.close()
+    return pixels, list(spec.channelnames)
+
+
 def displayed(path):
     """A picture of SIZE as it is scored: tone-mapped, in sRGB."""
-    file = oiio.ImageInput.open(path)
-    light = np.nan_to_num(np.asarray(file.read_image("float")).reshape(file.spec().height, file.spec().width, -1))
-    file.close()
-    light = np.maximum(light[..., :3], 0)
+    light = np.maximum(np.nan_to_num(read(path)[0][..., :3]), 0)
     while light.shape[1] > SIZE[0]:
         light = (light[::2, ::2] + light[1::2, ::2] + light[::2, 1::2] + light[1::2, 1::2]) / 4
     light = light / (1 + light)
@@ -203,16 +212,14 @@ def errors(picture, truth):
 
 def motion(path):
     """Of each cell the mean motion in this frame, in cells: x, y."""
-    file = oiio.ImageInput.open(path)
-    spec = file.spec()
-    pixels = np.asarray(file.read_image("float")).reshape(spec.height, spec.width, -1)
-    file.close()
+    pixels, names = read(path)
+    height, width = pixels.shape[:2]
     rows, columns = SIZE[1] // CELL, SIZE[0] // CELL
-    y, x = (((np.arange(n) + 0.5) * cells / n).astype(int) for n, cells in ((spec.height, rows), (spec.width, columns)))
+    y, x = (((np.arange(n) + 0.5) * cells / n).astype(int) for n, cells in ((height, rows), (width, columns)))
     cell = (y[:, None] * columns + x[None]).ravel()
     moved = []
-    for channel, cells in (("backward.u", -columns / spec.width), ("backward.v", rows / spec.height)):
-        back = np.nan_to_num(pixels[..., list(spec.channelnames).index(channel)], posinf=0, neginf=0).ravel()
+    for channel, cells in (("backward.u", -columns / width), ("backward.v", rows / height)):
+        back = np.nan_to_num(pixels[..., names.index(channel)], posinf=0, neginf=0).ravel()
         number = np.maximum(np.bincount(cell, minlength=rows * columns), 1)
         moved.append((np.bincount(cell, back * cells, rows * columns) / number).reshape(rows, columns))
     return moved
@@ -270,6 +277,7 @@ def gather(programs, folder, item, work):
     for first, count in runs_of(item):
         frame = first + count - 1
         frames = [frame + later for later in LATER]
+        truths = [displayed("%s/truth.%04d.exr" % (folder, i)) for i in frames]
         moved, of_cells = motion("%s/frame.%04d.exr" % (folder, frame)), []
         for program in programs[count]:
             # One thread, so that what is printed stays in order.
@@ -279,8 +287,8 @@ def gather(programs, folder, item, work):
                  "--method", "temporal", "--two-way", "0", "--threads", "1", "-q", "--frames",
                  ",".join(map(str, frames)), "--warm-up", str(count - 1)], check=True, text=True,
                 capture_output=True, env=environment).stdout
-            of_cells.append([errors(displayed("%s/out.%04d.exr" % (out, i)),
-                                    displayed("%s/truth.%04d.exr" % (folder, i))) for i in frames])
+            of_cells.append([errors(displayed("%s/out.%04d.exr" % (out, i)), truth)
+                             for i, truth in zip(frames, truths)])
         found = np.array(printed.split(), dtype=np.float32).reshape(-1, 1 + INPUTS)
         gain = sum(followed(kept - rejected, moved, later) * LATER[later]
                    for later, kept, rejected in zip(LATER, *of_cells))
@@ -304,9 +312,9 @@ class Judge(torch.nn.Module):
         return self.out(torch.relu(self.hidden(inputs * self.scale)))[:, 0]
 
     def weights(self):
-        """Those of rejection: 0 at odds of 1 to 2.7, 1 at 20 to 1."""
+        """Those of rejection: LEVEL + RISE x forward()."""
         return ((self.hidden.weight * self.scale).detach().numpy().T, self.hidden.bias.detach().numpy(),
-                0.25 * self.out.weight.detach().numpy()[0], 0.25 + 0.25 * float(self.out.bias.detach()))
+                RISE * self.out.weight.detach().numpy()[0], LEVEL + RISE * float(self.out.bias.detach()))
 
 
 def header_of(rows, biases, outputs, bias):
@@ -350,7 +358,7 @@ def check(judge, named):
     """Prints how many cells are rejected, what that and the best there is does to the error, and its mistakes (%)."""
     for name, (inputs, gains) in named:
         with torch.no_grad():
-            rejection = (0.25 + 0.25 * judge(torch.from_numpy(inputs)).numpy()).clip(0, 1)
+            rejection = (LEVEL + RISE * judge(torch.from_numpy(inputs)).numpy()).clip(0, 1)
         print("%-28s rejected %5.2f   error %+6.2f  at best %+6.2f  by mistake %+6.2f  (%d cells)" % (
             name, 100 * rejection.mean(), 100 * -(gains * rejection).mean(), 100 * -gains.clip(0).mean(),
             100 * -(gains.clip(max=0) * rejection).mean(), len(gains)), flush=True)

@@ -230,7 +230,7 @@ template <typename Real>
 PixelOf<Real> temporal_display(const TemporalInputs& in, const std::vector<Tile>& tiles,
                                const DisplayOptions& options, int x, int y);
 
-// Of a texel of two layers.
+// What a texel of two layers knows of its near one.
 struct NearLayer {
   double coverage = 0, confidence = 0;
 };
