@@ -62,23 +62,42 @@ void add_passes(std::vector<Case>& cases, Stage& stage, Case what, const Scene& 
       static_cast<int>(passes.size()));
 }
 
-// Times whole frames, each with the history that those before it have left.
+// Frames of a scene, each with the history and the jitter that follow those of the one before.
+class Run {
+ public:
+  Run(Stage& stage, Scene scene)
+      : stage_(stage),
+        scene_(std::move(scene)),
+        chain_(stage.device(), PlanFacts(scene_.needs, scene_.settings)),
+        outputs_{.linear = stage.noise(stage.output(), scene_.settings.output.linear)} {}
+
+  FrameReport next(cl::Event* events) {
+    scene_.previous.jitter = scene_.current.jitter;
+    scene_.current.jitter = jitter(index_, scene_.current.render_extent, stage_.output());
+    const FrameInputs* const previous = index_++ > 0 ? &scene_.previous : nullptr;
+    FrameReport report;
+    chain_.run(chain_.frame(scene_.current, previous, outputs_, stage_.counter()), outputs_, report, events);
+    return report;
+  }
+
+ private:
+  Stage& stage_;
+  Scene scene_;
+  PassChain chain_;
+  FrameOutputs outputs_;
+  std::uint64_t index_ = 0;
+};
+
+// Times whole frames, after a cycle of the jitter, by which history is known as well as it is while a game runs.
 void add_frames(std::vector<Case>& cases, Stage& stage, Case what, const Scene& scene) {
-  auto chain = std::make_shared<PassChain>(stage.device(), PlanFacts(scene.needs, scene.settings));
-  const FrameOutputs outputs{.linear = stage.noise(stage.output(), scene.settings.output.linear)};
-  FrameReport first;
-  chain->run(chain->frame(scene.current, nullptr, outputs, stage.counter()), outputs, first, nullptr);
+  auto run = std::make_shared<Run>(stage, scene);
   FrameReport report;
-  chain->run(chain->frame(scene.current, &scene.previous, outputs, stage.counter()), outputs, report,
-             nullptr);
+  for (int i = 0; i <= jitter_phases(scene.current.render_extent, stage.output()); ++i)
+    report = run->next(nullptr);
   for (const PassReport& pass : report.passes)
     what.bytes += pass.bytes;
   Stage::add(
-      cases, std::move(what),
-      [chain, &stage, outputs, current = scene.current, previous = scene.previous](cl::Event* events) {
-        FrameReport unused;
-        chain->run(chain->frame(current, &previous, outputs, stage.counter()), outputs, unused, events);
-      },
+      cases, std::move(what), [run](cl::Event* events) { static_cast<void>(run->next(events)); },
       static_cast<int>(report.passes.size()));
 }
 
@@ -139,9 +158,7 @@ void add_temporal(std::vector<Case>& cases, Stage& stage, Scene scene, double wa
   // A wall of one colour: whatever moves, history agrees with the frame.
   scene.current.colour = stage.constant(scene.current.render_extent, scene.settings.colour);
   scene.current.depth = stage.constant(scene.current.render_extent, PixelFormat::kR32F);
-  const Vec2 jitter = scene.previous.jitter;
   scene.previous = scene.current;
-  scene.previous.jitter = jitter;
   add_frames(cases, stage,
              {.name = fmt::format("temporal:{}{}{}", name_of(preset), scene.suffix, suffix),
               .scale = scene.scale,

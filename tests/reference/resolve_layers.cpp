@@ -36,7 +36,7 @@ namespace {
 constexpr double kCrossingMotionMin =
     1;  // px a frame: near layers of a tile that move apart by more may cross
 constexpr double kNearReach =
-    .6;  // times the distance between samples: the near layer's, at least kSampleReachMax
+    .6;  // times the distance between samples: the near layer's, at least kSampleReach
 
 // An output pixel of this frame.
 template <typename Real>
@@ -233,7 +233,7 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
     const Pixel sample =
         near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
     const double reach =
-        std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kSampleReachMax);
+        std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kSampleReach);
     const Real weight = sample_weight(as<Real>(sample), around.x.past * in.now.spacing(0),
                                       around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;

@@ -8,8 +8,8 @@
 #include "temporal/limit_confidence.h"
 
 static inline float8 reach_of(TileReprojection tile, float8 confidence) {
-  const float8 narrowed = max(SAMPLE_REACH_MAX - REACH_NARROWING * confidence, SAMPLE_REACH_MIN);
-  return stands_still(tile) ? narrowed : (float8)(SAMPLE_REACH_MAX);
+  const float8 narrowed = max(STILL_REACH_MAX - STILL_REACH_NARROWING * confidence, STILL_REACH_MIN);
+  return stands_still(tile) ? narrowed : (float8)(SAMPLE_REACH);
 }
 
 // Returns (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.

@@ -85,9 +85,10 @@
 #define SEED_DISTANCE_MAX 16            // samples: a larger hole without any valid sample is black [S]
 
 // ---- resolve_temporal: accumulating.
-#define SAMPLE_REACH_MAX 1.05f  // px: where a sample's weight becomes 0 [S]
-#define SAMPLE_REACH_MIN 0.85f  // px: the same in still tiles once history is known well; +1.2 dB on still pictures [L]
-#define REACH_NARROWING 0.1f    // px for each unit of confidence: from one to the other [S]
+#define SAMPLE_REACH 1.05f          // px: where a sample's weight becomes 0 [S]
+#define STILL_REACH_MAX 1.0f        // px: the same in still tiles while little is known; 1.05 is .04 dB worse [S]
+#define STILL_REACH_MIN 0.75f       // px: once much is; .7 flickers less, but is .1 dB worse in frame 50 at .67 [S]
+#define STILL_REACH_NARROWING 0.05f // px for each unit of confidence: from one to the other [S]
 #define WEIGHT_SUM_MIN 1e-30f   // weights [N]
 
 // ---- temporal_display.

@@ -10,17 +10,17 @@
 
 namespace quincunx::reference {
 
-// Output pixels from which on a sample has no weight, and the same in still tiles as W grows: 1.2 dB on still
-// pictures.
-constexpr double kSampleReachMax = 1.05;
-constexpr double kSampleReachMin = .85;
-constexpr double kReachNarrowing = .1;   // for each unit of confidence
-constexpr double kWeightSumMin = 1e-30;  // against a division by 0
+// Output pixels from which on a sample has no weight, and the same in still tiles, where it falls as W grows.
+constexpr double kSampleReach = 1.05;
+constexpr double kStillReachMax = 1;
+constexpr double kStillReachMin = .75;
+constexpr double kStillReachNarrowing = .05;  // for each unit of confidence
+constexpr double kWeightSumMin = 1e-30;       // against a division by 0
 
 template <typename Real>
 Real reach_of(bool is_still, const Real& confidence) {
-  return is_still ? max(kSampleReachMax - kReachNarrowing * confidence, kSampleReachMin)
-                  : Real(kSampleReachMax);
+  return is_still ? max(kStillReachMax - kStillReachNarrowing * confidence, kStillReachMin)
+                  : Real(kSampleReach);
 }
 
 // Returns the weight of a sample `dx` and `dy` output pixels away.
