@@ -86,7 +86,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     if (needs_correction(&evidence))
       inertia = correct_far(&pixels, colour, depth, depth_layout, &frame, &sample_motion, &nearest, &known,
                             &known_alpha, &evidence);
-    if (layer.is_split) tile.is_rigid = 0;  // it does not stand still as a whole
+    if (layer.is_split) tile.is_rigid = 0;  // it does not move as a whole
     float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * taken;
     if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
     EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);

@@ -25,6 +25,7 @@
 //   light             out  TileLight of each tile
 // Options: none
 // Reference: tests/reference/temporal_light.cpp
+#include "bits.h"
 #include "temporal/constants.h"
 #include "temporal/judge_weights.h"
 #include "temporal/tile.h"
@@ -99,34 +100,42 @@ static inline float alternation(float now, float before) {
   return now * before < 0.0f ? min(fabs(now), fabs(before)) : 0.0f;
 }
 
-// The evidence of a cell and of the eight around it, inside the picture.
-typedef struct CellsAround {
-  float means[9];  // brightening / count of each, row by row; 0 of none
-  CellEvidence sum;
-} CellsAround;
+// The evidence of the tile's four cells and of the twelve around them, row by row; none outside the picture.
+typedef struct CellGrid {
+  float16 brightening, brighter, count;
+} CellGrid;
 
-// Those of cell (x, y) of the picture.
-static inline CellsAround cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y) {
-  CellsAround around = {{0.0f}, {0.0f, 0.0f, 0.0f}};
-  for (int i = 0; i < 9; ++i) {
-    const int column = x + i % 3 - 1, row = y + i / 3 - 1;
-    if (column < 0 || row < 0 || column >= 2 * tiles_x || row >= 2 * tiles_y) continue;
-    const CellEvidence cell = evidence[row / 2 * tiles_x + column / 2].cells[row % 2 * 2 + column % 2];
-    around.means[i] = cell.brightening / max(cell.count, 1.0f);
-    around.sum.brightening += cell.brightening;
-    around.sum.brighter += cell.brighter;
-    around.sum.count += cell.count;
+static inline CellGrid cells_around(__global const TileEvidence* evidence, int tiles_x, int tiles_y, int x, int y) {
+  float brightening[16], brighter[16], count[16];
+  UNROLL(16)
+  for (int i = 0; i < 16; ++i) {
+    const int column = x + (i % 4 + 1) / 2 - 1, row = y + (i / 4 + 1) / 2 - 1;  // of the cell's tile
+    CellEvidence cell = {0.0f, 0.0f, 0.0f};
+    if (column >= 0 && row >= 0 && column < tiles_x && row < tiles_y)
+      cell = evidence[row * tiles_x + column].cells[(i / 4 + 1) % 2 * 2 + (i + 1) % 2];
+    brightening[i] = cell.brightening;
+    brighter[i] = cell.brighter;
+    count[i] = cell.count;
   }
-  return around;
+  const CellGrid grid = {vload16(0, brightening), vload16(0, brighter), vload16(0, count)};
+  return grid;
 }
 
-// Returns the largest mean of three cells in a row through the middle one, in four directions, with brightenings turned
-// by `direction`: the edge of a shadow is a line.
-static inline float mean_of_line(const CellsAround* cells, float direction) {
-  float sum = -INFINITY;
-  for (int i = 0; i < 4; ++i)
-    sum = max(sum, (cells->means[i] + cells->means[4] + cells->means[8 - i]) * direction);
-  return sum / 3.0f;
+// Returns the sums over 3x3 cells around each of the tile's four.
+static inline float4 sum_around(float16 cells) {
+  const float8 left = (float8)(cells.s0145, cells.s89cd);
+  const float8 middle = (float8)(cells.s1256, cells.s9ade);
+  const float8 right = (float8)(cells.s2367, cells.sabef);
+  const float8 rows = left + middle + right;  // two sums for each of four rows
+  return rows.s0123 + rows.s2345 + rows.s4567;
+}
+
+// Returns the largest mean of three cells in a row whose middle is each of the tile's four, in four directions, with
+// brightenings turned by `direction`: the edge of a shadow is a line.
+static inline float4 mean_of_line(float16 means, float4 direction) {
+  const float4 one = max((means.s0145 + means.sabef) * direction, (means.s1256 + means.s9ade) * direction);
+  const float4 other = max((means.s2367 + means.s89cd) * direction, (means.s4589 + means.s67ab) * direction);
+  return (max(one, other) + means.s569a * direction) / 3.0f;
 }
 
 // The network's weights, by training (scripts/train_judge.py).
@@ -134,41 +143,56 @@ __constant float kInputWeights[JUDGE_INPUTS * JUDGE_HIDDEN] = {JUDGE_INPUT_WEIGH
 __constant float kBiases[JUDGE_HIDDEN] = {JUDGE_BIASES};
 __constant float kOutputWeights[JUDGE_HIDDEN] = {JUDGE_OUTPUT_WEIGHTS};
 
-// Returns how far the history of a cell is to be rejected, not clamped.
-static inline float judge(const float* inputs) {
-  float16 hidden = vload16(0, kBiases);
-  for (int i = 0; i < JUDGE_INPUTS; ++i)
-    hidden += clamp(inputs[i], -JUDGE_INPUT_MAX, JUDGE_INPUT_MAX) * vload16(i, kInputWeights);
-  hidden = max(hidden, 0.0f) * vload16(0, kOutputWeights);
-  const float8 eight = hidden.lo + hidden.hi;
+static inline float output_of(float16 hidden) {
+  const float16 parts = max(hidden, 0.0f) * vload16(0, kOutputWeights);
+  const float8 eight = parts.lo + parts.hi;
   const float4 four = eight.lo + eight.hi;
   return four.x + four.y + four.z + four.w + JUDGE_OUTPUT_BIAS;
 }
 
-// The same of a cell with evidence `own` and memory `before`, in a tile of such flicker, by what its own tile and the
-// 3x3 tiles around say, too. Whether it has become brighter or darker does not matter.
-static inline float judge_cell(const CellsAround* cells, CellEvidence own, CellLight now, CellLight before,
-                               float flicker, const TileEvidence* tile, const TileEvidence* tiles) {
-  const float direction = now.mean_brightening < 0.0f ? -1.0f : 1.0f;
+// Returns how far the history of each of four cells is to be rejected, not clamped.
+static inline float4 judge(const float4* inputs) {
+  const float16 biases = vload16(0, kBiases);
+  float16 a = biases, b = biases, c = biases, d = biases;
+  for (int i = 0; i < JUDGE_INPUTS; ++i) {
+    const float4 input = clamp(inputs[i], -JUDGE_INPUT_MAX, JUDGE_INPUT_MAX);
+    const float16 weights = vload16(i, kInputWeights);
+    a += input.x * weights;
+    b += input.y * weights;
+    c += input.z * weights;
+    d += input.w * weights;
+  }
+  return (float4)(output_of(a), output_of(b), output_of(c), output_of(d));
+}
+
+// A field of four cells.
+#define OF_CELLS(cells, field) (float4)((cells)[0].field, (cells)[1].field, (cells)[2].field, (cells)[3].field)
+
+// The same of the cells of a tile, by what they say `now` and said before, in a tile of such flicker, and by what the
+// tile itself and the 3x3 tiles around say. Whether a cell has become brighter or darker does not matter.
+static inline float4 judge_cells(const CellGrid* grid, const CellLight* now, const CellLight* before, float flicker,
+                                 const TileEvidence* tile, const TileEvidence* tiles) {
+  const float4 mean = OF_CELLS(now, mean_brightening), own_count = OF_CELLS(tile->cells, count);
+  const float4 direction = select((float4)(1.0f), (float4)(-1.0f), mean < 0.0f);
   const float of_tiles = max(tiles->count, 1.0f), usual = tiles->neighbour_error / of_tiles + JUDGE_ERROR_FLOOR;
   const float per_usual = 1.0f / usual, per_sample = per_usual / max(tile->count, 1.0f);
-  const float around = max(cells->sum.count, 1.0f);
-  const float inputs[JUDGE_INPUTS] = {
-      fabs(now.mean_brightening) * per_usual,
-      direction * cells->sum.brightening / around * per_usual,
-      mean_of_line(cells, direction) * per_usual,
-      direction * before.mean_brightening * per_usual,
-      direction * before.drift * per_usual,
-      now.flicker * per_usual,
-      flicker * per_usual,
-      tile->history_error * per_sample,
-      tiles->history_error / of_tiles * per_usual,
-      direction * own.brighter / max(own.count, 1.0f),
-      direction * cells->sum.brighter / around,
-      usual,
-      fabs(now.mean_brightening),
-      tile->neighbour_error * per_sample,
-      own.count,
+  const float4 per_sample_around = direction / max(sum_around(grid->count), 1.0f);
+  const float4 inputs[JUDGE_INPUTS] = {
+      fabs(mean) * per_usual,
+      sum_around(grid->brightening) * per_sample_around * per_usual,
+      mean_of_line(grid->brightening / max(grid->count, 1.0f), direction) * per_usual,
+      direction * OF_CELLS(before, mean_brightening) * per_usual,
+      direction * OF_CELLS(before, drift) * per_usual,
+      OF_CELLS(now, flicker) * per_usual,
+      (float4)(flicker * per_usual),
+      (float4)(tile->history_error * per_sample),
+      (float4)(tiles->history_error / of_tiles * per_usual),
+      direction * OF_CELLS(tile->cells, brighter) / max(own_count, 1.0f),
+      sum_around(grid->brighter) * per_sample_around,
+      (float4)(usual),
+      fabs(mean),
+      (float4)(tile->neighbour_error * per_sample),
+      own_count,
   };
   return judge(inputs);
 }
@@ -236,15 +260,18 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;
   tile.confirmation = CONFIRMATION_MEMORY * before.confirmation;
   tile.rejection = 0.0f;
+  const float4 changed = fabs(OF_CELLS(tile.cells, mean_brightening));
+  const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);
+  float all_judged[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+  if (tile.gain == 1.0f && any(asked)) {
+    const CellGrid grid = cells_around(evidence, tiles_x, tiles_y, x, y);
+    const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, &own, &around.sum);
+    const float4 sudden = (changed - SUDDEN_CHANGE_MIN) / SUDDEN_CHANGE_RANGE;
+    vstore4(select((float4)(0.0f), clamp(max(found, sudden), 0.0f, 1.0f), asked), 0, all_judged);
+  }
   for (int c = 0; c < 4; ++c) {
     CellLight* cell = &tile.cells[c];
-    const float changed = fabs(cell->mean_brightening);
-    float judged = 0.0f;
-    if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {
-      const CellsAround cells = cells_around(evidence, tiles_x, tiles_y, 2 * x + c % 2, 2 * y + c / 2);
-      judged = judge_cell(&cells, own.cells[c], *cell, before.cells[c], flicker, &own, &around.sum);
-      judged = clamp(max(judged, (changed - SUDDEN_CHANGE_MIN) / SUDDEN_CHANGE_RANGE), 0.0f, 1.0f);
-    }
+    const float judged = all_judged[c];
     cell->suspicion = copysign(judged, cell->mean_brightening);
     const float suspected = before.cells[c].suspicion;
     const float sure =

@@ -36,7 +36,7 @@ namespace {
 constexpr double kCrossingMotionMin =
     1;  // px a frame: near layers of a tile that move apart by more may cross
 constexpr double kNearReach =
-    .6;  // times the distance between samples: the near layer's, at least kSampleReach
+    .6;  // times the distance between samples: the near layer's, at least kWideReach
 
 // An output pixel of this frame.
 template <typename Real>
@@ -167,11 +167,13 @@ HistoryTexel<Real> update_far(const ResolveInputs& in, const LayeredPixel<Real>&
     reseed(now, near, known);
   }
 
-  // Accumulate. A split tile does not stand still as a whole.
+  // Accumulate. A split tile does not move as a whole.
+  TileReprojection whole = tile;
+  whole.is_rigid = tile.is_rigid && !pixel.layers->is_split;
   Real weight = 0;
   if (is_valid(sample) && !is_held_back && (!is_split || pixel.depth < pixel.between)) {
     weight = sample_weight(as<Real>(sample), near.x.past * now.spacing(0), near.y.past * now.spacing(1),
-                           reach_of(stands_still(tile) && !pixel.layers->is_split, known.confidence));
+                           reach_of(whole, known.confidence));
   }
   HistoryTexel<Real> updated = accumulate(known, as<Real>(sample), weight);
   if (is_split) updated.texel[3] = -updated.texel[3];
@@ -232,8 +234,7 @@ NearTexel<Real> update_near(const ResolveInputs& in, const LayeredPixel<Real>& p
   if (side != Side::kNeither) {
     const Pixel sample =
         near_sample(texel_clamped(frame, around.x.sample, around.y.sample), side, in.has_alpha());
-    const double reach =
-        std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kSampleReach);
+    const double reach = std::max(kNearReach * std::max(in.now.spacing(0), in.now.spacing(1)), kWideReach);
     const Real weight = sample_weight(as<Real>(sample), around.x.past * in.now.spacing(0),
                                       around.y.past * in.now.spacing(1), Real(reach));
     const Real total = near.confidence + weight;

@@ -54,7 +54,7 @@ HistoryTexel<Real> resolve_temporal(const TemporalInputs& in, const std::vector<
   Real weight = 0;
   if (is_valid(sample) && !is_held_back) {
     weight = sample_weight<Real>(as<Real>(sample), near.x.past * in.spacing(0), near.y.past * in.spacing(1),
-                                 reach_of(stands_still(tile), known.confidence));
+                                 reach_of(tile, known.confidence));
   }
   return accumulate(known, as<Real>(sample), weight);
 }

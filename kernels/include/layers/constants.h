@@ -42,5 +42,5 @@
 #define SCANNED_TILES_MAX 4          // tiles: between eight places; farther apart they are not looked at together [C]
 
 // ---- This frame's samples, and the picture.
-#define NEAR_REACH 0.6f              // samples: of a near layer, at least SAMPLE_REACH; spokes +.2 dB [S]
+#define NEAR_REACH 0.6f              // samples: of a near layer, at least WIDE_REACH; spokes +.2 dB [S]
 #define SHOWN_COVERAGE_MIN 0.02f     // coverage: a near layer of more has a colour [S]

@@ -141,7 +141,7 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
   EightTexels samples = load_samples(colour, frame.colour, nearest->x, nearest->y);
   const float8 own = (float8)(load_depth4(depth, layout, nearest->x.lo, nearest->y),
                               load_depth4(depth, layout, nearest->x.hi, nearest->y));
-  const float reach = max(NEAR_REACH * max(params->spacing_x, params->spacing_y), SAMPLE_REACH);
+  const float reach = max(NEAR_REACH * max(params->spacing_x, params->spacing_y), WIDE_REACH);
   const float8 weight =
       near_samples(&samples, own, pixels->between) * distance_weights(params, nearest, (float8)(reach));
   const float8 part = sample_parts(near.confidence, inertia, weight);

@@ -7,9 +7,10 @@
 #include "temporal/frame_samples.h"
 #include "temporal/limit_confidence.h"
 
+// Returns the reach of samples, output pixels, in a tile's pixels of such confidence.
 static inline float8 reach_of(TileReprojection tile, float8 confidence) {
-  const float8 narrowed = max(STILL_REACH_MAX - STILL_REACH_NARROWING * confidence, STILL_REACH_MIN);
-  return stands_still(tile) ? narrowed : (float8)(SAMPLE_REACH);
+  if (stands_still(tile)) return max(SAMPLE_REACH - REACH_NARROWING * confidence, STILL_REACH_MIN);
+  return (float8)(tile.is_rigid || tile.has_motion_edge ? SAMPLE_REACH : WIDE_REACH);
 }
 
 // Returns (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.

@@ -85,10 +85,10 @@
 #define SEED_DISTANCE_MAX 16            // samples: a larger hole without any valid sample is black [S]
 
 // ---- resolve_temporal: accumulating.
-#define SAMPLE_REACH 1.05f          // px: where a sample's weight becomes 0 [S]
-#define STILL_REACH_MAX 1.0f        // px: the same in still tiles while little is known; 1.05 is .04 dB worse [S]
-#define STILL_REACH_MIN 0.75f       // px: once much is; .7 flickers less, but is .1 dB worse in frame 50 at .67 [S]
-#define STILL_REACH_NARROWING 0.05f // px for each unit of confidence: from one to the other [S]
+#define SAMPLE_REACH 0.98f      // px: where a sample's weight becomes 0, in rigid tiles and at motion edges [S]
+#define WIDE_REACH 1.05f        // px: the same elsewhere; .98: zoom -.2 dB [S]
+#define STILL_REACH_MIN 0.75f   // px: the same of well known pixels in still tiles; .85 flickers 15 % more [S]
+#define REACH_NARROWING 0.05f   // px for each unit of confidence: there [S]
 #define WEIGHT_SUM_MIN 1e-30f   // weights [N]
 
 // ---- temporal_display.

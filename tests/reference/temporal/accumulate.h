@@ -10,17 +10,18 @@
 
 namespace quincunx::reference {
 
-// Output pixels from which on a sample has no weight, and the same in still tiles, where it falls as W grows.
-constexpr double kSampleReach = 1.05;
-constexpr double kStillReachMax = 1;
+// Output pixels from which on a sample has no weight: in rigid tiles and at motion edges, and elsewhere. In still tiles
+// it falls as W grows.
+constexpr double kSampleReach = .98;
+constexpr double kWideReach = 1.05;
 constexpr double kStillReachMin = .75;
-constexpr double kStillReachNarrowing = .05;  // for each unit of confidence
-constexpr double kWeightSumMin = 1e-30;       // against a division by 0
+constexpr double kReachNarrowing = .05;  // for each unit of confidence
+constexpr double kWeightSumMin = 1e-30;  // against a division by 0
 
 template <typename Real>
-Real reach_of(bool is_still, const Real& confidence) {
-  return is_still ? max(kStillReachMax - kStillReachNarrowing * confidence, kStillReachMin)
-                  : Real(kSampleReach);
+Real reach_of(const TileReprojection& tile, const Real& confidence) {
+  if (stands_still(tile)) return max(kSampleReach - kReachNarrowing * confidence, kStillReachMin);
+  return Real(tile.is_rigid || tile.has_motion_edge ? kSampleReach : kWideReach);
 }
 
 // Returns the weight of a sample `dx` and `dy` output pixels away.
