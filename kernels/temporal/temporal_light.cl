@@ -10,9 +10,8 @@
 //     judged     by a small network, from what the samples of the cell, of the cells and of the tiles around say, and
 //                said of late: how far they differ from history, which way, and by how much more than neighbours do.
 //                It is not asked where the gain is not 1, or the cell flickers too much for its change to tell
-//                anything. A very large change rejects whatever the network says. In a rigid tile, around which nothing
-//                was confirmed lately, this waits for a second frame that says the same: each place of the jitter can
-//                look like a change of its own
+//                anything. In a rigid tile, around which nothing was confirmed lately, this waits for a second frame
+//                that says the same: each place of the jitter can look like a change of its own
 //     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
 //              (outliers): gain is 1 and rejection 0 then, and cells remember what they did before
@@ -266,8 +265,7 @@ static inline TileLight light_of(int tiles_x, int tiles_y, __global const TileRe
   if (tile.gain == 1.0f && any(asked)) {
     const CellGrid grid = cells_around(evidence, tiles_x, tiles_y, x, y);
     const float4 found = judge_cells(&grid, tile.cells, before.cells, flicker, &own, &around.sum);
-    const float4 sudden = (changed - SUDDEN_CHANGE_MIN) / SUDDEN_CHANGE_RANGE;
-    vstore4(select((float4)(0.0f), clamp(max(found, sudden), 0.0f, 1.0f), asked), 0, all_judged);
+    vstore4(select((float4)(0.0f), clamp(found, 0.0f, 1.0f), asked), 0, all_judged);
   }
   for (int c = 0; c < 4; ++c) {
     CellLight* cell = &tile.cells[c];

@@ -19,7 +19,6 @@
 //   rejection    of each cell the larger of two, within [0, 1]
 //     judged     where gain = 1 and |mean| > 4 f: the network of judge_weights.h, of a cell's inputs
 //                as judge_cell() lists them, in units of u = N / n + .02 and turned to the sign of its mean
-//                At least (|mean| - .3) / .2 there
 //     waits      where the tile is rigid and the nine tiles' confirmation was below .3, max(2 min(s, s') - 1, 0) in
 //                place of s, s and s' of what was judged in this frame and in the previous one; 0 if the signs of their
 //                means differ
@@ -56,8 +55,6 @@ constexpr double kWholeCoherenceMin = .8;   // coherence of the whole picture
 constexpr double kJudgeErrorFloor = .02;          // added to the neighbours' mean error, the unit of changes
 constexpr double kJudgeInputMax = 8;              // of each input's magnitude
 constexpr double kFlickerMemory = .9;             // each frame: about ten
-constexpr double kSuddenChangeMin = .3;           // |mean| from which on it is rejected in any case
-constexpr double kSuddenChangeRange = .2;         // over which that grows to 1
 constexpr double kConfirmationMemory = .97;       // each frame
 constexpr double kRigidTileConfirmationMax = .3;  // below it a rigid tile waits for a second frame
 constexpr double kDriftMemory = .7;               // each frame
@@ -267,8 +264,8 @@ TileLightOf<Real> temporal_light(const LightInputs& in, int x, int y) {
     const Real change = abs(cell.mean_brightening);
     Real judged = 0;
     if (light.gain == 1 && change > kFlickerRatioMin * cell.flicker) {
-      judged = judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker);
-      judged = clamp(max(judged, (change - kSuddenChangeMin) / kSuddenChangeRange), 0, 1);
+      judged =
+          clamp(judge_cell(in, 2 * x + c % 2, 2 * y + c / 2, sums, cell, before.cells[n], flicker), 0, 1);
     }
     cell.suspicion = cell.mean_brightening < 0 ? -judged : judged;
     const Real suspected = before.cells[n].suspicion;

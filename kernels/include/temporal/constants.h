@@ -51,8 +51,6 @@
 #define JUDGE_ERROR_FLOOR 0.02f  // luma: added to the neighbours' error, in which changes are measured [S]
 #define JUDGE_INPUT_MAX 8.0f     // of each input's magnitude [S]
 #define FLICKER_RATIO_MIN 4.0f   // change of a cell / its flicker: of less none is rejected; pan +.3 dB [S]
-#define SUDDEN_CHANGE_MIN 0.3f   // relative luma: from here on a change is rejected whatever the network says [S]
-#define SUDDEN_CHANGE_RANGE 0.2f // by how much more wholly [S]
 #define CONFIRMATION_MEMORY 0.97f         // a frame [S]
 #define RIGID_TILE_CONFIRMATION_MAX 0.3f  // reached 40 frames after the last confirmed suspicion [S]
 #define DRIFT_MEMORY 0.7f        // a frame [S]
