@@ -206,10 +206,13 @@ TEST_F(Run, ColdChunksAndCutsHaveNoHistory) {
   EXPECT_EQ(channel(output(4, "whole"), "G"), channel(output(4, "cold"), "G"));
   testing::FrameFile cut = frame(3);
   cut.attributes.push_back({"quincunx:reset", 1});
+  resolve_to("said", "--cuts 3");  // of frames that do not say so themselves
   write_frame(input(3), cut);
   resolve_to("cut", "");
-  for (int number = 3; number <= 4; ++number)
+  for (int number = 3; number <= 4; ++number) {
     EXPECT_EQ(channel(output(number, "cut"), "G"), channel(output(number, "cold"), "G")) << number;
+    EXPECT_EQ(channel(output(number, "said"), "G"), channel(output(number, "cold"), "G")) << number;
+  }
 }
 
 TEST_F(Run, JitterOfAFileIsThatOfAttributes) {

@@ -99,7 +99,7 @@ void find_light(const Scene& scene, std::vector<Finding>& findings, std::vector<
       cuts.verdict = Verdict::kWrong;
       cuts.faults = {"unmarked"};
       cuts.fits = fmt::format("a cut before frame {}", fmt::join(unmarked, ", "));
-      cuts.option = "attribute quincunx:reset = 1 there";
+      cuts.option = fmt::format("--cuts {}", fmt::join(unmarked, ","));
       cuts_before = unmarked;
     }
   }

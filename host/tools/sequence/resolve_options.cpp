@@ -191,6 +191,15 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
          },
          "Frames to write, for example 1-10x2,20 (default: all there are)")
       .type_name("RANGES");
+  app.add_option_function<std::string>(
+         "--cuts",
+         [&options](const std::string& text) {
+           auto cuts = parse_frame_numbers(text);
+           if (!cuts.ok()) throw wrong("--cuts", cuts.status().message());
+           options.sequence.cuts = std::move(cuts).value();
+         },
+         "Frames that begin another shot, beside those with an attribute reset, for example 25,80")
+      .type_name("RANGES");
   app.add_option_function<int>(
          "--warm-up", [&options](int count) { options.warm_up = count; },
          "Frames to read before the first, for its history, and at most after the last (default: as many as "
@@ -261,8 +270,8 @@ void check_recorded(const CommandLine& app, const ResolveOptions& options) {
     throw wrong("--noise", fmt::format("auto reads what Cycles writes, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
-        "--depth-kind", "--near", "--reactive", "--jitter", "--warm-up", "--two-way", "--velocity-next",
-        "--velocity-jittered"}) {
+        "--depth-kind", "--near", "--reactive", "--jitter", "--cuts", "--warm-up", "--two-way",
+        "--velocity-next", "--velocity-jittered"}) {
     if (app.has(option))
       throw wrong(option, fmt::format("is what the recording in '{}' says itself", folder));
   }

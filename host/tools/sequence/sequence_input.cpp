@@ -224,6 +224,7 @@ Result<SequenceFormat> settle(const SequenceInput& input, const std::string& fir
   format.near_plane = input.near_plane.value_or(attributes.near_plane.value_or(kUnknownNear));
   format.jitter = input.jitter;
   format.jitter.settle(attributes);
+  format.cuts = input.cuts;
   if (!input.output && !attributes.output) {
     return Status::invalid(fmt::format(
         "--output is missing, and '{}' has no attribute 'quincunx:outputSize' that could stand for it",
@@ -329,6 +330,7 @@ std::string summary_of(const SequenceFormat& format) {
   if (channels.has_albedo())
     text += fmt::format("; albedo {},{},{}", channels.albedo[0], channels.albedo[1], channels.albedo[2]);
   if (format.two_way > 0) text += two_way_text(format);
+  if (!format.cuts.empty()) text += fmt::format("; cuts before {}", fmt::join(format.cuts, ","));
   return text + fmt::format("; jitter {}", format.jitter.text());
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "quincunx/resolve_plan.h"
 #include "tools/image/image_reader.h"
@@ -83,8 +84,9 @@ struct SequenceInput {
   std::optional<float> near_plane;                          // absent: the attribute near, else kUnknownNear
   std::optional<std::string> reactive;  // absent: reactive.mask where there is one; empty: none
   JitterSource jitter;
-  std::optional<Extent> output;  // absent: the attribute outputSize
-  std::optional<int> two_way;    // frames to look ahead; 0: none; absent: as settle_two_way() has it
+  std::vector<std::int64_t> cuts;  // frames that begin another shot, ascending, whatever their attributes say
+  std::optional<Extent> output;    // absent: the attribute outputSize
+  std::optional<int> two_way;      // frames to look ahead; 0: none; absent: as settle_two_way() has it
 };
 
 // Where motion to the next frame comes from, for resolving both ways.
@@ -110,6 +112,7 @@ struct SequenceFormat {
   DepthKind depth_kind = DepthKind::kLinear;
   float near_plane = kUnknownNear;
   JitterSource jitter;
+  std::vector<std::int64_t> cuts;  // as SequenceInput has them
   Extent output;
   float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
 };

@@ -61,7 +61,8 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.dwa = places->dwa;
   frame.has_matrix = attributes->world_to_ndc.has_value();
   frame.output = attributes->output;
-  frame.reset = attributes->reset.value_or(false);
+  frame.reset = attributes->reset.value_or(false) ||
+                std::binary_search(format.cuts.begin(), format.cuts.end(), frame.number);
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
   if (Status status = check_blocks(path); !status.ok()) return status;
   if (format.needs_camera && !attributes->world_to_ndc) {
