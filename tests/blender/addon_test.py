@@ -113,7 +113,9 @@ class Rendering(AddOn):
         self.assertEqual((cycles["filter_width"], cycles["pixel_filter_type"]), (0.01, "BLACKMAN_HARRIS"))
         self.assertTrue(cycles["use_animated_seed"])
         self.assertEqual(err, "quincunx: the sky stands still\n")
-        self.assertIn("3 frames of 32x18 rendered", out)
+        self.assertEqual((seen["frame_start"], seen["frame_end"]), (1, 11), "8 beyond the last of 3")
+        self.assertIn("11 frames of 32x18 rendered", out)
+        self.assertIn("3 of 64x36 made of them", out)
 
     def test_results_are_loaded_and_small_frames_removed(self):
         self.run_addon()
@@ -128,7 +130,7 @@ class Rendering(AddOn):
                 pass
         self.run_addon(keep=True)
         self.assertEqual(sorted(os.listdir(os.path.join(self.folder, "shot_small"))),
-                         ["frame.0001.exr", "frame.0002.exr", "frame.0003.exr", "mine.exr"])
+                         [*(f"frame.{frame:04}.exr" for frame in range(1, 12)), "mine.exr"])
 
     def test_cameras_are_jittered_about_their_own_shift(self):
         bpy.reset(self.folder)
@@ -148,17 +150,26 @@ class Rendering(AddOn):
         self.when_rendering(render)
         self.assertIsNone(self.run_addon()[0])
         self.assertEqual(self.state(), before)
-        for frame in range(0, 5):
+        for frame in range(0, 13):
             x, y = addon.jitter_of(frame, (32, 18), (64, 36))
             self.assertAlmostEqual(seen["moving"]["shift_x"][frame], frame / 100 + x / 32)
             self.assertAlmostEqual(seen["moving"]["shift_y"][frame], -y / 32)
             self.assertAlmostEqual(seen["still"]["shift_x"][frame], 0.25 + x / 32)
             self.assertAlmostEqual(seen["still"]["shift_y"][frame], -0.5 - y / 32)
         with open(os.path.join(self.folder, "called"), encoding="ascii") as file:
-            calls = file.read().splitlines()
-        self.assertEqual(len(calls), 2, "frames before and after a change of camera are resolved apart")
-        self.assertIn("--frames 1-2 ", calls[0])
-        self.assertIn("--frames 3-3 ", calls[1])
+            self.assertRegex(file.read(), "--frames 1-3 .*--cuts 3 ")
+
+    def test_frames_beyond_the_shot_are_those_that_two_way_looks_at(self):
+        for options, last in (("", 11), ("--two-way 0", 3), ("--sharpen 0.3 --two-way=4", 7)):
+            self.scene.quincunx.options = options
+            self.assertEqual((self.shot().frames, self.shot().results), (range(1, last + 1), range(1, 4)), options)
+        self.scene.quincunx.options = ""
+        for cut in (6, 9):
+            self.scene.timeline_markers.append(bpy.Owner(frame=cut, camera=bpy.Camera()))
+        self.assertEqual(self.shot().frames, range(1, 6), "what another camera sees comes not into it")
+        self.assertNotIn("--cuts", self.shot().command("p"))
+        self.scene.frame_end = 0
+        self.assertEqual(list(self.shot().frames), [])
 
     def test_what_a_version_lacks_is_left_alone_and_what_another_has_is_set(self):
         del self.scene.render.image_settings.__dict__["color_management"]
@@ -189,9 +200,14 @@ class Rendering(AddOn):
         self.assertIsNone(sentence, out)
         self.assertEqual(self.state(), before)
         self.assertEqual(seen, [(2, 11)], "8 frames on each side, but none from before a change of camera")
-        self.assertEqual(self.entries(), ["called", "preview_shot_0003.exr", "resolve"])
+        seen.clear()
+        self.scene.frame_current = 17
+        self.assertIsNone(self.run_addon(preview=True)[0])
+        self.assertEqual(seen, [(9, 25)], "it sees beyond the shot's end as the shot does")
+        self.scene.frame_current = 3
+        self.assertEqual(self.entries(), ["called", "preview_shot_0003.exr", "preview_shot_0017.exr", "resolve"])
         with open(os.path.join(self.folder, "called"), encoding="ascii") as file:
-            self.assertIn("--frames 3-3 --warm-up 8 ", file.read())
+            self.assertIn("--frames 3-3 ", file.read())
         self.assertEqual(bpy.data.images.loaded[0].source, "FILE")
         self.scene.frame_current = 21
         self.expect_failure("The current frame, 21, is not in the shot, which has frames 1 to 20.", preview=True)
@@ -209,7 +225,7 @@ class Rendering(AddOn):
         self.assertIn("--output 64x36 ", full)
         with open(os.path.join(self.folder, "jitter"), encoding="ascii") as file:
             found = [[float(word) for word in line.split()] for line in file]
-        self.assertEqual(found, [[frame, *addon.jitter_of(frame, (32, 18), (64, 36))] for frame in (1, 2, 3)])
+        self.assertEqual(found, [[frame, *addon.jitter_of(frame, (32, 18), (64, 36))] for frame in range(1, 12)])
         shown = [os.path.basename(area.spaces.active.image.path) for area in editors]
         self.assertEqual(shown, ["shot_0001.exr", "draft_shot_0001.exr"])
 
@@ -421,20 +437,20 @@ class Arithmetic(AddOn):
     def test_the_percentage_of_the_resolution_counts_and_blur_is_made_afterwards(self):
         self.scene.render.resolution_percentage = 50
         self.assertEqual((self.shot().full, self.shot().small), ((32, 18), (16, 9)))
-        words = self.shot().command("p", (1, 3))
+        words = self.shot().command("p")
         self.assertEqual(words[words.index("--blur") + 1], "0.5")
         self.assertEqual(words[words.index("--output") + 1], "32x18")
         self.scene.render.use_motion_blur = False
-        self.assertNotIn("--blur", self.shot().command("p", (1, 3)))
+        self.assertNotIn("--blur", self.shot().command("p"))
 
     def test_noise_is_taken_out_once(self):
-        words = self.shot().command("p", (1, 3))
+        words = self.shot().command("p")
         self.assertEqual(words[words.index("--noise") + 1], "auto")
         self.scene.quincunx.options = "--noise 3"
-        self.assertEqual(self.shot().command("p", (1, 3)).count("--noise"), 1)
+        self.assertEqual(self.shot().command("p").count("--noise"), 1)
         self.scene.quincunx.options = ""
         self.scene.cycles.use_denoising = True
-        self.assertNotIn("--noise", self.shot().command("p", (1, 3)))
+        self.assertNotIn("--noise", self.shot().command("p"))
 
 
 if __name__ == "__main__":

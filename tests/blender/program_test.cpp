@@ -13,7 +13,7 @@ namespace {
 
 constexpr Extent kSmall = {32, 18};  // the stand-in's scene at 50 %
 constexpr Extent kFull = {64, 36};
-constexpr int kFrames = 3;
+constexpr int kFrames = 3, kAhead = 8;
 
 class BlenderAddOn : public testing::SequenceTest {
  protected:
@@ -28,11 +28,11 @@ class BlenderAddOn : public testing::SequenceTest {
     return result.out;
   }
 
-  // The words by which the add-on resolves the scene's three frames, for a shell.
+  // The words by which the add-on resolves the scene, for a shell.
   std::string command(const std::string& settings = {}) const {
     return python(settings + fmt::format("import shlex\n"
                                          "shot = addon.Shot(scene, bpy.context.view_layer, scene.quincunx)\n"
-                                         "print(shlex.join(shot.command('{}', shot.takes()[0])), end='')\n",
+                                         "print(shlex.join(shot.command('{}')), end='')\n",
                                          QUINCUNX_PROGRAM));
   }
 
@@ -50,7 +50,7 @@ class BlenderAddOn : public testing::SequenceTest {
                           .type = tools::ChannelType::kFloat,
                           .data = values.data(),
                           .stored = tools::ChannelType::kFloat});
-    for (int frame = 1; frame <= kFrames; ++frame) {
+    for (int frame = 1; frame <= kFrames + kAhead; ++frame) {
       const Status status =
           tools::write_exr(folder_.file(fmt::format("shot_small/frame.{:04}.exr", frame)), kSmall, channels,
                            std::array<tools::Attribute, 1>{{{"cycles.ViewLayer.samples", "4"}}});
@@ -96,6 +96,7 @@ TEST_F(BlenderAddOn, OptionsAreThoseOfTheProgram) {
   const auto listing = nlohmann::json::parse(listed.out);
   EXPECT_EQ(listing["method"], "temporal:balanced");
   EXPECT_EQ(listing["make"], nlohmann::json({1, 2, 3}));
+  EXPECT_EQ(listing["history_only"], nlohmann::json({4, 5, 6, 7, 8, 9, 10, 11}));
   EXPECT_EQ(listing["warnings"], nlohmann::json::array());
   EXPECT_EQ(
       listing["format"],

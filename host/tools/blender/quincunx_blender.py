@@ -36,6 +36,7 @@ bl_info = {
 PROGRAM = "quincunx-resolve"
 FILTER_WIDTH = 0.01  # pixels, the least that Cycles takes: samples then lie at one place, the jittered centre
 JITTER_FILE = "jitter.txt"  # among the small frames
+AHEAD = 8  # frames beyond the shot's last, which knows them as the others know later ones; --two-way of the program
 PREVIEW_REACH = 8  # frames on each side of the one to be seen, which accumulates them
 LONGEST_SHUTTER = 2  # frames, of --blur
 SMALLEST_SIDE = 4  # pixels, of Blender
@@ -94,7 +95,7 @@ def shift_of(jitter, size, aspect, fit):
 
 
 class Shot:
-    """What is rendered, and where to. `choices`: QuincunxSettings, or what has its attributes.
+    """What is rendered (frames), what is made of it (results), and where to. `choices`: QuincunxSettings.
 
     `preview`: of the current frame alone, from its neighbours too, with a name of its own.
     """
@@ -106,7 +107,9 @@ class Shot:
             int(side * render.resolution_percentage / 100) for side in (render.resolution_x, render.resolution_y))
         self.small = small_size(self.full, choices.percent)
         self.aspect = small_aspect(self.small, self.full, (render.pixel_aspect_x, render.pixel_aspect_y))
-        self.frames = self.results = range(scene.frame_start, scene.frame_end + 1)
+        self.results = range(scene.frame_start, scene.frame_end + 1)
+        self.cuts = sorted({marker.frame for marker in scene.timeline_markers if marker.camera})
+        self.frames = range(scene.frame_start, self.take(scene.frame_end)[1] + 1) if self.results else self.results
         path = bpy.path.abspath(render.filepath)
         self.folder = os.path.dirname(path) or os.getcwd()
         stem = re.sub(r"\.(exr|png|jpe?g|tiff?)$", "", os.path.basename(path), flags=re.IGNORECASE)
@@ -114,8 +117,8 @@ class Shot:
         self.blur = render.motion_blur_shutter if render.use_motion_blur else 0
         if preview:
             now = scene.frame_current
-            take = next((take for take in self.takes() if take[0] <= now <= take[1]), (now, now - 1))
-            self.frames = range(max(take[0], now - PREVIEW_REACH), min(take[1], now + PREVIEW_REACH) + 1)
+            first, last = self.take(now) if now in self.results else (now, now - 1)
+            self.frames = range(max(first, now - PREVIEW_REACH), min(last, now + PREVIEW_REACH) + 1)
             self.results = range(now, now + 1)
             self.stem = "preview_" + self.stem
 
@@ -143,30 +146,31 @@ class Shot:
         by_markers = [marker.camera for marker in self.scene.timeline_markers if marker.camera]
         return list(dict.fromkeys([self.scene.camera, *by_markers] if self.scene.camera else by_markers))
 
-    def takes(self):
-        """(first, last) of the frames between changes of camera, which have no history in common."""
-        if not self.frames:
-            return []
-        cuts = sorted({marker.frame for marker in self.scene.timeline_markers if marker.camera})
-        starts = [self.frames[0], *(cut for cut in cuts if self.frames[0] < cut <= self.frames[-1])]
-        return list(zip(starts, [start - 1 for start in starts[1:]] + [self.frames[-1]]))
+    def take(self, frame):
+        """The first and the last frame about this one that are seen by one camera; some come after the shot's end."""
+        said = re.search(r"--two-way[ =](\d+)", self.choices.options)
+        end = self.scene.frame_end + (int(said[1]) if said else AHEAD)
+        first = max([self.scene.frame_start, *(cut for cut in self.cuts if cut <= frame)])
+        return first, min([end, *(cut - 1 for cut in self.cuts if cut > frame)])
 
     def shift(self, frame, fit):
         return shift_of(jitter_of(frame, self.small, self.full), self.small, self.aspect, fit)
 
-    def command(self, program, take, draft=False):
-        """The words that resolve a take, in the folder of the small frames. Raises Failure for an open quote."""
+    def command(self, program, draft=False):
+        """The words that make the results, in the folder of the small frames. Raises Failure for an open quote."""
         name = self.layer.name
         number = re.sub("#+", lambda mark: f"%0{len(mark[0])}d", self.stem_of(draft))
         size = [(side + 1) // 2 for side in self.full] if draft else self.full
-        first, last = max(take[0], self.results[0]), min(take[1], self.results[-1])
         words = [program, "frame.%04d.exr", "--out", os.path.join(os.pardir, number + ".exr"),
-                 "--output", f"{size[0]}x{size[1]}", "--frames", f"{first}-{last}",
-                 "--warm-up", str(max(first - take[0], take[1] - last)), "--method", self.choices.method,
+                 "--output", f"{size[0]}x{size[1]}", "--frames", f"{self.results[0]}-{self.results[-1]}",
+                 "--method", self.choices.method,
                  "--jitter", JITTER_FILE if draft else "halton", "--sky-motion", "evidence",
                  "--colour", f"{name}.Combined", "--velocity", f"{name}.Vector.X,{name}.Vector.Y",
                  "--velocity-next", f"{name}.Vector.Z,{name}.Vector.W", "--velocity-convention", "blender",
                  "--depth", f"{name}.Depth.Z"]
+        cuts = [str(cut) for cut in self.cuts if cut in self.frames]
+        if cuts:
+            words += ["--cuts", ",".join(cuts)]
         if self.blur > 0:
             words += ["--blur", f"{self.blur:g}"]
         try:
@@ -225,7 +229,7 @@ def check(shot, program):
             raise Failure(sentence)
     if not program_named(program):
         raise Failure(f"There is no program '{program or PROGRAM}'; install Quincunx, or set the add-on's Program.")
-    shot.command(PROGRAM, shot.takes()[0])  # where options end in the middle
+    shot.command(PROGRAM)  # where options end in the middle
 
 
 # ---- What is changed for a while.
@@ -363,7 +367,7 @@ def state_of(path):
 
 def try_command(shot, program):
     """Raises Failure where quincunx-resolve refuses its options. It does so before it misses the frames."""
-    words = [*shot.command(program_named(program), shot.takes()[0]), "--dry-run"]
+    words = [*shot.command(program_named(program)), "--dry-run"]
     try:
         with tempfile.TemporaryDirectory() as nothing:
             tried = subprocess.run(words, cwd=nothing, capture_output=True, text=True, check=False)
@@ -374,12 +378,11 @@ def try_command(shot, program):
 
 
 class Resolving:
-    """Runs of quincunx-resolve, one for each take, and before them one each for its draft."""
+    """Runs of quincunx-resolve: that of the draft, if any, and that of the results."""
 
     def __init__(self, shot, program):
         self.shot = shot
-        self.commands = [shot.command(program_named(program), take, draft)
-                         for draft in shot.drafts for take in shot.takes()]
+        self.commands = [shot.command(program_named(program), draft) for draft in shot.drafts]
         paths = [shot.result(frame, draft) for draft in shot.drafts for frame in shot.results]
         self.before = {path: state_of(path) for path in paths}
         self.said = tempfile.TemporaryFile(mode="w+")
@@ -534,8 +537,9 @@ def wait_for(job):
         job.end()
     if job.warnings:
         print(f"quincunx: {job.warnings}", file=sys.stderr)
-    print("Quincunx: {} frames of {}x{} rendered in {:.1f} s, resolved to {}x{} in {:.1f} s".format(
-        len(job.shot.frames), *job.shot.small, rendered - started, *job.shot.full, time.monotonic() - rendered))
+    print("Quincunx: {} frames of {}x{} rendered in {:.1f} s, {} of {}x{} made of them in {:.1f} s".format(
+        len(job.shot.frames), *job.shot.small, rendered - started,
+        len(job.shot.results), *job.shot.full, time.monotonic() - rendered))
 
 
 def choose(name, value):
@@ -676,8 +680,8 @@ class QUINCUNX_PT_output(bpy.types.Panel):
         job = QUINCUNX_OT_render.job
         shot = job.shot if job else Shot(context.scene, context.view_layer, choices)
         column = layout.column()
-        self.write(context, column, "{} frames of {}×{}, resolved to {}×{}".format(
-            len(shot.frames), *shot.small, *shot.full))
+        self.write(context, column, "{} frames of {}×{}, from {} of {}×{}".format(
+            len(shot.results), *shot.full, len(shot.frames), *shot.small))
         if job:
             self.draw_progress(column, *job.progress())
             return
