@@ -265,6 +265,29 @@ TEST_F(BothWays, NoiseThatIsToldIsTakenOutOfWhatIsShown) {
   EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain").out.find("temporal_denoise"), std::string::npos);
 }
 
+TEST_F(BothWays, NoiseIsSeenInFramesThatDoNotTellIt) {
+  write_all(1, 33);
+  resolve_to("clean", "--frames 1-8");
+  resolve_to("auto", "--noise auto --frames 1-8");
+  expect_same_files(1, 8, "clean", "auto");
+  for (const float noise : {.0625f, .25f}) {
+    noise_ = noise;
+    write_all(1, 33);
+    resolve_to("noisy", "");
+    resolve_to("told", fmt::format("--noise {}", 1 / noise));
+    resolve_to("auto", "--noise auto");
+    resolve_to("chunk", "--noise auto --frames 20-23");
+    double told = 0, by_frames = 0;
+    for (int number = 1; number <= 33; ++number) {
+      told += psnr_of("told", number) - psnr_of("noisy", number);
+      by_frames += psnr_of("auto", number) - psnr_of("noisy", number);
+    }
+    EXPECT_GT(told, 0) << noise;
+    EXPECT_GT(by_frames, .75 * told) << noise;
+    expect_same_files(20, 23, "auto", "chunk");
+  }
+}
+
 TEST_F(BothWays, AlbedoKeepsWhatSurfacesShowFromWhatIsDenoised) {
   noise_ = .25f;
   write_all(1, 10);

@@ -68,6 +68,10 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
   if (!task.method_reason.empty())
     spdlog::info("method {}: {} (--method takes another)", name_of(variant_of(task.plan.settings)),
                  task.method_reason);
+  if (const float noise = task.resolve.temporal.noise; options.noise_by_frames && noise > 0)
+    spdlog::info("frames are noisy: --noise {:.3g}", 1 / noise);
+  if (options.noise_by_frames && task.resolve.temporal.noise == 0)
+    spdlog::info("frames are clean, or do not tell their noise (--noise SPP does)");
   for (const std::string& warning : advice_on(task))
     spdlog::warn("{}", warning);
   if (options.recorded) {

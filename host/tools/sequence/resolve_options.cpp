@@ -228,7 +228,7 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
            options.resolve.temporal.noise = options.noise_by_frames ? 0 : 1 / samples;
          },
          "temporal: a path tracer took so many samples a pixel, and the picture is denoised; auto: as Cycles "
-         "says in the first frame, if at most 64 (default: it is not)")
+         "says in the first frame, if at most 64, else as frames show (default: it is not)")
       .type_name("SPP|auto");
   app.add_flag("--resume", options.resume, "Leave frames out that are there already");
   app.add_flag("--skip-bad-frames", options.skip_bad_frames, "Go on without frames that cannot be used");
@@ -267,7 +267,7 @@ void check_needs(const ResolveOptions& options) {
 void check_recorded(const CommandLine& app, const ResolveOptions& options) {
   const std::string& folder = options.input;
   if (options.noise_by_frames)
-    throw wrong("--noise", fmt::format("auto reads what Cycles writes, and '{}' is a recording", folder));
+    throw wrong("--noise", fmt::format("auto reads EXR frames, and '{}' is a recording", folder));
   for (const char* option :
        {"--output", "--colour", "--velocity", "--velocity-convention", "--velocity-scale", "--depth",
         "--depth-kind", "--near", "--reactive", "--jitter", "--cuts", "--warm-up", "--two-way",

@@ -128,6 +128,8 @@ std::string listing_text(const ResolveTask& task, const std::string& diagnosis, 
   text +=
       line("", fmt::format("{}, {}{}", size_text(task.format.output), name_of(variant_of(task.plan.settings)),
                            task.method_reason.empty() ? "" : fmt::format(" ({})", task.method_reason)));
+  if (const float noise = task.resolve.temporal.noise; noise > 0)
+    text += line("", fmt::format("denoised as of {:.3g} samples a pixel", 1 / noise));
   if (!task.there.empty()) text += line("There", counted(task.there));
   text += line("Make", counted(scan.wanted()));
   if (!task.stale.empty())

@@ -9,6 +9,7 @@
 
 #include "tools/program/resolve_settings_options.h"
 #include "tools/sequence/resolve_advice.h"
+#include "tools/sequence/sequence_noise.h"
 
 namespace quincunx::tools {
 namespace {
@@ -67,15 +68,10 @@ Result<SequenceFormat> settle_by_first(const ResolveOptions& options, const Reso
 // Frames of more samples a pixel are clean to --noise auto.
 constexpr float kNoisySamplesMax = 64;
 
-Status settle_noise(const ResolveOptions& options, ResolveTask& task) {
-  if (!options.noise_by_frames) return {};
+float noise_by_frames(const ResolveTask& task) {
   const float samples = task.format.samples;
-  if (!(samples >= 1)) {
-    return Status::io(
-        "--noise auto: the first frame has no attribute 'cycles.LAYER.samples'; write the samples a pixel");
-  }
-  task.resolve.temporal.noise = samples <= kNoisySamplesMax ? 1 / samples : 0;
-  return {};
+  if (samples >= 1) return samples <= kNoisySamplesMax ? 1 / samples : 0;
+  return noise_of(task.input, task.format);
 }
 
 void settle_method(const ResolveOptions& options, ResolveTask& task) {
@@ -173,7 +169,7 @@ Status settle_sequence(const ResolveOptions& options, ResolveTask& task) {
   if (!format.ok()) return format.status();
   task.format = std::move(format).value();
   settle_method(options, task);
-  if (Status status = settle_noise(options, task); !status.ok()) return status;
+  if (options.noise_by_frames && !options.diagnose) task.resolve.temporal.noise = noise_by_frames(task);
   auto output = output_for(options, task);
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();

@@ -80,8 +80,8 @@ struct ResolveTask {
 // kIoFailure, as of read_settings().
 Status take_recorded(ResolveOptions& options);
 
-// Reads headers, no pixels, and writes nothing. Errors: kInvalidArgument for what the command line should
-// have said otherwise, kIoFailure where the first frame cannot be used.
+// Reads headers, and pixels only where noise follows from them; writes nothing. Errors: kInvalidArgument for what the
+// command line should have said otherwise, kIoFailure where the first frame cannot be used.
 Result<ResolveTask> prepare(const ResolveOptions& options);
 
 }  // namespace quincunx::tools
