@@ -51,9 +51,10 @@ RULES = {
         (LIGHT, "const bool relit = is_widespread && is_relit(&whole);", "const bool relit = false && is_relit(&whole);")],
     "rejection by cut": [
         (LIGHT, "const float by_cut = is_widespread && !relit ?", "const float by_cut = false && is_widespread && !relit ?")],
-    "judging of cells": [(LIGHT, "if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {", "if (false) {")],
+    "judging of cells": [(LIGHT, "if (tile.gain == 1.0f && any(asked)) {", "if (false) {")],
     "… that change by more than they flicker": [
-        (LIGHT, "if (tile.gain == 1.0f && changed > FLICKER_RATIO_MIN * cell->flicker) {", "if (tile.gain == 1.0f) {")],
+        (LIGHT, "const int4 asked = changed > FLICKER_RATIO_MIN * OF_CELLS(tile.cells, flicker);",
+         "const int4 asked = (int4)(-1);")],
     "rigid tiles wait for a second frame": [
         (LIGHT, "const bool waits = tiles[i].is_rigid && around.confirmation < RIGID_TILE_CONFIRMATION_MAX;",
          "const bool waits = false;")],

@@ -242,16 +242,19 @@ def force(path, text, count, rejection):
     if path != KERNEL:
         return text
     formats = " ".join(["%d"] + ["%.5g"] * INPUTS)
-    values = ", ".join(["cell"] + ["inputs[%d]" % i for i in range(INPUTS)])
+    prints = ""
+    for lane in "xyzw":
+        values = ", ".join("%s.%s" % (value, lane) for value in ["cells"] + ["inputs[%d]" % i for i in range(INPUTS)])
+        prints += '\n  if (cells.%s >= 0) printf("%s\\n", %s);' % (lane, formats, values)
     for old, new in (
-            ("static inline float judge(const float* inputs) {",
-             'static inline float judge(const float* inputs, int cell) {\n  if (cell >= 0) printf("%s\\n", %s);' % (
-                 formats, values)),
-            ("return judge(inputs);", "return judge(inputs, cell);"),
+            ("static inline float4 judge(const float4* inputs) {",
+             "static inline float4 judge(const float4* inputs, int4 cells) {" + prints),
+            ("return judge(inputs);", "return judge(inputs, cells);"),
             ("const TileEvidence* tile, const TileEvidence* tiles) {",
-             "const TileEvidence* tile, const TileEvidence* tiles, int cell) {"),
+             "const TileEvidence* tile, const TileEvidence* tiles, int4 cells) {"),
             ("&own, &around.sum);",
-             "&own, &around.sum, forced ? (2 * y + c / 2) * %d + 2 * x + c %% 2 : -1);" % (SIZE[0] // CELL)),
+             "&own, &around.sum, select((int4)(-1), 2 * (y * %d + x) + (int4)(0, 1, %d, %d), asked & -(int)forced));"
+             % (SIZE[0] // CELL, SIZE[0] // CELL, SIZE[0] // CELL + 1)),
             ("const TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);",
              "TileLight before = remember(previous, tiles[i], tiles_x, tiles_y, x, y);\n"
              "  const float number = floor(0.5f * previous[i].confirmation);\n"

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "device/device_profile_file.h"
 #include "device/program_cache.h"
@@ -38,7 +39,7 @@ struct Fault {
   std::string what;
 };
 
-const Json& member(const Json& object, const char* key, const std::string& where) {
+const Json& member(const Json& object, const char* key, std::string_view where) {
   if (!object.is_object() || !object.contains(key)) throw Fault{fmt::format("{} has no {}", where, key)};
   return object.at(key);
 }
