@@ -71,6 +71,7 @@ class BothWays : public testing::SequenceTest {
   static constexpr Extent kPicture = {96, 60};
 
   float noise_ = 0;      // variance of a sample, of its square
+  float fade_ = 0;       // of the light, that each frame adds
   std::string samples_;  // as Cycles has them; empty: it does not
   std::string albedo_;   // layer of it; empty: there is none
 
@@ -119,7 +120,8 @@ class BothWays : public testing::SequenceTest {
         const auto u = static_cast<float>(seen.speed_x / step_x),
                    v = static_cast<float>(-seen.speed_y / step_y);
         const float chance = testing::noise(number + 2, 0, y * render.width + x) - .5f;  // variance 1/12
-        const float light = alpha * (1 + std::sqrt(12 * noise_) * chance);
+        const float light =
+            alpha * (1 + std::sqrt(12 * noise_) * chance) * (1 + fade_ * static_cast<float>(number));
         const float values[] = {light * seen.light[0],
                                 light * seen.light[1],
                                 light * seen.light[2],
@@ -270,6 +272,11 @@ TEST_F(BothWays, NoiseIsSeenInFramesThatDoNotTellIt) {
   resolve_to("clean", "--frames 1-8");
   resolve_to("auto", "--noise auto --frames 1-8");
   expect_same_files(1, 8, "clean", "auto");
+  fade_ = .1f;
+  write_all(1, 33);
+  EXPECT_EQ(resolve("'{}/f.%04d.exr' --explain --noise auto").out.find("temporal_denoise"),
+            std::string::npos);
+  fade_ = 0;
   for (const float noise : {.0625f, .25f}) {
     noise_ = noise;
     write_all(1, 33);

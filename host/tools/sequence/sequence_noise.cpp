@@ -31,7 +31,7 @@ struct Tile {
 struct Walk {
   int x, y;    // pixel of the frame that was reached
   float u, v;  // the sample's place there, in pixels without jitter
-  float light, depth;
+  float depth;
 };
 
 std::size_t index_of(const MotionSamples& seen, int x, int y) {
@@ -58,30 +58,30 @@ bool step_back(const LitFrame& from, const LitFrame& to, Walk& walk) {
   return std::abs(there - walk.depth) <= kNearDepth * std::max(there, walk.depth);
 }
 
-// Compares a pixel with the frames before.
-void add_pairs(std::span<const LitFrame> frames, std::size_t last, int x, int y, Tile& tile) {
+// Calls visit(before, light there, light here) for each frame before that shows the place of a pixel's sample, too.
+template <typename Visit>
+void visit_pairs(std::span<const LitFrame> frames, std::size_t last, int x, int y, const Visit& visit) {
   const MotionSamples& seen = frames[last].seen;
   const std::size_t index = index_of(seen, x, y);
-  Walk walk = {x,
-               y,
-               static_cast<float>(x) + seen.jitter.x,
-               static_cast<float>(y) + seen.jitter.y,
-               frames[last].light[index],
+  const float here = frames[last].light[index];
+  Walk walk = {x, y, static_cast<float>(x) + seen.jitter.x, static_cast<float>(y) + seen.jitter.y,
                depth_at(seen, index)};
-  if (!(walk.light >= 0 && walk.depth > 0)) return;  // no surface has no place
+  if (!(here >= 0 && walk.depth > 0)) return;  // no surface has no place
   for (std::size_t i = last; i > 0 && !frames[i].reset && step_back(frames[i], frames[i - 1], walk); --i) {
     const LitFrame& before = frames[i - 1];
     const float light = before.light[index_of(before.seen, walk.x, walk.y)];
     const float apart = std::hypot(walk.u - before.seen.jitter.x - static_cast<float>(walk.x),
                                    walk.v - before.seen.jitter.y - static_cast<float>(walk.y));
-    if (!(apart <= kNearPlace && light >= 0)) continue;
-    const double difference = double{light} - double{walk.light};
-    ++tile.pairs;
-    tile.squares += difference * difference / 2;
-    tile.light += (double{light} + double{walk.light}) / 2;
+    if (apart <= kNearPlace && light >= 0) visit(i - 1, double{light}, double{here});
   }
 }
 
+// The light of one frame, and of an earlier one at the same places.
+struct PairLight {
+  double before = 0, here = 0;
+};
+
+// Compares all pairs of frames. The light of the whole picture may change, as it does in a fade.
 std::vector<Tile> tiles_of(std::span<const LitFrame> frames) {
   const Extent render = frames.front().seen.render;
   const int step = std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(render.area()) /
@@ -89,11 +89,28 @@ std::vector<Tile> tiles_of(std::span<const LitFrame> frames) {
   const int columns = render.width / (kTile * step), rows = render.height / (kTile * step);
   std::vector<Tile> tiles(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for (std::size_t i = 1; i < frames.size(); ++i) {
-    for (int y = 0; y < rows * kTile; ++y) {
-      for (int x = 0; x < columns * kTile; ++x)
-        add_pairs(frames, i, x * step, y * step,
-                  tiles[static_cast<std::size_t>(y / kTile * columns + x / kTile)]);
-    }
+    std::vector<PairLight> whole(i);
+    const auto visit_all = [&](const auto& visit) {
+      for (int y = 0; y < rows * kTile; ++y) {
+        for (int x = 0; x < columns * kTile; ++x)
+          visit(x * step, y * step, tiles[static_cast<std::size_t>(y / kTile * columns + x / kTile)]);
+      }
+    };
+    visit_all([&](int x, int y, Tile&) {
+      visit_pairs(frames, i, x, y, [&](std::size_t j, double before, double here) {
+        whole[j].before += before;
+        whole[j].here += here;
+      });
+    });
+    visit_all([&](int x, int y, Tile& tile) {
+      visit_pairs(frames, i, x, y, [&](std::size_t j, double before, double here) {
+        if (!(whole[j].before > 0)) return;
+        const double expected = before * whole[j].here / whole[j].before, difference = expected - here;
+        ++tile.pairs;
+        tile.squares += difference * difference / 2;
+        tile.light += (expected + here) / 2;
+      });
+    });
   }
   return tiles;
 }

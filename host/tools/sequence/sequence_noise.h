@@ -20,8 +20,9 @@ struct LitFrame {
 
 // Returns the variance of a sample in parts of its square, at most 1; 0 where frames are clean, or do not tell.
 // `frames` follow one another. What counts is how far samples of different frames are apart that show, by motion, the
-// same place of a surface to within a sixteenth of a pixel: texture and aliasing are the same in both. Frames are noisy
-// where nine tenths of the picture are; then it is what the fifth with most noise exceeds. Pure.
+// same place of a surface to within a sixteenth of a pixel: texture and aliasing are the same in both, and what the light
+// of the whole picture changes is taken off. Frames are noisy where nine tenths of the picture are; then it is what the
+// fifth with most noise exceeds. Pure.
 float noise_between(std::span<const LitFrame> frames);
 
 // Reads the first 33 frames of the sequence that lie on disk, whatever is asked for, so that chunks agree. 0 also where
