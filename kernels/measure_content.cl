@@ -4,13 +4,15 @@
 //   velocity  in      RG16F or RG32F, viewport, in the caller's units; NaN counts as 0, +-Inf as +-65504
 //   depth     in      R32F, viewport, reversed and infinite
 //   reactive  in      R8, viewport; read with REACTIVE=1 only
+//   judged    in      TileLight of each tile of this frame; read where params.judged_width is not 0
 //   sums      in/out  ContentSums, to which each tile adds
 // A surface is behind another one where its depth is less than .9 of that one's. Two samples move apart where one is
 // behind the other and their velocities differ by so much. A tile counts, with all its samples,
 //   apart  where two neighbouring samples move apart by an output pixel or more
 //   thin   where a sample has, 3 output pixels to both sides of it on an axis, what is behind it, and moves apart from
 //          one of these by .25 output pixels or more
-//   light  where a sample is reactive by a tenth or more
+//   light  where a sample is reactive by a tenth or more, or temporal_light confirmed a change of light in its tile in
+//          this frame: `confirmation` is 1. Over more frames many an edge is confirmed once
 // and with its moving samples, those of .25 pixels or more,
 //   zoom   where velocity grows, or shrinks, by .01 a pixel or more on both axes, in the mean over neighbouring samples
 //          neither of which is behind the other
@@ -21,6 +23,7 @@
 #endif
 #include "bits.h"
 #include "picture_params.h"
+#include "temporal/tile.h"
 #include "texel.h"
 #if REACTIVE != 0 && REACTIVE != 1
 #error "REACTIVE must be 0 or 1"
@@ -93,12 +96,19 @@ static inline bool grows(Growth growth, float step_x, float step_y) {
   return (x >= GROWS && y >= GROWS) || (x <= -GROWS && y <= -GROWS);
 }
 
+// Returns whether the judge has found that light moves, or another change without velocity, at an output pixel.
+static inline bool is_confirmed(const ContentParams* params, __global const TileLight* judged, int x, int y) {
+  const int tiles_x = (params->judged_width + kTemporalTile - 1) / kTemporalTile;
+  return judged[y / kTemporalTile * tiles_x + x / kTemporalTile].confirmation >= 1.0f;
+}
+
 static inline void add_to(volatile __global uint* sum, uint count) {
   if (count > 0) atomic_add(sum, count);
 }
 
 __kernel void measure_content(const ContentParams params, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth,
-                              REACTIVE_TEXELS reactive, volatile __global ContentSums* sums) {
+                              REACTIVE_TEXELS reactive, __global const TileLight* judged,
+                              volatile __global ContentSums* sums) {
   const int tile_x = get_global_id(0), tile_y = get_global_id(1);
   if (tile_x >= params.tiles_x || tile_y >= params.tiles_y) return;
 
@@ -132,6 +142,11 @@ __kernel void measure_content(const ContentParams params, VELOCITY_TEXELS veloci
 #if REACTIVE
       light |= load_reactive4(reactive, params.reactive, (int4)(x), y).x >= LEAST_REACTIVE ? 1 : 0;
 #endif
+      if (params.judged_width > 0) {
+        const int output_x = place_of(tile_x * kContentSamples + i, all_x, params.judged_width);
+        const int output_y = place_of(tile_y * kContentSamples + j, all_y, params.judged_height);
+        light |= is_confirmed(&params, judged, output_x, output_y) ? 1 : 0;
+      }
     }
   }
   const uint all = kContentSamples * kContentSamples;
@@ -140,5 +155,6 @@ __kernel void measure_content(const ContentParams params, VELOCITY_TEXELS veloci
   add_to(&sums->apart, apart * all);
   add_to(&sums->thin, thin * all);
   add_to(&sums->light, light * all);
+  add_to(&sums->judged, params.judged_width > 0 ? all : 0);
   if (grows(growth, params.step_x, params.step_y)) add_to(&sums->zoom, moving);
 }

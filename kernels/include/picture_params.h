@@ -85,8 +85,9 @@ typedef struct ContentSums {
   unsigned thin;
   unsigned light;
   unsigned zoom;
+  unsigned judged;
 } ContentSums;
-QUINCUNX_CHECK_SIZE(ContentSums, 24);
+QUINCUNX_CHECK_SIZE(ContentSums, 28);
 
 typedef struct ContentParams {
   int width;  // the viewport, in texels
@@ -102,8 +103,10 @@ typedef struct ContentParams {
   float pixels_y;
   float step_x;  // output pixels between two samples
   float step_y;
+  int judged_width;  // output pixels, whose light has been judged; 0: nobody has looked
+  int judged_height;
 } ContentParams;
-QUINCUNX_CHECK_SIZE(ContentParams, 64);
+QUINCUNX_CHECK_SIZE(ContentParams, 72);
 
 // ---- check_motion.
 // Every kMotionStep-th sample of every such row is asked, kMotionSamples^2 by a work-item. Velocity is read in

@@ -101,7 +101,7 @@ TEST_P(CControllers, ChooseAsThoseOfCpp) {
                           .resolve_ms = 1};
     if (n % 5 == 0) {
       frame.content = {.moving = 0.01 * below(100), .speed_px = 4, .cut = below(20) == 0};
-      if (n / 150 % 2 == 1) frame.content = {.light = 1};
+      if (n / 150 % 2 == 1) frame.content = {.light = n % 3 == 0 ? 1.0 : 0.0, .judged = n % 3 == 0};
     }
     if (below(30) == 0) frame.timing.gpu_ms = -1;
     auto timing = sized<quincunx_timing>();
@@ -121,6 +121,7 @@ TEST_P(CControllers, ChooseAsThoseOfCpp) {
       content.speed_px = frame.content->speed_px;
       content.light = frame.content->light;
       content.cut = frame.content->cut;
+      content.judged = frame.content->judged;
       timing.content = &content;
     }
     const Status told = quality != nullptr ? quality->observe(frame) : expected->observe(frame.timing);

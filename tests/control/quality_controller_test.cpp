@@ -251,6 +251,50 @@ TEST(QualityController, GoesToTheMethodThatErrsLeastInWhatIsShown) {
   EXPECT_EQ(program.changes, 2);
 }
 
+// Light that only the dear method sees does not bring that back as soon as it is not looked for, and is found to rest
+// in the end.
+TEST(QualityController, JudgedLightIsRememberedWhileNobodyJudges) {
+  Program program;
+  int dear = 0;
+  const auto run = [&](int frames, double light) {
+    dear = program.changes = 0;
+    for (int i = 0; i < frames; ++i) {
+      const bool judged = program->choice().method == kDear;
+      dear += judged ? 1 : 0;
+      program.run(1, 20, ContentStatistics{.light = judged ? light : 0, .judged = judged});
+    }
+  };
+  run(100, 0);
+  ASSERT_EQ(program->choice().method, kDear);
+  run(500, 1);
+  EXPECT_EQ(program->choice().method, kPlain);
+  EXPECT_EQ(program.changes, 1);
+  run(5000, 1);
+  EXPECT_LT(dear, 500) << "a look every few hundred frames";
+  EXPECT_GT(dear, 0);
+  run(1000, 0);
+  EXPECT_EQ(program->choice().method, kDear);
+  run(5000, 0);
+  EXPECT_EQ(program.changes, 0);
+}
+
+// A cut ends what was judged; reactive values count for more where they are more.
+TEST(QualityController, ACutForgetsJudgedLight) {
+  Program program;
+  program.run(100, 20, ContentStatistics{.light = 1, .judged = true});
+  ASSERT_EQ(program->choice().method, kPlain);
+  const auto light = [&] {
+    return program->reasons().mix.share[static_cast<std::size_t>(SceneClass::kLight)];
+  };
+  program.run(1, 20, kStill);
+  EXPECT_GT(light(), 0.99);
+  program.run(1, 20, ContentStatistics{.cut = true});
+  EXPECT_EQ(light(), 0);
+  program.run(100, 20, ContentStatistics{.light = 0.25, .judged = true});
+  program.run(100, 20, ContentStatistics{.light = 0.75});
+  EXPECT_NEAR(light(), 0.75, 0.01);
+}
+
 // The pair is that of a search over everything, whatever the load and what is shown.
 TEST(QualityController, FindsTheLeastErrorThatFits) {
   for (const double full_ms : {10.0, 16.0, 20.0, 26.0, 34.0, 40.0}) {

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 
 #include "kernel_fixture.h"
 #include "pass_rig.h"
 #include "passes/pass_measure_content.h"
 #include "picture_params.h"
+#include "temporal/tile.h"
 
 namespace quincunx {
 namespace {
@@ -27,6 +29,7 @@ struct Variant {
   Storage storage;
   PixelFormat velocity;
   bool reactive;
+  bool judged = false;
 };
 
 class MeasureContent : public ::testing::TestWithParam<Variant> {
@@ -35,9 +38,27 @@ class MeasureContent : public ::testing::TestWithParam<Variant> {
     settings_.targets.storage = GetParam().storage;
     settings_.velocity = GetParam().velocity;
     settings_.control.measures_content = true;
-    settings_.method = Method::kBilinear;
+    settings_.method = GetParam().judged ? Method::kTemporal : Method::kBilinear;
     pass_ = std::make_unique<PassRig>(SceneNeeds{.transparents = GetParam().reactive}, settings_,
                                       "measure_content");
+  }
+
+  static std::size_t temporal_tiles(Extent output) {
+    const int tiles_x = (output.width + kTemporalTile - 1) / kTemporalTile;
+    const int tiles_y = (output.height + kTemporalTile - 1) / kTemporalTile;
+    return static_cast<std::size_t>(tiles_x * tiles_y);
+  }
+
+  // Those of the judge, seeded: 1 in some tiles, less in all others. Empty: nobody judges.
+  std::vector<double> confirmations(Extent output, unsigned seed) const {
+    if (!GetParam().judged) return {};
+    std::mt19937 random(seed);
+    std::vector<double> all(temporal_tiles(output));
+    for (double& confirmation : all) {
+      const unsigned value = random() % 32;
+      confirmation = value < 2 ? 1 : value / 32.0;
+    }
+    return all;
   }
 
   testing::FrameFormats formats() const {
@@ -48,10 +69,17 @@ class MeasureContent : public ::testing::TestWithParam<Variant> {
             .with_reactive = true};
   }
 
-  ContentSums run(const FrameInputs& inputs, Extent output) {
+  // `confirmations`: one for each tile; empty: 0.
+  ContentSums run(const FrameInputs& inputs, Extent output, const std::vector<double>& confirmations = {}) {
     const cl::Buffer sums(testing::impl().context, CL_MEM_READ_WRITE, sizeof(ContentSums));
     const ImageView view = {.memory = sums(), .extent = {1, 1}};
-    pass_->run(inputs, {}, output, {}, {{Resource::kContentSums, view}});
+    std::vector<TileLight> tiles(temporal_tiles(output));
+    for (std::size_t i = 0; i < confirmations.size(); ++i)
+      tiles[i].confirmation = static_cast<float>(confirmations[i]);
+    const cl::Buffer light(testing::impl().context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR,
+                           tiles.size() * sizeof(TileLight), tiles.data());
+    const ImageView judged = {.memory = light(), .extent = {static_cast<int>(tiles.size()), 1}};
+    pass_->run(inputs, {}, output, {}, {{Resource::kContentSums, view}, {Resource::kTileLight, judged}});
     ContentSums counted;
     testing::impl().queue.enqueueReadBuffer(sums, CL_TRUE, 0, sizeof(counted), &counted);
     return counted;
@@ -59,15 +87,17 @@ class MeasureContent : public ::testing::TestWithParam<Variant> {
 
   // Counts are exact where no decision is close, speed is rounded once a tile.
   void compare(const TestFrame& frame, Extent output, const std::string& what) {
-    const ContentSums sums = run(frame.inputs, output);
-    const reference::ContentCounts expected =
-        reference::measure_content(frame.reference, output.width, output.height, GetParam().reactive);
+    const std::vector<double> confirmed = confirmations(output, static_cast<unsigned>(output.area()));
+    const ContentSums sums = run(frame.inputs, output, confirmed);
+    const reference::ContentCounts expected = reference::measure_content(
+        frame.reference, output.width, output.height, GetParam().reactive, confirmed);
     ASSERT_GT(expected.margin, 1) << what << ": a decision is too close to tell; choose another seed";
     EXPECT_EQ(sums.moving, expected.moving) << what;
     EXPECT_EQ(sums.apart, expected.apart) << what;
     EXPECT_EQ(sums.thin, expected.thin) << what;
     EXPECT_EQ(sums.light, expected.light) << what;
     EXPECT_EQ(sums.zoom, expected.zoom) << what;
+    EXPECT_EQ(sums.judged, expected.judged) << what;
     EXPECT_NEAR(sums.speed / kSpeedUnits, expected.speed,
                 .5 / kSpeedUnits * static_cast<double>(expected.tiles) + expected.speed * 0x1p-17)
         << what;
@@ -179,6 +209,7 @@ TEST_P(MeasureContent, PoisonOutsideTheViewportAndTightImagesChangeNoBit) {
 std::vector<Variant> variants() {
   std::vector<Variant> all;
   for (const bool reactive : {true, false}) {
+    all.push_back({Storage::kBuffer, PixelFormat::kRG16F, reactive, true});
     all.push_back({Storage::kBuffer, PixelFormat::kRG16F, reactive});
     all.push_back({Storage::kBuffer, PixelFormat::kRG32F, reactive});
     all.push_back({Storage::kImage, PixelFormat::kRG16F, reactive});
@@ -188,8 +219,9 @@ std::vector<Variant> variants() {
 
 INSTANTIATE_TEST_SUITE_P(Variants, MeasureContent, ::testing::ValuesIn(variants()),
                          testing::sample_names(variants(), [](const Variant& v) {
-                           return fmt::format("{}_{}{}", v.storage == Storage::kImage ? "image" : "buffer",
-                                              name_of(v.velocity), v.reactive ? "_reactive" : "");
+                           return fmt::format("{}_{}{}{}", v.storage == Storage::kImage ? "image" : "buffer",
+                                              name_of(v.velocity), v.reactive ? "_reactive" : "",
+                                              v.judged ? "_judged" : "");
                          }));
 
 }  // namespace

@@ -421,7 +421,7 @@ class Errors(unittest.TestCase):
                  lambda: made().resolve(frame, frame_index=-1)),
                 (TypeError, "'cpu' is no field of Timing; there are: .* cpu_ms",
                  lambda: controller.observe(1, (8, 8), 9, cpu=1)),
-                (TypeError, "'speed' is no field of Content; there are: moving, speed_px, .* cut$",
+                (TypeError, "'speed' is no field of Content; there are: moving, speed_px, .* judged$",
                  lambda: quincunx.mix_of(speed=1)),
                 (TypeError, "calibration is '{}'; it must be of CostTable",
                  lambda: quincunx.PredictiveController(calibration="{}", output_extent=(8, 8))),

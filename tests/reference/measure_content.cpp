@@ -15,6 +15,7 @@ constexpr double kApart = 1;
 constexpr double kFastest = 255;
 constexpr double kBehind = .9;
 constexpr double kReactive = .1;
+constexpr int kJudgedTile = 8;  // output pixels
 constexpr double kGrows = .01;
 constexpr double kThinReach = 3;
 constexpr double kUnit = 0x1p-24;
@@ -26,8 +27,8 @@ struct Sample {
 
 class Counter {
  public:
-  Counter(const Frame& frame, int width, int height, bool reactive)
-      : frame_(frame), width_(width), height_(height), reactive_(reactive) {
+  Counter(const Frame& frame, int width, int height, bool reactive, const std::vector<double>& confirmations)
+      : frame_(frame), width_(width), height_(height), reactive_(reactive), confirmations_(confirmations) {
     tiles_x_ = (width + kTile - 1) / kTile;
     tiles_y_ = (height + kTile - 1) / kTile;
     reach_x_ = std::max(1, static_cast<int>(std::lround(kThinReach * frame.width / width)));
@@ -83,6 +84,8 @@ class Counter {
     return behind(one, here) && behind(other, here) && (differ(here, one) || differ(here, other));
   }
 
+  bool judged() const { return !confirmations_.empty(); }
+
   bool thin_at(int x, int y) {
     const Sample here = at(x, y);
     const bool across = x >= reach_x_ && x + reach_x_ < frame_.width &&
@@ -111,6 +114,14 @@ class Counter {
     return pairs > 0 ? sum / pairs / step : 0;
   }
 
+  // Whether the judge has found light that moves at the place in the output that the sample stands for.
+  bool is_confirmed(int i, int j) {
+    const int x = (2 * i + 1) * width_ / (2 * tiles_x_ * kSamples);
+    const int y = (2 * j + 1) * height_ / (2 * tiles_y_ * kSamples);
+    const int tiles = (width_ + kJudgedTile - 1) / kJudgedTile;
+    return confirmations_[index_of(tiles, x / kJudgedTile, y / kJudgedTile)] >= 1;
+  }
+
   void count_tile(int tile_x, int tile_y) {
     constexpr std::int64_t kAll = kSamples * kSamples;
     std::int64_t moving = 0;
@@ -125,6 +136,7 @@ class Counter {
         thin |= thin_at(column(i), row(j));
         light |= reactive_ &&
                  reaches(frame_.reactive[index_of(frame_.width, column(i), row(j))], kReactive, 2 * kUnit);
+        light |= judged() && is_confirmed(i, j);
       }
     }
     apart_ = false;
@@ -139,12 +151,14 @@ class Counter {
     counts_.apart += apart_ ? kAll : 0;
     counts_.thin += thin ? kAll : 0;
     counts_.light += light ? kAll : 0;
+    counts_.judged += judged() ? kAll : 0;
     counts_.zoom += grows || shrinks ? moving : 0;
   }
 
   const Frame& frame_;
   int width_, height_;  // size of the output
   bool reactive_;
+  const std::vector<double>& confirmations_;
   int tiles_x_, tiles_y_, reach_x_, reach_y_;
   double largest_ = 1e-30;  // velocity on an axis, output pixels
   bool apart_ = false;
@@ -153,8 +167,9 @@ class Counter {
 
 }  // namespace
 
-ContentCounts measure_content(const Frame& frame, int output_width, int output_height, bool reactive) {
-  return Counter(frame, output_width, output_height, reactive).run();
+ContentCounts measure_content(const Frame& frame, int output_width, int output_height, bool reactive,
+                              const std::vector<double>& confirmations) {
+  return Counter(frame, output_width, output_height, reactive, confirmations).run();
 }
 
 }  // namespace quincunx::reference

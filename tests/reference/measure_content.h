@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "picture.h"
 
@@ -15,6 +16,7 @@ struct ContentCounts {
   std::int64_t thin = 0;
   std::int64_t light = 0;
   std::int64_t zoom = 0;
+  std::int64_t judged = 0;
   double speed = 0;  // sum over the moving samples, output pixels
   std::int64_t tiles = 0;
   // How clear the least clear decision is: the distance from its threshold, by the most that floats may be wrong there.
@@ -22,7 +24,9 @@ struct ContentCounts {
   double margin = 1e30;
 };
 
-// Velocity is in the frame's units, that of a non-finite one 0; `reactive` false: none is read.
-ContentCounts measure_content(const Frame& frame, int output_width, int output_height, bool reactive);
+// Velocity is in the frame's units, that of a non-finite one 0; `reactive` false: none is read. `confirmations`:
+// TileLight's, one for each tile of 8 x 8 output pixels; empty: nobody has looked.
+ContentCounts measure_content(const Frame& frame, int output_width, int output_height, bool reactive,
+                              const std::vector<double>& confirmations = {});
 
 }  // namespace quincunx::reference

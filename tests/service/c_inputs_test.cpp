@@ -227,6 +227,7 @@ TEST_P(CExtras, FromHostMemoryAreThoseOfCpp) {
     EXPECT_EQ(content.moving, done->content->moving);
     EXPECT_EQ(content.speed_px, done->content->speed_px);
     EXPECT_EQ(content.light, done->content->light);
+    EXPECT_EQ(content.judged, done->content->judged);
     EXPECT_EQ(content.struct_size, sizeof(content));
   }
   EXPECT_EQ(focused > 0, with.focus);

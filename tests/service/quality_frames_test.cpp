@@ -2,7 +2,7 @@
 // Demands of a controller that chooses methods on a service: what frames show, and pictures that fade into each other.
 #include <gtest/gtest.h>
 
-#include "service_fixture.h"
+#include "temporal_scene.h"
 
 namespace quincunx {
 namespace {
@@ -47,6 +47,34 @@ TEST(QualityFrames, NothingMovesWhereNothingCan) {
   ASSERT_TRUE(report.content.has_value());
   EXPECT_EQ(report.content->moving, 0);
   EXPECT_EQ(report.passes.size(), 2u) << "the filter and the present pass";
+}
+
+// Shadows of bars go over a wall that moves, too: the judge of history sees where. A wall alone shows it nothing.
+TEST(QualityFrames, LightThatMovesIsSeenWhereHistoryIsJudged) {
+  using testing::Place;
+  const auto light_of = [](Method method, double in_shadow) {
+    testing::TemporalScene scene;
+    scene.surfaces = {{.velocity = {1.25, -.5}, .texture = testing::noise_texture(6)}};
+    scene.light = [in_shadow](Place place, int frame) {
+      return std::fmod(place.real() + 2.5 * frame, 40) < 20 ? in_shadow : 1;
+    };
+    ServiceRig rig({}, {.method = method, .control = {.measures_content = true}}, scene.output, {320, 192});
+    double light = 0;
+    for (int frame = 0; frame < 30; ++frame) {
+      const Vec2 jitter = testing::halton_jitter(frame, 32);
+      const FrameReport report = completed(rig, rig.upload(scene.render(frame, {80, 48}, jitter)));
+      EXPECT_EQ(report.content->judged, method == Method::kTemporal && frame > 0) << frame;
+      if (frame >= 10) light += report.content->light / 20;
+    }
+    EXPECT_FALSE(completed(rig, rig.upload(scene.render(30, {320, 192}, {}))).content->judged)
+        << "history has no part in a dense frame";
+    return light;
+  };
+  const double shadows = light_of(Method::kTemporal, .4), none = light_of(Method::kTemporal, 1);
+  RecordProperty("light_with_shadows_and_without", std::to_string(shadows) + " " + std::to_string(none));
+  EXPECT_GT(shadows, .1);
+  EXPECT_LT(none, .02);
+  EXPECT_EQ(light_of(Method::kBilinear, .4), 0);
 }
 
 TEST(QualityFrames, WhatNobodyAsksForIsNotMeasured) {

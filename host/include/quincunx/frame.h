@@ -139,7 +139,7 @@ struct [[nodiscard]] FrameReport {
   // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;
   // With settings.control.measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
-  // known yet. Moving light has no velocity: it is seen by reactive values alone.
+  // known yet. Light that moves without reactive values is seen by kTemporal alone.
   std::optional<ContentStatistics> content = {};
   MotionCheck motion = {};  // with settings.checks_motion, what the frames up to this one say of velocity
 

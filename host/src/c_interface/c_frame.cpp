@@ -278,6 +278,7 @@ quincunx_content content_to_c(const ContentStatistics& content) {
   to.light = content.light;
   to.zoom = content.zoom;
   to.cut = content.cut;
+  to.judged = content.judged;
   return to;
 }
 
@@ -290,7 +291,8 @@ Result<ContentStatistics> content_of(const quincunx_content* given) {
                                 .thin = content.thin,
                                 .light = content.light,
                                 .zoom = content.zoom,
-                                .cut = content.cut != 0};
+                                .cut = content.cut != 0,
+                                .judged = content.judged != 0};
   Status status = check(to);
   return status.ok() ? Result<ContentStatistics>(to) : status;
 }

@@ -10,9 +10,10 @@ namespace {
 constexpr int kMostTimes = 10;           // that a factor is the mean of; a later one counts for a tenth
 constexpr double kLargestStep = 0.4055;  // log 1.5: of a later time; one slow frame says little
 
-constexpr double kMixRate = 0.2;       // weight of a new frame in the smoothed mix
-constexpr double kNotableGain = 0.02;  // part of the error that a better pair saves at least
-constexpr double kScaleStep = 0.01;    // step of the search for one
+constexpr double kMixRate = 0.2;        // weight of a new frame in the smoothed mix
+constexpr double kLightMemory = 0.999;  // a frame: of judged light while nobody judges; half of it after 690
+constexpr double kNotableGain = 0.02;   // part of the error that a better pair saves at least
+constexpr double kScaleStep = 0.01;     // step of the search for one
 
 std::vector<MethodVariant> methods_of(const QualitySettings& settings) {
   if (!settings.methods.empty()) return settings.methods;
@@ -90,7 +91,11 @@ std::size_t MethodPairs::least_error_at_top() const {
 }
 
 void MethodPairs::follow(const ContentStatistics& content) {
-  const SceneMix now = mix_of(content);
+  const double remembered = content.cut ? 0 : kLightMemory * judged_light_;
+  judged_light_ = content.judged ? content.light : remembered;
+  ContentStatistics known = content;
+  known.light = std::max(content.light, judged_light_);
+  const SceneMix now = mix_of(known);
   const double rate = content.cut || !told_ ? 1 : kMixRate;
   for (std::size_t i = 0; i < kSceneClasses; ++i)
     mix_.share[i] += rate * (now.share[i] - mix_.share[i]);

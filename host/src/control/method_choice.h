@@ -60,7 +60,9 @@ class MethodPairs {
   const MethodVariant& operator[](std::size_t method) const { return methods_[method]; }
   std::size_t least_error_at_top() const;
 
-  // Follows the content of the next frame, smoothed over frames but for a cut.
+  // Follows the content of the next frame, smoothed over frames but for a cut. Light that a judge has seen is forgotten
+  // slowly while none looks: a method that does not look must not seem the better one for that, and where the light
+  // rests, one that looks gets its turn in the end.
   void follow(const ContentStatistics& content);
 
   double passes_ms(std::size_t method, double scale) const { return costs_.ms(method, scale); }
@@ -85,7 +87,8 @@ class MethodPairs {
   std::vector<MethodVariant> methods_;
   MethodCosts costs_;
   SceneMix mix_;
-  bool told_ = false;  // what pictures show
+  bool told_ = false;        // what pictures show
+  double judged_light_ = 0;  // share of the picture, as last judged, fading
   std::vector<Candidate> candidates_;
 };
 

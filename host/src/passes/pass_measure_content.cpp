@@ -7,6 +7,7 @@
 #include "passes/pass.h"
 #include "picture_params.h"
 #include "plan/pass_spec.h"
+#include "temporal/tile.h"
 
 namespace quincunx {
 namespace {
@@ -31,6 +32,8 @@ class MeasureContentPass : public Pass {
     const Extent render = frame.current.render_extent;
     const Extent tiles = content_tiles(frame.output);
     const VelocityScale pixels = velocity_scale_to(frame.current, frame.output);
+    const bool is_judged = uses(Resource::kTileLight) && frame.has_history && !is_dense(render, frame.output);
+    const Extent judged = is_judged ? frame.output : Extent{};
     const ContentParams params{.width = render.width,
                                .height = render.height,
                                .tiles_x = tiles.width,
@@ -43,9 +46,12 @@ class MeasureContentPass : public Pass {
                                .pixels_x = static_cast<float>(pixels.x),
                                .pixels_y = static_cast<float>(pixels.y),
                                .step_x = step(frame.output.width, tiles.width),
-                               .step_y = step(frame.output.height, tiles.height)};
+                               .step_y = step(frame.output.height, tiles.height),
+                               .judged_width = judged.width,
+                               .judged_height = judged.height};
     bind(params, frame[Resource::kVelocity], frame[Resource::kDepth],
-         view_or(frame, Resource::kReactive, Resource::kDepth), frame[Resource::kContentSums]);
+         view_or(frame, Resource::kReactive, Resource::kDepth),
+         view_or(frame, Resource::kTileLight, Resource::kContentSums), frame[Resource::kContentSums]);
     launch(frame, tiles, 1, event);
   }
 };
@@ -67,6 +73,7 @@ ContentStatistics statistics_of(const ContentSums& sums, Extent output) {
   content.thin = sums.thin / all;
   content.light = sums.light / all;
   content.zoom = sums.zoom / all;
+  content.judged = sums.judged > 0;
   return content;
 }
 
@@ -83,6 +90,8 @@ void plan_measure_content(const PlanFacts& facts, PassList& list) {
                {Resource::kContentSums, Access::kAccumulate, Area::kWhole, {}, sizeof(ContentSums)}},
       .make = make_pass<MeasureContentPass>};
   if (reactive) spec.uses.push_back({Resource::kReactive, Access::kRead, Area::kViewport, PixelFormat::kR8});
+  if (facts.accumulates())
+    spec.uses.push_back({Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)});
   list.passes.push_back(std::move(spec));
 }
 

@@ -142,7 +142,6 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_undilate_velocity,
     plan_far_motion,
     plan_far_velocity,
-    plan_measure_content,
     plan_check_motion,
     plan_reproject,
     // The picture: from many frames, from two, or from one.
@@ -152,6 +151,7 @@ constexpr void (*kPlanners[])(const PlanFacts&, PassList&) = {
     plan_layer_split,
     plan_temporal_tiles,
     plan_temporal_light,
+    plan_measure_content,
     plan_resolve_temporal,
     plan_resolve_layers,
     plan_temporal_display,

@@ -76,7 +76,7 @@ Json content_json(const std::optional<ContentStatistics>& content) {
   if (!content) return nullptr;
   return {{"moving", content->moving}, {"speed_px", content->speed_px}, {"apart", content->apart},
           {"thin", content->thin},     {"light", content->light},       {"zoom", content->zoom},
-          {"cut", content->cut}};
+          {"cut", content->cut},       {"judged", content->judged}};
 }
 
 Json pacing_json(const PacingRun& run) {

@@ -128,7 +128,7 @@ Inputs = sized("Inputs", ("colour depth velocity reactive", POINTER(Image)), ("r
 Outputs = sized("Outputs", ("linear presented", POINTER(Image)))
 PassReport = type("PassReport", (Structure,), {
     "_fields_": [("kernel", c_char_p), ("ms", c_double), ("bytes", c_uint64)]})
-Content = sized("Content", ("moving speed_px apart thin light zoom", c_double), ("cut padding", c_int32))
+Content = sized("Content", ("moving speed_px apart thin light zoom", c_double), ("cut judged", c_int32))
 Report = sized("Report", ("passes", POINTER(PassReport)), ("pass_capacity pass_count", c_int32),
                ("frame_index", c_uint64), ("non_finite_pixels", c_int64), ("render_width render_height", c_int32),
                ("ratio_x ratio_y", c_float), ("used_previous padding output_width output_height focused content_known",

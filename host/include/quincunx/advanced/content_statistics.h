@@ -20,6 +20,9 @@ struct ContentStatistics {
   double light = 0;     // whose colour changes and has no velocity: reactive values, moving shadows
   double zoom = 0;      // that moves and grows or shrinks
   bool cut = false;     // the first frame of a shot: nothing of the frames before it is of use
+  // Whether `light` is all of it: someone has looked for light that moves, and not at reactive values alone. The
+  // temporal upscaler does, which has to know where its history is not to be believed.
+  bool judged = false;
 
   static constexpr double kMovingPx = 0.25;  // output pixels a frame
 };

@@ -134,7 +134,7 @@ typedef struct quincunx_content {
   double light;       /* whose colour changes and has no velocity */
   double zoom;        /* that moves and grows or shrinks */
   int32_t cut;        /* 1: the first frame of a shot */
-  int32_t padding;    /* 0 */
+  int32_t judged;     /* 1: `light` is all of it; 0: what has reactive values alone */
 } quincunx_content;
 
 typedef struct quincunx_report {
