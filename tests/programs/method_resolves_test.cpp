@@ -49,10 +49,10 @@ std::vector<float> shown(Device device, const Image& picture) {
   return rgb;
 }
 
-// The scene `still`, so that nothing but the method changes the picture.
-Played play(const MethodVariant& from, const MethodVariant& to, bool fades) {
+// By default the scene `still`, so that nothing but the method changes the picture.
+Played play(const MethodVariant& from, const MethodVariant& to, bool fades, const char* scene = "still") {
   PictureOptions options;
-  options.scene = "still";
+  options.scene = scene;
   options.output = kOutput;
   options.frames = kFrames;
   options.interop = gl::Interop::kCopy;
@@ -124,6 +124,22 @@ TEST(MethodResolves, AReportHasThePassesOfBothAndTheContent) {
     EXPECT_EQ(report.content->cut, index == 0);
     EXPECT_EQ(report.content->moving, 0);
   }
+}
+
+// Shadows have neither velocity nor reactive values. The judge of history sees them, and nothing where all else moves.
+TEST(MethodResolves, ShadowsThatMoveCountAsLight) {
+  const auto mean_light = [](const char* scene) {
+    const Played run = play(kOld, kOld, false, scene);
+    double sum = 0;
+    for (int index = kFrames / 3; index < kFrames; ++index)
+      sum += run.reports[static_cast<std::size_t>(index)].content->light;
+    return sum / (kFrames - kFrames / 3);
+  };
+  const double shadows = mean_light("shadows"), pan = mean_light("pan");
+  RecordProperty("light_of_shadows_and_pan", std::to_string(shadows) + " " + std::to_string(pan));
+  EXPECT_GT(shadows, .2);
+  EXPECT_LT(pan, .05);
+  EXPECT_EQ(mean_light("still"), 0);
 }
 
 // A method that has rested finds no history of its own.
