@@ -160,6 +160,8 @@ class QualityProgram final : public Program {
     QualityFrame frame = {.timing = timing};
     if (stage().times_passes) frame.resolve_ms = besides_ms(timing.frame);
     frame.content = told(stage().trace->content[timing.frame], stage().seed, timing.frame);
+    frame.content->judged = resolved().at(timing.frame).method.method == Method::kTemporal;
+    if (!frame.content->judged) frame.content->light = 0;  // moving shadows have no reactive values
     const Status status = controller_->observe(frame);
     if (!status.ok()) throw std::logic_error(status.message());
   }
