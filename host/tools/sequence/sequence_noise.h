@@ -20,7 +20,7 @@ struct LitFrame {
 
 // Returns the variance of a sample in parts of its square, at most 1; 0 where frames are clean, or do not tell.
 // `frames` follow one another. What counts is how far samples of different frames are apart that show, by motion, the
-// same place of a surface to within a sixteenth of a pixel: texture and aliasing are the same in both, and what the light
+// same place of a surface to within a sixteenth of a pixel: texture and aliasing are the same in both. What the light
 // of the whole picture changes is taken off. Frames are noisy where nine tenths of the picture are; then it is what the
 // fifth with most noise exceeds. Pure.
 float noise_between(std::span<const LitFrame> frames);
