@@ -14,7 +14,7 @@ namespace quincunx::reference {
 // it falls as W grows.
 constexpr double kSampleReach = .98;
 constexpr double kWideReach = 1.05;
-constexpr double kStillReachMin = .75;
+constexpr double kStillReachMin = .82;
 constexpr double kReachNarrowing = .05;  // for each unit of confidence
 constexpr double kWeightSumMin = 1e-30;  // against a division by 0
 
