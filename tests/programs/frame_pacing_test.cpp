@@ -75,7 +75,7 @@ TEST(FramePacing, BadSettingsAreNamed) {
   }
 }
 
-// By the built-in front `temporal:fast` errs least where light alone changes, and another method where nothing does.
+// `quincunx:reprojected` errs least where light alone changes, the temporal methods where nothing does.
 TEST(FramePacing, AChangeOfMethodIsNotedWithTheFrameThatBeginsIt) {
   FramePacing pacing = made(settings(ControllerKind::kQuality));
   double now = 0;
@@ -97,10 +97,10 @@ TEST(FramePacing, AChangeOfMethodIsNotedWithTheFrameThatBeginsIt) {
   ASSERT_FALSE(pacing.run().method_changes.empty());
   const tools::MethodChange& change = pacing.run().method_changes.back();
   EXPECT_GE(change.frame, 150);
-  EXPECT_EQ(change.to, "temporal:fast");
+  EXPECT_EQ(change.to, "quincunx:reprojected");
   EXPECT_NE(change.why.find("light"), std::string::npos) << change.why;
   EXPECT_EQ(pacing.run().frames[static_cast<std::size_t>(change.frame)].fading_from, change.from);
-  EXPECT_NE(pacing.reasons().find("Chosen         temporal:fast"), std::string::npos);
+  EXPECT_NE(pacing.reasons().find("Chosen         quincunx:reprojected"), std::string::npos);
   EXPECT_FALSE(made(settings()).choice().has_value());
 }
 
