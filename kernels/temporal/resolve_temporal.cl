@@ -7,7 +7,7 @@
 //   m += (s - m) w / (W + w)
 //   s  the nearest sample; d its distance from the pixel's picture, output pixels
 //   w  its weight, (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2);
-//      r = .98, in still tiles down to .82 as W grows; 1.05 where samples move neither alike nor apart
+//      r = .98, in still tiles down to .82 as W grows; 1.05 in tiles that are not rigid
 // In a tile that holds back (TileLight), outliers of pixels whose history is known do not count.
 // Only where something speaks against history is it brought into the range of the samples there: doing so everywhere
 // would cost more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.

@@ -10,7 +10,7 @@
 // Returns the reach of samples, output pixels, in a tile's pixels of such confidence.
 static inline float8 reach_of(TileReprojection tile, float8 confidence) {
   if (stands_still(tile)) return max(SAMPLE_REACH - REACH_NARROWING * confidence, STILL_REACH_MIN);
-  return (float8)(tile.is_rigid || tile.has_motion_edge ? SAMPLE_REACH : WIDE_REACH);
+  return (float8)(tile.is_rigid ? SAMPLE_REACH : WIDE_REACH);
 }
 
 // Returns (1 - d^2 / r^2)^2, d the distance in output pixels from each pixel's picture to its sample, r the reach.

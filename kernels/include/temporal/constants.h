@@ -83,7 +83,7 @@
 #define SEED_DISTANCE_MAX 16            // samples: a larger hole without any valid sample is black [S]
 
 // ---- resolve_temporal: accumulating.
-#define SAMPLE_REACH 0.98f      // px: where a sample's weight becomes 0, in rigid tiles and at motion edges [S]
+#define SAMPLE_REACH 0.98f      // px: where a sample's weight becomes 0, in rigid tiles [S]
 #define WIDE_REACH 1.05f        // px: the same elsewhere; .98: zoom -.2 dB [S]
 #define STILL_REACH_MIN 0.82f   // px: the same of well known pixels in still tiles: it spreads as a pixel does [S]
 #define REACH_NARROWING 0.05f   // px for each unit of confidence: there [S]

@@ -10,8 +10,7 @@
 
 namespace quincunx::reference {
 
-// Output pixels from which on a sample has no weight: in rigid tiles and at motion edges, and elsewhere. In still tiles
-// it falls as W grows.
+// Output pixels from which on a sample has no weight: in rigid tiles, and elsewhere. In still tiles it falls with W.
 constexpr double kSampleReach = .98;
 constexpr double kWideReach = 1.05;
 constexpr double kStillReachMin = .82;
@@ -21,7 +20,7 @@ constexpr double kWeightSumMin = 1e-30;  // against a division by 0
 template <typename Real>
 Real reach_of(const TileReprojection& tile, const Real& confidence) {
   if (stands_still(tile)) return max(kSampleReach - kReachNarrowing * confidence, kStillReachMin);
-  return Real(tile.is_rigid || tile.has_motion_edge ? kSampleReach : kWideReach);
+  return Real(tile.is_rigid ? kSampleReach : kWideReach);
 }
 
 // Returns the weight of a sample `dx` and `dy` output pixels away.
