@@ -59,7 +59,7 @@ pack_programs() {
   cp kernels/variants.txt "$folder/quincunx/kernels"
   {
     ldd "${programs[@]/#/$build/bin/}"
-    ldconfig -p | grep -E 'lib(EGL|OpenGL|GLdispatch)\.so\.[0-9]+ .*x86-64'
+    ldconfig -p | grep -E 'lib(EGL|OpenGL|GLdispatch|GLESv2)\.so\.[0-9]+ .*x86-64'
   } | grep -oE '/[^ ]+\.so[^ :]*' | sort -u | xargs cp -Lt "$folder/quincunx/lib"
   git rev-parse --short HEAD >"$folder/quincunx/commit"
   tar -C "$folder" -caf "$pack" quincunx
@@ -88,16 +88,24 @@ if compgen -G "lib/ld-linux-*" >/dev/null; then
 fi
 
 # limited PERCENT LOG PROGRAM OPTION...: with that share of the time; what it says goes to LOG, its exit status to
-# $code.
+# $code. Tests are dealt to several processes, one for two processors.
+shards=1
 limited() {
-  local seconds=$((minutes * 60 * $1 / 100)) log=$out/$2 program=$3 started=$SECONDS
+  local seconds=$((minutes * 60 * $1 / 100)) log=$out/$2 program=$3 started=$SECONDS shard running=()
   shift 3
   printf '%s %s\n' "$program" "$*" >&2
+  for ((shard = 0; shard < shards; shard++)); do
+    GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard timeout -k 5 "$seconds" "${prefix[@]}" "${loader[@]}" \
+      "$build/bin/$program" "$@" >"$log.$shard" 2>"$log.$shard.err" &
+    running+=($!)
+  done
   code=0
-  timeout -k 5 "$seconds" "${prefix[@]}" "${loader[@]}" "$build/bin/$program" "$@" >"$log" 2>"$log.err" || code=$?
+  for shard in "${running[@]}"; do
+    wait "$shard" || code=$?
+  done
   took=$((SECONDS - started))
-  cat "$log.err" >>"$log"
-  rm "$log.err"
+  cat "$log".[0-9]* >"$log"
+  rm "$log".[0-9]*
 }
 outcome() {
   case $code in
@@ -119,7 +127,9 @@ told() { say '' "$(fold -s -w 118 <<<"\`$1\`: $(outcome)." | sed 's/ *$//')"; }
 test_row() {
   local share=$1 program=$2 log=$2.log
   shift 2
+  shards=$((($(nproc) + 1) / 2))
   limited "$share" "$log" "$program" "$@"
+  shards=1
   local count_of='grep -c -E'
   say "| \`$program${*:+ $*}\` | $($count_of '^\[       OK' "$out/$log" || true) | $(
     sed -n 's/^\[  FAILED  \] \(.*\) (.*ms)$/\1/p' "$out/$log" | wc -l) | $(
