@@ -18,22 +18,22 @@ typedef struct KnownLayers {
 // The same by channel.
 typedef struct BlendedLayers {
   LayerColours colours;
-  float8 confidence;
+  RunFloats confidence;
 } BlendedLayers;
 
 static inline BlendedLayers nothing_blended(void) {
-  BlendedLayers nothing = {all_colours(0.0f), (float8)(0.0f)};
-  nothing.colours.alpha = (float8)(1.0f);
+  BlendedLayers nothing = {all_colours(0.0f), (RunFloats)(0.0f)};
+  nothing.colours.alpha = (RunFloats)(1.0f);
   return nothing;
 }
 
 // Takes `found` in `lanes`.
-static inline void replace_lanes(BlendedLayers* known, BlendedLayers found, int8 lanes) {
+static inline void replace_lanes(BlendedLayers* known, BlendedLayers found, RunInts lanes) {
   known->colours = select_colours(known->colours, found.colours, lanes);
   known->confidence = select(known->confidence, found.confidence, lanes);
 }
 
-// Pixels of eight that come from as far: lane i reads the 4x4 texels from (x + i, y) on.
+// Pixels of eight that come from as far: lane i reads the 4x4 texels from (x + i, y) on. On a GPU it is the first alone.
 typedef struct LayerRun {
   int x, y;
   int8 lanes;
@@ -64,7 +64,7 @@ static inline BlendedLayers copy_layers(const PastLayers* past, DEPTH_TEXELS dep
                                         const LayerSources* from, LayerRun run) {
   const RowWindows windows = windows_from(past, run.x + 1, run.y + 1, 1, false);
   const LayerRow row = load_layer_row(past, depth, windows, 0);
-  const LayerTaps taps = taps_of(&row, 0, wishes, from->was_split);
+  const LayerTaps taps = taps_of(&row, 0, wishes, RUN_OF(from->was_split));
   return take_taps(&taps);
 }
 
@@ -72,30 +72,28 @@ static inline BlendedLayers copy_layers(const PastLayers* past, DEPTH_TEXELS dep
 static inline BlendedLayers sample_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
                                           const LayerSources* from, LayerRun run) {
   const float8 zero = (float8)(0.0f);
-  bool copied = !any_lane(run.lanes & ((from->fraction_x > zero) | (from->fraction_y > zero)));
-  if (ON_CPU && copied) return copy_layers(past, depth, wishes, from, run);
-  if (ON_CPU) copied = false;
-  const RowWindows windows = windows_from(past, run.x + copied, run.y + copied, copied ? 1 : 4, !copied);
+  const bool copied = !any_lane(run.lanes & ((from->fraction_x > zero) | (from->fraction_y > zero)));
+  if (copied) return copy_layers(past, depth, wishes, from, run);
+  const RowWindows windows = windows_from(past, run.x, run.y, 4, true);
   const Cubic across = cubic_weights(from->fraction_x, HISTORY_SHARPNESS);
   Cubic wy = cubic_weights(from->fraction_y, HISTORY_SHARPNESS);
   LayerSums sums = no_taps();
   UNROLL(4)
   for (int y = 0; y < 4; ++y) {
     const LayerRow row = load_layer_row(past, depth, windows, y);
-    const float8 linear_y = middle_weight(y, from->fraction_y);
+    const RunFloats linear_y = RUN_OF(middle_weight(y, from->fraction_y));
     Cubic wx = across;
     UNROLL(4)
     for (int x = 0; x < 4; ++x) {
-      const LayerTaps taps = taps_of(&row, x, wishes, from->was_split);
-      if (copied) return take_taps(&taps);
-      add_taps(&sums, &taps, wx.w0 * wy.w0);
+      const LayerTaps taps = taps_of(&row, x, wishes, RUN_OF(from->was_split));
+      add_taps(&sums, &taps, RUN_OF(wx.w0 * wy.w0));
       if (is_middle_tap(x) && is_middle_tap(y))
-        add_middle_taps(&sums, &taps, middle_weight(x, from->fraction_x) * linear_y);
+        add_middle_taps(&sums, &taps, RUN_OF(middle_weight(x, from->fraction_x)) * linear_y);
       wx = next_taps(wx);
     }
     wy = next_taps(wy);
   }
-  const int8 is_alone = wishes->kind == kFarLayer ? ~wishes->is_split : (int8)(0);
+  const RunInts is_alone = wishes->kind == kFarLayer ? ~RUN_OF(wishes->is_split) : (RunInts)(0);
   const BlendedLayers blended = {blend_colours(&sums), blend_confidence(&sums, is_alone)};
   return blended;
 }
@@ -133,18 +131,14 @@ static inline float16 four_texels(float4 red, float4 green, float4 blue, float4 
                    red.w, green.w, blue.w, last.w);
 }
 
-// Fetches the wanted layers of the pixels in `lanes`; of the others nothing.
-static inline KnownLayers fetch_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
-                                       const LayerSources* from, int8 lanes) {
-  if (wishes->kind == kFarLayer && !any_lane(wishes->is_split)) {
-    const bool copied = lie_side_by_side(past, from);
-    if ((copied && have_one(past, from)) || !may_meet_two(past, from)) return fetch_alone(past, from, copied);
-  }
+#if ON_CPU
+// Samples the layers of the pixels in `left`, run by run; of the others nothing.
+static inline KnownLayers sample_lanes(const PastLayers* past, DEPTH_TEXELS depth, LayerWishes wishes,
+                                       LayerSources from, int8 left) {
   BlendedLayers found = nothing_blended();
-  int8 left = lanes & ~from->is_outside;
   while (any_lane(left)) {
-    const LayerRun run = find_run(from, left);
-    replace_lanes(&found, sample_layers(past, depth, wishes, from, run), run.lanes);
+    const LayerRun run = find_run(&from, left);
+    replace_lanes(&found, sample_layers(past, depth, &wishes, &from, run), run.lanes);
     left &= ~run.lanes;
   }
   const LayerColours c = found.colours;
@@ -153,4 +147,42 @@ static inline KnownLayers fetch_layers(const PastLayers* past, DEPTH_TEXELS dept
                              found.confidence,
                              c.alpha};
   return known;
+}
+#else
+// The same, pixel by pixel.
+static inline KnownLayers sample_lanes(const PastLayers* past, DEPTH_TEXELS depth, LayerWishes wishes,
+                                       LayerSources from, int8 left) {
+  KnownLayers known = {no_texels(), (float8)(0.0f), (float8)(0.0f)};
+  for (int i = 0; i < 8; ++i) {
+    BlendedLayers found = nothing_blended();
+    if (left.s0 != 0) {
+      const LayerRun run = {from.x.s0, from.y.s0, (int8)(-1, 0, 0, 0, 0, 0, 0, 0)};
+      found = sample_layers(past, depth, &wishes, &from, run);
+    }
+    const LayerColours c = found.colours;
+    known.texels = push_texel(known.texels, (float4)(c.red, c.green, c.blue, c.coverage));
+    known.confidence = (float8)(known.confidence.s1234, known.confidence.s567, found.confidence);
+    known.alpha = (float8)(known.alpha.s1234, known.alpha.s567, c.alpha);
+    wishes.is_split = NEXT_LANES(wishes.is_split);
+    wishes.near_depth = NEXT_LANES(wishes.near_depth);
+    wishes.far_depth = NEXT_LANES(wishes.far_depth);
+    from.x = NEXT_LANES(from.x);
+    from.y = NEXT_LANES(from.y);
+    from.fraction_x = NEXT_LANES(from.fraction_x);
+    from.fraction_y = NEXT_LANES(from.fraction_y);
+    from.was_split = NEXT_LANES(from.was_split);
+    left = NEXT_LANES(left);
+  }
+  return known;
+}
+#endif
+
+// Fetches the wanted layers of the pixels in `lanes`; of the others nothing.
+static inline KnownLayers fetch_layers(const PastLayers* past, DEPTH_TEXELS depth, const LayerWishes* wishes,
+                                       const LayerSources* from, int8 lanes) {
+  if (wishes->kind == kFarLayer && !any_lane(wishes->is_split)) {
+    const bool copied = lie_side_by_side(past, from);
+    if ((copied && have_one(past, from)) || !may_meet_two(past, from)) return fetch_alone(past, from, copied);
+  }
+  return sample_lanes(past, depth, *wishes, *from, lanes & ~from->is_outside);
 }

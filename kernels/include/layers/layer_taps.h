@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Taps: texels of history as the layers that eight pixels of a row want have them, one texel of each pixel at a time;
-// and sums of them over the 4x4 texels around the pixels' places.
+// Taps: texels of history as the layers that pixels of a row want have them, one texel of each pixel at a time; and sums
+// of them over the 4x4 texels around the pixels' places.
 #pragma once
 
 #include "layers/constants.h"
@@ -15,51 +15,51 @@ typedef struct LayerWishes {
   float least_part, most_part;   // fractions of a near layer's depth: texels within that range show the same thing
 } LayerWishes;
 
-// Premultiplied colours and coverages of eight pixels, by channel.
+// Premultiplied colours and coverages, by channel.
 typedef struct LayerColours {
-  float8 red, green, blue, coverage;
-  float8 alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
+  RunFloats red, green, blue, coverage;
+  RunFloats alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
 } LayerColours;
 
 // One texel of each pixel as the layer has it.
 typedef struct LayerTaps {
   LayerColours colours;
-  float8 confidence;
-  int8 has_two;  // it has two layers
-  int8 valid;    // it has the surface that is wished for, or says that nothing of it is there
+  RunFloats confidence;
+  RunInts has_two;  // it has two layers
+  RunInts valid;    // it has the surface that is wished for, or says that nothing of it is there
 } LayerTaps;
 
-static inline int8 are_alike(float8 a, float8 b, float tolerance) {
+static inline RunInts are_alike(RunFloats a, RunFloats b, float tolerance) {
   return fabs(a - b) <= tolerance * max(a, b);
 }
 
 // Looks for far layers, and for surfaces alone, in a column of the pixels' neighbourhoods. `tests_depth`: lanes of
 // surfaces alone whose texels of one layer must not be nearer, as no trust tells.
-static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, int8 tests_depth) {
-  const float8 far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const float8 stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
-  const float8 confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const int8 split = wishes->is_split, two = as_int8(stored) >> 31;
-  const float8 wanted = select(wishes->near_depth, wishes->far_depth, split);
-  const int8 is_near = two & (wanted > 0.5f * (far_depth + near_depth));
-  const float8 shown = select(far_depth, near_depth, is_near);
-  const int8 known = confidence > 0.0f;
+static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, RunInts tests_depth) {
+  const RunFloats far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const RunFloats stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
+  const RunFloats confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const RunInts split = RUN_OF(wishes->is_split), two = as_run_ints(stored) >> 31;
+  const RunFloats wanted = select(RUN_OF(wishes->near_depth), RUN_OF(wishes->far_depth), split);
+  const RunInts is_near = two & (wanted > 0.5f * (far_depth + near_depth));
+  const RunFloats shown = select(far_depth, near_depth, is_near);
+  const RunInts known = confidence > 0.0f;
 
-  const int8 far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
-                         (shown <= 0.5f * (wishes->near_depth + wishes->far_depth)) &
+  const RunInts far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
+                         (shown <= 0.5f * (RUN_OF(wishes->near_depth) + RUN_OF(wishes->far_depth))) &
                          select(known, coverage >= NEAR_COVERAGE_MIN, is_near);
-  const int8 alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
+  const RunInts alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
                                   select(known & are_alike(shown, wanted, FAR_DEPTH_STEP_MAX),
                                          are_alike(shown, wanted, NEAR_DEPTH_STEP_MAX), is_near), two);
 
   // Behind another surface only the colour of a near layer is wanted.
-  const float8 whole = select((float8)(1.0f), 1.0f / max(coverage, (float8)(NEAR_COVERAGE_MIN)), split);
+  const RunFloats whole = select((RunFloats)(1.0f), 1.0f / max(coverage, (RunFloats)(NEAR_COVERAGE_MIN)), split);
   LayerTaps taps;
   taps.colours.red = select(in_column(row->far.red, column), in_column(row->near.red, column) * whole, is_near);
   taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
   taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
-  taps.colours.coverage = select((float8)(1.0f), coverage, is_near & ~split);
-  taps.colours.alpha = select(in_column(row->alpha, column), (float8)(1.0f), is_near);
+  taps.colours.coverage = select((RunFloats)(1.0f), coverage, is_near & ~split);
+  taps.colours.alpha = select(in_column(row->alpha, column), (RunFloats)(1.0f), is_near);
   taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
@@ -68,15 +68,15 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
 
 // Looks for near layers.
 static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWishes* wishes) {
-  const float8 far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const float8 stored = in_column(row->far.last, column);
-  const float8 confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const int8 two = as_int8(stored) >> 31;
-  const int8 is_near = two & (wishes->near_depth > 0.5f * (far_depth + near_depth));
-  const float8 shown = select(far_depth, near_depth, is_near);
-  const int8 is_ours = (shown > 0.5f * (wishes->near_depth + wishes->far_depth)) &
-                       (shown >= wishes->near_depth * wishes->least_part);
-  const float8 none = (float8)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
+  const RunFloats far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const RunFloats stored = in_column(row->far.last, column);
+  const RunFloats confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const RunInts two = as_run_ints(stored) >> 31;
+  const RunInts is_near = two & (RUN_OF(wishes->near_depth) > 0.5f * (far_depth + near_depth));
+  const RunFloats shown = select(far_depth, near_depth, is_near);
+  const RunInts is_ours = (shown > 0.5f * (RUN_OF(wishes->near_depth) + RUN_OF(wishes->far_depth))) &
+                       (shown >= RUN_OF(wishes->near_depth) * wishes->least_part);
+  const RunFloats none = (RunFloats)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
   const LayerChannels *far = &row->far, *near = &row->near;
 
   LayerTaps taps;
@@ -85,16 +85,16 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
       select(none, select(in_column(far->green, column), in_column(near->green, column), is_near), is_ours);
   taps.colours.blue =
       select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
-  taps.colours.coverage = select(none, select((float8)(1.0f), in_column(near->last, column), is_near), is_ours);
-  taps.colours.alpha = (float8)(1.0f);
+  taps.colours.coverage = select(none, select((RunFloats)(1.0f), in_column(near->last, column), is_near), is_ours);
+  taps.colours.alpha = (RunFloats)(1.0f);
   taps.confidence = select(select(empty, confidence, is_ours & ~two), in_column(row->near_confidence, column),
                            is_ours & is_near);
   taps.has_two = two;
-  taps.valid = shown <= wishes->near_depth * wishes->most_part;  // nothing stood before it
+  taps.valid = shown <= RUN_OF(wishes->near_depth) * wishes->most_part;  // nothing stood before it
   return taps;
 }
 
-static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, int8 was_split) {
+static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, RunInts was_split) {
   return wishes->kind == kNearLayer ? near_taps(row, column, wishes) : far_taps(row, column, wishes, was_split);
 }
 
@@ -103,27 +103,27 @@ static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWish
 typedef struct LayerSums {
   LayerColours cubic, bilinear;  // over the valid taps
   LayerColours least, most;      // range of the valid ones of the middle four
-  float8 weight, middle_weight;  // sums over the valid taps
-  float8 confidence;             // bilinear; an invalid tap is not known
+  RunFloats weight, middle_weight;  // sums over the valid taps
+  RunFloats confidence;             // bilinear; an invalid tap is not known
   // Confidence of all taps as it is stored, for pixels without a texel of two layers.
-  float8 stored, least_stored, most_stored;
-  int8 has_two;                  // a tap has two layers
+  RunFloats stored, least_stored, most_stored;
+  RunInts has_two;                  // a tap has two layers
 } LayerSums;
 
 static inline LayerColours all_colours(float value) {
-  const float8 all = (float8)(value);
+  const RunFloats all = (RunFloats)(value);
   const LayerColours colours = {all, all, all, all, all};
   return colours;
 }
 
 static inline LayerSums no_taps(void) {
-  const float8 none = (float8)(0.0f);
+  const RunFloats none = (RunFloats)(0.0f);
   const LayerSums sums = {all_colours(0.0f), all_colours(0.0f), all_colours(FLT_MAX), all_colours(-FLT_MAX),
-                          none, none, none, none, (float8)(FLT_MAX), (float8)(-FLT_MAX), (int8)(0)};
+                          none, none, none, none, (RunFloats)(FLT_MAX), (RunFloats)(-FLT_MAX), (RunInts)(0)};
   return sums;
 }
 
-static inline void add_colours(LayerColours* sum, const LayerColours* colours, float8 weight) {
+static inline void add_colours(LayerColours* sum, const LayerColours* colours, RunFloats weight) {
   sum->red += colours->red * weight;
   sum->green += colours->green * weight;
   sum->blue += colours->blue * weight;
@@ -134,7 +134,7 @@ static inline void add_colours(LayerColours* sum, const LayerColours* colours, f
 }
 
 // Takes `chosen` in `lanes`, `otherwise` in the others.
-static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, int8 lanes) {
+static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, RunInts lanes) {
   const LayerColours colours = {
       select(otherwise.red, chosen.red, lanes), select(otherwise.green, chosen.green, lanes),
       select(otherwise.blue, chosen.blue, lanes), select(otherwise.coverage, chosen.coverage, lanes),
@@ -155,8 +155,8 @@ static inline LayerColours max_colours(LayerColours a, LayerColours b) {
 }
 
 // Adds a texel of each pixel with its weight in the cubic.
-static inline void add_taps(LayerSums* sums, const LayerTaps* taps, float8 weight) {
-  const float8 counted = select((float8)(0.0f), weight, taps->valid);
+static inline void add_taps(LayerSums* sums, const LayerTaps* taps, RunFloats weight) {
+  const RunFloats counted = select((RunFloats)(0.0f), weight, taps->valid);
   add_colours(&sums->cubic, &taps->colours, counted);
   sums->weight += counted;
   sums->stored += taps->confidence * weight;
@@ -164,9 +164,9 @@ static inline void add_taps(LayerSums* sums, const LayerTaps* taps, float8 weigh
 }
 
 // Adds one of the middle four, too, with its weight in the bilinear blend.
-static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, float8 weight) {
-  const int8 valid = taps->valid;
-  const float8 counted = select((float8)(0.0f), weight, valid);
+static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, RunFloats weight) {
+  const RunInts valid = taps->valid;
+  const RunFloats counted = select((RunFloats)(0.0f), weight, valid);
   add_colours(&sums->bilinear, &taps->colours, counted);
   sums->middle_weight += counted;
   sums->confidence += taps->confidence * counted;
@@ -178,11 +178,11 @@ static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, float
 
 // Blends one channel: the cubic, held in the range of the middle four; bilinear where the cubic has lost most of its
 // weights; `nothing` where the middle four have lost theirs.
-static inline float8 blend_channel(float8 cubic, float8 bilinear, float8 least, float8 most, const LayerSums* sums,
-                                   float nothing) {
-  const float8 held = min(max(cubic / sums->weight, least), most);
-  const float8 blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
-  return select(blended, (float8)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+static inline RunFloats blend_channel(RunFloats cubic, RunFloats bilinear, RunFloats least, RunFloats most,
+                                      const LayerSums* sums, float nothing) {
+  const RunFloats held = min(max(cubic / sums->weight, least), most);
+  const RunFloats blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
+  return select(blended, (RunFloats)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
 }
 
 static inline LayerColours blend_colours(const LayerSums* sums) {
@@ -192,7 +192,7 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
   colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums, 0.0f);
   colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums, 0.0f);
   colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums, 0.0f);
-  colours.alpha = (float8)(1.0f);
+  colours.alpha = (RunFloats)(1.0f);
 #if ALPHA
   colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums, 1.0f);
 #endif
@@ -201,8 +201,8 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
 
 // Blends confidence: that of surfaces alone among texels of one layer by the cubic, as in resolve_temporal; else
 // bilinear.
-static inline float8 blend_confidence(const LayerSums* sums, int8 is_alone) {
-  const float8 cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
-  const float8 known = select(sums->confidence, (float8)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+static inline RunFloats blend_confidence(const LayerSums* sums, RunInts is_alone) {
+  const RunFloats cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
+  const RunFloats known = select(sums->confidence, (RunFloats)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
   return select(known, cubic, is_alone & ~sums->has_two);
 }

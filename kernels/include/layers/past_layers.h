@@ -204,21 +204,41 @@ static inline RowWindows windows_from(const PastLayers* past, int x, int y, int 
   return windows;
 }
 
-// Texels by channel. The last lanes are not used: four, or eight where there is no third window.
+// What one call samples together: the eight pixels of a row on a CPU, one elsewhere, where each pixel of a vector costs
+// as much as the first, and the sums over the taps of eight would not stay in registers.
+#if ON_CPU
+typedef float8 RunFloats;
+typedef int8 RunInts;
+typedef float16 RowFloats;     // twelve texels; the last four lanes are not used, or eight where there is no third window
+#define RUN_OF(lanes) (lanes)  // those of eight lanes that are sampled
+#define as_run_ints as_int8
+#else
+typedef float RunFloats;
+typedef int RunInts;
+typedef float4 RowFloats;
+#define RUN_OF(lanes) ((lanes).s0)
+#define as_run_ints as_int
+#endif
+
+// Texels by channel.
 typedef struct LayerChannels {
-  float16 red, green, blue, last;
+  RowFloats red, green, blue, last;
 } LayerChannels;
 
 typedef struct LayerRow {
   LayerChannels far;   // or the only one; confidence as stored
   LayerChannels near;  // coverage; 0 in fours of texels of which none has two layers
-  float16 alpha;       // the far layer's; 1 without ALPHA
-  float16 far_depth, near_depth, near_confidence;
+  RowFloats alpha;     // the far layer's; 1 without ALPHA
+  RowFloats far_depth, near_depth, near_confidence;
 } LayerRow;
 
 // Returns a row without its first four texels, and with four more after the others, which fill the rest.
-static inline float16 push_four(float16 row, float4 texels) {
+static inline RowFloats push_four(RowFloats row, float4 texels) {
+#if ON_CPU
   return (float16)(row.s4567, row.s89ab, texels, texels);
+#else
+  return texels;
+#endif
 }
 
 static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
@@ -228,17 +248,17 @@ static inline LayerChannels push_channels(LayerChannels row, float16 texels) {
 }
 
 static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth, RowWindows windows, int row) {
-  const float16 none = (float16)(0.0f);
+  const RowFloats none = (RowFloats)(0.0f);
   LayerRow loaded = {{none, none, none, none}, {none, none, none, none}, none, none, none, none};
-  float16 far = none, near = none;
+  float16 far = (float16)(0.0f), near = far;
   FourStates states = {none.s0123, none.s0123, none.s0123};
   float4 alpha = none.s0123;
   UNROLL(3)
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < (ON_CPU ? 3 : 1); ++i) {
     if (i < 2 || windows.has_third) {
       const TexelWindow window = i == 0 ? windows.first : i == 1 ? windows.second : windows.third;
       far = load_row(past->far, window, row);
-      near = any(as_int4(far.s37bf) < 0) ? load_row(past->near, window, row) : none;
+      near = any(as_int4(far.s37bf) < 0) ? load_row(past->near, window, row) : (float16)(0.0f);
       states = load_states(past, depth, window, row);
       alpha = load_alpha_row(past->alpha, window, row);
     }
@@ -252,9 +272,14 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
   return loaded;
 }
 
-// Returns those eight of a row's texels that eight pixels see in the same column of their neighbourhoods, 0 to 3.
-static inline float8 in_column(float16 row, int column) {
+// Returns what the pixels that are sampled see in the same column of their neighbourhoods, 0 to 3.
+static inline RunFloats in_column(RowFloats row, int column) {
+#if ON_CPU
   if (column == 0) return row.s01234567;
   if (column == 1) return row.s12345678;
   return column == 2 ? row.s23456789 : row.s3456789a;
+#else
+  const float2 pair = column < 2 ? row.s01 : row.s23;
+  return column & 1 ? pair.y : pair.x;
+#endif
 }
