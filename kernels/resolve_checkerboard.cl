@@ -100,7 +100,7 @@ __kernel void resolve_checkerboard(const CheckerboardParams params, COLOUR_TEXEL
                         range, whole);
     }
     Sides shown = surfaces.nearest;
-    if (any_lane(nearest.trust < 1.0f)) {
+    if (any_of_eight(nearest.trust < 1.0f)) {
       if (params.has_history) {
         farthest = past_of(&params, previous_depth, x, y, surfaces.farthest_depth, MOTION_OF(farthest),
                            surfaces.is_surface, range, whole);

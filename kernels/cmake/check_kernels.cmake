@@ -12,7 +12,7 @@ foreach(row IN LISTS rows)
   list(POP_FRONT options)
   execute_process(
     COMMAND "${CLANG}" -x cl -cl-std=CL1.2 -target spir64-unknown-unknown -Xclang -finclude-default-header
-            -fsyntax-only -Wall -Wextra -Wshadow -Werror -Wno-unused-function -Wno-unused-parameter
+            -fsyntax-only -Wall -Wextra -Wshadow -Wundef -Werror -Wno-unused-function -Wno-unused-parameter
             -I "${ROOT}/include" ${options} "${FILE}"
     RESULT_VARIABLE result ERROR_VARIABLE log)
   if(NOT result EQUAL 0)

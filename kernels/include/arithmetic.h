@@ -2,6 +2,8 @@
 // Arithmetic that several kernels share.
 #pragma once
 
+#include "bits.h"
+
 // a * b + c rounded the same way wherever it stands: once where the device fuses fast, twice elsewhere. Without it a
 // compiler may fuse one copy of a sum and not another, and two ways to the same pixel differ in the last bit.
 #if defined(FP_FAST_FMAF) || defined(__FMA__) || defined(__aarch64__)  // PoCL says it by its processor only
@@ -25,6 +27,16 @@ typedef struct Positions {
   int8 texel;
   float8 fraction;
 } Positions;
+
+// Loads those from `first` on of a table of `count` texels, then as many fractions.
+static inline Positions load_positions(__global const int* table, int count, int first) {
+#if ON_CPU
+  const Positions at = {vload8(0, table + first), as_float8(vload8(0, table + count + first))};
+#else
+  const Positions at = {(int8)(table[first]), (float8)(as_float(table[count + first]))};
+#endif
+  return at;
+}
 
 // Shifted by less than 2^24 samples, anywhere.
 static inline Positions shifted_positions(Positions at, float8 by) {

@@ -4,17 +4,63 @@
 // isnan() and isinf().
 #pragma once
 
-// A CPU keeps vectors in registers where code is written out for each lane and each case. A compiler that makes code of
-// its own for every lane of a vector, as those of GPUs do, would need minutes for that.
+// Kernels that make eight pixels of a row at once have them in the lanes of vectors. A CPU has such vectors, and keeps
+// them in registers where code is written out for each lane and each case. Elsewhere a work-item has one pixel at a time:
+// in the first lane. The compiler leaves the others out, as nothing comes of them: eight pixels have five times as many
+// values as a GPU has registers for them, and a compiler that makes code of its own for every lane needs minutes.
 #if defined(__x86_64__) || defined(__aarch64__)
 #define ON_CPU 1
+enum { kLanes = 8 };                                              // those that count
+typedef float8 Lanes;
+typedef int8 LaneBits;
+#define LANES_OF(lanes) (lanes)                                   // of a vector of eight
+#define FIRST_LANE(lanes) ((lanes).s0)
+#define AS_LANE_BITS(lanes) as_int8(lanes)
+#define CONVERT_LANES(lanes) convert_int8(lanes)
+#define LANE_NUMBERS ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
 #define UNROLL(count) __attribute__((opencl_unroll_hint(count)))  // stands before a loop of `count` rounds
-#define EIGHT_TIMES(call) call, call, call, call, call, call, call, call  // compiles faster than an unrolled loop
+#define UNROLL_LANE(count)                                        // the same where only the first lane counts
+#define EACH_LANE(call) call, call, call, call, call, call, call, call  // compiles faster than an unrolled loop
 #else
 #define ON_CPU 0
+enum { kLanes = 1 };
+typedef float Lanes;
+typedef int LaneBits;
+#define LANES_OF(lanes) ((lanes).s0)
+#define FIRST_LANE(lanes) (lanes)
+#define AS_LANE_BITS(lanes) as_int(lanes)
+#define CONVERT_LANES(lanes) convert_int(lanes)
+#define LANE_NUMBERS ((int8)(0))
 #define UNROLL(count) __attribute__((opencl_unroll_hint(1)))
-#define EIGHT_TIMES(call) for (int lane = 0; lane < 8; ++lane) call
+#define UNROLL_LANE(count) __attribute__((opencl_unroll_hint(count)))  // else rounds hand all lanes on to the next
+#define EACH_LANE(call) call
 #endif
+#define UNROLL_ALWAYS(count) __attribute__((opencl_unroll_hint(count)))
+
+// The pixels of a row that a work-item makes: kLanes from `first` on, then from `first` + `step`, and so on, before
+// `end`. Beside each other where lanes are; elsewhere the items of a group take turns, so that those side by side load
+// and store neighbours.
+typedef struct ItemColumns {
+  int first, end, step;
+} ItemColumns;
+
+// `count`: how many an item makes of a row of `width`.
+static inline ItemColumns columns_of_item(int count, int width) {
+#if ON_CPU
+  const int first = get_global_id(0) * count;
+  const ItemColumns columns = {first, min(first + count, width), kLanes};
+#else
+  const int items = get_local_size(0);
+  const int group = get_group_id(0) * items * count;
+  const ItemColumns columns = {group + (int)get_local_id(0), min(group + items * count, width), items};
+#endif
+  return columns;
+}
+
+// How many pixels from x on are there, of which kLanes count.
+static inline int pixels_from(ItemColumns columns, int x) {
+  return ON_CPU ? columns.end - x : 1;
+}
 
 // The magnitude from which a value may count as infinite, as bits: 2^127. Half the largest float, so that a weighted
 // mean of smaller values never overflows.
@@ -67,15 +113,24 @@ static inline uint count_bits(uint bits, int count) {
   return popcount(bits & ((1u << min(count, 4)) - 1u));
 }
 
-// Eight lanes, the second first and the first last. Loops over lanes take the first and go on so: an array would lie
-// in memory, and Mesa unrolls every loop that has one.
-#define NEXT_LANES(lanes) ((lanes).s12345670)
-
 // Whether one of eight lanes, 0 or -1 each, is -1.
-static inline bool any_lane(int8 lanes) {
+static inline bool any_of_eight(int8 lanes) {
   const long4 longs = as_long4(lanes);
   const long2 pairs = longs.lo | longs.hi;
   return (pairs.x | pairs.y) != 0;
+}
+
+// Lanes, the second first and the first last. Loops over lanes take the first and go on so: an array would lie in
+// memory, and Mesa unrolls every loop that has one.
+#if ON_CPU
+#define NEXT_LANES(lanes) ((lanes).s12345670)
+#else
+#define NEXT_LANES(lanes) (lanes)
+#endif
+
+// Whether one of those that count is -1.
+static inline bool any_lane(int8 lanes) {
+  return ON_CPU ? any_of_eight(lanes) : lanes.s0 != 0;
 }
 
 static inline bool all_lanes(int8 lanes) {
@@ -85,13 +140,13 @@ static inline bool all_lanes(int8 lanes) {
 static inline int smallest_lane(int8 lanes) {
   const int4 four = min(lanes.lo, lanes.hi);
   const int2 two = min(four.lo, four.hi);
-  return min(two.x, two.y);
+  return ON_CPU ? min(two.x, two.y) : lanes.s0;
 }
 
 static inline int largest_lane(int8 lanes) {
   const int4 four = max(lanes.lo, lanes.hi);
   const int2 two = max(four.lo, four.hi);
-  return max(two.x, two.y);
+  return ON_CPU ? max(two.x, two.y) : lanes.s0;
 }
 
 // Random values that belong to a pixel of the output: the same on every device and in every run.

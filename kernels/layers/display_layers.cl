@@ -111,6 +111,18 @@ static inline void show_pixels(OUTPUT_TEXELS output, int index, int count, float
   store_pixels(output, index, count, shown_of(far, known, confidence));
 }
 
+// Loads a layer's texels of the pixels from (x, y) on.
+static inline EightTexels load_pixels_of(const PastLayers* known, HistoryLayer layer, int x, int y) {
+#if ON_CPU
+  const EightTexels texels = {load_row(layer, window_at(known, x, y, 1), 0),
+                              load_row(layer, window_at(known, x + 4, y, 1), 0)};
+  return texels;
+#else
+  return load_history8(layer, y * layer.width + x);
+#endif
+}
+
+#if ON_CPU
 // Loads twelve texels of the near layer's picture, side by side.
 static inline TwelveTexels load_near_row12(const PastLayers* known, DEPTH_TEXELS depth, float between,
                                            const RowWindows* windows, int row) {
@@ -123,11 +135,7 @@ static inline TwelveTexels load_near_row12(const PastLayers* known, DEPTH_TEXELS
 // Resamples the near layer at the pixels from (x, y) on; those of one layer may get anything.
 static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display,
                                       int x, int y) {
-  if (!display.has_phase) {
-    const EightTexels own = {load_row(known->near, window_at(known, x, y, 1), 0),
-                             load_row(known->near, window_at(known, x + 4, y, 1), 0)};
-    return own;
-  }
+  if (!display.has_phase) return load_pixels_of(known, known->near, x, y);
   const RowWindows windows = windows_from(known, x - display.step_x, y - display.step_y, 4, true);
   const float16 none = (float16)(0.0f);
   TwelveTexels row0, row1, row2, row3 = {none, none, none};
@@ -141,31 +149,38 @@ static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS dept
   }
   return blend_rows(row0, row1, row2, row3, display.wx, display.wy);
 }
+#else
+// The same of one pixel.
+static inline EightTexels sample_near(const PastLayers* known, DEPTH_TEXELS depth, float between, Display display,
+                                      int x, int y) {
+  if (!display.has_phase) return load_pixels_of(known, known->near, x, y);
+  const TexelWindow window = window_at(known, x - display.step_x, y - display.step_y, 4);
+  return push_texel(no_texels(),
+                    sample_neighbourhood(load_near_texels(known, depth, between, window), display.wx, display.wy));
+}
+#endif
 
 __kernel void display_layers(const TemporalDisplayParams params, const HistorySamples now, DEPTH_TEXELS depth,
                              __global const TileReprojection* tiles, __global const LayerTile* layers,
                              HISTORY_TEXELS history, HISTORY_TEXELS near_history, __global const half* states,
                              OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const PastLayers known =
       past_layers(params.output_width, params.output_height, now, history, 0, near_history, states, tiles, layers);
-  for (int x = first; x < end; x += kTemporalTile) {
+  for (int x = item.first; x < item.end; x += item.step) {
     const LayerTile layer = layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     if (VIEW == PICTURE && !layer.is_split) continue;
-    const TexelWindow left = window_at(&known, x, y, 1), right = window_at(&known, x + 4, y, 1);
-    const EightTexels own = {load_row(known.far, left, 0), load_row(known.far, right, 0)};
-    const float8 confidence = confidences(own);
+    const float8 confidence = confidences(load_pixels_of(&known, known.far, x, y));
     const bool any_split = layer.is_split && any_lane(as_int8(confidence) < 0);
     if (VIEW == PICTURE && !any_split) continue;
     const Display display = display_of(layer.phase_x, layer.phase_y);
     EightTexels near = {(float16)(0.0f), (float16)(0.0f)};
     if (any_split) near = sample_near(&known, depth, layer.between, display, x, y);
-    const int index = texel_index(params.output, x, y);
-    show_pixels(output, index, end - x, near.left, confidence.lo);
-    show_pixels(output, index + 4, end - x - 4, near.right, confidence.hi);
+    const int index = texel_index(params.output, x, y), count = pixels_from(item, x);
+    show_pixels(output, index, count, near.left, confidence.lo);
+    show_pixels(output, index + 4, count - 4, near.right, confidence.hi);
   }
 }

@@ -27,7 +27,7 @@
 
 // The states of the texels nearest to eight pixels.
 typedef struct NearestTexels {
-  float far_depth[8], near_depth[8], near_confidence[8];
+  float far_depth[8], near_depth[8], near_confidence[8];  // kLanes of them
   bool is_split[8];
 } NearestTexels;
 
@@ -38,7 +38,7 @@ static inline NearestTexels look_at_nearest(const ResizeParams* params, const Pa
   int texel[8];
   float phase_x[8], phase_y[8];
   vstore8(pixels->x, 0, texel);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     const LayerState state = state_at(past, depth, texel[i], pixels->y);
     const float2 phase = phase_of(past, previous_tile(params, texel[i], pixels->y), kNearLayer);
     nearest.far_depth[i] = state.far_depth;
@@ -56,12 +56,7 @@ static inline NearestTexels look_at_nearest(const ResizeParams* params, const Pa
 // Resamples the near layer at one of a pixel's places, among the 4x4 texels from (x, y) on.
 static inline float4 near_at(const PastLayers* past, DEPTH_TEXELS depth, float between, int x, int y, float4 wx,
                              float4 wy) {
-  const TexelWindow window = window_at(past, x, y, 4);
-  const Neighbourhood around = {load_near_row(past, depth, between, window, 0),
-                                load_near_row(past, depth, between, window, 1),
-                                load_near_row(past, depth, between, window, 2),
-                                load_near_row(past, depth, between, window, 3)};
-  return sample_neighbourhood(around, wx, wy);
+  return sample_neighbourhood(load_near_texels(past, depth, between, window_at(past, x, y, 4)), wx, wy);
 }
 
 // Adds `part` of the near layer at one place of each of the first `count` pixels that has two.
@@ -87,23 +82,22 @@ __kernel void resize_layers(const ResizeParams params, const HistorySamples befo
                             HISTORY_TEXELS near_history, __global const half* states, __global const LayerTile* layers,
                             STORED_HISTORY resized_near, __global half* resized_states) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
   const Positions row = row_among_texels(&params, positions, y);
   const int places = params.places_x * params.places_y;
   const PastLayers past = past_layers(params.previous_width, params.previous_height, before, history, 0, near_history,
                                       states, previous_tiles, previous_layers);
-  for (int x = first; x < end; x += kTemporalTile) {
+  for (int x = item.first; x < item.end; x += item.step) {
     if (!layers[y / kTemporalTile * params.tiles_x + x / kTemporalTile].is_layered) continue;
-    const int count = min(end - x, (int)kTemporalTile);
+    const int count = min(pixels_from(item, x), (int)kLanes);
     ResizedPixels pixels = pixels_among_texels(&params, positions, x, row);
     const NearestTexels nearest = look_at_nearest(&params, &past, depth, &pixels);
     store_states(resized_states, y * params.width + x, count, vload8(0, nearest.far_depth),
                  vload8(0, nearest.near_depth), vload8(0, nearest.near_confidence));
     float4 sums[8];
-    for (int i = 0; i < 8; ++i) sums[i] = (float4)(0.0f);
+    for (int i = 0; i < kLanes; ++i) sums[i] = (float4)(0.0f);
     for (int place = 0; place < places; ++place) {
       const SourcePlaces from =
           places_among_texels(&params, &pixels, place % params.places_x, place / params.places_x);

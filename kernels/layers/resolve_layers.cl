@@ -50,17 +50,17 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                              __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
                              STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const SourceFrame frame = params.frame0;
   const PastLayers past = past_layers(params.output_width, params.output_height, before, history, alpha, near_history,
                                       states, previous_tiles, previous_layers);
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
   const Positions row = row_position(&params, positions, y);
   uint met_count = 0;
-  for (int x = first; x < end; x += kTemporalTile) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
     const int tile_index = y / kTemporalTile * params.tiles_x + x / kTemporalTile;
     const LayerTile layer = layers[tile_index];
     if (!layer.is_layered) continue;
@@ -88,20 +88,20 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                             &known_alpha, &evidence);
     if (layer.is_split) tile.is_rigid = 0;  // it does not move as a whole
     float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence)) * taken;
-    if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
+    if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, count);
     EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
     mark_split(&sum, pixels.is_split);
     const int index = y * params.output_width + x;
-    store_history8(updated, index, end - x, sum);
+    store_history8(updated, index, count, sum);
 #if ALPHA
-    store_alpha8(updated_alpha, index, end - x,
+    store_alpha8(updated_alpha, index, count,
                  accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 
     // The near layers.
     const float8 zero = (float8)(0.0f);
     if (!any_lane(pixels.is_split)) {
-      store_states(updated_states, index, end - x, pixels.depth, zero, zero);
+      store_states(updated_states, index, count, pixels.depth, zero, zero);
       continue;
     }
     TileReprojection near_tile = {.is_rigid = layer.is_rigid};
@@ -111,9 +111,9 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
     const float cut = light[tile_index].new_cut;
     KnownLayers near = known_near(&pixels, &fetched_both.near, row_light, cut);
     near = update_near(near, &pixels, colour, depth, depth_layout, &params, &nearest_near);
-    const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - x;
+    const int8 is_inside = LANE_NUMBERS < count;
     store_near(updated_near, index, near.texels, pixels.is_split & is_inside);
-    store_states(updated_states, index, end - x, select(pixels.depth, pixels.far_depth, pixels.is_split),
+    store_states(updated_states, index, count, select(pixels.depth, pixels.far_depth, pixels.is_split),
                  select(zero, pixels.near_depth, pixels.is_split), select(zero, near.confidence, pixels.is_split));
   }
   if (met_count > 0) atomic_add(non_finite + params.counter, met_count);

@@ -32,7 +32,7 @@
 static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __global const int* positions,
                                                __global const TileReprojection* tiles, int x, Positions row) {
   ResizedPixels pixels = pixels_among_texels(params, positions, x, row);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     __global const TileReprojection* tile = tiles + previous_tile(params, pixels.x.s0, pixels.y);
     pixels.phase_x.s0 = tile->phase_x;
     pixels.phase_y.s0 = tile->phase_y;
@@ -47,7 +47,7 @@ static inline ResizedPixels pixels_with_phases(const ResizeParams* params, __glo
 static inline float8 confidence_left(const ResizeParams* params, HistoryLayer layer, const ResizedPixels* pixels) {
   int8 texel = pixels->x;
   float8 stored = (float8)(0.0f);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     stored.s0 = load_confidence(layer, pixels->y * layer.width + texel.s0);
     stored = NEXT_LANES(stored);
     texel = NEXT_LANES(texel);
@@ -59,14 +59,13 @@ __kernel void resize_history(const ResizeParams params, __global const int* posi
                              __global const TileReprojection* previous_tiles, HISTORY_TEXELS history,
                              HISTORY_TEXELS alpha, STORED_HISTORY resized, STORED_HISTORY resized_alpha) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
   const HistoryLayer layer = {history, params.previous_width, params.previous_height};
   const Positions row = row_among_texels(&params, positions, y);
   const float part = 1.0f / (float)(params.places_x * params.places_y);
-  for (int x = first; x < end; x += kTemporalTile) {
+  for (int x = item.first; x < item.end; x += item.step) {
     const ResizedPixels pixels = pixels_with_phases(&params, positions, previous_tiles, x, row);
     EightTexels sum = {(float16)(0.0f), (float16)(0.0f)};
 #if ALPHA
@@ -86,9 +85,9 @@ __kernel void resize_history(const ResizeParams params, __global const int* posi
     const float8 confidence = confidence_left(&params, layer, &pixels);
     sum.left.s37bf = confidence.lo;
     sum.right.s37bf = confidence.hi;
-    store_history8(resized, y * params.width + x, end - x, sum);
+    store_history8(resized, y * params.width + x, pixels_from(item, x), sum);
 #if ALPHA
-    store_alpha8(resized_alpha, y * params.width + x, end - x, sum_alpha);
+    store_alpha8(resized_alpha, y * params.width + x, pixels_from(item, x), sum_alpha);
 #endif
   }
 }

@@ -92,7 +92,7 @@ static inline View view_confidence(EightTexels updated) {
 }
 #elif VIEW == REJECTION
 static inline View view_rejection(const EightReprojections* motion, RowLight light) {
-  const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp_cells(light.rejection)};
+  const View view = {1.0f - motion->trust, edge_rejection(motion->motion_edge), ramp_cells(light)};
   return view;
 }
 #else
@@ -105,14 +105,14 @@ static inline View view_phase(TileReprojection tile, const FetchedHistory* histo
 }
 #endif
 
-// Stores the pixels from (x, y) on that lie before `end`.
-static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, View view) {
-  float red[8], green[8], blue[8];
-  vstore8(view.red, 0, red);
-  vstore8(view.green, 0, green);
-  vstore8(view.blue, 0, blue);
-  for (int i = 0; i < min(end - x, 8); ++i)
-    store_output(output, layout, x + i, y, (float4)(red[i], green[i], blue[i], 1.0f));
+// Stores the first `count` of the pixels from (x, y) on.
+static inline void store_view(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count, View view) {
+  for (int i = 0; i < min(count, (int)kLanes); ++i) {
+    store_output(output, layout, x + i, y, (float4)(view.red.s0, view.green.s0, view.blue.s0, 1.0f));
+    view.red = NEXT_LANES(view.red);
+    view.green = NEXT_LANES(view.green);
+    view.blue = NEXT_LANES(view.blue);
+  }
 }
 #endif
 
@@ -139,7 +139,7 @@ static inline bool resolve_plain_row(const TemporalParams* params, COLOUR_TEXELS
   if (any_lane(fetched.confidence < CONFIDENCE_MIN) || may_be_bright(samples)) return false;
   const float8 weight = distance_weights(params, nearest, reach_of(tile, fetched.confidence));
   const EightTexels sum = accumulate(fetched.texels, fetched.confidence, (float8)(0.0f), samples, weight);
-  store_history8(updated, index, kTemporalTile, sum);
+  store_history8(updated, index, kLanes, sum);
   return true;
 }
 
@@ -151,37 +151,38 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
                                STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
                                __global uint* non_finite) {
   const int first_y = get_global_id(1) * params.rows_per_item;
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || first_y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  if (item.first >= item.end || first_y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const int end_y = min(first_y + params.rows_per_item, params.output_height);
   const SourceFrame frame = params.frame0;
   const HistoryLayer layer = {history, params.output_width, params.output_height};
   const SampleMotion sample_motion = {reprojection, params.reprojection, params.motion_x, params.motion_y};
   const int tile_y = first_y / kTemporalTile;
-  bool left_is_even = has_even_light(light, &params, first / kTemporalTile - 1, tile_y);
-  bool own_is_even = has_even_light(light, &params, first / kTemporalTile, tile_y);
+  bool left_is_even = has_even_light(light, &params, item.first / kTemporalTile - 1, tile_y);
+  bool own_is_even = has_even_light(light, &params, item.first / kTemporalTile, tile_y);
   uint met_count = 0;
-  for (int x = first; x < end; x += kTemporalTile) {
-    const int tile_index = tile_y * params.tiles_x + x / kTemporalTile;
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
+    const int tile_x = x / kTemporalTile;
+    const int tile_index = tile_y * params.tiles_x + tile_x;
     const TileReprojection tile = tiles[tile_index];
-    const bool right_is_even = has_even_light(light, &params, x / kTemporalTile + 1, tile_y);
+    const bool right_is_even = has_even_light(light, &params, tile_x + 1, tile_y);
     const bool even = left_is_even && own_is_even && right_is_even;
-    left_is_even = own_is_even;
-    own_is_even = right_is_even;
+    left_is_even = ON_CPU ? own_is_even : has_even_light(light, &params, (x + item.step) / kTemporalTile - 1, tile_y);
+    own_is_even = ON_CPU ? right_is_even : has_even_light(light, &params, (x + item.step) / kTemporalTile, tile_y);
 #if LAYERS
     if (layers[tile_index].is_layered) continue;
 #endif
     const NearestSamples columns = find_nearest_columns(&params, positions, x, tile);
     const bool holds_back = light[tile_index].holds_back;
     const TileRows rows =
-        tile_rows(previous_tiles, &params, tile, MAY_BE_PLAIN && even && !holds_back, x, first_y, end_y - 1);
+        tile_rows(previous_tiles, &params, tile, MAY_BE_PLAIN && even && !holds_back, tile_x, first_y, end_y - 1);
     for (int y = first_y; y < end_y; ++y) {
       // Reproject.
       const NearestSamples nearest = in_row(&params, columns, row_position(&params, positions, y), tile);
       const TilePath path =
-          path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, x, y);
+          path_of_row(rows, previous_tiles, &params, reactive0, reactive1, &nearest, tile, tile_x, y);
       if (path == kCopiedPlain && resolve_plain_row(&params, colour, layer, tile, &nearest, updated, x, y)) continue;
       const bool looks_up_motion = path == kResampled || path == kCopied;
       EightReprojections motion = no_motion();
@@ -216,21 +217,21 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
       // Accumulate.
       float8 weight = distance_weights(&params, &nearest, reach_of(tile, evidence.confidence));
       if (holds_back) weight = select(weight, (float8)(0.0f), held);
-      if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, end - x);
+      if (may_be_bright(samples)) met_count += weigh_by_luma(&samples, &weight, count);
       const EightTexels sum = accumulate(known, evidence.confidence, inertia, samples, weight);
 
       // Store.
-      store_history8(updated, y * params.output_width + x, end - x, sum);
+      store_history8(updated, y * params.output_width + x, count, sum);
 #if ALPHA
-      store_alpha8(updated_alpha, y * params.output_width + x, end - x,
+      store_alpha8(updated_alpha, y * params.output_width + x, count,
                    accumulate_alpha(known_alpha, evidence.confidence, inertia, samples, weight));
 #endif
 #if VIEW == CONFIDENCE
-      store_view(view, params.output, x, y, end, view_confidence(sum));
+      store_view(view, params.output, x, y, count, view_confidence(sum));
 #elif VIEW == REJECTION
-      store_view(view, params.output, x, y, end, view_rejection(&motion, row_light));
+      store_view(view, params.output, x, y, count, view_rejection(&motion, row_light));
 #elif VIEW == PHASE
-      store_view(view, params.output, x, y, end, view_phase(tile, &fetched));
+      store_view(view, params.output, x, y, count, view_phase(tile, &fetched));
 #endif
     }
   }

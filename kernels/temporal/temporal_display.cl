@@ -38,7 +38,7 @@ typedef struct Pixels {
 // Returns the tile's pixels from (x, y) on, anywhere, clamped to the edge. The slow path.
 static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, int x, int y) {
   Pixels pixels = {no_texels(), no_texels()};
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     const int column = min(x + i, layer.width - 1);
     const float4 own = load_history(layer, y * layer.width + column);
     float4 shown = own;
@@ -50,10 +50,10 @@ static inline Pixels gather_pixels(HistoryLayer layer, const Display* display, i
   return pixels;
 }
 
-// Whether all texels that the cubic and load_around() need are inside.
+// Whether pixels are made side by side, and all texels that the cubic and load_around() need are inside.
 static inline bool lies_inside(HistoryLayer layer, const Display* display, int x, int y) {
   const int first_y = y - display->step_y;
-  return x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
+  return ON_CPU && x >= display->step_x && first_y >= 0 && x + 11 <= layer.width && first_y + 4 <= layer.height;
 }
 
 // Whether any of eight pixels is.
@@ -84,7 +84,7 @@ static inline float8 show_alpha(HistoryLayer layer, AlphaPlane plane, const Disp
                                 bool smooth, float8 confidence) {
   SmoothParts parts = smooth_parts(confidence);
   float8 shown = (float8)(1.0f);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     if (i < count) {
       shown.s0 = load_alpha(plane, y * plane.width + x + i);
       if (display->has_phase)
@@ -98,27 +98,28 @@ static inline float8 show_alpha(HistoryLayer layer, AlphaPlane plane, const Disp
   return shown;
 }
 
-// Those of eight pixels that lie before `end`.
-static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, EightTexels texels,
+// The first `count` of eight pixels.
+static inline void store_pixels(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count, EightTexels texels,
                                 float8 alphas) {
-  for (int i = 0; i < min(end - x, 8); ++i) {
+  for (int i = 0; i < min(count, (int)kLanes); ++i) {
     store_output(output, layout, x + i, y, (float4)(first_texel(texels).xyz, alphas.s0));
     texels = push_texel(texels, first_texel(texels));
     alphas = NEXT_LANES(alphas);
   }
 }
 #else
-// Those of eight pixels that lie before `end`.
-static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int end, EightTexels texels) {
+// The first `count` of eight pixels.
+static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x, int y, int count,
+                                EightTexels texels) {
   const float16 left = select(texels.left, (float16)(1.0f), LAST_CHANNELS);
   const float16 right = select(texels.right, (float16)(1.0f), LAST_CHANNELS);
-  if (x + 8 <= end) {
+  if (count >= 8) {
     stream_output4(output, layout, x, y, left);
     stream_output4(output, layout, x + 4, y, right);
     return;
   }
   EightTexels rest = {left, right};
-  for (int i = 0; x + i < end; ++i) {
+  for (int i = 0; i < count; ++i) {
     store_output(output, layout, x + i, y, first_texel(rest));
     rest = push_texel(rest, first_texel(rest));
   }
@@ -128,13 +129,13 @@ static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x,
 __kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
   const int first_y = get_global_id(1) * params.rows_per_item;
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || first_y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  if (item.first >= item.end || first_y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
-  const int end = min(first + params.columns_per_item, params.output_width);
   const int end_y = min(first_y + params.rows_per_item, params.output_height);
-  for (int x = first; x < end; x += kTemporalTile) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
     const TileReprojection tile = tiles[first_y / kTemporalTile * params.tiles_x + x / kTemporalTile];
     const Display display = display_of(tile.phase_x, tile.phase_y);
     FilteredRows rows;
@@ -167,10 +168,10 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
       // Store.
 #if ALPHA
       const AlphaPlane plane = {alpha, params.output_width, params.output_height};
-      const float8 alphas = show_alpha(layer, plane, &display, x, y, min(end - x, 8), smooth, confidence);
-      store_pixels(output, params.output, x, y, end, pixels.shown, alphas);
+      const float8 alphas = show_alpha(layer, plane, &display, x, y, min(count, (int)kLanes), smooth, confidence);
+      store_pixels(output, params.output, x, y, count, pixels.shown, alphas);
 #else
-      store_opaque(output, params.output, x, y, end, pixels.shown);
+      store_opaque(output, params.output, x, y, count, pixels.shown);
 #endif
     }
   }

@@ -15,7 +15,7 @@ static inline int16 non_finite_channels(float16 value) {
 }
 
 static inline bool any_channel(int16 lanes) {
-  return any_lane(lanes.lo | lanes.hi);
+  return any_of_eight(lanes.lo | lanes.hi);
 }
 
 static inline bool any_is_lost(EightColours colours) {
@@ -164,16 +164,16 @@ IN_REGISTERS static inline EightColours eight_over_rest(EightAround around, Eigh
 static inline EightColours fill_colours(const CheckerboardParams* params, COLOUR_TEXELS previous, EightAround around,
                                         Past nearest, Past farthest) {
   EightColours held = {(float16)(0.0f), (float16)(0.0f)};
-  if (any_lane(nearest.trust > 0.0f)) {
+  if (any_of_eight(nearest.trust > 0.0f)) {
     held = previous_colours(params, previous, nearest.places);
-    if (!any_lane(nearest.trust < 1.0f) && !any_is_lost(held)) {
+    if (!any_of_eight(nearest.trust < 1.0f) && !any_is_lost(held)) {
       const EightColours filled = {in_range(around.first, held.first), in_range(around.last, held.last)};
       return filled;
     }
   }
   EightColours filled = {mean_along_edge(around.first), mean_along_edge(around.last)};
   farthest.trust = select(farthest.trust, (float8)(0.0f), nearest.trust >= 1.0f);
-  if (any_lane(farthest.trust > 0.0f))
+  if (any_of_eight(farthest.trust > 0.0f))
     filled = eight_over_rest(around, previous_colours(params, previous, farthest.places), farthest.trust, filled);
   return eight_over_rest(around, held, nearest.trust, filled);
 }

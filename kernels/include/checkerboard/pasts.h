@@ -100,7 +100,7 @@ typedef struct Places {
 static inline Places places_at(const CheckerboardParams* params, float8 x, float8 y) {
   Places places = {between_texels(x), between_texels(y), false};
   const int8 apart = (places.column.low - every_other(places.column.low.s0)) | (places.row.low - places.row.low.s0);
-  places.are_a_run = !any_lane(apart) && run_is_inside(places.column.low.s0, params->previous_width);
+  places.are_a_run = !any_of_eight(apart) && run_is_inside(places.column.low.s0, params->previous_width);
   return places;
 }
 
@@ -130,7 +130,7 @@ static inline float8 depth_between(const CheckerboardParams* params, DEPTH_TEXEL
     const float16 lower = vload16(0, depth + texel_index(layout, places.column.low.s0, lower_row(params, places)));
     const float8 held = mix_depths(mix_depths(upper.even, upper.odd, places.column.fraction),
                                    mix_depths(lower.even, lower.odd, places.column.fraction), places.row.fraction);
-    if (!any_lane(non_finite_depths(held))) return held;  // else a texel may count that has no part in it
+    if (!any_of_eight(non_finite_depths(held))) return held;  // else a texel may count that has no part in it
   }
 #endif
   const int8 left = lower_texel(places.column, params->previous_width);

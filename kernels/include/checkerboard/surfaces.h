@@ -79,7 +79,7 @@ static inline float8 settled_depth(float8 depth, int8 inside) {
 static inline DepthsAround settled_depths(const CheckerboardParams* params, DepthsAround depths, int x, int y) {
   const int8 lost = non_finite_depths(depths.left) | non_finite_depths(depths.right) |
                     non_finite_depths(depths.above) | non_finite_depths(depths.below);
-  if (all_inside(params, x, y) && !any_lane(lost)) return depths;
+  if (all_inside(params, x, y) && !any_of_eight(lost)) return depths;
   const InsideAround inside = inside_around(params, x, y);
   const DepthsAround settled = {
       settled_depth(depths.left, inside.left), settled_depth(depths.right, inside.right),

@@ -52,7 +52,7 @@ static inline int8 have_two(HistoryLayer layer, int8 at) {
 
 // Returns those of `lanes` whose surface was the near layer of texel (x, y).
 static inline int8 were_near(const PastLayers* past, DEPTH_TEXELS depth, float8 surface, int8 x, int8 y, int8 lanes) {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     if (lanes.s0 != 0) {
       const LayerState state = state_at(past, depth, x.s0, y.s0);
       lanes.s0 = surface.s0 > 0.5f * (state.far_depth + state.near_depth) ? -1 : 0;

@@ -17,49 +17,49 @@ typedef struct LayerWishes {
 
 // Premultiplied colours and coverages, by channel.
 typedef struct LayerColours {
-  RunFloats red, green, blue, coverage;
-  RunFloats alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
+  Lanes red, green, blue, coverage;
+  Lanes alpha;  // with ALPHA: of the far layer; a near one is opaque where it covers
 } LayerColours;
 
 // One texel of each pixel as the layer has it.
 typedef struct LayerTaps {
   LayerColours colours;
-  RunFloats confidence;
-  RunInts has_two;  // it has two layers
-  RunInts valid;    // it has the surface that is wished for, or says that nothing of it is there
+  Lanes confidence;
+  LaneBits has_two;  // it has two layers
+  LaneBits valid;    // it has the surface that is wished for, or says that nothing of it is there
 } LayerTaps;
 
-static inline RunInts are_alike(RunFloats a, RunFloats b, float tolerance) {
+static inline LaneBits are_alike(Lanes a, Lanes b, float tolerance) {
   return fabs(a - b) <= tolerance * max(a, b);
 }
 
 // Looks for far layers, and for surfaces alone, in a column of the pixels' neighbourhoods. `tests_depth`: lanes of
 // surfaces alone whose texels of one layer must not be nearer, as no trust tells.
-static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, RunInts tests_depth) {
-  const RunFloats far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const RunFloats stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
-  const RunFloats confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const RunInts split = RUN_OF(wishes->is_split), two = as_run_ints(stored) >> 31;
-  const RunFloats wanted = select(RUN_OF(wishes->near_depth), RUN_OF(wishes->far_depth), split);
-  const RunInts is_near = two & (wanted > 0.5f * (far_depth + near_depth));
-  const RunFloats shown = select(far_depth, near_depth, is_near);
-  const RunInts known = confidence > 0.0f;
+static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWishes* wishes, LaneBits tests_depth) {
+  const Lanes far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const Lanes stored = in_column(row->far.last, column), coverage = in_column(row->near.last, column);
+  const Lanes confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const LaneBits split = LANES_OF(wishes->is_split), two = AS_LANE_BITS(stored) >> 31;
+  const Lanes wanted = select(LANES_OF(wishes->near_depth), LANES_OF(wishes->far_depth), split);
+  const LaneBits is_near = two & (wanted > 0.5f * (far_depth + near_depth));
+  const Lanes shown = select(far_depth, near_depth, is_near);
+  const LaneBits known = confidence > 0.0f;
 
-  const RunInts far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
-                         (shown <= 0.5f * (RUN_OF(wishes->near_depth) + RUN_OF(wishes->far_depth))) &
+  const LaneBits far_valid = (shown >= wanted * (1.0f - FAR_DEPTH_STEP_MAX)) &
+                         (shown <= 0.5f * (LANES_OF(wishes->near_depth) + LANES_OF(wishes->far_depth))) &
                          select(known, coverage >= NEAR_COVERAGE_MIN, is_near);
-  const RunInts alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
+  const LaneBits alone_valid = select(~tests_depth | (far_depth <= wanted * (1.0f + FAR_DEPTH_STEP_MAX)),
                                   select(known & are_alike(shown, wanted, FAR_DEPTH_STEP_MAX),
                                          are_alike(shown, wanted, NEAR_DEPTH_STEP_MAX), is_near), two);
 
   // Behind another surface only the colour of a near layer is wanted.
-  const RunFloats whole = select((RunFloats)(1.0f), 1.0f / max(coverage, (RunFloats)(NEAR_COVERAGE_MIN)), split);
+  const Lanes whole = select((Lanes)(1.0f), 1.0f / max(coverage, (Lanes)(NEAR_COVERAGE_MIN)), split);
   LayerTaps taps;
   taps.colours.red = select(in_column(row->far.red, column), in_column(row->near.red, column) * whole, is_near);
   taps.colours.green = select(in_column(row->far.green, column), in_column(row->near.green, column) * whole, is_near);
   taps.colours.blue = select(in_column(row->far.blue, column), in_column(row->near.blue, column) * whole, is_near);
-  taps.colours.coverage = select((RunFloats)(1.0f), coverage, is_near & ~split);
-  taps.colours.alpha = select(in_column(row->alpha, column), (RunFloats)(1.0f), is_near);
+  taps.colours.coverage = select((Lanes)(1.0f), coverage, is_near & ~split);
+  taps.colours.alpha = select(in_column(row->alpha, column), (Lanes)(1.0f), is_near);
   taps.confidence = select(confidence, in_column(row->near_confidence, column) * coverage, is_near);
   taps.has_two = two;
   taps.valid = select(alone_valid, far_valid, split);
@@ -68,15 +68,15 @@ static inline LayerTaps far_taps(const LayerRow* row, int column, const LayerWis
 
 // Looks for near layers.
 static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWishes* wishes) {
-  const RunFloats far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
-  const RunFloats stored = in_column(row->far.last, column);
-  const RunFloats confidence = min(fabs(stored), CONFIDENCE_MAX);
-  const RunInts two = as_run_ints(stored) >> 31;
-  const RunInts is_near = two & (RUN_OF(wishes->near_depth) > 0.5f * (far_depth + near_depth));
-  const RunFloats shown = select(far_depth, near_depth, is_near);
-  const RunInts is_ours = (shown > 0.5f * (RUN_OF(wishes->near_depth) + RUN_OF(wishes->far_depth))) &
-                       (shown >= RUN_OF(wishes->near_depth) * wishes->least_part);
-  const RunFloats none = (RunFloats)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
+  const Lanes far_depth = in_column(row->far_depth, column), near_depth = in_column(row->near_depth, column);
+  const Lanes stored = in_column(row->far.last, column);
+  const Lanes confidence = min(fabs(stored), CONFIDENCE_MAX);
+  const LaneBits two = AS_LANE_BITS(stored) >> 31;
+  const LaneBits is_near = two & (LANES_OF(wishes->near_depth) > 0.5f * (far_depth + near_depth));
+  const Lanes shown = select(far_depth, near_depth, is_near);
+  const LaneBits is_ours = (shown > 0.5f * (LANES_OF(wishes->near_depth) + LANES_OF(wishes->far_depth))) &
+                       (shown >= LANES_OF(wishes->near_depth) * wishes->least_part);
+  const Lanes none = (Lanes)(0.0f), empty = min(confidence, EMPTY_CONFIDENCE_MAX);
   const LayerChannels *far = &row->far, *near = &row->near;
 
   LayerTaps taps;
@@ -85,16 +85,16 @@ static inline LayerTaps near_taps(const LayerRow* row, int column, const LayerWi
       select(none, select(in_column(far->green, column), in_column(near->green, column), is_near), is_ours);
   taps.colours.blue =
       select(none, select(in_column(far->blue, column), in_column(near->blue, column), is_near), is_ours);
-  taps.colours.coverage = select(none, select((RunFloats)(1.0f), in_column(near->last, column), is_near), is_ours);
-  taps.colours.alpha = (RunFloats)(1.0f);
+  taps.colours.coverage = select(none, select((Lanes)(1.0f), in_column(near->last, column), is_near), is_ours);
+  taps.colours.alpha = (Lanes)(1.0f);
   taps.confidence = select(select(empty, confidence, is_ours & ~two), in_column(row->near_confidence, column),
                            is_ours & is_near);
   taps.has_two = two;
-  taps.valid = shown <= RUN_OF(wishes->near_depth) * wishes->most_part;  // nothing stood before it
+  taps.valid = shown <= LANES_OF(wishes->near_depth) * wishes->most_part;  // nothing stood before it
   return taps;
 }
 
-static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, RunInts was_split) {
+static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWishes* wishes, LaneBits was_split) {
   return wishes->kind == kNearLayer ? near_taps(row, column, wishes) : far_taps(row, column, wishes, was_split);
 }
 
@@ -103,27 +103,27 @@ static inline LayerTaps taps_of(const LayerRow* row, int column, const LayerWish
 typedef struct LayerSums {
   LayerColours cubic, bilinear;  // over the valid taps
   LayerColours least, most;      // range of the valid ones of the middle four
-  RunFloats weight, middle_weight;  // sums over the valid taps
-  RunFloats confidence;             // bilinear; an invalid tap is not known
+  Lanes weight, middle_weight;  // sums over the valid taps
+  Lanes confidence;             // bilinear; an invalid tap is not known
   // Confidence of all taps as it is stored, for pixels without a texel of two layers.
-  RunFloats stored, least_stored, most_stored;
-  RunInts has_two;                  // a tap has two layers
+  Lanes stored, least_stored, most_stored;
+  LaneBits has_two;                  // a tap has two layers
 } LayerSums;
 
 static inline LayerColours all_colours(float value) {
-  const RunFloats all = (RunFloats)(value);
+  const Lanes all = (Lanes)(value);
   const LayerColours colours = {all, all, all, all, all};
   return colours;
 }
 
 static inline LayerSums no_taps(void) {
-  const RunFloats none = (RunFloats)(0.0f);
+  const Lanes none = (Lanes)(0.0f);
   const LayerSums sums = {all_colours(0.0f), all_colours(0.0f), all_colours(FLT_MAX), all_colours(-FLT_MAX),
-                          none, none, none, none, (RunFloats)(FLT_MAX), (RunFloats)(-FLT_MAX), (RunInts)(0)};
+                          none, none, none, none, (Lanes)(FLT_MAX), (Lanes)(-FLT_MAX), (LaneBits)(0)};
   return sums;
 }
 
-static inline void add_colours(LayerColours* sum, const LayerColours* colours, RunFloats weight) {
+static inline void add_colours(LayerColours* sum, const LayerColours* colours, Lanes weight) {
   sum->red += colours->red * weight;
   sum->green += colours->green * weight;
   sum->blue += colours->blue * weight;
@@ -134,7 +134,7 @@ static inline void add_colours(LayerColours* sum, const LayerColours* colours, R
 }
 
 // Takes `chosen` in `lanes`, `otherwise` in the others.
-static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, RunInts lanes) {
+static inline LayerColours select_colours(LayerColours otherwise, LayerColours chosen, LaneBits lanes) {
   const LayerColours colours = {
       select(otherwise.red, chosen.red, lanes), select(otherwise.green, chosen.green, lanes),
       select(otherwise.blue, chosen.blue, lanes), select(otherwise.coverage, chosen.coverage, lanes),
@@ -155,8 +155,8 @@ static inline LayerColours max_colours(LayerColours a, LayerColours b) {
 }
 
 // Adds a texel of each pixel with its weight in the cubic.
-static inline void add_taps(LayerSums* sums, const LayerTaps* taps, RunFloats weight) {
-  const RunFloats counted = select((RunFloats)(0.0f), weight, taps->valid);
+static inline void add_taps(LayerSums* sums, const LayerTaps* taps, Lanes weight) {
+  const Lanes counted = select((Lanes)(0.0f), weight, taps->valid);
   add_colours(&sums->cubic, &taps->colours, counted);
   sums->weight += counted;
   sums->stored += taps->confidence * weight;
@@ -164,9 +164,9 @@ static inline void add_taps(LayerSums* sums, const LayerTaps* taps, RunFloats we
 }
 
 // Adds one of the middle four, too, with its weight in the bilinear blend.
-static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, RunFloats weight) {
-  const RunInts valid = taps->valid;
-  const RunFloats counted = select((RunFloats)(0.0f), weight, valid);
+static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, Lanes weight) {
+  const LaneBits valid = taps->valid;
+  const Lanes counted = select((Lanes)(0.0f), weight, valid);
   add_colours(&sums->bilinear, &taps->colours, counted);
   sums->middle_weight += counted;
   sums->confidence += taps->confidence * counted;
@@ -178,11 +178,11 @@ static inline void add_middle_taps(LayerSums* sums, const LayerTaps* taps, RunFl
 
 // Blends one channel: the cubic, held in the range of the middle four; bilinear where the cubic has lost most of its
 // weights; `nothing` where the middle four have lost theirs.
-static inline RunFloats blend_channel(RunFloats cubic, RunFloats bilinear, RunFloats least, RunFloats most,
+static inline Lanes blend_channel(Lanes cubic, Lanes bilinear, Lanes least, Lanes most,
                                       const LayerSums* sums, float nothing) {
-  const RunFloats held = min(max(cubic / sums->weight, least), most);
-  const RunFloats blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
-  return select(blended, (RunFloats)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+  const Lanes held = min(max(cubic / sums->weight, least), most);
+  const Lanes blended = select(held, bilinear / sums->middle_weight, sums->weight < CUBIC_WEIGHT_MIN);
+  return select(blended, (Lanes)(nothing), sums->middle_weight < BILINEAR_WEIGHT_MIN);
 }
 
 static inline LayerColours blend_colours(const LayerSums* sums) {
@@ -192,7 +192,7 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
   colours.green = blend_channel(cubic->green, bilinear->green, least->green, most->green, sums, 0.0f);
   colours.blue = blend_channel(cubic->blue, bilinear->blue, least->blue, most->blue, sums, 0.0f);
   colours.coverage = blend_channel(cubic->coverage, bilinear->coverage, least->coverage, most->coverage, sums, 0.0f);
-  colours.alpha = (RunFloats)(1.0f);
+  colours.alpha = (Lanes)(1.0f);
 #if ALPHA
   colours.alpha = blend_channel(cubic->alpha, bilinear->alpha, least->alpha, most->alpha, sums, 1.0f);
 #endif
@@ -201,8 +201,8 @@ static inline LayerColours blend_colours(const LayerSums* sums) {
 
 // Blends confidence: that of surfaces alone among texels of one layer by the cubic, as in resolve_temporal; else
 // bilinear.
-static inline RunFloats blend_confidence(const LayerSums* sums, RunInts is_alone) {
-  const RunFloats cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
-  const RunFloats known = select(sums->confidence, (RunFloats)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
+static inline Lanes blend_confidence(const LayerSums* sums, LaneBits is_alone) {
+  const Lanes cubic = clamp(min(max(sums->stored, sums->least_stored), sums->most_stored), 0.0f, CONFIDENCE_MAX);
+  const Lanes known = select(sums->confidence, (Lanes)(0.0f), sums->middle_weight < BILINEAR_WEIGHT_MIN);
   return select(known, cubic, is_alone & ~sums->has_two);
 }

@@ -113,7 +113,7 @@ static inline float8 reseed_layer(LayerKind kind, int8 lanes, const LayeredPixel
                                   const NearestSamples* nearest, EightTexels* history, float8* alpha, float8* known) {
   float8 inertia = (float8)(0.0f), between = pixels->between, from_x = nearest->from_x;
   int8 x = nearest->x;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     float4 texel = first_texel(*history);
     if (lanes.s0 != 0) {
       const SeedSamples samples = {*frame, layout, x.s0, nearest->y, from_x.s0, nearest->from_y};

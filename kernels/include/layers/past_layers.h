@@ -190,6 +190,16 @@ static inline float16 load_near_row(const PastLayers* past, DEPTH_TEXELS depth, 
   return near;
 }
 
+// Loads 4x4 texels of it.
+static inline Neighbourhood load_near_texels(const PastLayers* past, DEPTH_TEXELS depth, float between,
+                                             TexelWindow window) {
+  const Neighbourhood around = {load_near_row(past, depth, between, window, 0),
+                                load_near_row(past, depth, between, window, 1),
+                                load_near_row(past, depth, between, window, 2),
+                                load_near_row(past, depth, between, window, 3)};
+  return around;
+}
+
 // ---- Rows of eight or twelve.
 
 // Where they lie.
@@ -204,20 +214,10 @@ static inline RowWindows windows_from(const PastLayers* past, int x, int y, int 
   return windows;
 }
 
-// What one call samples together: the eight pixels of a row on a CPU, one elsewhere, where each pixel of a vector costs
-// as much as the first, and the sums over the taps of eight would not stay in registers.
 #if ON_CPU
-typedef float8 RunFloats;
-typedef int8 RunInts;
-typedef float16 RowFloats;     // twelve texels; the last four lanes are not used, or eight where there is no third window
-#define RUN_OF(lanes) (lanes)  // those of eight lanes that are sampled
-#define as_run_ints as_int8
+typedef float16 RowFloats;  // twelve texels; the last four lanes are not used, or eight where there is no third window
 #else
-typedef float RunFloats;
-typedef int RunInts;
 typedef float4 RowFloats;
-#define RUN_OF(lanes) ((lanes).s0)
-#define as_run_ints as_int
 #endif
 
 // Texels by channel.
@@ -273,7 +273,7 @@ static inline LayerRow load_layer_row(const PastLayers* past, DEPTH_TEXELS depth
 }
 
 // Returns what the pixels that are sampled see in the same column of their neighbourhoods, 0 to 3.
-static inline RunFloats in_column(RowFloats row, int column) {
+static inline Lanes in_column(RowFloats row, int column) {
 #if ON_CPU
   if (column == 0) return row.s01234567;
   if (column == 1) return row.s12345678;

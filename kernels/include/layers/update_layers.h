@@ -27,7 +27,7 @@ static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayer
                                     TileReprojection tile, LayerTile layer, const EightReprojections* motion, int x,
                                     int y) {
   BothLayers both;
-  UNROLL(2)
+  UNROLL_ALWAYS(2)
   for (int kind = kFarLayer; kind <= kNearLayer; ++kind) {
     const bool is_far = kind == kFarLayer;
     if (!is_far && !any_lane(pixels->is_split)) break;
@@ -153,7 +153,7 @@ static inline KnownLayers update_near(KnownLayers near, const LayeredPixels* pix
 
 // Stores those of `lanes`.
 static inline void store_near(STORED_HISTORY updated, int index, EightTexels texels, int8 lanes) {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     const float4 texel = first_texel(texels);
     if (lanes.s0 != 0) store_history(updated, index + i, texel);
     texels = push_texel(texels, texel);

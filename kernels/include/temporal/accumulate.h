@@ -25,7 +25,7 @@ static inline float8 distance_weights(const TemporalParams* params, const Neares
 static inline bool may_be_bright(EightTexels samples) {
   const int16 bits = as_int16(samples.left) | as_int16(samples.right);
   const int8 half_bits = bits.lo | bits.hi;
-  return any_at_least_two(half_bits.lo | half_bits.hi);
+  return any_at_least_two(ON_CPU ? half_bits.lo | half_bits.hi : as_int4(first_texel(samples)));
 }
 
 // Returns the luma weight of a sample. An invalid one has none and becomes black.
@@ -39,7 +39,7 @@ static inline float luma_weight_or_none(float4* sample) {
 static inline uint weigh_by_luma(EightTexels* samples, float8* weight, int count) {
   uint met = 0;
   UNROLL(8)
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     float4 sample = first_texel(*samples);
     if (i < count && any_non_finite4(sample)) met += 1;
     weight->s0 *= luma_weight_or_none(&sample);

@@ -116,7 +116,7 @@ static inline bool is_other_kind(float confidence, float own) {
 // itself counted. The slow path.
 static inline EightTexels gather_around(HistoryLayer layer, int x, int y) {
   EightTexels around = no_texels();
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     const float4 own = load_history(layer, y * layer.width + min(x + i, layer.width - 1));
     float4 sum = (float4)(0.0f);
     for (int j = 0; j < 9; ++j) {

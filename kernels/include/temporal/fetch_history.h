@@ -50,7 +50,7 @@ typedef struct SourcePlaces {
 
 static inline SourcePlaces source_places(__global const TileReprojection* previous, const TemporalParams* params,
                                          TileReprojection tile, const EightReprojections* motion, int x, int y) {
-  const int8 columns = x + (int8)(0, 1, 2, 3, 4, 5, 6, 7);
+  const int8 columns = x + LANE_NUMBERS;
   float8 at_x = clamp(motion->x, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_x;
   float8 at_y = clamp(motion->y, -SOURCE_DISTANCE_MAX, SOURCE_DISTANCE_MAX) + tile.phase_y;
   // Less the phase of the texels there.
@@ -106,7 +106,7 @@ static inline void sample_next(HistoryLayer layer, bool inside, CubicWalk* at, E
 static inline EightTexels sample_places(HistoryLayer layer, SourcePlaces from, bool inside, Cubic x, Cubic y) {
   CubicWalk at = {from.x.texel, from.y.texel, x, y};
   EightTexels sampled = no_texels();
-  EIGHT_TIMES(sample_next(layer, inside, &at, &sampled));
+  EACH_LANE(sample_next(layer, inside, &at, &sampled));
   return sampled;
 }
 
@@ -140,7 +140,7 @@ static inline EightTexels resample_texels(HistoryLayer layer, SourcePlaces from)
   SixWalk at = walk_between_six(from);
   const bool inside = lie_inside(at.column, at.row, layer.width - 2, layer.height - 2);
   EightTexels sampled = no_texels();
-  EIGHT_TIMES(sample_next_six(layer, inside, &at, &sampled));
+  EACH_LANE(sample_next_six(layer, inside, &at, &sampled));
   return sampled;
 }
 #else
@@ -186,13 +186,13 @@ static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
   float8 sampled = (float8)(0.0f);
 #if TAPS == 36
   SixWalk at = walk_between_six(from);
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     sampled.s0 = sample_alpha_six(plane, at.column.s0, at.row.s0, first_six(at.x), first_six(at.y));
     walk_on_six(&at);
 #else
   CubicWalk at = {from.x.texel, from.y.texel, cubic_weights(from.x.fraction, HISTORY_SHARPNESS),
                   cubic_weights(from.y.fraction, HISTORY_SHARPNESS)};
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     sampled.s0 = sample_alpha(plane, at.column.s0, at.row.s0, first_weights(at.x), first_weights(at.y));
     walk_on(&at);
 #endif

@@ -43,7 +43,7 @@ static inline EightTexels load_samples(COLOUR_TEXELS texels, TexelLayout layout,
   return gather_half_texels((__global const ulong*)texels + row_index(layout, y), x);
 #else
   EightTexels samples = no_texels();
-  EIGHT_TIMES(load_next_sample(texels, layout, &x, y, &samples));
+  EACH_LANE(load_next_sample(texels, layout, &x, y, &samples));
   return samples;
 #endif
 }
@@ -135,7 +135,7 @@ static inline void move_to_shaded(NearestSamples* nearest, const TemporalParams*
 // Finds the nearest samples of the pixels from column x on, in a row that is not known yet.
 static inline NearestSamples find_nearest_columns(const TemporalParams* params, __global const int* positions, int x,
                                                   TileReprojection tile) {
-  Positions place = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
+  Positions place = load_positions(positions, params->columns, x);
   if (tile.phase_x != 0.0f || tile.phase_y != 0.0f)
     place = shifted_positions(place, (float8)(tile.phase_x / params->spacing_x));
   NearestSamples nearest;

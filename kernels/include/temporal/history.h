@@ -69,10 +69,14 @@ static inline float4 first_texel(EightTexels texels) {
   return texels.left.s0123;
 }
 
-// Returns the texels without the first, and `texel` as the last.
+// Returns the texels, of which kLanes count, without the first, and `texel` as the last.
 static inline EightTexels push_texel(EightTexels texels, float4 texel) {
+#if ON_CPU
   const EightTexels pushed = {(float16)(texels.left.s456789ab, texels.left.scdef, texels.right.s0123),
                               (float16)(texels.right.s456789ab, texels.right.scdef, texel)};
+#else
+  const EightTexels pushed = {(float16)(texel, texel, texel, texel), (float16)(texel, texel, texel, texel)};
+#endif
   return pushed;
 }
 
@@ -96,9 +100,14 @@ static inline float16 load_history4(HistoryLayer layer, int index) {
 #endif
 }
 
+// As many from `index` on as lanes count.
 static inline EightTexels load_history8(HistoryLayer layer, int index) {
+#if ON_CPU
   const EightTexels row = {load_history4(layer, index), load_history4(layer, index + 4)};
   return row;
+#else
+  return push_texel(no_texels(), load_history(layer, index));
+#endif
 }
 
 #if ON_CPU
@@ -122,7 +131,7 @@ static inline EightTexels gather_history(HistoryLayer layer, int8 index) {
   return gather_half_texels((__global const ulong*)layer.texels, index);
 #else
   EightTexels texels = no_texels();
-  EIGHT_TIMES(push_history(layer, &index, &texels));
+  EACH_LANE(push_history(layer, &index, &texels));
   return texels;
 #endif
 }
@@ -207,9 +216,11 @@ static inline float load_alpha(AlphaPlane plane, int index) {
 #endif
 }
 
-// The values index to index + 7.
+// As many values from `index` on as lanes count.
 static inline float8 load_alpha8(AlphaPlane plane, int index) {
-#if HISTORY_FORMAT == HALF
+#if !ON_CPU
+  return (float8)(load_alpha(plane, index));
+#elif HISTORY_FORMAT == HALF
   // Through private memory: vload_half8 would want 16-byte alignment.
   const ushort8 bits = vload8(0, (__global const ushort*)plane.texels + index);
   return vload_half8(0, (__private const half*)&bits);

@@ -85,12 +85,6 @@ static inline Cubic next_weights(Cubic w) {
   return next;
 }
 
-// Returns the weights with the second texel's as the first, and the first one's as the last.
-static inline Cubic next_taps(Cubic w) {
-  const Cubic next = {w.w1, w.w2, w.w3, w.w0};
-  return next;
-}
-
 static inline bool is_middle_tap(int i) {
   return i == 1 || i == 2;
 }

@@ -19,23 +19,7 @@
 #define LAYERS 0
 #endif
 
-#if ON_CPU
-typedef float8 Lanes;
-typedef int8 LaneBits;
-enum { kLanes = 8, kJudgedAtOnce = 6 };  // samples of a row
-#define FIRST_LANE(lanes) ((lanes).s0)
-#define TURN_LANES(lanes) NEXT_LANES(lanes)
-#define EACH_LANE(call) EIGHT_TIMES(call)
-#define CONVERT_LANES(lanes) convert_int8(lanes)
-#else
-typedef float Lanes;
-typedef int LaneBits;
-enum { kLanes = 1, kJudgedAtOnce = 1 };
-#define FIRST_LANE(lanes) (lanes)
-#define TURN_LANES(lanes) (lanes)
-#define EACH_LANE(call) call
-#define CONVERT_LANES(lanes) convert_int(lanes)
-#endif
+enum { kJudgedAtOnce = ON_CPU ? kLanes - 2 : 1 };  // samples of a row
 
 enum { kHistoryAhead = 4 * kTemporalTile, kColourAhead = 16 };  // texels of history and samples to prefetch
 
@@ -54,8 +38,8 @@ typedef struct Past {
 static inline void load_next_trust(const Past* past, const TemporalTileParams* params, LaneBits* columns, int y,
                                    Lanes* trust) {
   FIRST_LANE(*trust) = past->reprojection[4 * texel_index(params->reprojection, FIRST_LANE(*columns), y) + 2];
-  *trust = TURN_LANES(*trust);
-  *columns = TURN_LANES(*columns);
+  *trust = NEXT_LANES(*trust);
+  *columns = NEXT_LANES(*columns);
 }
 
 // Moves the first lane's place by its sample's motion and the phase of the texels there, and turns to the next.
@@ -67,9 +51,9 @@ static inline void follow_next_motion(const Past* past, const TemporalTileParams
   __global const TileReprojection* source = past->previous_tiles + tile_at(params, before_x, before_y);
   FIRST_LANE(*at_x) = before_x - source->phase_x;
   FIRST_LANE(*at_y) = before_y - source->phase_y;
-  *at_x = TURN_LANES(*at_x);
-  *at_y = TURN_LANES(*at_y);
-  *columns = TURN_LANES(*columns);
+  *at_x = NEXT_LANES(*at_x);
+  *at_y = NEXT_LANES(*at_y);
+  *columns = NEXT_LANES(*columns);
 }
 #endif
 
@@ -97,8 +81,8 @@ static inline LaneBits are_of_far_layer(const Past* past, DEPTH_TEXELS depth, Te
     const LayerSplit split = past->splits[y * params->frame.width + FIRST_LANE(columns)];
     const bool is_far = !is_split(split) || load_depth(depth, layout, FIRST_LANE(columns), y) < between_of(split);
     FIRST_LANE(far) = is_far ? 1.0f : 0.0f;
-    far = TURN_LANES(far);
-    columns = TURN_LANES(columns);
+    far = NEXT_LANES(far);
+    columns = NEXT_LANES(columns);
   }
   return far > 0.0f;
 }

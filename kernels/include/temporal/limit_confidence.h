@@ -53,11 +53,12 @@ static inline Evidence limit_confidence(const FetchedHistory* history, const Eig
 typedef struct RowLight {
   float4 rejection;             // at the centres of four cells: the tile's two, and one on each side
   float left_gain, right_gain;  // at the tile's edges
+  int column;                   // of the tile: that of the first pixel
 } RowLight;
 
 // The same where light has not changed.
 static inline RowLight even_light(void) {
-  const RowLight light = {(float4)(0.0f), 1.0f, 1.0f};
+  const RowLight light = {(float4)(0.0f), 1.0f, 1.0f, 0};
   return light;
 }
 
@@ -97,7 +98,7 @@ static inline float2 gains_of_row(__global const TileLight* light, const Tempora
   return 0.5f * (float2)(row[max(tile_x - 1, 0)].gain + own, own + row[min(tile_x + 1, params->tiles_x - 1)].gain);
 }
 
-// Returns the light of the pixels from (x, y) on, the first column of a tile.
+// Returns the light of the pixels from (x, y) on.
 static inline RowLight light_of_row(__global const TileLight* light, const TemporalParams* params, int x, int y) {
   const int tile_x = x / kTemporalTile;
   const RowBlend cells = between_rows(y, kTemporalCell, 2 * params->tiles_y - 1);
@@ -106,7 +107,7 @@ static inline RowLight light_of_row(__global const TileLight* light, const Tempo
   const float2 gains = gains_of_row(light, params, tile_x, tiles.above);
   const float2 gain = gains + (gains_of_row(light, params, tile_x, tiles.below) - gains) * tiles.down;
   const RowLight row = {upper + (rejections_of_row(light, params, tile_x, cells.below) - upper) * cells.down, gain.x,
-                        gain.y};
+                        gain.y, ON_CPU ? 0 : x % kTemporalTile};
   return row;
 }
 
@@ -122,22 +123,29 @@ static inline bool has_even_light(__global const TileLight* light, const Tempora
          below->gain == 1.0f;
 }
 
-// Interpolates from a tile's left edge to its right, at the centres of its eight columns.
-static inline float8 ramp(float left, float right) {
-  return left + (right - left) * (float8)(0.0625f, 0.1875f, 0.3125f, 0.4375f, 0.5625f, 0.6875f, 0.8125f, 0.9375f);
+// Interpolates from a tile's left edge to its right, at the centres of the pixels' columns.
+static inline float8 ramp(RowLight light) {
+  const float8 along = 0.125f * convert_float8(light.column + LANE_NUMBERS) + 0.0625f;
+  return light.left_gain + (light.right_gain - light.left_gain) * along;
 }
 
-// Interpolates between the centres of four cells, at the centres of the tile's eight columns.
-static inline float8 ramp_cells(float4 cells) {
+// Interpolates between the centres of four cells, at the centres of the pixels' columns.
+static inline float8 ramp_cells(RowLight light) {
+#if ON_CPU
   const float8 along = (float8)(0.625f, 0.875f, 0.125f, 0.375f, 0.625f, 0.875f, 0.125f, 0.375f);
-  const float8 left = cells.s00111122, right = cells.s11222233;
+  const float8 left = light.rejection.s00111122, right = light.rejection.s11222233;
+#else
+  const float at = 0.25f * (float)light.column + 0.625f;  // 0 at the first of the four
+  const float4 cells = at < 1.0f ? light.rejection : at < 2.0f ? light.rejection.yzww : light.rejection.zwww;
+  const float8 along = (float8)(at - floor(at)), left = (float8)(cells.x), right = (float8)(cells.y);
+#endif
   return left + (right - left) * along;
 }
 
 // Limits confidence by the cells' rejection, too.
 static inline void reject_by_light(Evidence* evidence, RowLight light) {
   if (!(light.rejection.x + light.rejection.y + light.rejection.z + light.rejection.w > 0.0f)) return;
-  const float8 rejection = ramp_cells(light.rejection);
+  const float8 rejection = ramp_cells(light);
   evidence->rejection = max(evidence->rejection, rejection);
   evidence->confidence = min(evidence->confidence, most_confidence(1.0f - rejection));
 }
@@ -145,7 +153,7 @@ static inline void reject_by_light(Evidence* evidence, RowLight light) {
 // Returns history in this frame's light.
 static inline EightTexels relight(EightTexels history, RowLight light) {
   if (light.left_gain == 1.0f && light.right_gain == 1.0f) return history;
-  const float8 gain = ramp(light.left_gain, light.right_gain);
+  const float8 gain = ramp(light);
   const EightTexels relit = {history.left * to_four_texels(gain.lo), history.right * to_four_texels(gain.hi)};
   return relit;
 }

@@ -84,7 +84,7 @@ static inline EightBoxes boxes_around(COLOUR_TEXELS texels, const SourceFrame* f
   const float16 none = (float16)(0.0f);
   const CrossSums empty = {none, none, none, none};
   EightCrosses crosses = {empty, empty};
-  UNROLL(5)
+  UNROLL_ALWAYS(5)
   for (int i = 0; i < 5; ++i) {
     const int column = (i == 1) - (i == 2), row = (i == 3) - (i == 4);
     const int8 columns = clamp(x + column, (int8)(0), (int8)(last_x));
@@ -137,7 +137,7 @@ static inline float rectify_alpha(COLOUR_TEXELS texels, const SourceFrame* frame
 // Rectifies the alphas of eight pixels.
 static inline float8 rectify_alphas(COLOUR_TEXELS texels, const SourceFrame* frame, int8 x, int y, float8 alphas,
                                     float8 rejection) {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     if (rejection.s0 > 0.0f) alphas.s0 = rectify_alpha(texels, frame, x.s0, y, alphas.s0, rejection.s0);
     alphas = NEXT_LANES(alphas);
     rejection = NEXT_LANES(rejection);

@@ -56,7 +56,9 @@ static inline float8 trust_of_reactive(const TemporalParams* params, REACTIVE_TE
 
 // True only if none of the samples of a row in rising columns x is reactive: eight are looked at together, in a buffer.
 static inline bool none_is_reactive(REACTIVE_TEXELS texels, TexelLayout layout, int width, int8 x, int y) {
-#if SOURCE_STORAGE == BUFFER
+#if !ON_CPU
+  return load_reactive4(texels, layout, x.lo, y).x == 0.0f;
+#elif SOURCE_STORAGE == BUFFER
   const int first = min(x.s0, width - 8);
   if (first < 0 || x.s7 - first >= 8) return false;
   return as_long(vload8(0, texels + texel_index(layout, first, y))) == 0;

@@ -78,7 +78,7 @@ static inline void add_to_seeds(EightTexels* sum, float8* weights, EightTexels s
 // Replaces the means of the pixels without a valid sample near. The slow path.
 static inline EightTexels seeds_from_afar(COLOUR_TEXELS texels, const SourceFrame* frame, EightTexels means,
                                           int8 known, int8 x, int y) {
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     means = push_texel(means, known.s0 == 0 ? seed_from_afar(texels, frame, x.s0, y) : first_texel(means));
     known = NEXT_LANES(known);
     x = NEXT_LANES(x);
@@ -94,9 +94,11 @@ static inline EightSeeds seeds_of(COLOUR_TEXELS texels, const SourceFrame* frame
   const float16 own = motions_of(motion, nearest->x, nearest->y);
   EightTexels sum = {none, none};
   float8 weights = (float8)(0.0f);
+  UNROLL_LANE(3)
   for (int row = -1; row <= 1; ++row) {
     const int y = clamp(nearest->y + row, 0, frame->height - 1);
     const float away_y = (float)row - nearest->from_y;
+    UNROLL_LANE(3)
     for (int column = -1; column <= 1; ++column) {
       const int8 x = clamp(nearest->x + column, (int8)(0), (int8)(frame->width - 1));
       const float8 away_x = (float)column - nearest->from_x;

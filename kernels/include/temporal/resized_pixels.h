@@ -25,8 +25,7 @@ static inline Positions row_among_texels(const ResizeParams* params, __global co
 static inline ResizedPixels pixels_among_texels(const ResizeParams* params, __global const int* positions, int x,
                                                 Positions row) {
   ResizedPixels pixels;
-  pixels.column.texel = vload8(0, positions + x);
-  pixels.column.fraction = as_float8(vload8(0, positions + params->columns + x));
+  pixels.column = load_positions(positions, params->columns, x);
   pixels.row = row;
   pixels.x = clamp(nearest_samples(pixels.column), (int8)(0), (int8)(params->previous_width - 1));
   pixels.y = clamp(nearest_samples(row).s0, 0, params->previous_height - 1);

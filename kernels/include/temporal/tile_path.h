@@ -29,11 +29,11 @@ static inline float2 phase_at(__global const TileReprojection* tiles, const Temp
   return (float2)(tile->phase_x, tile->phase_y);
 }
 
-// Returns whether the tile's pixels from (x, y) on are copied: it is rigid, and the eight texels that it takes are all
-// inside and have the phase that it takes them for.
+// Returns whether row y of the tile, the tile_x-th of its own row, is copied: it is rigid, and the eight texels that it
+// takes are all inside and have the phase that it takes them for.
 static inline bool is_copied(__global const TileReprojection* previous, const TemporalParams* params,
-                             TileReprojection tile, int x, int y) {
-  const int from_x = x - tile.step_x, from_y = y - tile.step_y;
+                             TileReprojection tile, int tile_x, int y) {
+  const int from_x = tile_x * kTemporalTile - tile.step_x, from_y = y - tile.step_y;
   const bool inside = from_x >= 0 && from_y >= 0 && from_x + kTemporalTile <= params->output_width &&
                       from_y < params->output_height;
   if (!tile.is_rigid || !inside) return false;
@@ -49,21 +49,22 @@ typedef struct TileRows {
   bool may_be_plain;  // as the last column of the table above says
 } TileRows;
 
-// Returns TileRows for the rows from `first` to `last` of the tile that begins at column x. `is_usual`: its light has
-// not changed, and it holds no samples back.
+// Returns TileRows for the rows from `first` to `last` of the tile. `is_usual`: its light has not changed, and it holds
+// no samples back.
 static inline TileRows tile_rows(__global const TileReprojection* previous, const TemporalParams* params,
-                                 TileReprojection tile, bool is_usual, int x, int first, int last) {
+                                 TileReprojection tile, bool is_usual, int tile_x, int first, int last) {
   const TileRows rows = {
-      is_copied(previous, params, tile, x, first) && is_copied(previous, params, tile, x, last),
-      is_usual && params->parity < 0 && x + kTemporalTile <= params->output_width};
+      is_copied(previous, params, tile, tile_x, first) && is_copied(previous, params, tile, tile_x, last),
+      is_usual && params->parity < 0 && (tile_x + 1) * kTemporalTile <= params->output_width};
   return rows;
 }
 
-// Returns the path of the tile's row from (x, y) on.
+// Returns the path of row y of the tile.
 static inline TilePath path_of_row(TileRows rows, __global const TileReprojection* previous,
                                    const TemporalParams* params, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1,
-                                   const NearestSamples* nearest, TileReprojection tile, int x, int y) {
-  if (!rows.are_copied && !is_copied(previous, params, tile, x, y)) return kResampled;
+                                   const NearestSamples* nearest, TileReprojection tile, int tile_x,
+                                   int y) {
+  if (!rows.are_copied && !is_copied(previous, params, tile, tile_x, y)) return kResampled;
   if (!are_trusted(params, reactive0, reactive1, nearest, tile)) return kCopied;
   return rows.may_be_plain ? kCopiedPlain : kCopiedTrusted;
 }
