@@ -60,7 +60,8 @@ static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, in
 #if SOURCE_STORAGE == IMAGE
   return read_imagef(texels, (int2)(x, y)).x;
 #else
-  return convert_float(texels[texel_index(layout, x, y)]) * (1.0f / 255.0f);
+  const float code = convert_float(texels[texel_index(layout, x, y)]);
+  return FRACTION_OF_CODE(code);
 #endif
 }
 

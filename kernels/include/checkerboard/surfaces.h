@@ -145,5 +145,6 @@ static inline ReactiveAround reactive_around(const CheckerboardParams* params, R
 // 1 - the largest of the neighbours, and 0 exactly where that is 1.
 static inline float8 trust_in(ReactiveAround reactive) {
   const uint8 largest = max(max(reactive.left, reactive.right), max(reactive.above, reactive.below));
-  return convert_float8(255u - largest) * (1.0f / 255.0f);
+  const float8 rest = convert_float8(255u - largest);
+  return FRACTION_OF_CODE(rest);
 }

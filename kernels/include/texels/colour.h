@@ -42,12 +42,10 @@ __constant const float kLinearOfCode[256] = {
     0.904661179f, 0.913098633f, 0.921581864f, 0.930110872f, 0.938685715f, 0.947306514f, 0.955973327f, 0.964686275f,
     0.973445296f, 0.982250571f, 0.991102099f, 1.0f};
 
-// One texel. Alpha, which is linear already, is the float nearest to its code / 255 too: the first product is exact and
-// 65536 times the second.
+// One texel. Alpha is linear already.
 static inline float4 linear_of_codes(uchar4 codes) {
   const float alpha = codes.w;
-  return (float4)(kLinearOfCode[codes.x], kLinearOfCode[codes.y], kLinearOfCode[codes.z],
-                  alpha * (257.0f / 65536.0f) + alpha * (1.0f / (255.0f * 65536.0f)));
+  return (float4)(kLinearOfCode[codes.x], kLinearOfCode[codes.y], kLinearOfCode[codes.z], FRACTION_OF_CODE(alpha));
 }
 
 // Returns the linear colour of a texel of an image without encoding: the codes as fractions of 255, which a device may

@@ -76,6 +76,10 @@
 #define REACTIVE_TEXELS __global const uchar*
 #endif
 
+// The float nearest to an 8-bit code / 255: the first product is exact and 65536 times the second. A sum, since 1 minus
+// a product may be contracted: fma(-255, 1 / 255, 1) is -5.9e-8 where 0 is meant (an NVIDIA H200, November 2026).
+#define FRACTION_OF_CODE(code) ((code) * (257.0f / 65536.0f) + (code) * (1.0f / (255.0f * 65536.0f)))
+
 // Hints for a CPU that memory is used soon; any address will do. The processor itself stops at the end of a page of
 // memory. PoCL's prefetch() does nothing, and a GPU hides latency by other means.
 #if defined(__x86_64__) || defined(__aarch64__)

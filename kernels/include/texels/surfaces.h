@@ -91,7 +91,8 @@ static inline float4 load_reactive4(REACTIVE_TEXELS texels, TexelLayout layout, 
                   read_imagef(texels, (int2)(x.s2, y)).x, read_imagef(texels, (int2)(x.s3, y)).x);
 #else
   __global const uchar* row = texels + row_index(layout, y);
-  return convert_float4((int4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3])) * (1.0f / 255.0f);
+  const float4 codes = convert_float4((int4)(row[x.s0], row[x.s1], row[x.s2], row[x.s3]));
+  return FRACTION_OF_CODE(codes);
 #endif
 }
 
@@ -188,15 +189,18 @@ static inline float4 load_reactive_at(REACTIVE_TEXELS texels, TexelLayout layout
                   read_imagef(texels, (int2)(x.s2, y.s2)).x, read_imagef(texels, (int2)(x.s3, y.s3)).x);
 #else
   const int4 index = layout.offset + y * layout.pitch + x;
-  const int4 codes = (int4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3]);
-  return convert_float4(codes) * (1.0f / 255.0f);
+  const float4 codes = convert_float4((int4)(texels[index.s0], texels[index.s1], texels[index.s2], texels[index.s3]));
+  return FRACTION_OF_CODE(codes);
 #endif
 }
 
 // The reactive values of four neighbours of a row, from x on, which may be -1.
 static inline float4 load_reactive_block(REACTIVE_TEXELS texels, TexelLayout layout, int x, int y, int width) {
 #if SOURCE_STORAGE == BUFFER
-  if (x >= 0 && x + 3 < width) return convert_float4(vload4(0, texels + texel_index(layout, x, y))) * (1.0f / 255.0f);
+  if (x >= 0 && x + 3 < width) {
+    const float4 codes = convert_float4(vload4(0, texels + texel_index(layout, x, y)));
+    return FRACTION_OF_CODE(codes);
+  }
 #endif
   return load_reactive4(texels, layout, block_columns(x, width), y);
 }
