@@ -65,10 +65,11 @@ static inline float load_reactive(REACTIVE_TEXELS texels, TexelLayout layout, in
 #endif
 }
 
-// A value in [0, 1], rounded to the nearest code.
+// A value in [0, 1], rounded to the nearest code. For an image here, too: left to itself a device may be off by 0.6
+// codes (1.2, 8.3.1.2).
 static inline void store_reactive(STORED_REACTIVE texels, TexelLayout layout, int x, int y, float value) {
 #if SOURCE_STORAGE == IMAGE
-  write_imagef(texels, (int2)(x, y), (float4)(value, 0.0f, 0.0f, 1.0f));
+  write_imagef(texels, (int2)(x, y), (float4)(rint(value * 255.0f) * (1.0f / 255.0f), 0.0f, 0.0f, 1.0f));
 #else
   texels[texel_index(layout, x, y)] = convert_uchar_sat_rte(value * 255.0f);
 #endif

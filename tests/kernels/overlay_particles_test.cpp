@@ -226,10 +226,12 @@ TEST_P(Overlay, AtTheFramesResolutionEachPixelHasItsOwnTexel) {
 }
 
 // The texels of the near surface are black, those of the far plane white, those of nothing grey: each pixel with a
-// texel of its surface among the four around it has that surface's light and nothing of the others'.
-TEST_P(Overlay, NoHaloAtTheEdgeOfASurface) {
+// texel of its surface among the four around it has that surface's light and nothing of the others'. An image of halves
+// may round what sums to a hair less than that light towards zero: to the half below it, 2^-11 of these lights less.
+TEST_P(Overlay, NoHaloAtTheEdgeOfASurface_small) {
   constexpr Extent kFrame{96, 64};
   constexpr double kLight[] = {0, .5, 1};
+  const double step = GetParam().storage == Storage::kImage ? 0x1p-11 : 0;
   for (const Extent drawn : {Extent{48, 32}, {29, 19}, {24, 16}, {12, 8}, {7, 5}}) {
     Rig rig;
     FrameSpec spec{.render = drawn};
@@ -262,7 +264,8 @@ TEST_P(Overlay, NoHaloAtTheEdgeOfASurface) {
         if (!has_texel) continue;
         ++reachable;
         const double light = colour[reference::index_of(kFrame.width, x, y)][0];
-        wrong += std::abs(light - kLight[static_cast<int>(own)]) > 1e-6 ? 1 : 0;
+        const double expected = kLight[static_cast<int>(own)];
+        wrong += light > expected + 1e-6 || light < expected - 1e-6 - step * expected ? 1 : 0;
       }
     }
     EXPECT_EQ(wrong, 0) << drawn.width << "x" << drawn.height;
