@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -212,6 +213,14 @@ cl_int change_sides(cl_command_queue queue, cl_uint count, const cl_mem* images,
   return clEnqueueMarkerWithWaitList(queue, 0, nullptr, event);
 }
 
+std::string without(const std::string& extensions, const std::string& name) {
+  std::istringstream words(extensions);
+  std::string rest, word;
+  while (words >> word)
+    if (word != name) rest += (rest.empty() ? "" : " ") + word;
+  return rest;
+}
+
 cl_int copy_out(const void* value, std::size_t bytes, std::size_t room, void* to, std::size_t* bytes_ret) {
   if (bytes_ret != nullptr) *bytes_ret = bytes;
   if (to == nullptr) return CL_SUCCESS;
@@ -284,8 +293,11 @@ cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std
   std::string all(bytes, '\0');
   if (const cl_int code = real(device, name, bytes, all.data(), nullptr); code != CL_SUCCESS) return code;
   all.resize(std::strlen(all.c_str()));
-  if (state().sharing) all += " cl_khr_gl_sharing";
-  if (state().sharing && state().gl_event) all += " cl_khr_gl_event";
+  if (state().sharing) {
+    // A driver that does not share may list the other all the same: NVIDIA's for its H200 does.
+    all = without(without(all, "cl_khr_gl_sharing"), "cl_khr_gl_event") + " cl_khr_gl_sharing";
+    if (state().gl_event) all += " cl_khr_gl_event";
+  }
   if (state().images_on_buffers) all += " cl_khr_image2d_from_buffer";
   return copy_out(all.c_str(), all.size() + 1, room, value, bytes_ret);
 }

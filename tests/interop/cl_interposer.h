@@ -21,7 +21,8 @@ struct ClCounts {
 
 ClCounts& cl_counts();
 
-// While it lives, every device offers cl_khr_gl_sharing. The GL context must be current on this thread.
+// While it lives, every device offers cl_khr_gl_sharing, and cl_khr_gl_event only if told so. The GL context must be
+// current on this thread.
 class PretendSharing {
  public:
   enum class Flaw { kNone, kWrongBytes, kWrongFormat, kNoContext };
