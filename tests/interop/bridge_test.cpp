@@ -87,7 +87,7 @@ TEST_F(BridgeSettingsTest, AutoFallsBackAndSaysWhy) {
 
 TEST_F(BridgeSettingsTest, OpenDeviceInsistsOnGlOrFallsBack) {
   if (device_->info().gl_sharing) QUINCUNX_SKIP("this device shares with OpenGL");
-  for (const char* selector : {"", "cpu"}) {
+  for (const std::string& selector : {std::string(), std::to_string(device_->info().index)}) {
     const auto gl = open_device(*context_, selector, Interop::kGl);
     ASSERT_FALSE(gl.ok());
     EXPECT_EQ(gl.status().code(), StatusCode::kUnsupported);
