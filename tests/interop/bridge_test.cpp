@@ -191,7 +191,7 @@ class SteadyFrameTest : public InteropTest {
 };
 
 TEST_F(SteadyFrameTest, AllocatesNothingAndDrainsNoQueue) {
-  for (const Transfer transfer : {Transfer::kZeroCopy, Transfer::kExplicit}) {
+  for (const Transfer transfer : transfers()) {
     HostCopy bridge(*device_, all_planes({64, 64}, {48, 40}), "test", transfer);
     for (int frame = 0; frame < 4; ++frame)
       run_frame(bridge, frame);

@@ -93,8 +93,7 @@ Status carry(Bridge& bridge) {
 }
 
 TEST_F(FaultyBridge, AFrameFailsInWordsInBothForms) {
-  for (const Transfer transfer : {Transfer::kZeroCopy, Transfer::kExplicit}) {
-    if (transfer == Transfer::kZeroCopy && !device_->info().host_unified_memory) continue;
+  for (const Transfer transfer : transfers()) {
     int at = 0;
     for (bool struck = true; struck; ++at) {
       ASSERT_LT(at, kMoreThanAnyCalls);

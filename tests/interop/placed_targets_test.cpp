@@ -102,7 +102,7 @@ class PlacedTargetsTest : public InteropTest {
 
 TEST_F(PlacedTargetsTest, FramesOfAnySizeArriveAndStay) {
   for (const int slots : {2, 3}) {
-    for (const Transfer transfer : {Transfer::kZeroCopy, Transfer::kExplicit}) {
+    for (const Transfer transfer : transfers()) {
       HostCopy bridge(*device_, placed(kLargest, slots), "test", transfer);
       EXPECT_EQ(bridge.storage(), Storage::kBuffer);
       expect_frames_stay(bridge);
@@ -169,14 +169,14 @@ void PlacedTargetsTest::expect_nothing_else_written(Transfer transfer) {
 }
 
 TEST_F(PlacedTargetsTest, NothingIsWrittenBesideTheImages) {
-  expect_nothing_else_written(Transfer::kZeroCopy);
-  expect_nothing_else_written(Transfer::kExplicit);
+  for (const Transfer transfer : transfers())
+    expect_nothing_else_written(transfer);
 }
 
 // Images made on the buffers, by a stand-in for a driver that can: rows are padded as the device wants it.
 TEST_F(PlacedTargetsTest, ImagesAreMadeOnTheBuffers) {
   const PretendImagesOnBuffers driver;
-  for (const Transfer transfer : {Transfer::kZeroCopy, Transfer::kExplicit}) {
+  for (const Transfer transfer : transfers()) {
     HostCopy bridge(*device_, placed(kLargest, 3), "test", transfer, {Storage::kImage, kImagePitchTexels});
     EXPECT_EQ(bridge.storage(), Storage::kImage);
     expect_frames_stay(bridge);

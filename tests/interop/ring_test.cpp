@@ -166,7 +166,7 @@ class HeldQueue {
 // Frame 3 goes into the slot of frame 0 while the dispatch of frame 2 has not even begun. begin_draw() must
 // return (it needs the dispatch of frame 1 only), and frames 1 and 2 must be whole when that dispatch runs.
 TEST_F(RingTest, TheNextFrameIsDrawnWhileADispatchIsStillQueued) {
-  for (const Transfer transfer : {Transfer::kZeroCopy, Transfer::kExplicit}) {
+  for (const Transfer transfer : transfers()) {
     HostCopy bridge(*device_, settings_, "test", transfer);
     std::array<SharedFrame, 3> frames;
     for (std::uint32_t frame = 0; frame < 3; ++frame) {

@@ -87,8 +87,10 @@ TEST_F(RoundTripTest, CopiedToTheDevice) {
 }
 
 TEST_F(RoundTripTest, EncodedColour) {
-  for (const Case& c : kCases)
-    expect_exact(c, Transfer::kZeroCopy, PixelFormat::kRGBA8);
+  for (const Transfer transfer : transfers()) {
+    for (const Case& c : kCases)
+      expect_exact(c, transfer, PixelFormat::kRGBA8);
+  }
 }
 
 TEST_F(RoundTripTest, PlanesThatWereNotAskedForAreEmpty) {
@@ -123,9 +125,9 @@ class EsRoundTripTest : public RoundTripTest {
 
 TEST_F(EsRoundTripTest, EveryBitOfEveryPlane) {
   for (const PixelFormat colour : {PixelFormat::kRGBA16F, PixelFormat::kRGBA8}) {
-    for (const Case& c : kCases) {
-      expect_exact(c, Transfer::kZeroCopy, colour);
-      expect_exact(c, Transfer::kExplicit, colour);
+    for (const Transfer transfer : transfers()) {
+      for (const Case& c : kCases)
+        expect_exact(c, transfer, colour);
     }
   }
 }
