@@ -3,6 +3,10 @@
 // Here are those that many kernels need; the files *_params.h have those of one kernel or of a few.
 #pragma once
 
+#ifdef CONTRACT_EVERYWHERE  // for tests: as compilers of GPUs may, also over statements and functions
+#pragma clang fp contract(fast)
+#endif
+
 #ifdef __cplusplus
 namespace quincunx {
 #define QUINCUNX_CHECK_SIZE(type, bytes) static_assert(sizeof(type) == (bytes))
