@@ -191,15 +191,15 @@ static inline float4 load_careful(RESOLVED_TEXELS source, TexelLayout layout, in
 __kernel void present(const PresentParams params, RESOLVED_TEXELS source, __global const float* exposure,
                       PRESENTED_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kPresentBlock);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
   const float given = *exposure;
   const float factor = params.exposure * (given > 0.0f && given <= FLT_MAX ? given : 1.0f);
+  int x = item.first;
+#if ON_CPU
   int16 largest = 0;
-  int x = first;
-  for (; x + kPresentBlock <= end; x += kPresentBlock) {
+  for (; x + kPresentBlock <= item.end; x += kPresentBlock) {
     const float16 a = load_resolved4(source, params.source, x, y);
     const float16 b = load_resolved4(source, params.source, x + 4, y);
     const float16 c = load_resolved4(source, params.source, x + 8, y);
@@ -209,21 +209,23 @@ __kernel void present(const PresentParams params, RESOLVED_TEXELS source, __glob
     store_codes(output, params.output, x, y, encode(a, b, c, d, factor, x, y));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
-  if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
+  if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = item.first;
+#endif
 
-  // The rest of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register.
+  // The rest of the row or, which is rare, all of it once more: pixel by pixel, four of them in each register. Where the
+  // device is no CPU all of it, one by one.
   uint met_count = 0;
-  for (; x < end; x += kBlock) {
+  for (; x < item.end; x += ON_CPU ? kBlock : item.step) {
     uint met = 0;
-    const int last = end - 1;
+    const int count = pixels_from(item, x), last = x + count - 1;
     const float4 p0 = load_careful(source, params.source, x, y, 1, &met);
     const float4 p1 = load_careful(source, params.source, min(x + 1, last), y, 2, &met);
     const float4 p2 = load_careful(source, params.source, min(x + 2, last), y, 4, &met);
     const float4 p3 = load_careful(source, params.source, min(x + 3, last), y, 8, &met);
-    met_count += count_bits(met, end - x);
+    met_count += count_bits(met, count);
     const float16 colour = (float16)(p0, p1, p2, p3);
     const uint16 codes = encode(colour, colour, colour, colour, factor, x, y);
-    store_four_codes(output, params.output, x, y, end, codes.s0123);
+    store_four_codes(output, params.output, x, y, x + count, codes.s0123);
   }
   if (met_count) atomic_add(non_finite + params.counter, met_count);
 }

@@ -48,11 +48,6 @@ static inline Row row_of(const ReprojectedParams* params, __global const int* po
   return row;
 }
 
-static inline Positions columns_of(const ReprojectedParams* params, __global const int* positions, int x) {
-  const Positions at = {vload8(0, positions + x), as_float8(vload8(0, positions + params->columns + x))};
-  return at;
-}
-
 #if MOTION
 // Returns the motion of eight pixels, from the samples that are nearest to them.
 static inline PixelMotion motion_of(const ReprojectedParams* params, __global const float* reprojection, int8 x,
@@ -118,9 +113,9 @@ static inline float4 resolve_careful(const ReprojectedParams* params, COLOUR_TEX
   const float4 pixel_##i = blend_samples(samples_##i, PIXEL_WEIGHTS(weights, i));                                      \
   bits |= bits_of(samples_##i)
 
-// Pixel i of a block, if it lies before `end`.
+// Pixel i of a block, its n-th, of which the first `count` exist.
 #define RESOLVE_CAREFULLY(i, n)                                                                                        \
-  if (x + n < end) {                                                                                                   \
+  if (n < count) {                                                                                                     \
     bool met = false;                                                                                                  \
     const float4 pixel = resolve_careful(&params, colour0, colour1, now_x.texel.i, now_y.texel.i, before_x.texel.i,    \
                                          before_y.texel.i, now_x.fraction.i, now_y.fraction.i, before_x.fraction.i,    \
@@ -134,10 +129,9 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
                                   __global const float* reprojection, REACTIVE_TEXELS reactive0,
                                   REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const SourceFrame frame0 = params.frame0;
   const SourceFrame frame1 = params.frame1;
   const bool pairs = min(min(frame0.width, frame0.height), min(frame1.width, frame1.height)) > 1;
@@ -150,20 +144,23 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
   COLOUR_ROW upper1 = colour_row(colour1, frame1.colour, 0);
   COLOUR_ROW lower1 = colour_row(colour1, frame1.colour, 1);
   uint met_count = 0;
-  for (int x = first; x < end; x += kReprojectedBlock) {
-    const Positions now_x = moved_positions(columns_of(&params, positions0, x), (float8)(0.0f), frame0.width - 1);
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
+    const Positions column0 = load_positions(positions0, params.columns, x);
+    const Positions column1 = load_positions(positions1, params.columns, x);
+    const Positions now_x = moved_positions(column0, (float8)(0.0f), frame0.width - 1);
 #if MOTION
     const PixelMotion motion = motion_of(&params, reprojection, nearest_samples(now_x), nearest_samples(now_y).s0);
 #else
     PixelMotion motion = {(float8)(0.0f), (float8)(0.0f), (float8)(1.0f)};
 #if REACTIVE
-    const Positions still_x = moved_positions(columns_of(&params, positions1, x), (float8)(0.0f), frame1.width - 1);
+    const Positions still_x = moved_positions(column1, (float8)(0.0f), frame1.width - 1);
     const Positions still_y = moved_positions(row1, (float8)(0.0f), frame1.height - 1);
     motion.trust = trust_of(reactive0, frame0.reactive, nearest_samples(now_x), nearest_samples(now_y).s0) *
                    trust_of(reactive1, frame1.reactive, nearest_samples(still_x), nearest_samples(still_y).s0);
 #endif
 #endif
-    const Positions before_x = moved_positions(columns_of(&params, positions1, x), motion.x, frame1.width - 1);
+    const Positions before_x = moved_positions(column1, motion.x, frame1.width - 1);
     const Positions before_y = moved_positions(row1, motion.y, frame1.height - 1);
     if (pairs) {
       const Weights weights = weights_of(&params, now_x.fraction, now_y.fraction, before_x.fraction, before_y.fraction,
@@ -171,6 +168,7 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
       const int8 before = before_y.texel * frame1.colour.pitch + before_x.texel;
       int8 bits = as_int8(motion.trust);
       RESOLVE(s0);
+#if ON_CPU
       RESOLVE(s1);
       RESOLVE(s2);
       RESOLVE(s3);
@@ -181,10 +179,16 @@ __kernel void resolve_reprojected(const ReprojectedParams params, __global const
       if (!any_at_least_two(bits.lo | bits.hi)) {
         const FourPixels left = {pixel_s0, pixel_s1, pixel_s2, pixel_s3};
         const FourPixels right = {pixel_s4, pixel_s5, pixel_s6, pixel_s7};
-        store_four(output, params.output, x, y, end, left);
-        if (x + 4 < end) store_four(output, params.output, x + 4, y, end, right);
+        store_four(output, params.output, x, y, x + count, left);
+        if (count > 4) store_four(output, params.output, x + 4, y, x + count, right);
         continue;
       }
+#else
+      if (!any_at_least_two(bits.lo | bits.hi)) {
+        store_output(output, params.output, x, y, pixel_s0);
+        continue;
+      }
+#endif
     }
     RESOLVE_CAREFULLY(s0, 0)
     RESOLVE_CAREFULLY(s1, 1)

@@ -14,12 +14,11 @@
 __kernel void scale_point(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
                           OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, 1);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const int row = axes[params.row_axis + y].nearest;
-  for (int x = first; x < end; ++x) {
+  for (int x = item.first; x < item.end; x += item.step) {
     float4 colour = load_colour(source, params.source, axes[x].nearest, row);
     if (any_non_finite4(colour)) {
       colour = sanitise4(colour);

@@ -88,7 +88,7 @@ if compgen -G "lib/ld-linux-*" >/dev/null; then
 fi
 
 # limited PERCENT LOG PROGRAM OPTION...: with that share of the time; what it says goes to LOG, its exit status to
-# $code. Tests are dealt to several processes, one for two processors.
+# $code. Tests are dealt to as many processes as there are processors.
 shards=1
 limited() {
   local seconds=$((minutes * 60 * $1 / 100)) log=$out/$2 program=$3 started=$SECONDS shard running=()
@@ -127,7 +127,7 @@ told() { say '' "$(fold -s -w 118 <<<"\`$1\`: $(outcome)." | sed 's/ *$//')"; }
 test_row() {
   local share=$1 program=$2 log=$2.log
   shift 2
-  shards=$((($(nproc) + 1) / 2))
+  shards=$(nproc)
   limited "$share" "$log" "$program" "$@"
   shards=1
   local count_of='grep -c -E'

@@ -5,9 +5,10 @@
 #pragma once
 
 // Kernels that make eight pixels of a row at once have them in the lanes of vectors. A CPU has such vectors, and keeps
-// them in registers where code is written out for each lane and each case. Elsewhere a work-item has one pixel at a time:
-// in the first lane. The compiler leaves the others out, as nothing comes of them: eight pixels have five times as many
-// values as a GPU has registers for them, and a compiler that makes code of its own for every lane needs minutes.
+// them in registers where code is written out for each lane and each case. Elsewhere a work-item has one pixel at a
+// time, in the first lane. The compiler leaves the others out, as nothing comes of them: the values of eight pixels are
+// five times as many as a GPU's work-item has registers, and a compiler that makes code of its own for every lane needs
+// minutes.
 #if defined(__x86_64__) || defined(__aarch64__)
 #define ON_CPU 1
 enum { kLanes = 8 };                                              // those that count
@@ -37,27 +38,28 @@ typedef int LaneBits;
 #endif
 #define UNROLL_ALWAYS(count) __attribute__((opencl_unroll_hint(count)))
 
-// The pixels of a row that a work-item makes: kLanes from `first` on, then from `first` + `step`, and so on, before
-// `end`. Beside each other where lanes are; elsewhere the items of a group take turns, so that those side by side load
-// and store neighbours.
+// The pixels of a row that a work-item makes: those from `first` on, from `first` + `step` on, and so on, before `end`.
+// On a CPU it makes a block of them at once, and then the next one. Elsewhere the items of a group take turns, pixel by
+// pixel, so that those side by side load and store neighbours.
 typedef struct ItemColumns {
   int first, end, step;
 } ItemColumns;
 
-// `count`: how many an item makes of a row of `width`.
-static inline ItemColumns columns_of_item(int count, int width) {
+// `wanted`: how many an item makes of a row of `width`, at least; `block`: at once, on a CPU.
+static inline ItemColumns columns_of_item(int wanted, int width, int block) {
 #if ON_CPU
+  const int count = (wanted + block - 1) / block * block;
   const int first = get_global_id(0) * count;
-  const ItemColumns columns = {first, min(first + count, width), kLanes};
+  const ItemColumns columns = {first, min(first + count, width), block};
 #else
   const int items = get_local_size(0);
-  const int group = get_group_id(0) * items * count;
-  const ItemColumns columns = {group + (int)get_local_id(0), min(group + items * count, width), items};
+  const int group = get_group_id(0) * items * wanted;
+  const ItemColumns columns = {group + (int)get_local_id(0), min(group + items * wanted, width), items};
 #endif
   return columns;
 }
 
-// How many pixels from x on are there, of which kLanes count.
+// How many pixels from x on are there; on a CPU more than a block may be.
 static inline int pixels_from(ItemColumns columns, int x) {
   return ON_CPU ? columns.end - x : 1;
 }

@@ -58,7 +58,7 @@ typedef struct PresentParams {
   TexelLayout source;
   TexelLayout output;
   int counter;           // index into non_finite
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kPresentBlock
+  int columns_per_item;  // pixels that a work-item makes, at least
   float exposure;
 } PresentParams;
 QUINCUNX_CHECK_SIZE(PresentParams, 36);

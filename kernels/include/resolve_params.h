@@ -89,7 +89,7 @@ typedef struct ReprojectedParams {
   TexelLayout output;
   int columns;           // in the position tables: texels of the columns, then fractions; then the same of the rows
   int counter;           // index into non_finite
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kReprojectedBlock
+  int columns_per_item;  // pixels that a work-item makes, at least
   float falloff0_x, falloff0_y;  // 1 / r^2 of each axis, per frame
   float falloff1_x, falloff1_y;
 } ReprojectedParams;

@@ -118,7 +118,7 @@ static inline EightTexels load_pixels_of(const PastLayers* known, HistoryLayer l
                               load_row(layer, window_at(known, x + 4, y, 1), 0)};
   return texels;
 #else
-  return load_history8(layer, y * layer.width + x);
+  return load_history_lanes(layer, y * layer.width + x);
 #endif
 }
 
@@ -165,7 +165,7 @@ __kernel void display_layers(const TemporalDisplayParams params, const HistorySa
                              HISTORY_TEXELS history, HISTORY_TEXELS near_history, __global const half* states,
                              OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || y >= params.output_height) return;
 
   const PastLayers known =

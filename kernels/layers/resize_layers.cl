@@ -82,7 +82,7 @@ __kernel void resize_layers(const ResizeParams params, const HistorySamples befo
                             HISTORY_TEXELS near_history, __global const half* states, __global const LayerTile* layers,
                             STORED_HISTORY resized_near, __global half* resized_states) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kLanes);
   if (item.first >= item.end || y >= params.height) return;
 
   const Positions row = row_among_texels(&params, positions, y);

@@ -50,7 +50,7 @@ __kernel void resolve_layers(const TemporalParams params, const HistorySamples b
                              __global const TileLight* light, STORED_HISTORY updated, STORED_HISTORY updated_alpha,
                              STORED_HISTORY updated_near, __global half* updated_states, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || y >= params.output_height) return;
 
   const SourceFrame frame = params.frame0;

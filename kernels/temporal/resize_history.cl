@@ -59,7 +59,7 @@ __kernel void resize_history(const ResizeParams params, __global const int* posi
                              __global const TileReprojection* previous_tiles, HISTORY_TEXELS history,
                              HISTORY_TEXELS alpha, STORED_HISTORY resized, STORED_HISTORY resized_alpha) {
   const int y = get_global_id(1);
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kLanes);
   if (item.first >= item.end || y >= params.height) return;
 
   const HistoryLayer layer = {history, params.previous_width, params.previous_height};

@@ -151,7 +151,7 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
                                STORED_HISTORY updated, STORED_HISTORY updated_alpha, OUTPUT_TEXELS view,
                                __global uint* non_finite) {
   const int first_y = get_global_id(1) * params.rows_per_item;
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
   const int end_y = min(first_y + params.rows_per_item, params.output_height);

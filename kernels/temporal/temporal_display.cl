@@ -129,7 +129,7 @@ static inline void store_opaque(OUTPUT_TEXELS output, TexelLayout layout, int x,
 __kernel void temporal_display(const TemporalDisplayParams params, __global const TileReprojection* tiles,
                                HISTORY_TEXELS history, HISTORY_TEXELS alpha, OUTPUT_TEXELS output) {
   const int first_y = get_global_id(1) * params.rows_per_item;
-  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width);
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kLanes);
   if (item.first >= item.end || first_y >= params.output_height) return;
 
   const HistoryLayer layer = {history, params.output_width, params.output_height};
@@ -145,7 +145,7 @@ __kernel void temporal_display(const TemporalDisplayParams params, __global cons
       const bool inside = lies_inside(layer, &display, x, y);
       Pixels pixels;
       if (inside) {
-        pixels.own = load_history8(layer, y * layer.width + x);
+        pixels.own = load_history_lanes(layer, y * layer.width + x);
         pixels.shown = pixels.own;
       } else {
         pixels = gather_pixels(layer, &display, x, y);

@@ -308,7 +308,7 @@ TemporalStages::Result TemporalStages::run_resolve(Rig& rig, const StageInputs& 
   params.output = layout_of(view);
   params.columns = position_columns(output);
   params.counter = counter.index;
-  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kReprojectedBlock);
+  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, 1);
   params.rows_per_item = rows_per_item(impl().profile.shape);
   params.motion_x = to_float(r.reprojection_scale(0));
   params.motion_y = to_float(r.reprojection_scale(1));
@@ -366,7 +366,7 @@ TemporalStages::Result TemporalStages::run_display(Rig& rig, const StageInputs& 
   params.output_height = output.height;
   params.output = layout_of(view);
   params.tiles_x = r.tiles_x();
-  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, kTemporalTile);
+  params.columns_per_item = columns_per_item(impl().profile.shape, output.width, 1);
   params.rows_per_item = rows_per_item(impl().profile.shape);
   params.first = shown.first ? 1 : 0;
   cl::Kernel display = kernel("temporal_display", spec_of(facts(shown.preset), "temporal_display").options);

@@ -85,7 +85,7 @@ TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, c
           .output = {},
           .columns = position_columns(output),
           .counter = frame.counter.index,
-          .columns_per_item = columns_per_item(shape, output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, output.width, 1),
           .rows_per_item = rows_per_item(shape),
           .motion_x = motion.x,
           .motion_y = motion.y,
@@ -106,7 +106,7 @@ TemporalDisplayParams temporal_display_params(const PassFrame& frame, const Work
           .output_height = frame.output.height,
           .output = layout_of(frame[picture]),
           .tiles_x = extent_of(Area::kTiles, frame.extents()).width,
-          .columns_per_item = columns_per_item(shape, frame.output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, frame.output.width, 1),
           .rows_per_item = rows_per_item(shape),
           .first = frame.has_history ? 0 : 1};
 }

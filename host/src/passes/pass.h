@@ -167,7 +167,7 @@ struct Ratio {
 };
 Ratio ratio_of(Extent to, Extent from);
 
-// Returns the pixels of a row that one work-item makes: a multiple of `block`.
+// Returns the pixels of a row that one work-item makes: a multiple of `block`, which is 1 where a kernel sees to it.
 int columns_per_item(const WorkShape& shape, int width, int block = kBlock);
 
 // The -D options that several kernels share. An image carries its format with it, so the options name it for

@@ -213,7 +213,7 @@ class PresentPass : public Pass {
         .source = layout_of(source),
         .output = rows_of(presented, frame.display.height, settings().conventions.origin),
         .counter = frame.counter.index,
-        .columns_per_item = columns_per_item(shape(), frame.display.width, kPresentBlock),
+        .columns_per_item = columns_per_item(shape(), frame.display.width, 1),
         .exposure = exposure == 0 ? 1 : exposure};
     bind(params, source, exposure_of(frame), presented, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);

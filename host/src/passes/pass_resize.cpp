@@ -46,7 +46,7 @@ ResizeParams resize_params(const PassFrame& frame, const WorkShape& shape) {
           .previous_tiles_x = tiles_before.width,
           .previous_tiles_y = tiles_before.height,
           .columns = position_columns(output),
-          .columns_per_item = columns_per_item(shape, output.width, kTemporalTile),
+          .columns_per_item = columns_per_item(shape, output.width, 1),
           .ratio_x = ratio.x,
           .ratio_y = ratio.y,
           .places_x = places_of(before.width, output.width),

@@ -43,7 +43,7 @@ class ResolveReprojectedPass : public Pass {
         .output = layout_of(frame[picture()]),
         .columns = position_columns(extent),
         .counter = frame.counter.index,
-        .columns_per_item = columns_per_item(shape(), extent.width, kReprojectedBlock),
+        .columns_per_item = columns_per_item(shape(), extent.width, 1),
         .falloff0_x = falloff(now.width, extent.width),
         .falloff0_y = falloff(now.height, extent.height),
         .falloff1_x = falloff(before.width, extent.width),

@@ -124,7 +124,7 @@ static inline bool lie_side_by_side(const PastLayers* past, const LayerSources* 
 
 // Whether none of those has two layers.
 static inline bool have_one(const PastLayers* past, const LayerSources* from) {
-  const EightTexels texels = load_history8(past->far, (from->y.s0 + 1) * past->far.width + from->x.s0 + 1);
+  const EightTexels texels = load_history_lanes(past->far, (from->y.s0 + 1) * past->far.width + from->x.s0 + 1);
   return !any_lane(as_int8(confidences(texels)) >> 31);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Taps: texels of history as the layers that pixels of a row want have them, one texel of each pixel at a time; and sums
-// of them over the 4x4 texels around the pixels' places.
+// Taps: texels of history as the layers that pixels of a row want have them, one texel of each pixel at a time. And
+// their sums over the 4x4 texels around the pixels' places.
 #pragma once
 
 #include "layers/constants.h"

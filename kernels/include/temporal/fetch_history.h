@@ -166,7 +166,7 @@ static inline FetchedHistory resample_history(HistoryLayer layer, SourcePlaces f
 
 // Returns the eight texels from (x, y) on as they are.
 static inline FetchedHistory copy_history(HistoryLayer layer, int x, int y) {
-  const EightTexels texels = load_history8(layer, y * layer.width + x);
+  const EightTexels texels = load_history_lanes(layer, y * layer.width + x);
   const FetchedHistory fetched = {texels, held_confidence(texels), (float8)(0.0f), (float8)(0.0f)};
   return fetched;
 }
@@ -205,6 +205,6 @@ static inline float8 resample_alpha(AlphaPlane plane, SourcePlaces from) {
 static inline float8 fetch_alpha(AlphaPlane plane, __global const TileReprojection* previous,
                                  const TemporalParams* params, TileReprojection tile, TilePath path,
                                  const EightReprojections* motion, int x, int y) {
-  if (path != kResampled) return load_alpha8(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
+  if (path != kResampled) return load_alpha_lanes(plane, (y - tile.step_y) * plane.width + x - tile.step_x);
   return resample_alpha(plane, source_places(previous, params, tile, motion, x, y));
 }

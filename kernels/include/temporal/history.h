@@ -100,14 +100,14 @@ static inline float16 load_history4(HistoryLayer layer, int index) {
 #endif
 }
 
-// As many from `index` on as lanes count.
 static inline EightTexels load_history8(HistoryLayer layer, int index) {
-#if ON_CPU
   const EightTexels row = {load_history4(layer, index), load_history4(layer, index + 4)};
   return row;
-#else
-  return push_texel(no_texels(), load_history(layer, index));
-#endif
+}
+
+// As many from `index` on as lanes count.
+static inline EightTexels load_history_lanes(HistoryLayer layer, int index) {
+  return ON_CPU ? load_history8(layer, index) : push_texel(no_texels(), load_history(layer, index));
 }
 
 #if ON_CPU
@@ -217,7 +217,7 @@ static inline float load_alpha(AlphaPlane plane, int index) {
 }
 
 // As many values from `index` on as lanes count.
-static inline float8 load_alpha8(AlphaPlane plane, int index) {
+static inline float8 load_alpha_lanes(AlphaPlane plane, int index) {
 #if !ON_CPU
   return (float8)(load_alpha(plane, index));
 #elif HISTORY_FORMAT == HALF

@@ -33,7 +33,7 @@ typedef struct TemporalParams {
   TexelLayout output;          // layout of a debug view
   int columns;                 // in the position table, as in ReprojectedParams
   int counter;                 // index into non_finite
-  int columns_per_item;        // pixels that a work-item makes: a multiple of kTemporalTile
+  int columns_per_item;        // pixels that a work-item makes, at least
   int rows_per_item;           // in resolve_temporal: 1 or kTemporalTile
   float motion_x, motion_y;    // from Reprojection's pixels of the previous viewport to output pixels
   float spacing_x, spacing_y;  // output pixels between neighbouring samples
@@ -48,7 +48,7 @@ typedef struct TemporalDisplayParams {
   int output_height;
   TexelLayout output;
   int tiles_x;
-  int columns_per_item;  // pixels that a work-item makes: a multiple of kTemporalTile
+  int columns_per_item;  // pixels that a work-item makes, at least
   int rows_per_item;     // in temporal_display: 1 or kTemporalTile
   int first;             // 1: no frame came before
 } TemporalDisplayParams;
@@ -70,7 +70,7 @@ typedef struct ResizeParams {
   int tiles_x, tiles_y;
   int previous_tiles_x, previous_tiles_y;
   int columns;             // in the position table, as in TemporalParams
-  int columns_per_item;    // pixels that a work-item makes: a multiple of kTemporalTile
+  int columns_per_item;    // pixels that a work-item makes, at least
   float ratio_x, ratio_y;  // texels of the history in each pixel
   int places_x, places_y;  // number of places in each pixel at which history is read, evenly spread over it
   float share, most;       // part of a texel's confidence that is left, and the most
