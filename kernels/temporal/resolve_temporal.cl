@@ -168,9 +168,11 @@ __kernel void resolve_temporal(const TemporalParams params, __global const int* 
     const int tile_index = tile_y * params.tiles_x + tile_x;
     const TileReprojection tile = tiles[tile_index];
     const bool right_is_even = has_even_light(light, &params, tile_x + 1, tile_y);
+    if (!ON_CPU) left_is_even = has_even_light(light, &params, tile_x - 1, tile_y);
+    if (!ON_CPU) own_is_even = has_even_light(light, &params, tile_x, tile_y);
     const bool even = left_is_even && own_is_even && right_is_even;
-    left_is_even = ON_CPU ? own_is_even : has_even_light(light, &params, (x + item.step) / kTemporalTile - 1, tile_y);
-    own_is_even = ON_CPU ? right_is_even : has_even_light(light, &params, (x + item.step) / kTemporalTile, tile_y);
+    left_is_even = own_is_even;
+    own_is_even = right_is_even;
 #if LAYERS
     if (layers[tile_index].is_layered) continue;
 #endif

@@ -93,6 +93,7 @@ struct Outcome {
 Outcome run_frames(bool allow_waits) {
   ServiceRig rig({}, Method::kQuincunx, {64, 48}, {64, 48});
   rig.service().allow_timing_waits(allow_waits);
+  g_asked = 0;  // while the device was opened they were
   Outcome outcome;
   for (int frame = 0; frame < 3; ++frame) {
     outcome.resolved = rig.resolve(
@@ -119,7 +120,8 @@ TEST_F(PassTimerTest, EventsThatLieAreNot) {
   }
 }
 
-TEST_F(PassTimerTest, TheAnswerIsKept) {
+// A doubt may come from others who used the device at that moment.
+TEST_F(PassTimerTest, BeliefIsKeptAndDoubtIsNot) {
   EXPECT_EQ(timer_of_a_new_device(), PassTimer::kEvents);
   EXPECT_EQ(entries(), 1);
   g_lie = Lie::kZero;
@@ -129,7 +131,7 @@ TEST_F(PassTimerTest, TheAnswerIsKept) {
   fs::remove_all(folder_);
   EXPECT_EQ(timer_of_a_new_device(), PassTimer::kHostClock);
   g_lie = Lie::kNone;
-  EXPECT_EQ(timer_of_a_new_device(), PassTimer::kHostClock) << "that is kept, too";
+  EXPECT_EQ(timer_of_a_new_device(), PassTimer::kEvents) << "a doubt was kept";
 }
 
 TEST_F(PassTimerTest, WithoutACacheItIsAskedEachTime) {
@@ -158,7 +160,6 @@ TEST_F(PassTimerTest, ALiarsPassesHaveNoTimesUnlessTheServiceMayWait) {
     for (const PassReport& pass : report.passes)
       EXPECT_EQ(pass.ms, -1) << pass.kernel;
   }
-  g_asked = 0;
   for (const FrameReport& report : run_frames(true).reports) {
     ASSERT_GT(report.passes.size(), 1u);
     for (const PassReport& pass : report.passes)

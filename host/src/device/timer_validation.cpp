@@ -121,14 +121,10 @@ PassTimer believed(const Device::Impl& device, const std::string& doubt) {
   return PassTimer::kHostClock;
 }
 
-std::optional<PassTimer> kept_timer(const fs::path& path) {
+// Only that events are believed is kept: a doubt may come from others who use the device at this moment.
+bool are_known_to_be_right(const fs::path& path) {
   const auto bytes = read_cache_entry(path);
-  if (!bytes) return std::nullopt;
-  const std::string text(bytes->begin(), bytes->end());
-  for (const PassTimer timer : {PassTimer::kEvents, PassTimer::kHostClock}) {
-    if (text == name_of(timer)) return timer;
-  }
-  return std::nullopt;
+  return bytes && std::string(bytes->begin(), bytes->end()) == name_of(PassTimer::kEvents);
 }
 
 }  // namespace
@@ -149,14 +145,13 @@ PassTimer validated_timer(const Device::Impl& device) {
   const std::optional<fs::path> folder = cache_folder();
   const fs::path path =
       folder ? *folder / fmt::format("pass_timer-{}.txt", cache_key(device, kSource, kOptions)) : fs::path();
-  if (const auto kept = kept_timer(path)) return *kept;
+  if (are_known_to_be_right(path)) return PassTimer::kEvents;
   try {
     const PassTimer timer = believed(device, doubt_about_events(device));
     const std::string text = name_of(timer);
-    if (folder) write_cache_entry(path, {text.begin(), text.end()});
+    if (folder && timer == PassTimer::kEvents) write_cache_entry(path, {text.begin(), text.end()});
     return timer;
   } catch (const cl::Error& error) {
-    // Perhaps it would work the next time, so that nothing is kept.
     return believed(device,
                     fmt::format("{} failed: {} ({})", error.what(), error_name(error.err()), error.err()));
   }
