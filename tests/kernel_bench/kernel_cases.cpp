@@ -137,6 +137,7 @@ void add_reprojected(std::vector<Case>& cases, Stage& stage, Scene scene, double
     const bool odd = (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? pixels : -.3 * pixels) / stage.output().width);
   });
+  scene.previous.velocity = scene.current.velocity;
   std::vector<std::string> kernels = {"resolve_reprojected"};
   if (pixels != 0) kernels.insert(kernels.begin(), "reproject");
   add_passes(cases, stage,
@@ -184,6 +185,7 @@ void add_checkerboard(std::vector<Case>& cases, Stage& stage, Scene scene, doubl
     const bool odd = apart && (x / 97 + y / 83) % 2 != 0;
     return static_cast<float>((odd ? -pixels / .3 : pixels) / stage.output().width);
   });
+  scene.previous.velocity = scene.current.velocity;
   scene.current.depth = scene.previous.depth =
       stage.constant(scene.current.render_extent, PixelFormat::kR32F);
   scene.current.parity = 1;
