@@ -4,8 +4,8 @@
 // Some drivers stamp events with times that mean nothing. So when a device is opened a small kernel runs twice, the
 // second time with eight times the work, and the stamps of both runs are held against the host's clock around them.
 // Stamps are believed where they are in order, are no longer than what the host saw, and grow with the work. That
-// they are is kept in cache_folder() for each device and driver, so that this costs its milliseconds once; a doubt, which
-// may come from others who use the device, is not.
+// they are is kept in cache_folder() for each device and driver, so that this costs its milliseconds once. A doubt,
+// which may come from others who use the device, is not kept.
 #pragma once
 
 #include <cstdint>
