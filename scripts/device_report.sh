@@ -88,10 +88,9 @@ if compgen -G "lib/ld-linux-*" >/dev/null; then
 fi
 
 # limited PERCENT LOG PROGRAM OPTION...: with that share of the time; what it says goes to LOG, its exit status to
-# $code. Tests are dealt to as many processes as there are processors.
-shards=1
+# $code. Tests are dealt to as many processes as $shards says.
 limited() {
-  local seconds=$((minutes * 60 * $1 / 100)) log=$out/$2 program=$3 started=$SECONDS shard running=()
+  local seconds=$((minutes * 60 * $1 / 100)) log=$out/$2 program=$3 started=$SECONDS shards=${shards:-1} shard running=()
   shift 3
   printf '%s %s\n' "$program" "$*" >&2
   for ((shard = 0; shard < shards; shard++)); do
@@ -127,9 +126,7 @@ told() { say '' "$(fold -s -w 118 <<<"\`$1\`: $(outcome)." | sed 's/ *$//')"; }
 test_row() {
   local share=$1 program=$2 log=$2.log
   shift 2
-  shards=$(nproc)
-  limited "$share" "$log" "$program" "$@"
-  shards=1
+  shards=$(nproc) limited "$share" "$log" "$program" "$@"
   local count_of='grep -c -E'
   say "| \`$program${*:+ $*}\` | $($count_of '^\[       OK' "$out/$log" || true) | $(
     sed -n 's/^\[  FAILED  \] \(.*\) (.*ms)$/\1/p' "$out/$log" | wc -l) | $(

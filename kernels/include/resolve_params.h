@@ -63,7 +63,7 @@ typedef struct FilterParams {
 QUINCUNX_CHECK_SIZE(FilterParams, 64);
 
 // ---- Two frames.
-enum { kReprojectedBlock = 8 };  // pixels that resolve_reprojected, whose weights are many, makes at once
+enum { kReprojectedBlock = 8 };  // as many as a CPU has lanes (lanes.h): tables are padded to that
 
 typedef struct ResolveParams {
   int output_width;
