@@ -22,7 +22,7 @@ typedef struct BothLayers {
   FetchedLayers far, near;  // far or only ones; the near ones only where a pixel has two
 } BothLayers;
 
-// Fetches the layers of the pixels from (x, y) on. One loop for both kinds, so that compilers meet its body once.
+// Fetches the layers of the pixels from (x, y) on. Unrolled, as rounds would hand lanes on that do not count.
 static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
                                     TileReprojection tile, LayerTile layer, const EightReprojections* motion, int x,
                                     int y) {
