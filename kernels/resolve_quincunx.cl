@@ -45,10 +45,11 @@
 #endif
 
 static inline int4 nearest_of(__global const AxisTap* columns) {
+  if (!ON_CPU) return columns[0].nearest;
   return (int4)(columns[0].nearest, columns[1].nearest, columns[2].nearest, columns[3].nearest);
 }
 
-// Into *mean four pixels of one frame. `careful`, a constant, chooses the way; the slow one sets bit i of *non_finite
+// Into *mean the pixels of one frame. `careful`, a constant, chooses the way; the slow one sets bit i of *non_finite
 // where pixel i met NaN or Inf.
 __attribute__((always_inline)) static inline void sample_frame(bool careful, COLOUR_TEXELS colour, SourceFrame frame,
                                                                __global const AxisTap* columns, AxisTap row,
@@ -57,9 +58,11 @@ __attribute__((always_inline)) static inline void sample_frame(bool careful, COL
   sample_four(careful, colour, frame.colour, frame.width, frame.height, columns, row, mean, non_finite);
 #else
   mean->p0 = load_colour(colour, frame.colour, columns[0].nearest, row.nearest);
-  mean->p1 = load_colour(colour, frame.colour, columns[1].nearest, row.nearest);
-  mean->p2 = load_colour(colour, frame.colour, columns[2].nearest, row.nearest);
-  mean->p3 = load_colour(colour, frame.colour, columns[3].nearest, row.nearest);
+  if (ON_CPU) {
+    mean->p1 = load_colour(colour, frame.colour, columns[1].nearest, row.nearest);
+    mean->p2 = load_colour(colour, frame.colour, columns[2].nearest, row.nearest);
+    mean->p3 = load_colour(colour, frame.colour, columns[3].nearest, row.nearest);
+  }
   if (careful) *non_finite = sanitise_four(mean);
 #endif
 }
@@ -92,10 +95,10 @@ static inline FourPixels blend(FourPixels c0, FourPixels c1, float4 share) {
   return mean;
 }
 
-// Pixels first to end of row y. The fast way (`careful` false) returns the largest magnitudes it met; the slow one
+// An item's pixels of row y. The fast way (`careful` false) returns the largest magnitudes it met; the slow one
 // is right for NaN and Inf as well and adds the pixels that met them to *met.
 __attribute__((always_inline)) static inline int4 resolve_row(
-    bool careful, const ResolveParams* params, int first, int end, int y, __global const AxisTap* axes0,
+    bool careful, const ResolveParams* params, ItemColumns item, int y, __global const AxisTap* axes0,
     __global const AxisTap* axes1, COLOUR_TEXELS colour0, COLOUR_TEXELS colour1, VELOCITY_TEXELS velocity0,
     VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0, REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, uint* met) {
   const SourceFrame frame0 = params->frame0;
@@ -103,7 +106,8 @@ __attribute__((always_inline)) static inline int4 resolve_row(
   const AxisTap row0 = axes0[params->row_axis + y];
   const AxisTap row1 = axes1[params->row_axis + y];
   int4 largest = 0;
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
     uint bits0;
     uint bits1;
     FourPixels c0;
@@ -142,11 +146,11 @@ __attribute__((always_inline)) static inline int4 resolve_row(
       bits0 |= lane_bits(lost);
 #endif
       share = select(share, 0.0f, (int4)((int)bits1) << (int4)(31, 30, 29, 28));
-      *met += count_bits(bits0 | bits1, end - x);
+      *met += count_bits(bits0 | bits1, count);
     }
     const FourPixels mean = blend(c0, c1, share);
     largest = larger_magnitude(largest_of(largest, mean), speed);
-    store_four(output, params->output, x, y, end, mean);
+    store_four(output, params->output, x, y, x + count, mean);
   }
   return largest;
 }
@@ -156,17 +160,16 @@ __kernel void resolve_quincunx(const ResolveParams params, __global const AxisTa
                                VELOCITY_TEXELS velocity0, VELOCITY_TEXELS velocity1, REACTIVE_TEXELS reactive0,
                                REACTIVE_TEXELS reactive1, OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kBlock);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   uint met = 0;
   if (min(params.frame0.width, params.frame1.width) > 1) {
-    const int4 largest = resolve_row(false, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0,
+    const int4 largest = resolve_row(false, &params, item, y, axes0, axes1, colour0, colour1, velocity0,
                                      velocity1, reactive0, reactive1, output, &met);
     if (!any_reached_infinity(largest)) return;
   }
-  resolve_row(true, &params, first, end, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, reactive1,
+  resolve_row(true, &params, item, y, axes0, axes1, colour0, colour1, velocity0, velocity1, reactive0, reactive1,
               output, &met);
   if (met) atomic_add(non_finite + params.counter, met);
 }

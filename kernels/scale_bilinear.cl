@@ -15,31 +15,30 @@
 __kernel void scale_bilinear(const ScaleParams params, __global const AxisTap* axes, COLOUR_TEXELS source,
                              OUTPUT_TEXELS output, __global uint* non_finite) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kBlock);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const AxisTap row = axes[params.row_axis + y];
   uint bits;
   int4 largest = params.source_width > 1 ? 0 : NON_FINITE_BITS;
   if (params.source_width > 1) {
-    for (int x = first; x < end; x += kBlock) {
+    for (int x = item.first; x < item.end; x += item.step) {
       FourPixels colour;
       sample_four(false, source, params.source, params.source_width, params.source_height, axes + x, row, &colour,
                   &bits);
       largest = largest_of(largest, colour);
-      store_four(output, params.output, x, y, end, colour);
+      store_four(output, params.output, x, y, x + pixels_from(item, x), colour);
     }
   }
   if (!any_reached_infinity(largest)) return;
 
   // Rare: once more, on the slow path.
   uint met = 0;
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
     FourPixels colour;
     sample_four(true, source, params.source, params.source_width, params.source_height, axes + x, row, &colour, &bits);
-    met += count_bits(bits, end - x);
-    store_four(output, params.output, x, y, end, colour);
+    met += count_bits(bits, pixels_from(item, x));
+    store_four(output, params.output, x, y, x + pixels_from(item, x), colour);
   }
   if (met) atomic_add(non_finite + params.counter, met);
 }

@@ -42,6 +42,7 @@
 #define INNER_Y params->inner_y
 #endif
 
+#if ON_CPU
 // Columns of a run of output pixels, each the weighted mean of its rows and, for CLAMP, the range of its inner rows
 // and, in the end, of the INNER_X columns from there on.
 typedef struct Columns {
@@ -129,6 +130,7 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
 #endif
   return mean;
 }
+#endif
 
 // The slow path: one pixel of any viewport and any values. NaN counts as 0, +-Inf as +-65504. Sums in the order of the
 // functions above, so that a pixel comes out the same to the last bit whichever way it went.
@@ -168,17 +170,17 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
                            OUTPUT_TEXELS output, __global uint* non_finite) {
   const FilterParams* params = &filter;
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params->columns_per_item;
-  if (first >= params->output_width || y >= params->output_height) return;
+  const ItemColumns item = columns_of_item(params->columns_per_item, params->output_width, 1);
+  if (item.first >= item.end || y >= params->output_height) return;
 
-  const int end = min(first + params->columns_per_item, params->output_width);
   const FilterSpan row = spans[params->row_axis + y];
   __global const float* column_weights = (__global const float*)(spans + params->row_axis + params->output_height);
   __global const float* row_weights = column_weights + params->row_axis * TAPS_X + y * TAPS_Y;
+#if ON_CPU
   int4 largest = params->run > 0 ? 0 : NON_FINITE_BITS;
   Columns columns;
-  for (int start = first; start < end && params->run > 0; start += params->run) {
-    const int stop = min(start + params->run, end);
+  for (int start = item.first; start < item.end && params->run > 0; start += params->run) {
+    const int stop = min(start + params->run, item.end);
     const int base = min(spans[start].base, params->source_width - 4);
     const int count = max(spans[stop - 1].base + TAPS_X - base, 4);
     filter_rows(params, source, row, row_weights, base, count, &columns);
@@ -188,10 +190,11 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
     }
   }
   if (!any_reached_infinity(largest)) return;
+#endif
 
-  // Rare: once more, on the slow path.
+  // Once more, on the slow path, which is rare. Where the device is no CPU the only way: a run has no registers there.
   uint met_count = 0;
-  for (int x = first; x < end; ++x) {
+  for (int x = item.first; x < item.end; x += item.step) {
     bool met = false;
     store_output(output, params->output, x, y,
                  filter_careful(params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met));

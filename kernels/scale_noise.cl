@@ -20,27 +20,29 @@ __kernel void scale_noise(const NoiseParams params, __global const AxisTap* axes
                           OUTPUT_TEXELS output, __global uint* non_finite) {
   const ScaleParams scale = params.scale;
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * scale.columns_per_item;
-  if (first >= scale.output_width || y >= scale.output_height) return;
+  const ItemColumns item = columns_of_item(scale.columns_per_item, scale.output_width, kBlock);
+  if (item.first >= item.end || y >= scale.output_height) return;
 
-  const int end = min(first + scale.columns_per_item, scale.output_width);
   const int row = axes[scale.row_axis + y].nearest;
   const uint row_hash = hash_of_row(y, params.seed);
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
     // The axis table is padded to whole blocks.
     FourPixels colour;
     colour.p0 = load_colour(source, scale.source, axes[x].nearest, row);
-    colour.p1 = load_colour(source, scale.source, axes[x + 1].nearest, row);
-    colour.p2 = load_colour(source, scale.source, axes[x + 2].nearest, row);
-    colour.p3 = load_colour(source, scale.source, axes[x + 3].nearest, row);
+    if (ON_CPU) {
+      colour.p1 = load_colour(source, scale.source, axes[x + 1].nearest, row);
+      colour.p2 = load_colour(source, scale.source, axes[x + 2].nearest, row);
+      colour.p3 = load_colour(source, scale.source, axes[x + 3].nearest, row);
+    }
     const uint bits = sanitise_four(&colour);
-    if (bits) atomic_add(non_finite + scale.counter, count_bits(bits, end - x));
+    if (bits) atomic_add(non_finite + scale.counter, count_bits(bits, count));
     const uint4 hash = hash_of4((uint4)(0, 1, 2, 3) + ((uint)x + row_hash));
     const float4 grain = 1.0f + params.amplitude * (convert_float4(as_int4(hash)) * 0x1p-31f);
     colour.p0 = grained(colour.p0, grain.s0);
     colour.p1 = grained(colour.p1, grain.s1);
     colour.p2 = grained(colour.p2, grain.s2);
     colour.p3 = grained(colour.p3, grain.s3);
-    store_four(output, scale.output, x, y, end, colour);
+    store_four(output, scale.output, x, y, x + count, colour);
   }
 }

@@ -27,18 +27,21 @@ __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTa
                                  OUTPUT_TEXELS output, __global uint* non_finite) {
   const ScaleParams scale = params.scale;
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * scale.columns_per_item;
-  if (first >= scale.output_width || y >= scale.output_height) return;
+  const ItemColumns item = columns_of_item(scale.columns_per_item, scale.output_width, kBlock);
+  if (item.first >= item.end || y >= scale.output_height) return;
 
-  const int end = min(first + scale.columns_per_item, scale.output_width);
   const AxisTap row = axes[scale.row_axis + y];
   const uint row_hash = hash_of_row(y, params.seed);
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int count = pixels_from(item, x);
     // The axis table is padded to whole blocks.
     const AxisTap t0 = axes[x];
-    const AxisTap t1 = axes[x + 1];
-    const AxisTap t2 = axes[x + 2];
-    const AxisTap t3 = axes[x + 3];
+    AxisTap t1 = t0, t2 = t0, t3 = t0;
+    if (ON_CPU) {
+      t1 = axes[x + 1];
+      t2 = axes[x + 2];
+      t3 = axes[x + 3];
+    }
     const uint4 hash = hash_of4((uint4)(0, 1, 2, 3) + ((uint)x + row_hash));
     const int4 column = texels_at((int4)(t0.base, t1.base, t2.base, t3.base),
                                   (float4)(t0.weight1, t1.weight1, t2.weight1, t3.weight1), as_int4(hash >> 16),
@@ -47,11 +50,13 @@ __kernel void scale_noise_offset(const NoiseParams params, __global const AxisTa
                                 scale.source_height - 1);
     FourPixels colour;
     colour.p0 = load_colour(source, scale.source, column.s0, line.s0);
-    colour.p1 = load_colour(source, scale.source, column.s1, line.s1);
-    colour.p2 = load_colour(source, scale.source, column.s2, line.s2);
-    colour.p3 = load_colour(source, scale.source, column.s3, line.s3);
+    if (ON_CPU) {
+      colour.p1 = load_colour(source, scale.source, column.s1, line.s1);
+      colour.p2 = load_colour(source, scale.source, column.s2, line.s2);
+      colour.p3 = load_colour(source, scale.source, column.s3, line.s3);
+    }
     const uint bits = sanitise_four(&colour);
-    if (bits) atomic_add(non_finite + scale.counter, count_bits(bits, end - x));
-    store_four(output, scale.output, x, y, end, colour);
+    if (bits) atomic_add(non_finite + scale.counter, count_bits(bits, count));
+    store_four(output, scale.output, x, y, x + count, colour);
   }
 }

@@ -65,19 +65,19 @@ static inline void sharpen_careful(RESOLVED_TEXELS source, OUTPUT_TEXELS output,
 
 __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kBlock);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
+  int x = item.first;
+#if ON_CPU
   const int above = max(y - 1, 0), below = min(y + 1, params.height - 1);
   const TexelLayout layout = params.source;
   int16 largest = 0;
-  int x = first;
   if (x == 0) {
-    sharpen_careful(source, output, &params, x, y, end);
+    sharpen_careful(source, output, &params, x, y, item.end);
     x += kBlock;
   }
-  for (; x + kBlock <= min(end, params.width - 1); x += kBlock) {
+  for (; x + kBlock <= min(item.end, params.width - 1); x += kBlock) {
     const Cross cross = {load_resolved4(source, layout, x, y), load_resolved4(source, layout, x - 1, y),
                          load_resolved4(source, layout, x + 1, y), load_resolved4(source, layout, x, above),
                          load_resolved4(source, layout, x, below)};
@@ -86,9 +86,10 @@ __kernel void sharpen(const SharpenParams params, RESOLVED_TEXELS source, OUTPUT
     store_output4(output, params.output, x, y, sharpened(cross, contrast, params.sharpness));
   }
   const int8 largest8 = max(largest.lo, largest.hi);
-  if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = first;
+  if (any_reached_infinity(max(largest8.lo, largest8.hi))) x = item.first;
+#endif
 
-  // The rest of the row or, which is rare, all of it once more.
-  for (; x < end; x += kBlock)
-    sharpen_careful(source, output, &params, x, y, end);
+  // The rest of the row or, which is rare, all of it once more. Where the device is no CPU all of it.
+  for (; x < item.end; x += item.step)
+    sharpen_careful(source, output, &params, x, y, x + pixels_from(item, x));
 }

@@ -38,8 +38,8 @@ static inline float4 sample_finite(COLOUR_TEXELS texels, COLOUR_ROW upper, COLOU
                     row);
 }
 
-// Into *mean the four pixels whose columns start at `columns`. `careful`, a constant, chooses the way; the slow one
-// sets bit i of *non_finite where pixel i met NaN or Inf.
+// Into *mean the pixels whose columns start at `columns`. `careful`, a constant, chooses the way; the slow one sets bit
+// i of *non_finite where pixel i met NaN or Inf.
 __attribute__((always_inline)) static inline void sample_four(bool careful, COLOUR_TEXELS texels,
                                                                     TexelLayout layout, int width, int height,
                                                                     __global const AxisTap* columns,
@@ -47,14 +47,17 @@ __attribute__((always_inline)) static inline void sample_four(bool careful, COLO
   if (careful) {
     bool met0, met1, met2, met3;
     mean->p0 = sample_careful(texels, layout, width, height, columns[0], row, &met0);
+    *non_finite = (uint)met0;
+    if (!ON_CPU) return;
     mean->p1 = sample_careful(texels, layout, width, height, columns[1], row, &met1);
     mean->p2 = sample_careful(texels, layout, width, height, columns[2], row, &met2);
     mean->p3 = sample_careful(texels, layout, width, height, columns[3], row, &met3);
-    *non_finite = (uint)met0 | (uint)met1 << 1 | (uint)met2 << 2 | (uint)met3 << 3;
+    *non_finite |= (uint)met1 << 1 | (uint)met2 << 2 | (uint)met3 << 3;
   } else {
     COLOUR_ROW upper = colour_row(texels, layout, row.base);
     COLOUR_ROW lower = colour_row(texels, layout, min(row.base + 1, height - 1));
     mean->p0 = sample_finite(texels, upper, lower, columns[0], row);
+    if (!ON_CPU) return;
     mean->p1 = sample_finite(texels, upper, lower, columns[1], row);
     mean->p2 = sample_finite(texels, upper, lower, columns[2], row);
     mean->p3 = sample_finite(texels, upper, lower, columns[3], row);

@@ -18,11 +18,11 @@
 // Reference: tests/reference/layer_records.cpp
 #include "layers/records.h"
 
-enum { kTogether = 8 };  // samples that are looked at together
+enum { kTogether = kLanes };  // samples that are looked at together
 
 // Whether a sample from (x, y) on may be near: its depth is less than a neighbour's by the gap between layers.
 static inline bool may_be_near(const LayerParams* params, DEPTH_TEXELS depth, int x, int y) {
-#if SOURCE_STORAGE == BUFFER
+#if SOURCE_STORAGE == BUFFER && ON_CPU
   if (x < 1 || x + kTogether + 1 > params->width) return true;
   float8 least = (float8)(FLT_MAX), own = least;
   for (int row = max(y - 1, 0); row <= min(y + 1, params->height - 1); ++row) {
@@ -91,12 +91,11 @@ __kernel void layer_records(const LayerParams params, VELOCITY_TEXELS velocity, 
                             __global const LayerRecord* previous_records, __global uint* keys,
                             __global LayerRecord* records) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kTogether);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
-  for (int start = first; start < end; start += kTogether) {
-    const int stop = min(start + kTogether, end);
+  for (int start = item.first; start < item.end; start += item.step) {
+    const int stop = start + min((int)kTogether, pixels_from(item, start));
     for (int x = start; x < stop; ++x) keys[y * params.width + x] = 0;
     if (!may_be_near(&params, depth, start, y)) continue;
     for (int x = start; x < stop; ++x) {

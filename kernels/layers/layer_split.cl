@@ -22,7 +22,7 @@
 
 enum {
   kReach = 2,  // cells around a sample that may hold its record: that lies within half a sample of its cell's centre
-  kWindow = 8  // samples of a row that are looked at together
+  kWindow = kLanes  // samples of a row that are looked at together
 };
 
 static inline LayerRecord record_of(uint key, int cell, __global const LayerRecord* previous_records,
@@ -36,7 +36,7 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
   uint any = 0;
   for (int row = max(y - kReach, 0); row <= min(y + kReach, params->height - 1); ++row) {
     __global const uint* line = keys + row * params->width;
-    if (right - left == kWindow + 2 * kReach) {
+    if (ON_CPU && right - left == kWindow + 2 * kReach) {
       const uint8 start = vload8(0, line + left);
       const uint4 rest = vload4(0, line + left + 8);
       const uint4 both = start.lo | start.hi | rest;
@@ -50,7 +50,7 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
 
 // The cell of the record of each of kWindow samples of a row; -1 if none is within reach.
 typedef struct NearestRecords {
-  int cell[kWindow];
+  int cell[8];
 } NearestRecords;
 
 // Returns where a cell's record lies, counted in samples. A new one is exactly at its cell's sample.
@@ -140,12 +140,11 @@ __kernel void layer_split(const LayerParams params, VELOCITY_TEXELS velocity, DE
                           __global const LayerRecord* previous_records, __global LayerRecord* records,
                           __global float* reprojection, __global LayerSplit* splits, __global int* marks) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.width || y >= params.height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.width, kWindow);
+  if (item.first >= item.end || y >= params.height) return;
 
-  const int end = min(first + params.columns_per_item, params.width);
-  for (int start = first; start < end; start += kWindow) {
-    const int stop = min(start + kWindow, end);
+  for (int start = item.first; start < item.end; start += item.step) {
+    const int stop = start + min((int)kWindow, pixels_from(item, start));
     NearestRecords nearest;
     const bool any = has_record_near(&params, keys, start, y);
     if (any) nearest = find_records(&params, keys, previous_records, start, y);

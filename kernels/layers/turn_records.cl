@@ -45,11 +45,10 @@ static inline bool moves_otherwise(LayerRecord record, LayerRecord now) {
 __kernel void turn_records(const LayerParams params, __global const uint* previous_keys, __global const uint* keys,
                            __global const LayerRecord* records, __global LayerRecord* previous_records) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.previous_width || y >= params.previous_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.previous_width, 1);
+  if (item.first >= item.end || y >= params.previous_height) return;
 
-  const int end = min(first + params.columns_per_item, params.previous_width);
-  for (int x = first; x < end; ++x) {
+  for (int x = item.first; x < item.end; x += item.step) {
     const int i = y * params.previous_width + x;
     const uint key = previous_keys[i];
     LayerRecord record;

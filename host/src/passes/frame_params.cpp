@@ -156,7 +156,7 @@ LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent 
           .to_previous_y = to_previous.y,
           .tiles_x = tiles.width,
           .tiles_y = tiles.height,
-          .columns_per_item = columns_per_item(shape, extent.width, kReprojectedBlock)};
+          .columns_per_item = columns_per_item(shape, extent.width, 1)};
 }
 
 HistorySamples history_samples(const FrameInputs& frame, Extent output, TexelLayout depth) {

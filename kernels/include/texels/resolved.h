@@ -20,22 +20,25 @@ static inline void store_output(OUTPUT_TEXELS texels, TexelLayout layout, int x,
 #endif
 }
 
-// kBlock neighbours of a row. Not an array: PoCL keeps those in memory.
+// kBlock neighbours of a row; where the device is no CPU only p0 counts. Not an array: PoCL keeps those in memory.
 typedef struct FourPixels {
   float4 p0, p1, p2, p3;
 } FourPixels;
 
 static inline int4 largest_of(int4 largest, FourPixels pixels) {
-  largest = larger_magnitude(larger_magnitude(largest, pixels.p0), pixels.p1);
-  return larger_magnitude(larger_magnitude(largest, pixels.p2), pixels.p3);
+  largest = larger_magnitude(largest, pixels.p0);
+  if (!ON_CPU) return largest;
+  return larger_magnitude(larger_magnitude(larger_magnitude(largest, pixels.p1), pixels.p2), pixels.p3);
 }
 
 // Sanitises each; bit i of the result is set where pixel i was NaN or infinite.
 static inline uint sanitise_four(FourPixels* pixels) {
   if (!any_reached_infinity(largest_of((int4)(0), *pixels))) return 0;
-  const uint bits = (uint)any_non_finite4(pixels->p0) | (uint)any_non_finite4(pixels->p1) << 1 |
-                    (uint)any_non_finite4(pixels->p2) << 2 | (uint)any_non_finite4(pixels->p3) << 3;
+  uint bits = any_non_finite4(pixels->p0);
   pixels->p0 = sanitise4(pixels->p0);
+  if (!ON_CPU) return bits;
+  bits |= (uint)any_non_finite4(pixels->p1) << 1 | (uint)any_non_finite4(pixels->p2) << 2 |
+          (uint)any_non_finite4(pixels->p3) << 3;
   pixels->p1 = sanitise4(pixels->p1);
   pixels->p2 = sanitise4(pixels->p2);
   pixels->p3 = sanitise4(pixels->p3);
