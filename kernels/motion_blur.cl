@@ -149,12 +149,14 @@ static inline void add_colours(FourPixels* sum, RESOLVED_TEXELS source, TexelLay
   sum->p3 += load_resolved(source, layout, places.x.s3, places.y.s3);
 }
 
-// Four pixels from column x on; those beyond the last column repeat it.
+// The pixels from column `first` on; those beyond the last column repeat it. Where the device is no CPU there is one,
+// and all four lanes are it.
 static inline FourPixels blurred(const Frame* frame, TileBlur blur, RESOLVED_TEXELS source, VELOCITY_TEXELS velocity,
                                  DEPTH_TEXELS depth, int first, int y, uint row_hash) {
   const MotionParams* params = frame->params;
-  const int4 x = min((int4)(first, first + 1, first + 2, first + 3), (int4)(params->output_width - 1));
-  const int4 phase = as_int4(hash_of4((uint4)(0, 1, 2, 3) + ((uint)first + row_hash)) >> 24);
+  const int4 number = ON_CPU ? (int4)(0, 1, 2, 3) : (int4)(0);
+  const int4 x = min(first + number, (int4)(params->output_width - 1));
+  const int4 phase = as_int4(hash_of4(as_uint4(number) + ((uint)first + row_hash)) >> 24);
   Pixels pixels;
   if (blur.kind == kTileMixed) pixels = pixels_at(frame, blur, velocity, depth, x, y);
   FourPixels sum = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};
@@ -178,21 +180,23 @@ static inline FourPixels blurred(const Frame* frame, TileBlur blur, RESOLVED_TEX
 __kernel void motion_blur(const MotionParams params, __global const AxisTap* axes, __global const TileBlur* blurs,
                           RESOLVED_TEXELS source, VELOCITY_TEXELS velocity, DEPTH_TEXELS depth, OUTPUT_TEXELS output) {
   const int y = get_global_id(1);
-  const int first = get_global_id(0) * params.columns_per_item;
-  if (first >= params.output_width || y >= params.output_height) return;
+  const ItemColumns item = columns_of_item(params.columns_per_item, params.output_width, kBlock);
+  if (item.first >= item.end || y >= params.output_height) return;
 
-  const int end = min(first + params.columns_per_item, params.output_width);
   const Frame frame = {&params, axes, axes + params.row_axis};
   const uint row_hash = hash_of_row(y, 0);
   __global const TileBlur* row = blurs + y / kTileSide * params.tiles_x;
-  for (int x = first; x < end; x += kBlock) {
+  for (int x = item.first; x < item.end; x += item.step) {
+    const int end = x + pixels_from(item, x);
     const TileBlur blur = row[x / kTileSide];
     if (blur.kind == kTileCopy) {
       FourPixels colour;
       colour.p0 = load_resolved(source, params.source, x, y);
-      colour.p1 = load_resolved(source, params.source, min(x + 1, end - 1), y);
-      colour.p2 = load_resolved(source, params.source, min(x + 2, end - 1), y);
-      colour.p3 = load_resolved(source, params.source, min(x + 3, end - 1), y);
+      if (ON_CPU) {
+        colour.p1 = load_resolved(source, params.source, min(x + 1, end - 1), y);
+        colour.p2 = load_resolved(source, params.source, min(x + 2, end - 1), y);
+        colour.p3 = load_resolved(source, params.source, min(x + 3, end - 1), y);
+      }
       store_four(output, params.output, x, y, end, colour);
     } else {
       store_four(output, params.output, x, y, end, blurred(&frame, blur, source, velocity, depth, x, y, row_hash));

@@ -132,31 +132,38 @@ static inline float4 filter_columns(const FilterParams* params, const Columns* c
 }
 #endif
 
-// The slow path: one pixel of any viewport and any values. NaN counts as 0, +-Inf as +-65504. Sums in the order of the
-// functions above, so that a pixel comes out the same to the last bit whichever way it went.
-static inline float4 filter_careful(const FilterParams* params, COLOUR_TEXELS source, FilterSpan column, FilterSpan row,
-                                    __global const float* column_weights, __global const float* row_weights,
-                                    bool* met) {
+// One pixel of any viewport. `careful`, a constant, chooses the way: the slow one is for any values. NaN counts as 0 in
+// it, +-Inf as +-65504, and either sets *met if it has a weight. The fast one, which CPUs do without, sets it by a mean
+// that is not finite. Both sum in the order of the functions above: a pixel comes out the same to the last bit
+// whichever way it went.
+__attribute__((always_inline)) static inline float4 filter_pixel(
+    bool careful, const FilterParams* params, COLOUR_TEXELS source, FilterSpan column, FilterSpan row,
+    __global const float* column_weights, __global const float* row_weights, bool* met) {
   const int right = params->source_width - 1;
   const int below = params->source_height - 1;
+  *met = false;
   float4 mean = 0.0f;
   for (int i = 0; i < TAPS_X; ++i) {
     float4 column_mean = 0.0f;
     for (int j = 0; j < TAPS_Y; ++j) {
-      if (column_weights[i] == 0.0f || row_weights[j] == 0.0f) continue;
-      const float4 texel = load_colour(source, params->source, min(column.base + i, right), min(row.base + j, below));
-      *met = *met || any_non_finite4(texel);
-      column_mean = MULTIPLY_ADD(sanitise4(texel), (float4)(row_weights[j]), column_mean);
+      if (careful && (column_weights[i] == 0.0f || row_weights[j] == 0.0f)) continue;
+      float4 texel = load_colour(source, params->source, min(column.base + i, right), min(row.base + j, below));
+      if (careful) {
+        *met = *met || any_non_finite4(texel);
+        texel = sanitise4(texel);
+      }
+      column_mean = MULTIPLY_ADD(texel, (float4)(row_weights[j]), column_mean);
     }
     mean = MULTIPLY_ADD(column_mean, (float4)(column_weights[i]), mean);
   }
+  if (!careful) *met = any_non_finite4(mean);
 #if CLAMP
   float4 low = FLT_MAX;
   float4 high = -FLT_MAX;
   for (int j = 0; j < INNER_Y; ++j) {
     for (int i = 0; i < INNER_X; ++i) {
-      const float4 value = sanitise4(
-          load_colour(source, params->source, min(column.inner + i, right), min(row.inner + j, below)));
+      float4 value = load_colour(source, params->source, min(column.inner + i, right), min(row.inner + j, below));
+      if (careful) value = sanitise4(value);
       low = min(low, value);
       high = max(high, value);
     }
@@ -192,12 +199,16 @@ __kernel void scale_filter(const FilterParams filter, __global const FilterSpan*
   if (!any_reached_infinity(largest)) return;
 #endif
 
-  // Once more, on the slow path, which is rare. Where the device is no CPU the only way: a run has no registers there.
+  // On a CPU once more, on the slow path, which is rare. Elsewhere all of it: a run has no registers there.
   uint met_count = 0;
   for (int x = item.first; x < item.end; x += item.step) {
-    bool met = false;
-    store_output(output, params->output, x, y,
-                 filter_careful(params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met));
+    bool met = true;
+    float4 colour;
+    if (!ON_CPU)
+      colour = filter_pixel(false, params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met);
+    if (met)
+      colour = filter_pixel(true, params, source, spans[x], row, column_weights + x * TAPS_X, row_weights, &met);
+    store_output(output, params->output, x, y, colour);
     met_count += met;
   }
   if (met_count) atomic_add(non_finite + params->counter, met_count);
