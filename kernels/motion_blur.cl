@@ -75,6 +75,11 @@ static inline Surfaces surfaces_at(const Frame* frame, VELOCITY_TEXELS velocity,
   return surfaces;
 }
 
+// Whether one of the pixels that count is -1.
+static inline bool any_pixel(int4 pixels) {
+  return ON_CPU ? any(pixels) : pixels.s0 != 0;
+}
+
 // Whether surfaces move as a streak says, to half a pixel and a quarter of its length.
 static inline int4 moves_as(Surfaces surfaces, int4 streak_x, int4 streak_y) {
   const uint4 away = max(abs_diff(surfaces.streak_x, streak_x), abs_diff(surfaces.streak_y, streak_y));
@@ -105,9 +110,9 @@ static inline Pixels pixels_at(const Frame* frame, TileBlur blur, VELOCITY_TEXEL
   pixels.y = y;
   pixels.own = surfaces_at(frame, velocity, depth, here);
   pixels.passed = ~moves_as(pixels.own, (int4)(blur.x), (int4)(blur.y));
-  pixels.any_passed = any(pixels.passed);
+  pixels.any_passed = any_pixel(pixels.passed);
   // Pixels that move by less than half a pixel stay on their own.
-  pixels.any_moves = any(max(abs(pixels.own.streak_x), abs(pixels.own.streak_y)) >= (uint4)(kStreakUnits / 2));
+  pixels.any_moves = any_pixel(max(abs(pixels.own.streak_x), abs(pixels.own.streak_y)) >= (uint4)(kStreakUnits / 2));
   return pixels;
 }
 
@@ -133,7 +138,7 @@ static inline Places places_seen(const Frame* frame, TileBlur blur, VELOCITY_TEX
     seen = choose(seen, passing, passes & (~stays | (passer.depth > stayer.depth * NEARER)));
   }
   const int4 hidden = ~(passes | stays) & (stayer.depth > own.depth * NEARER);
-  if (any(hidden)) {
+  if (any_pixel(hidden)) {
     const Places here = {pixels->x, (int4)(pixels->y)};
     const Places mirrored = places_along(params, pixels->x, pixels->y, -own.streak_x, -own.streak_y, fraction);
     const Surfaces other = surfaces_at(frame, velocity, depth, mirrored);
@@ -144,19 +149,18 @@ static inline Places places_seen(const Frame* frame, TileBlur blur, VELOCITY_TEX
 
 static inline void add_colours(FourPixels* sum, RESOLVED_TEXELS source, TexelLayout layout, Places places) {
   sum->p0 += load_resolved(source, layout, places.x.s0, places.y.s0);
+  if (!ON_CPU) return;
   sum->p1 += load_resolved(source, layout, places.x.s1, places.y.s1);
   sum->p2 += load_resolved(source, layout, places.x.s2, places.y.s2);
   sum->p3 += load_resolved(source, layout, places.x.s3, places.y.s3);
 }
 
-// The pixels from column `first` on; those beyond the last column repeat it. Where the device is no CPU there is one,
-// and all four lanes are it.
+// The pixels from column `first` on; those beyond the last column repeat it.
 static inline FourPixels blurred(const Frame* frame, TileBlur blur, RESOLVED_TEXELS source, VELOCITY_TEXELS velocity,
                                  DEPTH_TEXELS depth, int first, int y, uint row_hash) {
   const MotionParams* params = frame->params;
-  const int4 number = ON_CPU ? (int4)(0, 1, 2, 3) : (int4)(0);
-  const int4 x = min(first + number, (int4)(params->output_width - 1));
-  const int4 phase = as_int4(hash_of4(as_uint4(number) + ((uint)first + row_hash)) >> 24);
+  const int4 x = min((int4)(first, first + 1, first + 2, first + 3), (int4)(params->output_width - 1));
+  const int4 phase = as_int4(hash_of4((uint4)(0, 1, 2, 3) + ((uint)first + row_hash)) >> 24);
   Pixels pixels;
   if (blur.kind == kTileMixed) pixels = pixels_at(frame, blur, velocity, depth, x, y);
   FourPixels sum = {(float4)(0.0f), (float4)(0.0f), (float4)(0.0f), (float4)(0.0f)};

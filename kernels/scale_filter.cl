@@ -145,6 +145,7 @@ __attribute__((always_inline)) static inline float4 filter_pixel(
   float4 mean = 0.0f;
   for (int i = 0; i < TAPS_X; ++i) {
     float4 column_mean = 0.0f;
+    UNROLL_ALWAYS(4)  // so that loads do not wait for each other
     for (int j = 0; j < TAPS_Y; ++j) {
       if (careful && (column_weights[i] == 0.0f || row_weights[j] == 0.0f)) continue;
       float4 texel = load_colour(source, params->source, min(column.base + i, right), min(row.base + j, below));
