@@ -11,7 +11,8 @@
 // Options: TAPS   4 (default) taps on both axes | 0 as many as params says
 //          CLAMP  0 (default) | 1: to the range of the samples next to the centre, so that negative lobes do not ring
 //          SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// Rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a row.
+// On a CPU rows first, for the columns that a run of output pixels reads; then columns: each sample is weighed once a
+// row. Elsewhere each pixel by itself.
 // The table names the source of each filter.   Reference: tests/reference/scale_filter.cpp
 #include "arithmetic.h"
 #include "bits.h"
