@@ -48,7 +48,7 @@ static inline bool has_record_near(const LayerParams* params, __global const uin
   return any != 0;
 }
 
-// The cell of the record of each of kWindow samples of a row; -1 if none is within reach.
+// The cell of the record of each of eight samples of a row, of which kWindow count; -1 if none is within reach.
 typedef struct NearestRecords {
   int cell[8];
 } NearestRecords;

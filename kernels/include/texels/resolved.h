@@ -31,7 +31,7 @@ static inline int4 largest_of(int4 largest, FourPixels pixels) {
   return larger_magnitude(larger_magnitude(larger_magnitude(largest, pixels.p1), pixels.p2), pixels.p3);
 }
 
-// Sanitises each; bit i of the result is set where pixel i was NaN or infinite.
+// Sanitises each that counts; bit i of the result is set where pixel i was NaN or infinite.
 static inline uint sanitise_four(FourPixels* pixels) {
   if (!any_reached_infinity(largest_of((int4)(0), *pixels))) return 0;
   uint bits = any_non_finite4(pixels->p0);
