@@ -4,7 +4,7 @@
 #                  [ROOTS folder...])
 #
 # adds a generated source to TARGET that defines `std::span<const EmbeddedFile> FUNCTION()`, declared in HEADER. The
-# struct is that of kernels/embedded_file.h. A file's name is its path below the first of ROOTS that it lies in; without
+# struct is that of cmake/embedded_file.h. A file's name is its path below the first of ROOTS that it lies in; without
 # ROOTS it is the file's name alone.
 #
 # As a script (-P) this file writes that source. Each file becomes an array of bytes, not a string literal: ISO C++

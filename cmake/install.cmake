@@ -33,7 +33,7 @@ endfunction()
 
 quincunx_install_library(quincunx lib quincunxTargets)
 quincunx_install_pc(quincunx)
-install(DIRECTORY host/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+install(DIRECTORY host/include/quincunx host/control/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 if(BUILD_SHARED_LIBS)  # which the Python module loads
   set(QUINCUNX_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/quincunx/python CACHE STRING "Where quincunx.py is installed")
   install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR} COMPONENT python)

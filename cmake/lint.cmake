@@ -12,7 +12,7 @@ if(NOT version_text MATCHES "version ${QUINCUNX_CLANG_FORMAT_VERSION}\\.")
 endif()
 
 file(GLOB_RECURSE quincunx_formatted_files CONFIGURE_DEPENDS  # kernels/include is OpenCL C, set by hand
-     host/*.h host/*.cpp gl_interop/*.h gl_interop/*.cpp scenes/*.h scenes/*.cpp tests/*.h tests/*.cpp)
+     cmake/*.h host/*.h host/*.cpp gl_interop/*.h gl_interop/*.cpp scenes/*.h scenes/*.cpp tests/*.h tests/*.cpp)
 add_custom_target(format COMMAND ${QUINCUNX_CLANG_FORMAT} -i ${quincunx_formatted_files}
                   COMMENT "Formatting" VERBATIM)
 add_custom_target(format-check COMMAND ${QUINCUNX_CLANG_FORMAT} --dry-run --Werror ${quincunx_formatted_files}

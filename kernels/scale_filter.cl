@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // scale_filter: each output pixel is a weighted mean of the samples around its centre, by a separable filter of any
-// width: every separable filter of the table in host/src/plan/method.cpp, and the tent that bilinear becomes above
+// width: every separable filter of the table in host/control/src/method.cpp, and the tent that bilinear becomes above
 // scale 1.
 //   params      in   extents, layouts, taps of each axis
 //   spans       in   FilterSpan of each output column, then row; behind them the weights, taps of each column, then

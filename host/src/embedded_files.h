@@ -8,7 +8,7 @@
 
 namespace quincunx {
 
-// The one file of host/data.
+// The front that is built in.
 std::span<const EmbeddedFile> embedded_front_file();
 
 // The files of host/profiles, each as quincunx-bench --tune wrote it, for all devices of its platform and kind.

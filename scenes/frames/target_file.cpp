@@ -10,7 +10,7 @@
 #include "render/view_math.h"
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
-#include "tools/sequence/exchange_attributes.h"
+#include "tools/record/exchange_attributes.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -17,9 +17,9 @@
 #include "session/why_picture.h"
 #include "tools/image/image_io.h"
 #include "tools/page/report_page.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
-#include "tools/sequence/frame_pattern.h"
 #include "window/window_run.h"
 
 namespace quincunx::scenes {

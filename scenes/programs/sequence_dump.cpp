@@ -10,9 +10,9 @@
 #include "render/truth.h"
 #include "tools/image/display_light.h"
 #include "tools/program/atomic_file.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/progress.h"
 #include "tools/program/work_queue.h"
-#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -19,9 +19,9 @@
 #include "session/render_options.h"
 #include "tools/image/contact_sheet.h"
 #include "tools/page/scored_frames.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/run_report.h"
 #include "tools/program/work_queue.h"
-#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::scenes {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "control/predictive_model.h"
+#include "predictive_model.h"
 
 namespace quincunx {
 namespace {

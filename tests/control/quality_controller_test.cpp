@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "control/method_choice.h"
+#include "method_choice.h"
 
 namespace quincunx {
 namespace {

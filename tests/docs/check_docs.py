@@ -22,7 +22,8 @@ SLASH_COMMENTS = (".h", ".cpp", ".cl", ".glsl")
 # Files of ours; what a user names freely (`out/my.png`, `seq/frame.%04d.exr`) has other extensions.
 NAMED = r"\.(?:h|cpp|cl|glsl|sh|cmake|py|md|svg|json|txt)"
 # Where a path of the text may begin, besides the root and the text's own folder.
-ROOTS = ("", "host/", "host/include/", "host/include/quincunx/", "host/src/", "gl_interop/include/", "kernels/",
+ROOTS = ("", "host/", "host/include/", "host/include/quincunx/", "host/control/include/quincunx/",
+         "host/src/", "gl_interop/include/", "kernels/",
          "kernels/include/", "scenes/", "tests/")
 
 ONLY_A_LINK = re.compile(r"^\s*(?:[-*]\s+)?(?:!?\[[^\]]*\]\([^)]*\)|<?https?://\S+>?)[.,;]?\s*$")

@@ -72,8 +72,9 @@ def program(place, code, headers):
 
 def main():
     root, cxx = sys.argv[1:]
-    include = os.path.join(root, "host", "include")
-    headers = sorted(name for name in glob.glob("**/*.h", root_dir=os.path.join(include, "quincunx"), recursive=True)
+    folders = [os.path.join(root, "host", "include"), os.path.join(root, "host", "control", "include")]
+    headers = sorted(name for folder in folders
+                     for name in glob.glob("**/*.h", root_dir=os.path.join(folder, "quincunx"), recursive=True)
                      if not name.startswith("c/") and name != "quincunx.h")
     changed, quoted = changed_quotes(root)
     for line in changed:
@@ -90,8 +91,8 @@ def main():
             source = os.path.join(folder, "example.cpp")
             with open(source, "w", encoding="utf-8") as file:
                 file.write(program(place, code, headers))
-            run = subprocess.run([cxx, "-std=c++20", "-DCL_TARGET_OPENCL_VERSION=120", "-fsyntax-only", "-I", include,
-                                  source], capture_output=True, text=True)
+            run = subprocess.run([cxx, "-std=c++20", "-DCL_TARGET_OPENCL_VERSION=120", "-fsyntax-only",
+                                  *(f"-I{folder}" for folder in folders), source], capture_output=True, text=True)
             if run.returncode != 0:
                 print(f"{name}:\n{run.stderr}")
                 failed += 1

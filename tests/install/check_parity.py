@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Checks that C and Python have what C++ has: the public headers and quincunx.py against a table.
 
-    check_parity.py --headers host/include/quincunx --python host/tools/python/quincunx.py --table c_parity.txt
+    check_parity.py --headers host/include host/control/include --python host/tools/python/quincunx.py --table c_parity.txt
 
 The table's rows are `C++ | C | Python | why`: a function or a field of the structs in ROOTS, what it is in C (without
 "quincunx_"; several names, or the one side empty), what it is in Python (a function, a class, a method, a parameter as
@@ -13,6 +13,7 @@ not in the table, and on what is in the table and nowhere else.
 """
 import argparse
 import ast
+import itertools
 import os
 import re
 import sys
@@ -210,11 +211,12 @@ def read(path):
 
 def main():
     parser = argparse.ArgumentParser()
-    for name in ("headers", "python", "table"):
-        parser.add_argument("--" + name, required=True)
+    parser.add_argument("--headers", required=True, nargs="+")
+    parser.add_argument("--python", required=True)
+    parser.add_argument("--table", required=True)
     arguments = parser.parse_args()
     cpp, c = [], []
-    for path, _, names in os.walk(arguments.headers):
+    for path, _, names in itertools.chain.from_iterable(map(os.walk, arguments.headers)):
         for name in names:
             text = read(os.path.join(path, name))
             (c if 'extern "C"' in text or os.path.basename(path) == "c" else cpp).append(text)

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "temporary_folder.h"
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 
 namespace quincunx::tools {
 namespace {

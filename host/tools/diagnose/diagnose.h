@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 

@@ -14,7 +14,7 @@
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
 #include "tools/image/image_reader.h"
-#include "tools/sequence/exchange_attributes.h"
+#include "tools/record/exchange_attributes.h"
 
 namespace quincunx::tools {
 namespace {

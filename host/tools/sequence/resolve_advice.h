@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/sequence/resolve_task.h"
 #include "tools/sequence/sequence_input.h"
 

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "tools/program/command_line.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
 #include "tools/program/resolve_settings_options.h"
-#include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_task.h"
 
 namespace quincunx::tools {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "tools/program/frame_pattern.h"
 #include "tools/program/run_report.h"
-#include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_advice.h"
 
 namespace quincunx::tools {

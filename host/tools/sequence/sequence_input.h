@@ -11,8 +11,8 @@
 
 #include "quincunx/resolve_plan.h"
 #include "tools/image/image_reader.h"
-#include "tools/sequence/exchange_format.h"
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
+#include "tools/record/exchange_format.h"
 #include "tools/sequence/sequence_jitter.h"
 
 namespace quincunx::tools {

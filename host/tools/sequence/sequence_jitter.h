@@ -11,7 +11,7 @@
 
 #include "quincunx/status.h"
 #include "tools/program/jitter.h"
-#include "tools/sequence/exchange_attributes.h"
+#include "tools/record/exchange_attributes.h"
 
 namespace quincunx::tools {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/sequence/sequence_input.h"
 #include "tools/sequence/sequence_reader.h"
 

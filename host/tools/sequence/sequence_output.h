@@ -12,8 +12,8 @@
 
 #include "tools/image/image_io.h"
 #include "tools/page/scored_frames.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/work_queue.h"
-#include "tools/sequence/frame_pattern.h"
 
 namespace quincunx::tools {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "tools/image/half.h"
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 namespace {

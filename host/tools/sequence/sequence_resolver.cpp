@@ -8,7 +8,7 @@
 #include <bit>
 
 #include "tools/program/clock.h"
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 namespace {

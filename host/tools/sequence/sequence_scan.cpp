@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "tools/image/image_reader.h"
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 
 namespace quincunx::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/sequence/sequence_input.h"
 
 namespace quincunx::tools {

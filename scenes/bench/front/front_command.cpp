@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "bench/bench_options.h"
 #include "bench/front/front_points.h"
-#include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_run.h"
 #include "quincunx/control/front_file.h"

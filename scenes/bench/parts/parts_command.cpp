@@ -8,9 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/bench_options.h"
 #include "bench/parts/parts_rows.h"
 #include "bench/speed_error/bench_machine.h"
-#include "bench/speed_error/bench_options.h"
 #include "tools/program/command_line.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"

@@ -7,9 +7,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "bench/bench_options.h"
 #include "bench/resize/resize_costs.h"
 #include "bench/speed_error/bench_machine.h"
-#include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_plan.h"
 #include "tools/program/command_line.h"
 #include "tools/program/program.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/speed_error/bench_options.h"
+#include "bench/bench_options.h"
 #include "bench/speed_error/bench_result.h"
 #include "frames/focus_path.h"
 #include "frames/frame_sequence.h"

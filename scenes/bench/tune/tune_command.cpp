@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "bench/bench_options.h"
 #include "bench/speed_error/bench_machine.h"
-#include "bench/speed_error/bench_options.h"
 #include "bench/tune/tune_choice.h"
 #include "bench/tune/tune_stand.h"
 #include "tools/program/command_line.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 #include <algorithm>
 #include <array>

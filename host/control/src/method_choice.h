@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "control/predictive_model.h"
+#include "predictive_model.h"
 #include "quincunx/control/error_front.h"
 #include "quincunx/control/quality_controller.h"
 

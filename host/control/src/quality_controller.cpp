@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "control/method_choice.h"
-#include "control/predictive_model.h"
+#include "method_choice.h"
+#include "predictive_model.h"
 
 namespace quincunx {
 namespace {

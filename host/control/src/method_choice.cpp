@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "control/method_choice.h"
+#include "method_choice.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,8 @@
 namespace quincunx {
 
 struct EmbeddedFile {
-  std::string_view name;  // "sharpen.cl", "temporal/history.h": the path below a root folder, if one was named
+  std::string_view
+      name;  // "sharpen.cl", "temporal/history.h": the path below a root folder, if one was named
   std::string_view text;  // static storage: valid for the whole life of the program, from any thread
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/speed_error/bench_options.h"
+#include "bench/bench_options.h"
 
 #include <fmt/format.h>
 

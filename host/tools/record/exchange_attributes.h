@@ -10,7 +10,7 @@
 
 #include "quincunx/status.h"
 #include "tools/image/image_reader.h"
-#include "tools/sequence/exchange_format.h"
+#include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 

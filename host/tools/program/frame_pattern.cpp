@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/frame_pattern.h"
+#include "tools/program/frame_pattern.h"
 
 #include <fmt/format.h>
 

@@ -11,9 +11,9 @@
 #include "tools/diagnose/resolve_diagnosis.h"
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
+#include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
 #include "tools/program/progress.h"
-#include "tools/sequence/frame_pattern.h"
 #include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/resolve_report.h"
 

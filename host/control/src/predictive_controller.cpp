@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "control/predictive_model.h"
+#include "predictive_model.h"
 
 namespace quincunx {
 

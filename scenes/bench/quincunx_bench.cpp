@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <string>
 
+#include "bench/bench_options.h"
 #include "bench/front/front_points.h"
 #include "bench/speed_error/bench_compare.h"
 #include "bench/speed_error/bench_findings.h"
-#include "bench/speed_error/bench_options.h"
 #include "bench/speed_error/bench_page.h"
 #include "bench/speed_error/bench_run.h"
 #include "tools/program/atomic_file.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "control/predictive_model.h"
+#include "predictive_model.h"
 
 #include <algorithm>
 #include <cmath>

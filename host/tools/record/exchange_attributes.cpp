@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/sequence/exchange_attributes.h"
+#include "tools/record/exchange_attributes.h"
 
 #include <fmt/format.h>
 
@@ -124,31 +124,31 @@ bool read(const AttributeValue& value, Matrix& matrix) {
   return found != nullptr;
 }
 
-AttributeValue written(const Vec2& pair) {
+AttributeValue attribute_of(const Vec2& pair) {
   return pair;
 }
-AttributeValue written(const Extent& size) {
+AttributeValue attribute_of(const Extent& size) {
   return Vec2{static_cast<float>(size.width), static_cast<float>(size.height)};
 }
-AttributeValue written(float number) {
+AttributeValue attribute_of(float number) {
   return number;
 }
-AttributeValue written(int number) {
+AttributeValue attribute_of(int number) {
   return number;
 }
-AttributeValue written(bool flag) {
+AttributeValue attribute_of(bool flag) {
   return flag ? 1 : 0;
 }
-AttributeValue written(DepthKind kind) {
+AttributeValue attribute_of(DepthKind kind) {
   return std::string(name_of(kind));
 }
-AttributeValue written(const std::string& text) {
+AttributeValue attribute_of(const std::string& text) {
   return text;
 }
-AttributeValue written(const Matrix& matrix) {
+AttributeValue attribute_of(const Matrix& matrix) {
   return matrix;
 }
-AttributeValue written(std::int64_t number) {
+AttributeValue attribute_of(std::int64_t number) {
   const bool fits = number >= std::numeric_limits<int>::min() && number <= std::numeric_limits<int>::max();
   if (fits) return static_cast<int>(number);
   return fmt::format("{}", number);
@@ -182,7 +182,7 @@ Result<FrameAttributes> frame_attributes(const std::string& path, const ImageHea
 std::vector<Attribute> to_attributes(const FrameAttributes& attributes) {
   std::vector<Attribute> all = {{"quincunx:version", 1}};
   each(attributes, [&]<typename Value>(const char* name, const std::optional<Value>& value, const char*) {
-    if (value) all.push_back({name, written(*value)});
+    if (value) all.push_back({name, attribute_of(*value)});
   });
   return all;
 }
