@@ -35,8 +35,11 @@ quincunx_install_library(quincunx lib quincunxTargets)
 quincunx_install_pc(quincunx)
 install(DIRECTORY host/include/quincunx host/control/include/quincunx DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
 if(BUILD_SHARED_LIBS)  # which the Python module loads
-  set(QUINCUNX_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/quincunx/python CACHE STRING "Where quincunx.py is installed")
-  install(FILES host/tools/python/quincunx.py DESTINATION ${QUINCUNX_PYTHON_DIR} COMPONENT python)
+  set(QUINCUNX_PYTHON_DIR ${CMAKE_INSTALL_DATADIR}/quincunx/python CACHE STRING "Where the Python module is installed")
+  set(module ${QUINCUNX_PYTHON_DIR}/quincunx)  # a folder, for it reads the C headers
+  install(FILES host/tools/python/quincunx.py RENAME __init__.py DESTINATION ${module} COMPONENT python)
+  install(FILES host/include/quincunx/quincunx.h DESTINATION ${module}/include/quincunx COMPONENT python)
+  install(DIRECTORY host/include/quincunx/c DESTINATION ${module}/include/quincunx COMPONENT python)
 endif()
 
 # An export set of its own: who does not ask for the bridge needs no epoxy.

@@ -99,5 +99,5 @@ quincunx_package(doc quincunx-doc doc "dynamic resolution rendering with OpenCL:
   "${about}This package has the documentation, with pictures." ALL)
 quincunx_package(python python3-quincunx python "dynamic resolution rendering with OpenCL: Python module"
   "${about}This package has a module that resolves frames in NumPy arrays."
-  DEPENDS "libquincunx1 (>= ${PROJECT_VERSION}), python3, python3-numpy" ALL)
+  DEPENDS "libquincunx1 (>= ${PROJECT_VERSION}), python3, python3-numpy, python3-cffi" ALL)
 include(CPack)

@@ -17,7 +17,7 @@ run_packages=(
   libgles2                               # OpenGL ES, for --gl es3
   fonts-dejavu-core                      # captions of the contact sheet
 )
-test_packages=(clang clang-format python3 python3-numpy chromium
+test_packages=(clang clang-format python3 python3-numpy python3-cffi chromium
   libopenimageio-dev                     # a peer of the kernel benchmark
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window

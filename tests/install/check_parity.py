@@ -6,8 +6,8 @@
 
 The table's rows are `C++ | C | Python | why`: a function or a field of the structs in ROOTS, what it is in C (without
 "quincunx_"; several names, or the one side empty), what it is in Python (a function, a class, a method, a parameter as
-`Resolver.resolve(depth)`; empty for fields of structs, which are checked against the headers elsewhere), and why, where
-a side has none. `Image::*` stands for all of a class. `A.* | b.*` stands for the fields of A that have no row and are
+`Resolver.resolve(depth)`; empty for fields of structs, which Python knows by the headers), and why, where a side has
+none. `Image::*` stands for all of a class. `A.* | b.*` stands for the fields of A that have no row and are
 called the same in b, extents as _width and _height, points as _x and _y. Fails, with one line for each finding, on what is in a header and
 not in the table, and on what is in the table and nowhere else.
 """
@@ -119,10 +119,7 @@ def names_of_c(texts):
 
 def names_of_python(text):
     """Functions, classes, methods, and parameters as "Resolver.resolve(depth)"."""
-    names, numbers = set(), []
-    for node in ast.walk(ast.parse(text)):
-        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "NUMBERS":
-            numbers = ast.literal_eval(node.value)
+    names = set()
 
     def visit(nodes, prefix):
         for node in nodes:
@@ -132,8 +129,7 @@ def names_of_python(text):
             elif isinstance(node, ast.FunctionDef):
                 name = prefix + node.name if node.name != "__init__" else prefix[:-1]
                 names.add(name)
-                further = numbers if node.args.kwarg and node.args.kwarg.arg == "inputs" else ()
-                names.update(f"{name}({each})" for each in [*(arg.arg for arg in node.args.args), *further])
+                names.update(f"{name}({arg.arg})" for arg in node.args.args)
 
     visit(ast.parse(text).body, "")
     return names

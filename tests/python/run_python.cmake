@@ -1,7 +1,7 @@
-# Runs quincunx_test.py with a Python that has NumPy: the one in the path, or the system's own.
+# Runs quincunx_test.py with a Python that has NumPy and cffi: the one in the path, or the system's own.
 # Run as: cmake -D LIBRARY=libquincunx.so -D RESOLVE=quincunx-resolve -D ROOT=FOLDER -P run_python.cmake
 foreach(candidate python3 /usr/bin/python3)
-  execute_process(COMMAND ${candidate} -c "import numpy" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
+  execute_process(COMMAND ${candidate} -c "import cffi, numpy" RESULT_VARIABLE result OUTPUT_QUIET ERROR_QUIET)
   if(result EQUAL 0)
     set(python ${candidate})
     break()
@@ -9,9 +9,9 @@ foreach(candidate python3 /usr/bin/python3)
 endforeach()
 if(NOT python)
   if("$ENV{QUINCUNX_NO_SKIP}" STREQUAL "1")
-    message(FATAL_ERROR "a skip is forbidden here (QUINCUNX_NO_SKIP=1): no Python has NumPy; install the package python3-numpy")
+    message(FATAL_ERROR "a skip is forbidden here (QUINCUNX_NO_SKIP=1): no Python has NumPy and cffi; install the packages python3-numpy and python3-cffi")
   endif()
-  message("SKIPPED: no Python has NumPy")
+  message("SKIPPED: no Python has NumPy and cffi")
   return()
 endif()
 execute_process(

@@ -23,16 +23,15 @@ typedef struct quincunx_front quincunx_front;
 typedef struct quincunx_output_follower quincunx_output_follower;
 typedef struct quincunx_detail_follower quincunx_detail_follower;
 
-/* kind */
-enum {
+enum quincunx_controller_kind {
   QUINCUNX_CONTROL_PROPORTIONAL = 0, /* resolution_controller.h */
   QUINCUNX_CONTROL_MINIMUM_OF_N = 1, /* the same */
   QUINCUNX_CONTROL_PREDICTIVE = 2,   /* predictive_controller.h */
   QUINCUNX_CONTROL_QUALITY = 3       /* quality_controller.h: chooses the method, too */
 };
-enum { QUINCUNX_HORIZONTAL_FIRST = 0, QUINCUNX_HORIZONTAL_ONLY = 1, QUINCUNX_BOTH_AXES = 2 }; /* order */
-enum { QUINCUNX_HOLD = 0, QUINCUNX_FOLLOW = 1 };                                              /* cpu_bound */
-/* classes of scenes, of which a mix has shares */
+enum quincunx_order { QUINCUNX_HORIZONTAL_FIRST = 0, QUINCUNX_HORIZONTAL_ONLY = 1, QUINCUNX_BOTH_AXES = 2 };
+enum quincunx_cpu_bound { QUINCUNX_HOLD = 0, QUINCUNX_FOLLOW = 1 };
+/* Classes of scenes, of which a mix has shares. */
 enum {
   QUINCUNX_STILL = 0,
   QUINCUNX_PAN = 1,

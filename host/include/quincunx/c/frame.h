@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* One frame's images, what goes with them and what is told of it, for quincunx.h. The fields are those of image.h and
- * frame.h; docs/inputs.md states the conventions at length. */
+ * frame.h; docs/inputs.md states the conventions at length. The comment behind an image begins with its formats, which
+ * programs in other languages may read there. */
 #ifndef QUINCUNX_C_FRAME_H
 #define QUINCUNX_C_FRAME_H
 
@@ -25,7 +26,7 @@ struct quincunx_inputs;
 /* Particles that were drawn apart, in a viewport of their own; where settings.particle_target_* are set. */
 typedef struct quincunx_particles {
   size_t struct_size;             /* sizeof(quincunx_particles) */
-  const quincunx_image* colour;   /* as inputs.colour, over transparent black; alpha: coverage */
+  const quincunx_image* colour;   /* RGBA16F, RGBA32F or RGBA8, over transparent black; alpha: coverage */
   const quincunx_image* depth;    /* R32F: the frame's depth resampled, of a surface that the pixel shows */
   const quincunx_image* reactive; /* R8 */
   int32_t render_width;           /* pixels of their viewport */
@@ -53,7 +54,7 @@ typedef struct quincunx_focus {
 /* A cross-fade from another method's picture of this frame; where settings.fades is set. */
 typedef struct quincunx_fade {
   size_t struct_size;         /* sizeof(quincunx_fade) */
-  const quincunx_image* from; /* as outputs.linear, in other memory */
+  const quincunx_image* from; /* RGBA32F or RGBA16F, as outputs.linear, in other memory */
   float weight;               /* of this frame's own picture, in [0, 1]; the rest is that of `from` */
   int32_t padding;            /* 0 */
 } quincunx_fade;
@@ -73,9 +74,8 @@ typedef struct quincunx_sync {
  * until that of the next frame is: the service copies nothing. So give frames n and n - 1 different ones. Host memory
  * is copied and free for reuse when the call returns. */
 typedef struct quincunx_inputs {
-  size_t struct_size; /* sizeof(quincunx_inputs) */
-  /* RGBA16F or RGBA32F: linear light, premultiplied. RGBA8: exposed, tone mapped and sRGB encoded. */
-  const quincunx_image* colour;
+  size_t struct_size;           /* sizeof(quincunx_inputs) */
+  const quincunx_image* colour; /* RGBA16F or RGBA32F: linear light, premultiplied; RGBA8: as presented */
   /* Read only where quincunx_needs says so; else NULL will do. */
   const quincunx_image* depth;    /* R32F, as settings.depth_convention says */
   const quincunx_image* velocity; /* RG16F or RG32F, as settings.velocity_* say */
@@ -99,9 +99,8 @@ typedef struct quincunx_inputs {
   int32_t
       output_width; /* the picture's size in this frame, from settings.min_output_* on; both 0: the output's */
   int32_t output_height;
-  /* R32F, 1x1: another factor of the exposure, which need never be read on the host; NULL: none */
-  const quincunx_image* exposure_image;
-  const quincunx_particles* particles; /* NULL: none, as of what follows */
+  const quincunx_image* exposure_image; /* R32F, 1x1: a further factor of exposure; NULL: none */
+  const quincunx_particles* particles;  /* NULL: none, as of what follows */
   const quincunx_focus* focus;
   const quincunx_fade* fade;
   const quincunx_sync* sync;

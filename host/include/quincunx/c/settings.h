@@ -7,10 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Numbers of the fields that choose. They never change their meaning. */
+/* Numbers of the fields that choose; an enum is named as its field. They never change their meaning. */
 
-/* method: how the picture is made from the frames */
-enum {
+/* How the picture is made from the frames. */
+enum quincunx_method {
   QUINCUNX_POINT = 0,
   QUINCUNX_BILINEAR = 1,
   QUINCUNX_B_SPLINE = 2,
@@ -23,29 +23,28 @@ enum {
   QUINCUNX_TWO_FRAMES = 9, /* "quincunx": this frame and the previous one */
   QUINCUNX_TEMPORAL = 10   /* all frames so far; needs quincunx_jitter() */
 };
-/* two_frame_form: how the previous frame counts */
-enum { QUINCUNX_MEAN = 0, QUINCUNX_BY_VELOCITY = 1, QUINCUNX_REPROJECTED = 2 };
-enum { QUINCUNX_SAMPLE_POINT = 0, QUINCUNX_SAMPLE_BILINEAR = 1 };                 /* sampling */
-enum { QUINCUNX_FAST = 0, QUINCUNX_BALANCED = 1, QUINCUNX_QUALITY = 2 };          /* temporal_preset */
-enum { QUINCUNX_AS_DRAWN = 0, QUINCUNX_BY_CAMERA = 1, QUINCUNX_BY_EVIDENCE = 2 }; /* sky_motion */
-enum { QUINCUNX_OWN_VELOCITY = 0, QUINCUNX_DILATED_VELOCITY = 1 };                /* drawn_velocity */
-enum { QUINCUNX_CLAMP = 0, QUINCUNX_REINHARD = 1, QUINCUNX_ACES = 2 };            /* tone_map */
-enum { QUINCUNX_FULL = 0, QUINCUNX_CHECKERBOARD = 1 };                            /* shading */
-enum { QUINCUNX_VIEWPORT = 0, QUINCUNX_PLACED = 1 };                              /* targets */
-enum { QUINCUNX_BUFFER = 0, QUINCUNX_IMAGE2D = 1, QUINCUNX_HOST = 2 };            /* storage; place */
-/* depth_convention */
-enum {
+/* How the previous frame counts. */
+enum quincunx_two_frame_form { QUINCUNX_MEAN = 0, QUINCUNX_BY_VELOCITY = 1, QUINCUNX_REPROJECTED = 2 };
+enum quincunx_sampling { QUINCUNX_SAMPLE_POINT = 0, QUINCUNX_SAMPLE_BILINEAR = 1 };
+enum quincunx_temporal_preset { QUINCUNX_FAST = 0, QUINCUNX_BALANCED = 1, QUINCUNX_QUALITY = 2 };
+enum quincunx_sky_motion { QUINCUNX_AS_DRAWN = 0, QUINCUNX_BY_CAMERA = 1, QUINCUNX_BY_EVIDENCE = 2 };
+enum quincunx_drawn_velocity { QUINCUNX_OWN_VELOCITY = 0, QUINCUNX_DILATED_VELOCITY = 1 };
+enum quincunx_tone_map { QUINCUNX_CLAMP = 0, QUINCUNX_REINHARD = 1, QUINCUNX_ACES = 2 };
+enum quincunx_shading { QUINCUNX_FULL = 0, QUINCUNX_CHECKERBOARD = 1 };
+enum quincunx_targets { QUINCUNX_VIEWPORT = 0, QUINCUNX_PLACED = 1 };
+enum quincunx_place { QUINCUNX_BUFFER = 0, QUINCUNX_IMAGE2D = 1, QUINCUNX_HOST = 2 }; /* storage, too */
+enum quincunx_depth_convention {
   QUINCUNX_REVERSED_INFINITE = 0, /* near / distance: 1 at the near plane, 0 at infinity */
   QUINCUNX_REVERSED = 1,          /* 1 at the near plane, 0 at the far plane */
   QUINCUNX_INFINITE = 2,          /* 0 at the near plane, 1 at infinity */
   QUINCUNX_FORWARD = 3,           /* 0 at the near plane, 1 at the far plane */
   QUINCUNX_LINEAR = 4             /* the distance along the view axis */
 };
-enum { QUINCUNX_DIRECT3D = 0, QUINCUNX_OPENGL = 1, QUINCUNX_VULKAN = 2 }; /* clip_space */
-enum { QUINCUNX_UV = 0, QUINCUNX_PIXELS = 1, QUINCUNX_NDC = 2 };          /* velocity_unit */
-enum { QUINCUNX_TOP = 0, QUINCUNX_BOTTOM = 1 };                           /* origin */
-/* temporal_view: what the picture shows */
-enum {
+enum quincunx_clip_space { QUINCUNX_DIRECT3D = 0, QUINCUNX_OPENGL = 1, QUINCUNX_VULKAN = 2 };
+enum quincunx_velocity_unit { QUINCUNX_UV = 0, QUINCUNX_PIXELS = 1, QUINCUNX_NDC = 2 };
+enum quincunx_origin { QUINCUNX_TOP = 0, QUINCUNX_BOTTOM = 1 };
+/* What the picture shows. */
+enum quincunx_temporal_view {
   QUINCUNX_VIEW_PICTURE = 0,
   QUINCUNX_VIEW_CONFIDENCE = 1,
   QUINCUNX_VIEW_REJECTION = 2,
@@ -55,8 +54,8 @@ enum {
   QUINCUNX_VIEW_NEAR = 6,
   QUINCUNX_VIEW_FAR = 7
 };
-/* formats: channels, bits of each, F: floating point; colours are linear light with premultiplied alpha */
-enum {
+/* Channels, bits of each, F: floating point; colours are linear light with premultiplied alpha. */
+enum quincunx_format {
   QUINCUNX_R8 = 1,
   QUINCUNX_R32F = 2,
   QUINCUNX_RG16F = 3,
