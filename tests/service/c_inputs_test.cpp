@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a frame may bring besides its images, over the C interface: particles, focus, fade, exposure, a dynamic output,
 // events. The pictures are those of the C++ interface.
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -11,6 +12,23 @@
 
 #include "c_fixture.h"
 #include "service_fixture.h"
+
+namespace {
+bool g_cannot_read = false;
+}
+
+// The library calls this in place of OpenCL's.
+extern "C" cl_int clEnqueueReadBufferRect(cl_command_queue queue, cl_mem buffer, cl_bool blocking,
+                                          const size_t* origin, const size_t* to, const size_t* region,
+                                          size_t row, size_t slice, size_t host_row, size_t host_slice,
+                                          void* memory, cl_uint waits, const cl_event* list,
+                                          cl_event* event) {
+  if (g_cannot_read) return CL_OUT_OF_RESOURCES;
+  static const auto real =
+      reinterpret_cast<decltype(&clEnqueueReadBufferRect)>(dlsym(RTLD_NEXT, "clEnqueueReadBufferRect"));
+  return real(queue, buffer, blocking, origin, to, region, row, slice, host_row, host_slice, memory, waits,
+              list, event);
+}
 
 namespace quincunx {
 namespace {
@@ -311,6 +329,39 @@ TEST(CSync, EventsInAndOut) {
   EXPECT_TRUE(refuses("sync.wait_for is NULL; it must point to 1 events")) << quincunx_last_error();
   sync.wait_count = -1;
   EXPECT_TRUE(refuses("sync.wait_count is -1; it must be at least 0")) << quincunx_last_error();
+}
+
+TEST(CSync, AFrameWhosePictureIsLostHasNoEvent) {
+  const auto plan = c_plan({}, {.method = Method::kBilinear,
+                                .output_extent = kOutput,
+                                .target_extent = kOutput,
+                                .colour = PixelFormat::kRGBA32F,
+                                .output = {.present = false}});
+  quincunx_device* opened = nullptr;
+  ASSERT_EQ(quincunx_device_open("", &opened), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_device> device(opened);
+  quincunx_service* made = nullptr;
+  ASSERT_EQ(quincunx_service_create(opened, plan.get(), &made), QUINCUNX_OK) << quincunx_last_error();
+  const COwner<quincunx_service> service(made);
+  HostPicture colour(kOutput, PixelFormat::kRGBA32F), picture(kOutput, PixelFormat::kRGBA32F);
+  void* done = nullptr;
+  quincunx_sync sync = {sizeof(sync), nullptr, 0, 0, &done};
+  quincunx_inputs inputs = {};
+  inputs.struct_size = sizeof(inputs);
+  inputs.colour = colour.image();
+  inputs.render_width = kOutput.width;
+  inputs.render_height = kOutput.height;
+  inputs.sync = &sync;
+  const quincunx_outputs outputs = {sizeof(outputs), picture.image(), nullptr};
+
+  g_cannot_read = true;
+  EXPECT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_DEVICE_FAILURE);
+  g_cannot_read = false;
+  EXPECT_EQ(done, nullptr);
+  EXPECT_NE(std::string(quincunx_last_error()).find("download"), std::string::npos) << quincunx_last_error();
+  ASSERT_EQ(quincunx_dispatch(made, &inputs, &outputs, nullptr), QUINCUNX_OK) << quincunx_last_error();
+  ASSERT_NE(done, nullptr);
+  clReleaseEvent(static_cast<cl_event>(done));
 }
 
 }  // namespace

@@ -312,7 +312,8 @@ quincunx_status quincunx_validate(const quincunx_plan* plan, const quincunx_inpu
 
 quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inputs* inputs,
                                   const quincunx_outputs* outputs, quincunx_report* report) {
-  return guarded([&]() -> Status {
+  cl_event* done = nullptr;
+  const quincunx_status status = guarded([&]() -> Status {
     if (service == nullptr) return null("service");
     quincunx_report own = {};
     if (report != nullptr) {
@@ -322,6 +323,7 @@ quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inpu
     }
     auto frame = quincunx::c::checked_frame(service->service.plan(), inputs, outputs);
     if (!frame.ok()) return frame.status();
+    done = frame->sync.done;
     if (Status status = service->host.bring(frame.value()); !status.ok()) return status;
     const quincunx::FrameReport made =
         frame->focus ? service->service.dispatch(frame->inputs, *frame->focus, frame->outputs, frame->sync)
@@ -330,6 +332,12 @@ quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inpu
     if (report != nullptr) quincunx::c::write_report(made, own, report);
     return service->host.fetch(frame.value());
   });
+  if (status != QUINCUNX_OK && done != nullptr &&
+      *done != nullptr) {  // the frame ran, and its picture is lost
+    clReleaseEvent(*done);
+    *done = nullptr;
+  }
+  return status;
 }
 
 quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report* report) {

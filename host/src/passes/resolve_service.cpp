@@ -188,10 +188,10 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     slot.report.used_previous =
         picture.has_history(inputs) && picture.plan().reads_history(inputs.render_extent, output);
     enqueue(inputs, given, outputs, slot);
-    if (sync.done != nullptr) *sync.done = retained(slot.done);
     ring.commit();
     picture.keep(inputs);
     advice.look_at(picture.plan(), inputs);
+    if (sync.done != nullptr) *sync.done = retained(slot.done);
     return slot.report;
   } catch (const cl::Error& error) {
     forget();  // part of the frame may be queued; what it left behind is not to be trusted as history
