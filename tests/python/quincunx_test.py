@@ -5,6 +5,7 @@ import copy
 import os
 import pickle
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -80,6 +81,31 @@ class Header(unittest.TestCase):
         self.assertEqual({name: names[number] for name, number in quincunx.IMAGES["inputs"].items()
                           if name != "colour"}, {"depth": "1 float32", "velocity": "2 float16", "reactive": "1 uint8",
                                                  "exposure_image": "1 float32"})
+
+    def test_what_is_new_in_the_headers_is_known(self):
+        with tempfile.TemporaryDirectory() as folder:  # the module as it is installed
+            include = os.path.join(folder, "fresh", "include", "quincunx")
+            shutil.copytree(os.path.join(HEADERS, "c"), os.path.join(include, "c"))
+            shutil.copy(os.path.join(HEADERS, "quincunx.h"), include)
+            shutil.copy(quincunx.__file__, os.path.join(folder, "fresh", "__init__.py"))
+            header = read(include, "c", "frame.h")
+            with open(os.path.join(include, "c", "frame.h"), "w", encoding="utf-8") as text:
+                text.write(header.replace("\n} quincunx_inputs;", """
+  const quincunx_image* light; /* RG32F: of both */
+  float dusk_x, dusk_y; /* a pair */
+} quincunx_inputs;"""))
+            code = """import fresh, numpy
+resolver = fresh.Resolver((8, 6), method='point', present=0)
+assert 'light: RG32F: of both' in resolver.resolve.__doc__
+for light in numpy.ones((6, 8, 2)), numpy.ones((6, 8, 1)):
+    try:
+        resolver.resolve(numpy.ones((6, 8, 4)), light=light, dusk=(1, 2))
+    except Exception as error:
+        print(error)"""
+            run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                                 env={**os.environ, "PYTHONPATH": folder})
+        self.assertRegex(run.stdout, r"^inputs\.struct_size is \d+, and a field beyond .* this.*\n"
+                         r"light has the shape \(6, 8, 1\); it must be \(height, width, 2\)\n$")
 
     def test_words_stand_for_numbers(self):
         text = read(HEADERS, "c", "settings.h") + read(HEADERS, "c", "control.h")
