@@ -283,12 +283,6 @@ Status FrameSource::submit() {
   return {};
 }
 
-FrameReport FrameSource::dispatch(ResolveService& service, const FrameInputs& inputs,
-                                  const FrameOutputs& outputs) const {
-  const FocusInputs* const focused = service.plan().has_focus() ? focus() : nullptr;
-  return focused != nullptr ? service.dispatch(inputs, *focused, outputs) : service.dispatch(inputs, outputs);
-}
-
 Result<FrameInputs> FrameSource::acquire() {
   const DrawnFrame& frame = drawn_.front();
   focus_inputs_.reset();

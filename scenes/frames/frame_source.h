@@ -16,7 +16,6 @@
 #include "quincunx/device.h"
 #include "quincunx/frame.h"
 #include "quincunx/resolve_plan.h"
-#include "quincunx/resolve_service.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/context.h"
 #include "quincunx_gl/target_readback.h"
@@ -109,8 +108,6 @@ class FrameSource {
   // the frame after the next is drawn. `reset` is set where DrawnFrame::reset is.
   Result<FrameInputs> acquire();
 
-  // Resolves the frame of the last acquire(), with its focus where it has one. `inputs` may differ from what that gave.
-  FrameReport dispatch(ResolveService& service, const FrameInputs& inputs, const FrameOutputs& outputs) const;
   // The region of the last acquire(); null where the frame has none.
   const FocusInputs* focus() const { return focus_inputs_ ? &*focus_inputs_ : nullptr; }
   // Sets the pointer's output pixel for the next begin() and a focus that follows it.

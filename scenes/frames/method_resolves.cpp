@@ -8,8 +8,6 @@
 #include "frames/picture_options.h"
 
 namespace quincunx::scenes {
-namespace {}  // namespace
-
 ResolveSettings method_settings(const ResolveSettings& settings, const MethodVariant& method) {
   ResolveSettings chosen = settings;
   apply(method, chosen);
@@ -68,34 +66,39 @@ std::size_t MethodResolves::index_of(const MethodVariant& method) const {
   return static_cast<std::size_t>(std::find(methods_.begin(), methods_.end(), method) - methods_.begin());
 }
 
-FrameReport MethodResolves::dispatch(const FrameSource& source, std::size_t method, const FrameInputs& inputs,
-                                     const FrameOutputs& outputs) {
-  FrameInputs own = inputs;
-  own.reset |= !last_frame_[method] || *last_frame_[method] + 1 != inputs.frame_index;
-  last_frame_[method] = inputs.frame_index;
-  return source.dispatch(services_[method], own, outputs);
+FrameReport dispatch(ResolveService& service, const FrameInputs& inputs, const FocusInputs* focus,
+                     const FrameOutputs& outputs) {
+  const bool has_focus = focus != nullptr && service.plan().has_focus();
+  return has_focus ? service.dispatch(inputs, *focus, outputs) : service.dispatch(inputs, outputs);
 }
 
-FrameReport MethodResolves::dispatch(const FrameSource& source, const FrameInputs& inputs,
+FrameReport MethodResolves::dispatch(std::size_t method, FrameInputs inputs, const FocusInputs* focus,
+                                     const FrameOutputs& outputs) {
+  inputs.reset |= !last_frame_[method] || *last_frame_[method] + 1 != inputs.frame_index;
+  last_frame_[method] = inputs.frame_index;
+  return scenes::dispatch(services_[method], inputs, focus, outputs);
+}
+
+FrameReport MethodResolves::dispatch(FrameInputs inputs, const FocusInputs* focus,
                                      const FrameOutputs& outputs,
                                      const std::optional<QualityChoice>& choice) {
-  Running frame{.method = choice ? index_of(choice->method) : 0, .fading_from = {}, .cut = inputs.reset};
-  FrameInputs faded = inputs;
+  Dispatched dispatched{
+      .method = choice ? index_of(choice->method) : 0, .fading_from = {}, .cut = inputs.reset};
   if (choice && choice->fading_from) {
-    frame.fading_from = index_of(*choice->fading_from);
-    const FrameReport report = dispatch(source, *frame.fading_from, inputs, {.linear = fading_.view()});
+    dispatched.fading_from = index_of(*choice->fading_from);
+    const FrameReport report = dispatch(*dispatched.fading_from, inputs, focus, {.linear = fading_.view()});
     if (!report.ok()) return report;
-    faded.fading_from = fading_.view();
-    faded.fade_weight = static_cast<float>(choice->weight);
+    inputs.fading_from = fading_.view();
+    inputs.fade_weight = static_cast<float>(choice->weight);
   }
-  const FrameReport report = dispatch(source, frame.method, faded, outputs);
-  if (report.ok()) running_.push_back(frame);
+  const FrameReport report = dispatch(dispatched.method, inputs, focus, outputs);
+  if (report.ok()) dispatched_.push_back(dispatched);
   return report;
 }
 
 std::optional<FrameReport> MethodResolves::next_completed() {
-  if (running_.empty()) return std::nullopt;
-  Running& oldest = running_.front();
+  if (dispatched_.empty()) return std::nullopt;
+  Dispatched& oldest = dispatched_.front();
   if (!oldest.report) oldest.report = services_[oldest.method].next_completed();
   if (oldest.fading_from && !oldest.fading_report)
     oldest.fading_report = services_[*oldest.fading_from].next_completed();
@@ -106,7 +109,7 @@ std::optional<FrameReport> MethodResolves::next_completed() {
     for (const PassReport& pass : oldest.fading_report->passes)
       report.passes.push_back(pass);
   }
-  running_.erase(running_.begin());  // a few at most, and its memory stays
+  dispatched_.erase(dispatched_.begin());  // a few at most, and its memory stays
   return report;
 }
 

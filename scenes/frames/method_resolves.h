@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MethodResolves: frames of one source, each resolved by the method that a controller chooses for it.
+// MethodResolves: frames resolved by the methods that a controller chooses for them.
 //
 // Each method has a ResolveService of its own, so a change allocates and compiles nothing. A method that has not
 // resolved the frame before begins without history. While a choice fades, both methods resolve the frame, and the
@@ -29,6 +29,10 @@ struct MethodSampling {
 };
 MethodSampling sampling_for(const QualityChoice& choice);
 
+// Resolves a frame. `focus` null: it has none; services whose plan has no focus ignore it.
+FrameReport dispatch(ResolveService& service, const FrameInputs& inputs, const FocusInputs* focus,
+                     const FrameOutputs& outputs);
+
 class MethodResolves {
  public:
   // Connects the source. `methods`: to choose from; empty: the one of the settings. `beside`: further settings that the
@@ -42,8 +46,8 @@ class MethodResolves {
   // The plans of the further settings, in their order.
   const std::vector<ResolvePlan>& plans_beside() const { return plans_beside_; }
 
-  // Resolves a frame as FrameSource::dispatch() does. `choice`: of these methods; nothing where there is one.
-  FrameReport dispatch(const FrameSource& source, const FrameInputs& inputs, const FrameOutputs& outputs,
+  // Resolves a frame. `focus` as above. `choice`: of these methods; nothing where there is one.
+  FrameReport dispatch(FrameInputs inputs, const FocusInputs* focus, const FrameOutputs& outputs,
                        const std::optional<QualityChoice>& choice);
 
   // Does what ResolveService does. The report of a frame with two methods has the passes of both. Its content tells of
@@ -53,7 +57,7 @@ class MethodResolves {
   Status finish();
 
  private:
-  struct Running {
+  struct Dispatched {
     std::size_t method = 0;
     std::optional<std::size_t> fading_from;
     bool cut = false;
@@ -63,7 +67,7 @@ class MethodResolves {
 
   MethodResolves(std::vector<MethodVariant> methods, std::vector<ResolveService> services, Image fading);
   std::size_t index_of(const MethodVariant& method) const;
-  FrameReport dispatch(const FrameSource& source, std::size_t method, const FrameInputs& inputs,
+  FrameReport dispatch(std::size_t method, FrameInputs inputs, const FocusInputs* focus,
                        const FrameOutputs& outputs);
 
   std::vector<MethodVariant> methods_;
@@ -71,7 +75,7 @@ class MethodResolves {
   std::vector<ResolvePlan> plans_beside_;
   std::vector<std::optional<std::uint64_t>> last_frame_;  // that each has resolved
   Image fading_;                                          // picture of the method that is left
-  std::vector<Running> running_;                          // dispatched and not yet completed, oldest first
+  std::vector<Dispatched> dispatched_;                    // and not yet completed, oldest first
 };
 
 }  // namespace quincunx::scenes

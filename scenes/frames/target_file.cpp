@@ -26,13 +26,13 @@ tools::Matrix to_attribute(const glm::mat4& matrix) {
 }
 
 std::vector<Attribute> attributes_of(const TargetFile& file) {
-  const ViewMatrices matrices = view_of(file.camera, file.view.aspect);
+  const ViewMatrices matrices = view_of(file.camera, file.frame.view.aspect);
   std::vector<Attribute> attributes = tools::to_attributes(
-      {.jitter = file.view.jitter,
-       .render = file.view.render,
+      {.jitter = file.frame.view.jitter,
+       .render = file.frame.view.render,
        .output = file.output,
-       .index = file.index,
-       .reset = file.reset,
+       .index = file.frame.index,
+       .reset = file.frame.reset,
        .near_plane = file.camera.near_plane,
        .depth_kind = file.linear_depth ? tools::DepthKind::kLinear : tools::DepthKind::kDeviceReversed,
        .world_to_ndc = to_attribute(matrices.clip_from_world())});
@@ -58,11 +58,10 @@ std::vector<float> colour_of(const gl::TargetPixels& pixels) {
 }
 
 std::vector<float> depth_of(const TargetFile& file) {
-  if (!file.linear_depth) return file.pixels.depth;
-  std::vector<float> z;
-  z.reserve(file.pixels.depth.size());
-  for (const float depth : file.pixels.depth)
-    z.push_back(tools::linear_z(depth, file.camera.near_plane));
+  std::vector<float> z = file.frame.targets.depth;
+  for (float& depth : z) {
+    if (file.linear_depth) depth = tools::linear_z(depth, file.camera.near_plane);
+  }
   return z;
 }
 
@@ -84,8 +83,8 @@ std::vector<Vec2> backward_motion(const gl::TargetPixels& pixels) {
 
 std::vector<float> reactive_mask(const TargetFile& file) {
   std::vector<float> mask;
-  mask.reserve(file.pixels.reactive.size());
-  for (const std::uint8_t value : file.pixels.reactive)
+  mask.reserve(file.frame.targets.reactive.size());
+  for (const std::uint8_t value : file.frame.targets.reactive)
     mask.push_back(static_cast<float>(value) / 255.0f);
   return mask;
 }
@@ -109,7 +108,7 @@ void dilate_velocity(gl::TargetPixels& pixels) {
 
 Status write_targets(const std::string& path, const TargetFile& file) {
   std::vector<Channel> channels;
-  const std::vector<float> colour = colour_of(file.pixels);
+  const std::vector<float> colour = colour_of(file.frame.targets);
   for (std::size_t i = 0; i < 4; ++i) {
     channels.push_back({.name = tools::kColourChannels[i],
                         .type = ChannelType::kFloat,
@@ -131,7 +130,7 @@ Status write_targets(const std::string& path, const TargetFile& file) {
                           .stored = ChannelType::kFloat});
     }
   };
-  const std::vector<Vec2> backward = backward_motion(file.pixels);
+  const std::vector<Vec2> backward = backward_motion(file.frame.targets);
   const std::vector<Vec2> forward = backward_motion(file.relative_to_next);
   add_motion(tools::kBackwardChannels, backward);
   add_motion(tools::kForwardChannels, forward);
@@ -139,7 +138,7 @@ Status write_targets(const std::string& path, const TargetFile& file) {
   if (!mask.empty()) {
     channels.push_back({.name = tools::kReactiveChannel, .type = ChannelType::kFloat, .data = mask.data()});
   }
-  return tools::write_exr(path, file.pixels.render_extent, channels, attributes_of(file));
+  return tools::write_exr(path, file.frame.targets.render_extent, channels, attributes_of(file));
 }
 
 Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba) {
@@ -151,6 +150,12 @@ Status write_rgba(const std::string& path, Extent extent, const std::vector<floa
                         .pixel_stride = 4 * sizeof(float)});
   }
   return tools::write_exr(path, extent, channels);
+}
+
+Result<std::vector<float>> download_rgba(Device device, const ImageView& image, Extent extent) {
+  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
+  if (Status status = device.download(image, extent, rgba.data()); !status.ok()) return status;
+  return rgba;
 }
 
 Result<PicturePresenter> PicturePresenter::create(const Device& device, Extent extent, ToneMap tone_map,

@@ -7,23 +7,20 @@
 #include <string>
 #include <vector>
 
+#include "frames/frame_source.h"
 #include "quincunx/device.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/target_readback.h"
-#include "render/renderer.h"
 
 namespace quincunx::scenes {
 
 struct TargetFile {
-  gl::TargetPixels pixels;
+  DrawnFrame frame;  // drawn with its targets kept
   gl::TargetPixels relative_to_next =
       {};  // the same with velocity = this position - the next one; may be empty
-  FrameView view;
   Camera camera;
   Extent output;
-  std::int64_t index = 0;
-  bool reset = false;
   double fps = 60;
   bool linear_depth = true;  // Z is the distance along the view axis; else reversed device depth, untouched
 };
@@ -43,6 +40,9 @@ Status write_targets(const std::string& path, const TargetFile& file);
 
 // A resolved or true picture: linear RGBA floats, tightly packed, stored as half. Errors: kIoFailure.
 Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba);
+
+// Returns an image of RGBA floats, tightly packed; waits for what writes it.
+Result<std::vector<float>> download_rgba(Device device, const ImageView& image, Extent extent);
 
 // Brings linear pictures from host memory to 8 bits with the same present pass as every frame. One extent, one
 // exposure. Not thread-safe; blocks.

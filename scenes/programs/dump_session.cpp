@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <glm/gtc/packing.hpp>
 
+#include "frames/method_resolves.h"
 #include "frames/target_file.h"
 #include "render/truth.h"
 #include "tools/image/display_light.h"
@@ -182,7 +183,7 @@ Status DumpSession::resolve_next() {
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
   const FrameReport report =
-      source_->dispatch(*service_, inputs.value(), {linear_.view(), presented.value()});
+      dispatch(*service_, inputs.value(), source_->focus(), {linear_.view(), presented.value()});
   if (!report.ok()) return report.status;
   return source_->bridge().present();
 }
@@ -218,7 +219,8 @@ Result<std::vector<float>> DumpSession::accumulated() const {
   const auto history = service_->history();
   if (!history.ok()) return history.status();
   if (!history.value()) return texels;
-  if (history->format == PixelFormat::kRGBA32F) return download(history.value(), extent);
+  if (history->format == PixelFormat::kRGBA32F)
+    return download_rgba(source_->device(), history.value(), extent);
   std::vector<std::uint16_t> halves(texels.size());
   if (Status status = source_->device().download(history.value(), history->extent, halves.data());
       !status.ok())
@@ -227,19 +229,10 @@ Result<std::vector<float>> DumpSession::accumulated() const {
   return texels;
 }
 
-Result<std::vector<float>> DumpSession::download(const ImageView& image, Extent extent) const {
-  std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
-  if (Status status = source_->device().download(image, extent, rgba.data()); !status.ok()) return status;
-  return rgba;
-}
-
 Status DumpSession::collect_targets() {
-  const TargetFile file = {.pixels = current_->targets,
-                           .view = current_->view,
+  const TargetFile file = {.frame = *current_,
                            .camera = source_->scene().camera(current_->view.seconds),
                            .output = options_.output,
-                           .index = options_.frame,
-                           .reset = current_->reset,
                            .fps = options_.fps};
   const Extent render = current_->view.render;
   planes_[Stage::kColour] = colour_planes(render, colour_of(current_->targets), tools::ChannelType::kHalf);
@@ -250,7 +243,7 @@ Status DumpSession::collect_targets() {
   }
   planes_[Stage::kDepth] = {render, {"Z"}, {depth_of(file)}};
   StagePlanes motion{render, {"backward.u", "backward.v"}, {{}, {}}};
-  for (const Vec2 vector : backward_motion(file.pixels)) {
+  for (const Vec2 vector : backward_motion(current_->targets)) {
     motion.planes[0].push_back(vector.x);
     motion.planes[1].push_back(vector.y);
   }
@@ -277,7 +270,7 @@ Status DumpSession::collect_targets() {
 Status DumpSession::collect_output() {
   const Extent output = options_.output;
   const auto collect = [this](Stage stage, const ImageView& image, Extent extent) -> Status {
-    auto rgba = download(image ? image : linear_.view(), extent);
+    auto rgba = download_rgba(source_->device(), image ? image : linear_.view(), extent);
     if (rgba.ok()) planes_[stage] = colour_planes(extent, rgba.value(), tools::ChannelType::kFloat);
     return rgba.status();
   };
@@ -308,7 +301,7 @@ Status DumpSession::collect_output() {
   if (is_display_referred())
     truth = tools::display_light(truth.value(), options_.resolve.output.tone_map, exposure_);
   planes_[Stage::kTruth] = colour_planes(output, truth.value(), tools::ChannelType::kFloat);
-  auto finished = download(linear_.view(), output);
+  auto finished = download_rgba(source_->device(), linear_.view(), output);
   if (!finished.ok()) return finished.status();
   const tools::MeasuredPicture picture(output, std::move(finished).value());
   const tools::MeasuredPicture target(output, truth.value());

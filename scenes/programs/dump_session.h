@@ -11,11 +11,54 @@
 
 #include "frames/frame_source.h"
 #include "frames/picture_options.h"
-#include "programs/dump_stages.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
+#include "tools/image/image_io.h"
+#include "tools/image/text_painter.h"
 
 namespace quincunx::scenes {
+
+// The stages of a frame, and how each becomes EXR channels and a picture for a person (dump_stages.cpp).
+enum class Stage : std::uint8_t {
+  kColour,  // the viewport as it was drawn
+  kDepth,
+  kVelocity,
+  kReactive,
+  kParticles,  // in a viewport of their own
+  kFocus,      // the region of a focus as it was drawn
+  kClear,      // what a partial clear touches of the target
+  kHistory,    // what the resolve reads of the past
+  kTiles,      // classes of the motion blur's tiles
+  kResolved,
+  kBlurred,
+  kDisplayed,  // in the size in which it is shown, where the output is dynamic
+  kPresented,
+  kTruth,
+  kError,  // absolute, of the tone-mapped resolved picture against truth
+  kFlip,   // as the FLIP paper maps it
+};
+
+constexpr int kStageCount = 16;
+
+const char* name_of(Stage stage);  // "colour"
+std::optional<Stage> stage_named(const std::string& name);
+std::string stage_names();  // "colour, depth, ..."
+
+bool needs_truth(Stage stage);
+
+// Planes of one extent, row by row; one EXR channel each.
+struct StagePlanes {
+  Extent extent;
+  std::vector<std::string> channels;  // "R" or "backward.u"; without the stage's name
+  std::vector<std::vector<float>> planes;
+  tools::ChannelType stored = tools::ChannelType::kFloat;
+};
+
+// RGBA values to planes R, G, B, A.
+StagePlanes colour_planes(Extent extent, const std::vector<float>& rgba, tools::ChannelType stored);
+
+// The picture of a stage whose data is not colour: false colours with a legend.
+tools::Canvas false_colour_of(Stage stage, const StagePlanes& planes);
 
 // The command line's wishes.
 struct DumpOptions : PictureOptions {
@@ -27,22 +70,15 @@ struct DumpOptions : PictureOptions {
   int truth = 0;             // N: N x N samples a pixel; 0: no truth, 8 where a stage needs it
   std::int64_t warm_up = 1;  // frames drawn and resolved before `frame`, for its history
 
-  std::string sequence;          // pattern: the whole run in the exchange format instead
-  bool device_depth = false;     // device depth in the files of --sequence
-  bool dilate_velocity = false;  // the same
+  std::string sequence;  // pattern: the whole run in the exchange format instead
+  bool device_depth =
+      false;  // in its files Z is the reversed device depth as it was drawn: nothing is rounded
+  bool dilate_velocity = false;  // the same: dilate_velocity()
 };
 
-// A whole run as a sequence in the exchange format (docs/inputs.md), with truth on request.
-struct SequenceDump {
-  std::string pattern;            // pattern of the frames' files: "seq/courtyard.%04d.exr"
-  bool linear_depth = true;       // else Z is the reversed device depth as it was drawn: nothing is rounded
-  bool dilates_velocity = false;  // dilate_velocity()
-  int truth = 0;                  // N: N x N samples a pixel into truth.%04d.exr beside the frames; 0: none
-};
-
-// Draws every frame of the options and writes it with all its targets, and sequence.json with what is
-// constant. Errors: of any part, as it words them.
-Status dump_sequence(const PictureOptions& options, const SequenceDump& dump);
+// Draws every frame of the options and writes it with all its targets in the exchange format (docs/inputs.md), and
+// sequence.json with what is constant; truth, where it is asked for, beside it. Errors: of any part, as it words them.
+Status dump_sequence(const DumpOptions& options);
 
 // Draws and resolves one frame, with the frames that its history needs, and writes its stages.
 class DumpSession {
@@ -68,7 +104,6 @@ class DumpSession {
   Status write_exr_files();
   Status write_pictures();
   Result<std::vector<float>> accumulated() const;
-  Result<std::vector<float>> download(const ImageView& image, Extent extent) const;
   bool wants(Stage stage) const;
   bool is_display_referred() const;
   std::string path_of(const std::string& ending) const;

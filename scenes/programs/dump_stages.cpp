@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "programs/dump_stages.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 
+#include "programs/dump_session.h"
 #include "tools/image/false_colour.h"
 
 namespace quincunx::scenes {

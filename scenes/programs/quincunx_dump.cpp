@@ -120,8 +120,7 @@ int run(int argc, char** argv) {
   } else if (options.list_devices) {
     print_devices(options);
   } else if (!options.sequence.empty()) {
-    const Status status = dump_sequence(
-        options, {options.sequence, !options.device_depth, options.dilate_velocity, options.truth});
+    const Status status = dump_sequence(options);
     return status.ok() ? tools::kDone : tools::fail(status);
   } else {
     return dump_stages(options);

@@ -25,7 +25,7 @@ nlohmann::ordered_json pair_of(Extent extent) {
   return {extent.width, extent.height};
 }
 
-std::string description(const PictureOptions& options, const SequenceDump& dump, const FrameSource& source) {
+std::string description(const DumpOptions& options, const FrameSource& source) {
   nlohmann::ordered_json json;
   json["format"] = "quincunx sequence 1";
   json["scene"] = source.scene().name;
@@ -38,12 +38,12 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
   json["largest_render_size"] = pair_of(source.sequence().target());
   json["jitter_kind"] = name_of(jitter_for(options));
   json["near"] = source.scene().camera(options.start).near_plane;
-  json["depth_kind"] = dump.linear_depth ? "linear" : "device-reversed";
+  json["depth_kind"] = options.device_depth ? "device-reversed" : "linear";
   const bool encoded = options.resolve.colour == PixelFormat::kRGBA8;
   json["exposure"] = encoded ? 1 : source.exposure();
   if (encoded) json["tone_map"] = name_of(options.resolve.output.tone_map);
-  if (dump.truth > 0) json["truth_samples"] = dump.truth * dump.truth;
-  json["drawn_velocity"] = name_of(dump.dilates_velocity ? DrawnVelocity::kDilated : DrawnVelocity::kOwn);
+  if (options.truth > 0) json["truth_samples"] = options.truth * options.truth;
+  json["drawn_velocity"] = name_of(options.dilate_velocity ? DrawnVelocity::kDilated : DrawnVelocity::kOwn);
   json["conventions"] = {
       {"pixels",
        "rows top-down; pixel (x, y) covers [x, x + 1] x [y, y + 1]; data and display window are the "
@@ -52,8 +52,8 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
                              "quincunx:jitter",
                              encoded ? " light of the screen (exposed, tone mapped, of 8-bit sRGB)" : "")},
       {"jitter", "quincunx:jitter of each frame, pixels of that frame, +x right, +y down"},
-      {"Z", dump.linear_depth ? "distance along the view axis, 1e10 where nothing was seen"
-                              : "near / distance, 0 where nothing was seen"},
+      {"Z", options.device_depth ? "near / distance, 0 where nothing was seen"
+                                 : "distance along the view axis, 1e10 where nothing was seen"},
       {"motion",
        "backward.u, backward.v: previous - current position; forward.u, forward.v: next - current position; "
        "pixels of that frame, +u right, +v up, jitter excluded"},
@@ -63,12 +63,12 @@ std::string description(const PictureOptions& options, const SequenceDump& dump,
   return json.dump(1) + "\n";
 }
 
-Status write_truth_of(FrameSource& source, const SequenceDump& dump, const FrameView& view,
-                      std::int64_t index, const PictureOptions& options, tools::WorkQueue& writer) {
-  const auto pattern = tools::FramePattern::parse((folder_of(dump.pattern) / "truth.%04d.exr").string());
+Status write_truth_at(double seconds, FrameSource& source, std::int64_t index, const DumpOptions& options,
+                      tools::WorkQueue& writer) {
+  const auto pattern = tools::FramePattern::parse((folder_of(options.sequence) / "truth.%04d.exr").string());
   if (!pattern.ok()) return pattern.status();
   const Extent output = options.output;
-  auto rgba = render_truth(source.renderer(), {.output = output, .samples = dump.truth}, view.seconds);
+  auto rgba = render_truth(source.renderer(), {.output = output, .samples = options.truth}, seconds);
   if (!rgba.ok()) return rgba.status();
   if (options.resolve.colour == PixelFormat::kRGBA8)
     rgba = tools::display_light(rgba.value(), options.resolve.output.tone_map, source.exposure());
@@ -79,11 +79,11 @@ Status write_truth_of(FrameSource& source, const SequenceDump& dump, const Frame
 
 }  // namespace
 
-Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
-  auto pattern = tools::FramePattern::parse(dump.pattern);
+Status dump_sequence(const DumpOptions& options) {
+  auto pattern = tools::FramePattern::parse(options.sequence);
   if (!pattern.ok()) return pattern.status();
   if (pattern->format() != tools::FileFormat::kExr) {
-    return Status::invalid("--sequence '" + dump.pattern +
+    return Status::invalid("--sequence '" + options.sequence +
                            "' must end in .exr: only EXR holds depth and motion");
   }
   if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
@@ -101,37 +101,33 @@ Status dump_sequence(const PictureOptions& options, const SequenceDump& dump) {
   for (std::int64_t index = 0; index < options.frames; ++index) {
     if (Status status = frames.draw(index, true); !status.ok()) return status;
     DrawnFrame& frame = frames.oldest();
-    const double next = frame.view.seconds + 1 / options.fps;
+    const double seconds = frame.view.seconds;
+    const double next = seconds + 1 / options.fps;
     // The last frame of a shot has no motion to the next one.
-    auto relative =
-        frames.draw_relative_to(is_cut(frames.scene(), frame.view.seconds, next) ? frame.view.seconds : next);
+    auto relative = frames.draw_relative_to(is_cut(frames.scene(), seconds, next) ? seconds : next);
     if (!relative.ok()) return relative.status();
-    if (dump.dilates_velocity) {
+    if (options.dilate_velocity) {
       dilate_velocity(frame.targets);
       dilate_velocity(relative.value());
     }
-    TargetFile file = {.pixels = std::move(frame.targets),
+    TargetFile file = {.frame = std::move(frame),
                        .relative_to_next = std::move(relative).value(),
-                       .view = frame.view,
-                       .camera = frames.scene().camera(frame.view.seconds),
+                       .camera = frames.scene().camera(seconds),
                        .output = options.output,
-                       .index = index,
-                       .reset = frame.reset,
                        .fps = options.fps,
-                       .linear_depth = dump.linear_depth};
+                       .linear_depth = !options.device_depth};
     const Status status = writer.push(
         [path = pattern->expand(index), file = std::move(file)] { return write_targets(path, file); });
     if (!status.ok()) return status;
-    if (dump.truth > 0) {
-      if (Status truth = write_truth_of(frames, dump, frame.view, index, options, writer); !truth.ok())
-        return truth;
+    if (options.truth > 0) {
+      if (Status truth = write_truth_at(seconds, frames, index, options, writer); !truth.ok()) return truth;
     }
     frames.release();
     progress.update(index + 1);
   }
   if (Status status = writer.finish(); !status.ok()) return status;
-  return tools::write_text((folder_of(dump.pattern) / "sequence.json").string(),
-                           description(options, dump, frames));
+  return tools::write_text((folder_of(options.sequence) / "sequence.json").string(),
+                           description(options, frames));
 }
 
 }  // namespace quincunx::scenes

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "frames/method_resolves.h"
 #include "quincunx/control/front_file.h"
 #include "quincunx/resolve_service.h"
 #include "session/paced_loop.h"
@@ -79,7 +80,8 @@ Status CostRun::draw(std::int64_t index, Extent render) {
   if (!inputs.ok()) return inputs.status();
   auto presented = source_->bridge().begin_present();
   if (!presented.ok()) return presented.status();
-  const FrameReport report = source_->dispatch(service_, inputs.value(), {.presented = presented.value()});
+  const FrameReport report =
+      dispatch(service_, inputs.value(), source_->focus(), {.presented = presented.value()});
   if (!report.ok()) return report.status;
   if (Status status = source_->bridge().present(); !status.ok()) return status;
   loop_.finish_frame();

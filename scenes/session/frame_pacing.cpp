@@ -77,19 +77,8 @@ double way_px(const std::array<float, 16>& m, float x, float y, float depth, Ext
 }  // namespace
 
 const char* name_of(ControllerKind kind) {
-  switch (kind) {
-    case ControllerKind::kPredictive:
-      return "predictive";
-    case ControllerKind::kProportional:
-      return "proportional";
-    case ControllerKind::kMinimumOfN:
-      return "minimum-of-n";
-    case ControllerKind::kQuality:
-      return "quality";
-    case ControllerKind::kFixed:
-      return "fixed";
-  }
-  return "unknown";
+  constexpr const char* kNames[] = {"predictive", "proportional", "minimum-of-n", "quality", "fixed"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 Result<FramePacing> FramePacing::create(const PacingSettings& settings) {

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "frames/picture_options.h"
+#include "frames/target_file.h"
 #include "quincunx/control/front_file.h"
 #include "render/truth.h"
 #include "session/calibration.h"
@@ -87,11 +88,11 @@ Status add_best(FrameSource& stage, FrontFeed feed, const MethodVariant& best, F
     feed.held = held;
     const Status status = run_feed(stage, feed, {&best, 1}, [&](const FrontFrame& frame) -> Status {
       if (frame.index < 0 || (held && frame.index + 1 < feed.frames)) return {};
-      std::vector<float> rgba(static_cast<std::size_t>(feed.crop.extent.area()) * 4);
-      const Status read = stage.device().download(frame.resolved, feed.crop.extent, rgba.data());
+      auto rgba = download_rgba(stage.device(), frame.resolved, feed.crop.extent);
       auto& pictures = held ? reference.held : reference.moving;
-      if (read.ok()) pictures.push_back(tools::measured(feed.crop.extent, std::move(rgba), stage.exposure()));
-      return read;
+      if (rgba.ok())
+        pictures.push_back(tools::measured(feed.crop.extent, std::move(rgba).value(), stage.exposure()));
+      return rgba.status();
     });
     if (!status.ok()) return status;
   }
@@ -169,14 +170,13 @@ class FrontRun {
     feed.scale = static_cast<float>(scale);
     const bool accumulates = methods.front().method == Method::kTemporal;
     feed.warm_up = accumulates ? kWarmUpFrames : 1;
-    std::vector<float> rgba(static_cast<std::size_t>(feed.crop.extent.area()) * 4);
     for (const bool held : {false, true}) {
       feed.held = held;
       const Status status = run_feed(stage_, feed, methods, [&](const FrontFrame& frame) -> Status {
         if (frame.index < 0) return {};
-        if (Status read = stage_.device().download(frame.resolved, feed.crop.extent, rgba.data()); !read.ok())
-          return read;
-        const auto picture = tools::measured(feed.crop.extent, rgba, stage_.exposure());
+        auto rgba = download_rgba(stage_.device(), frame.resolved, feed.crop.extent);
+        if (!rgba.ok()) return rgba.status();
+        const auto picture = tools::measured(feed.crop.extent, std::move(rgba).value(), stage_.exposure());
         const auto& truth =
             held ? reference_.held.front() : reference_.moving[static_cast<std::size_t>(frame.index)];
         const tools::PictureScores scores = tools::measure(picture, truth);

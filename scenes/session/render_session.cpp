@@ -240,7 +240,7 @@ Status RenderSession::dispatch() {
   choices_.pop_front();
   // The files hold the picture as it is before the tone map.
   const FrameOutputs outputs{resolved_.view(), presented.value()};
-  const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice);
+  const FrameReport report = resolves_->dispatch(inputs.value(), source_->focus(), outputs, choice);
   acquire_ms_.push_back(source_->bridge().traffic().acquire_ms);
   bytes_in_.push_back(source_->bytes_in());
   return report.status;
@@ -310,14 +310,9 @@ Status RenderSession::write_frame(std::int64_t index) {
 }
 
 Status RenderSession::write_exr_frame(std::int64_t index) {
-  DrawnFrame& frame = source_->oldest();
-  const FrameView& view = frame.view;
-  const TargetFile file = {.pixels = std::move(frame.targets),
-                           .view = view,
-                           .camera = source_->scene().camera(view.seconds),
+  const TargetFile file = {.frame = source_->oldest(),
+                           .camera = source_->scene().camera(source_->oldest().view.seconds),
                            .output = options_.output,
-                           .index = index,
-                           .reset = frame.reset,
                            .fps = options_.fps};
   const std::filesystem::path folder = std::filesystem::path(options_.out).parent_path();
   const std::string targets_path = (folder / fmt::format("frame_{:04}_targets.exr", index)).string();
@@ -331,11 +326,7 @@ Status RenderSession::write_exr_frame(std::int64_t index) {
 }
 
 Result<std::vector<float>> RenderSession::download_resolved() const {
-  std::vector<float> rgba(static_cast<std::size_t>(options_.output.area()) * 4);
-  if (Status status = source_->device().download(resolved_.view(), options_.output, rgba.data());
-      !status.ok())
-    return status;
-  return rgba;
+  return download_rgba(source_->device(), resolved_.view(), options_.output);
 }
 
 Status RenderSession::finish_files() {

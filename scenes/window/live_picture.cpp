@@ -218,12 +218,12 @@ Status LivePicture::dispatch(bool reset) {
   }
   const ImageView linear = keep_ == Keep::kForFiles ? resolved_.view() : ImageView();
   const FrameOutputs outputs{linear, presented.value()};
-  if (const FrameReport report = resolves_->dispatch(*source_, inputs.value(), outputs, choice_);
+  if (const FrameReport report = resolves_->dispatch(inputs.value(), source_->focus(), outputs, choice_);
       !report.ok())
     return report.status;
   if (other_service_) {
-    const FrameReport report =
-        source_->dispatch(*other_service_, inputs.value(), {.presented = other_image_.view()});
+    const FrameReport report = scenes::dispatch(*other_service_, inputs.value(), source_->focus(),
+                                                {.presented = other_image_.view()});
     if (!report.ok()) return report.status;
   }
   if (Status status = source_->bridge().present(); !status.ok()) return status;
@@ -267,18 +267,13 @@ void LivePicture::collect_times() {
 Status LivePicture::write(const std::string& base) const {
   if (!kept_) return Status::invalid("no frame was kept for files");
   const Extent size = output();
-  const TargetFile file = {.pixels = kept_->targets,
-                           .view = kept_->view,
+  const TargetFile file = {.frame = *kept_,
                            .camera = source_->scene().camera(kept_->view.seconds),
                            .output = size,
-                           .index = kept_->index,
-                           .reset = kept_->reset,
                            .fps = options_.fps};
   if (Status status = write_targets(base + "_targets.exr", file); !status.ok()) return status;
-  std::vector<float> rgba(static_cast<std::size_t>(size.area()) * 4);
-  if (Status status = source_->device().download(resolved_.view(), size, rgba.data()); !status.ok())
-    return status;
-  return write_rgba(base + "_resolved.exr", size, rgba);
+  const auto rgba = download_rgba(source_->device(), resolved_.view(), size);
+  return rgba.ok() ? write_rgba(base + "_resolved.exr", size, rgba.value()) : rgba.status();
 }
 
 }  // namespace quincunx::scenes

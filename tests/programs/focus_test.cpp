@@ -8,6 +8,7 @@
 
 #include "frames/focus_path.h"
 #include "frames/frame_source.h"
+#include "frames/method_resolves.h"
 #include "frames/picture_options.h"
 #include "render/truth.h"
 
@@ -142,7 +143,7 @@ class Focused : public ::testing::Test {
       const auto inputs = frames.acquire();
       EXPECT_TRUE(inputs.ok());
       const FrameReport report =
-          frames.dispatch(service.value(), inputs.value(), {.linear = resolved.view()});
+          dispatch(service.value(), inputs.value(), frames.focus(), {.linear = resolved.view()});
       EXPECT_TRUE(report.ok()) << report.status.message();
       EXPECT_EQ(report.focused, !options.focus.empty());
       if (i >= options.frames - kept) {

@@ -73,7 +73,7 @@ Played play(const MethodVariant& from, const MethodVariant& to, bool fades, cons
     const auto inputs = frames.acquire();
     EXPECT_TRUE(inputs.ok()) << inputs.status().message();
     const FrameReport report =
-        resolves->dispatch(frames, inputs.value(), {.presented = picture.view()}, choice);
+        resolves->dispatch(inputs.value(), frames.focus(), {.presented = picture.view()}, choice);
     EXPECT_TRUE(report.ok()) << report.status.message();
     std::vector<float> now = shown(frames.device(), picture);
     if (index > 0) run.steps.push_back(tools::flip_mean(tools::flip_map(kOutput, now, before)));
