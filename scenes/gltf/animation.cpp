@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "gltf/accessor.h"
+#include "gltf/geometry.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -83,18 +83,24 @@ NodeTree::NodeTree(GltfDocument& document) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     nodes_[i].parent = parents[i];
     read_pose(model.nodes[i], static_cast<int>(i));
+    if (parents[i] < 0) order_.push_back(static_cast<int>(i));
+  }
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const auto& children = model.nodes[static_cast<std::size_t>(order_[i])].children;
+    order_.insert(order_.end(), children.begin(), children.end());
   }
   if (!model.animations.empty()) read_animation(document, 0);
   if (model.animations.size() > 1) {
     document.warn(fmt::format("of {} animations only the first, {}, is played", model.animations.size(),
                               described("animation", 0, model.animations[0].name)));
   }
-  for (Node& node : nodes_) {
-    for (int above = node.parent; above >= 0 && !node.animated;) {
-      const Node& parent = nodes_[static_cast<std::size_t>(above)];
-      node.animated = parent.animated;
-      above = parent.parent;
-    }
+  for (const int index : order_) {
+    Node& node = nodes_[static_cast<std::size_t>(index)];
+    node.still = local(node, 0);
+    if (node.parent < 0) continue;
+    const Node& parent = nodes_[static_cast<std::size_t>(node.parent)];
+    node.animated |= parent.animated;
+    node.still = parent.still * node.still;
   }
 }
 
@@ -199,13 +205,31 @@ glm::mat4 NodeTree::local(const Node& node, double seconds) const {
 }
 
 glm::mat4 NodeTree::world(int node_index, double seconds) const {
+  const Node& wanted = nodes_[static_cast<std::size_t>(node_index)];
   double time = duration_ > 0 ? std::fmod(seconds, duration_) : 0.0;
   if (time < 0) time += duration_;
-  glm::mat4 result(1);
-  for (int node = node_index; node >= 0; node = nodes_[static_cast<std::size_t>(node)].parent) {
-    result = local(nodes_[static_cast<std::size_t>(node)], time) * result;
+  if (!wanted.animated || time == 0) return wanted.still;
+  const std::lock_guard lock(mutex_);
+  const auto known = std::find_if(moments_.begin(), moments_.end(),
+                                  [&](const Moment& moment) { return moment.seconds == time; });
+  if (known != moments_.end()) return known->worlds[static_cast<std::size_t>(node_index)];
+  Moment& moment = moments_[oldest_];
+  oldest_ = 1 - oldest_;
+  moment.seconds = time;
+  moment.worlds.resize(nodes_.size());
+  for (const int index : order_) {
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!node.animated) continue;
+    const glm::mat4 own = local(node, time);
+    glm::mat4& world = moment.worlds[static_cast<std::size_t>(index)];
+    if (node.parent < 0) {
+      world = own;
+    } else {
+      const Node& parent = nodes_[static_cast<std::size_t>(node.parent)];
+      world = (parent.animated ? moment.worlds[static_cast<std::size_t>(node.parent)] : parent.still) * own;
+    }
   }
-  return result;
+  return moment.worlds[static_cast<std::size_t>(node_index)];
 }
 
 }  // namespace quincunx::scenes

@@ -5,7 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
+#include <limits>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace quincunx::scenes {
 
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
 
-// Values of one property over time; clamped to the first and the last key.
+// The values of one property over time; clamped to the first and the last key.
 struct Track {
   Interpolation interpolation = Interpolation::kLinear;
   bool rotation = false;  // x y z w, unit: linear means slerp, a spline is normalised
@@ -26,7 +27,7 @@ struct Track {
   glm::vec4 at(double seconds) const;
 };
 
-// Immutable once built, so that any number of motions may share it and any thread may ask.
+// Any number of motions may share it, and any thread may ask.
 class NodeTree {
  public:
   // Takes the first animation of the file; others are named in a warning. Throws GltfError.
@@ -35,7 +36,8 @@ class NodeTree {
   double duration() const { return duration_; }  // seconds; 0: nothing moves
   bool is_animated(int node) const { return nodes_[static_cast<std::size_t>(node)].animated; }
 
-  // World from node. Time runs round: `duration()` seconds are 0 seconds again.
+  // Returns world from node. Time runs round: `duration()` seconds are 0 seconds again. The last two times of all nodes
+  // are kept, so that a frame and the one before cost as much as there are nodes, however deep these are.
   glm::mat4 world(int node, double seconds) const;
 
  private:
@@ -43,6 +45,7 @@ class NodeTree {
   struct Node {
     int parent = -1;
     glm::mat4 matrix{1};  // parent from node, where nothing animates the node itself
+    glm::mat4 still{1};   // world from node at time 0
     glm::vec3 translation{0};
     glm::vec4 rotation{0, 0, 0, 1};
     glm::vec3 scale{1};
@@ -57,7 +60,16 @@ class NodeTree {
                  const std::string& who);
   glm::mat4 local(const Node& node, double seconds) const;
 
+  struct Moment {
+    double seconds = std::numeric_limits<double>::quiet_NaN();
+    std::vector<glm::mat4> worlds;  // of all animated nodes
+  };
+
   std::vector<Node> nodes_;
+  std::vector<int> order_;    // of all nodes, each after its parent
+  mutable std::mutex mutex_;  // of the next two
+  mutable std::array<Moment, 2> moments_;
+  mutable std::size_t oldest_ = 0;
   std::vector<Track> tracks_;
   double duration_ = 0;
 };

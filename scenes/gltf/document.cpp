@@ -5,19 +5,19 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <cctype>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
-
-#include "gltf/schema.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -79,37 +79,20 @@ GltfContainer split_glb(const std::vector<std::uint8_t>& bytes) {
   return container;
 }
 
-int hex_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
-int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+') return 62;
-  if (c == '/') return 63;
-  return -1;
-}
-
 // Decodes %xx. Throws GltfError for a % without two hexadecimal digits.
 std::string percent_decoded(std::string_view text, const std::string& what) {
   std::string decoded;
-  decoded.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '%') {
       decoded.push_back(text[i]);
       continue;
     }
-    const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
-    const int low = high >= 0 ? hex_digit(text[i + 2]) : -1;
-    if (low < 0) {
+    std::uint8_t code = 0;
+    const std::string_view digits = text.substr(i + 1, 2);
+    const auto read = std::from_chars(digits.data(), digits.data() + digits.size(), code, 16);
+    if (digits.size() != 2 || read.ptr != digits.data() + 2)
       throw GltfError(what + " has a URI with '%' that is not followed by two hexadecimal digits");
-    }
-    decoded.push_back(static_cast<char>(high * 16 + low));
+    decoded.push_back(static_cast<char>(code));
     i += 2;
   }
   return decoded;
@@ -117,27 +100,29 @@ std::string percent_decoded(std::string_view text, const std::string& what) {
 
 // Decodes the standard alphabet, padding optional. Throws GltfError for any other character or a bad length.
 std::vector<std::uint8_t> base64_decoded(std::string_view text, const std::string& what) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::array<std::uint8_t, 256> digits;
+  digits.fill(0xff);
+  for (std::size_t i = 0; i < kDigits.size(); ++i)
+    digits[static_cast<std::uint8_t>(kDigits[i])] = static_cast<std::uint8_t>(i);
   while (!text.empty() && text.back() == '=')
     text.remove_suffix(1);
-  if (text.size() % 4 == 1) {
+  if (text.size() % 4 == 1)
     throw GltfError(what + " has a base64 data URI of an impossible length; it is truncated");
-  }
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   int count = 0;
   for (const char c : text) {
-    const int digit = base64_digit(c);
-    if (digit < 0) {
+    const std::uint8_t digit = digits[static_cast<std::uint8_t>(c)];
+    if (digit == 0xff) {
       throw GltfError(fmt::format("{} has a data URI with the byte {:#04x}, which is not base64", what,
-                                  static_cast<unsigned>(static_cast<unsigned char>(c))));
+                                  static_cast<unsigned>(static_cast<std::uint8_t>(c))));
     }
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(static_cast<std::uint8_t>(bits >> count & 0xff));
-    }
+    bits = bits << 6 | digit;
+    if ((count += 6) < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<std::uint8_t>(bits >> count & 0xff));
   }
   return bytes;
 }
@@ -158,14 +143,12 @@ std::vector<std::uint8_t> read_data_uri(std::string_view uri, const std::string&
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path, const std::string& what) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
+  if (!std::filesystem::exists(status))
     throw GltfError(fmt::format("{} is missing: there is no file '{}'", what, path.string()));
-  }
-  if (std::filesystem::is_directory(status)) {
-    throw GltfError(fmt::format("{} cannot be read: '{}' is a directory, not a file", what, path.string()));
-  }
   if (!std::filesystem::is_regular_file(status)) {
-    throw GltfError(fmt::format("{} cannot be read: '{}' is not a regular file", what, path.string()));
+    throw GltfError(fmt::format(
+        "{} cannot be read: '{}' is {}", what, path.string(),
+        std::filesystem::is_directory(status) ? "a directory, not a file" : "not a regular file"));
   }
   const std::uint64_t size = std::filesystem::file_size(path, error);
   if (error || size > kMaxGltfBytes) {
@@ -208,10 +191,13 @@ std::vector<std::uint8_t> read_uri(const std::filesystem::path& folder, const st
   if (relative.find('\0') != std::string::npos) {
     throw GltfError(what + " has a URI with a zero byte; it must name a file");
   }
-  if (relative.find("://") != std::string::npos) {
-    throw GltfError(fmt::format("{} refers to '{}'; only files beside the glTF can be read", what, relative));
+  const std::filesystem::path file(relative);
+  if (relative.find("://") != std::string::npos || file.is_absolute() ||
+      std::find(file.begin(), file.end(), "..") != file.end()) {
+    throw GltfError(fmt::format(
+        "{} refers to '{}'; only files beside the glTF and in folders there can be read", what, relative));
   }
-  return read_file(folder / relative, what);
+  return read_file(folder / file, what);
 }
 
 using nlohmann::json;
@@ -330,16 +316,18 @@ std::vector<int> parents_of(const tinygltf::Model& model) {
 
 GltfDocument open_gltf_document(const std::filesystem::path& path) {
   GltfContainer container = read_gltf_container(path);
-  json root = checked_gltf_json(container.json);
-  const json buffers = take(root, "buffers");
-  const json images = take(root, "images");
+  CheckedJson checked = checked_gltf_json(container.json);
+  const json buffers = take(checked.root, "buffers");
+  const json images = take(checked.root, "images");
 
   GltfDocument document;
   document.path = path;
+  for (const std::string& name : checked.unknown_extensions)
+    document.warn(fmt::format("the extension {} is not read; the picture may lack what it describes", name));
   tinygltf::TinyGLTF reader;
   std::string errors;
   std::string warnings;
-  const std::string text = root.dump();
+  const std::string text = checked.root.dump();
   if (!reader.LoadASCIIFromString(&document.model, &errors, &warnings, text.c_str(),
                                   static_cast<unsigned int>(text.size()), "", tinygltf::NO_REQUIRE)) {
     while (!errors.empty() && errors.back() == '\n')

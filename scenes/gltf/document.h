@@ -4,13 +4,14 @@
 // After open_gltf_document every field read here has its type, its range and, where it is an
 // index, something to point at; every buffer is loaded and as long as it says; each node has one parent at
 // most and the graph no cycle. What accessors and images hold is checked when they are read. tinygltf gives
-// the types; it never sees bytes from the file, only JSON that gltf_schema has checked and rebuilt.
+// the types; it never sees bytes from the file, only JSON that checked_gltf_json() has rebuilt.
 #pragma once
 
 #include <tiny_gltf.h>
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -38,13 +39,25 @@ struct GltfDocument {
 // Throws GltfError for everything that is wrong with the file.
 GltfDocument open_gltf_document(const std::filesystem::path& path);
 
-// "accessor 3", "mesh 1 'Suzanne'".
+// The fields of a file that the loader reads.
+struct CheckedJson {
+  nlohmann::json root;
+  std::vector<std::string> unknown_extensions;  // that the file uses, as they stand there
+};
+
+// Parses the text and rebuilds it from known fields only, each with its right type, in range, and every index pointing
+// at something; so its depth is small and nothing of it can surprise a trusting reader. Extras, unknown extensions and
+// morph targets are gone afterwards. Throws GltfError that names the object and the field, also for an extension that
+// the file requires and the loader lacks. In validate.cpp.
+CheckedJson checked_gltf_json(const std::string& text);
+
+// Returns "accessor 3" or "mesh 1 'Suzanne'".
 std::string described(const char* kind, int index, const std::string& name);
 
-// The encoded bytes of an image. Throws GltfError when they cannot be had.
+// Returns the encoded bytes of an image. Throws GltfError when they cannot be had.
 std::vector<std::uint8_t> image_bytes(const GltfDocument& document, int image);
 
-// The parent of each node, -1 for a root.
+// Returns the parent of each node, -1 for a root. Throws GltfError for a node with two.
 std::vector<int> parents_of(const tinygltf::Model& model);
 
 }  // namespace quincunx::scenes

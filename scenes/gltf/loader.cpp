@@ -14,8 +14,8 @@
 
 #include "gltf/animation.h"
 #include "gltf/document.h"
+#include "gltf/geometry.h"
 #include "gltf/materials.h"
-#include "gltf/mesh.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
@@ -280,19 +280,18 @@ class SceneReader {
     }
   }
 
+  // Moment by moment, as the tree keeps two of them.
   Bounds bounds_over_time() const {
     Bounds bounds;
-    bool first = true;
-    for (const Instance& instance : scene_.instances) {
-      const Bounds& box = mesh_bounds_[static_cast<std::size_t>(instance.mesh)];
-      const int moments = instance.motion ? kBoundsMoments : 1;
-      for (int moment = 0; moment < moments; ++moment) {
-        const double seconds = tree_->duration() * moment / moments;
-        const Bounds placed =
-            transformed(box, instance.motion ? instance.motion(seconds) : instance.transform);
+    for (int moment = 0; moment < kBoundsMoments; ++moment) {
+      const double seconds = tree_->duration() * moment / kBoundsMoments;
+      for (const Instance& instance : scene_.instances) {
+        const bool first = moment == 0 && &instance == scene_.instances.data();
+        if (moment > 0 && !instance.motion) continue;
+        const Bounds placed = transformed(mesh_bounds_[static_cast<std::size_t>(instance.mesh)],
+                                          instance.motion ? instance.motion(seconds) : instance.transform);
         bounds.low = first ? placed.low : glm::min(bounds.low, placed.low);
         bounds.high = first ? placed.high : glm::max(bounds.high, placed.high);
-        first = false;
       }
     }
     check_extent(bounds, "the scene");

@@ -117,21 +117,6 @@ void include(Bounds& bounds, const Bounds& more) {
   bounds.high = glm::max(bounds.high, more.high);
 }
 
-// Mesh bounds over time, widened by half the largest step between two looks.
-Bounds reach_of(const Instance& instance, const Bounds& box, double duration) {
-  if (!instance.motion) return transformed(box, instance.transform);
-  Bounds reach = transformed(box, instance.motion(0));
-  glm::vec3 last = reach.low;
-  glm::vec3 step(0);
-  for (int i = 1; i <= kMotionSamples; ++i) {
-    const Bounds here = transformed(box, instance.motion(duration * i / kMotionSamples));
-    step = glm::max(step, glm::abs(here.low - last));
-    last = here.low;
-    include(reach, here);
-  }
-  return {reach.low - 0.5f * step, reach.high + 0.5f * step};
-}
-
 SurfaceFeatures features_of(const Mesh& mesh, const Material& material) {
   SurfaceFeatures f;
   f.unlit = material.unlit;
@@ -253,6 +238,10 @@ class Layouter {
     return instance == scene_.instances.end() ? 0 : lights_.reaching(transformed(box, instance->transform));
   }
 
+  const Bounds& mesh_box(const PlacedInstance& instance) const {
+    return layout_.meshes[static_cast<std::size_t>(instance.mesh)].box;
+  }
+
   void place_instances() {
     for (const Instance& instance : scene_.instances) {
       PlacedInstance placed;
@@ -260,9 +249,32 @@ class Layouter {
       placed.moves = static_cast<bool>(instance.motion);
       placed.transform = placed.moves ? instance.motion(0) : instance.transform;
       placed.mirrored = glm::determinant(glm::mat3(placed.transform)) < 0;
-      placed.reach =
-          reach_of(instance, layout_.meshes[static_cast<std::size_t>(instance.mesh)].box, scene_.duration);
+      placed.reach = transformed(mesh_box(placed), placed.transform);
       layout_.instances.push_back(placed);
+    }
+    widen_reaches();
+  }
+
+  // Adds the bounds over time, widened by half the largest step between two looks. Look by look, because motions that
+  // share work do so for one time.
+  void widen_reaches() {
+    std::vector<glm::vec3> last, step(layout_.instances.size(), glm::vec3(0));
+    for (const PlacedInstance& placed : layout_.instances)
+      last.push_back(placed.reach.low);
+    for (int look = 1; look <= kMotionSamples; ++look) {
+      for (std::size_t i = 0; i < layout_.instances.size(); ++i) {
+        PlacedInstance& placed = layout_.instances[i];
+        if (!placed.moves) continue;
+        const double seconds = scene_.duration * look / kMotionSamples;
+        const Bounds here = transformed(mesh_box(placed), scene_.instances[i].motion(seconds));
+        step[i] = glm::max(step[i], glm::abs(here.low - last[i]));
+        last[i] = here.low;
+        include(placed.reach, here);
+      }
+    }
+    for (std::size_t i = 0; i < layout_.instances.size(); ++i) {
+      Bounds& reach = layout_.instances[i].reach;
+      if (layout_.instances[i].moves) reach = {reach.low - 0.5f * step[i], reach.high + 0.5f * step[i]};
     }
   }
 

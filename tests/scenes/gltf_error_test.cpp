@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Bad glTF files: each gets one sentence that names the file, the object and what would be right.
 #include <gtest/gtest.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <sstream>
 #include <string>
 
 #include "../tools/temporary_folder.h"
@@ -123,6 +128,25 @@ TEST_F(GltfErrors, Versions) {
       {"requires", "KHR_draco_mesh_compression"});
 }
 
+// Used ones are named once each, and the picture goes without.
+TEST_F(GltfErrors, UnknownExtensionsAreNamed) {
+  GltfFile file = good();
+  file.root["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_materials_unlit", "KHR_materials_sheen",
+                                 "EXT_mesh_gpu_instancing"};
+  const std::string path = file.save_gltf(folder_.file("sheen.gltf"));
+  std::ostringstream log;
+  const auto before = spdlog::default_logger();
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+  const auto scene = scenes::load_gltf(path);
+  spdlog::set_default_logger(before);
+  EXPECT_TRUE(scene.ok()) << scene.status().message();
+  const std::string text = log.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
+  for (const char* name : {"\"EXT_mesh_gpu_instancing\"", "\"KHR_materials_sheen\""})
+    EXPECT_NE(text.find(name), std::string::npos) << text;
+}
+
 TEST_F(GltfErrors, IndicesOutOfRange) {
   expect_refused([](json& root) { root["scene"] = 3; }, {"'scene' 3", "only 1 'scenes'"});
   expect_refused([](json& root) { root["scenes"][0]["nodes"] = {9}; }, {"scene 0", "'nodes' 9"});
@@ -146,7 +170,7 @@ TEST_F(GltfErrors, IndicesOutOfRange) {
                  {"image 0 'Face'", "'bufferView' 50"});
   expect_refused(
       [](json& root) { root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1; },
-      {"baseColorTexture of material 0 'Skin'", "'index' 1"});
+      {"baseColorTexture of pbrMetallicRoughness of material 0 'Skin'", "'index' 1"});
   expect_refused([](json& root) { root["animations"][0]["samplers"][0]["input"] = 50; },
                  {"sampler 0 of animation 0 'Walk'", "'input' 50"});
   expect_refused([](json& root) { root["animations"][0]["channels"][0]["target"]["node"] = 50; },
@@ -241,7 +265,8 @@ TEST_F(GltfErrors, Buffers) {
                  {"buffer 0", "truncated", "3 bytes of the 10"});
   expect_refused(buffer({{"byteLength", 10}, {"uri", "data:;base64,A*AA"}}), {"buffer 0", "base64"});
   expect_refused(buffer({{"byteLength", 10}, {"uri", "a%2"}}), {"buffer 0", "'%'"});
-  expect_refused(buffer({{"byteLength", 10}, {"uri", "http://x/y"}}), {"buffer 0", "only files"});
+  for (const char* uri : {"http://x/y", "../a.bin", "b/../../a.bin", "%2e%2e/a.bin", "/etc/hostname"})
+    expect_refused(buffer({{"byteLength", 1}, {"uri", uri}}), {"buffer 0", "only files beside the glTF"});
 }
 
 TEST_F(GltfErrors, Images) {

@@ -54,6 +54,29 @@ glm::vec3 moved(const glm::mat4& matrix, const glm::vec3& point) {
   return matrix * glm::vec4(point, 1);
 }
 
+// Each frame costs as much as there are nodes: a chain as deep as this would take minutes if each node asked all above.
+TEST_F(GltfMotion, ADeepChainMovesAsAWhole) {
+  constexpr int kDepth = 20000;
+  GltfFile file;
+  const json mesh = file.root["nodes"][static_cast<std::size_t>(file.triangle())]["mesh"];
+  file.root["nodes"] = json::array();
+  for (int i = 0; i < kDepth; ++i) {
+    json node = {{"mesh", mesh}, {"translation", {0, 0.5, 0}}};
+    if (i + 1 < kDepth) node["children"] = {i + 1};
+    file.root["nodes"].push_back(node);
+  }
+  file.root["scenes"][0]["nodes"] = {0};
+  animate(file, 0, "translation", {0, 4}, {0, 0, 0, 8, 0, 0}, "LINEAR");
+  const Scene scene = load(file);
+  ASSERT_EQ(scene.instances.size(), static_cast<std::size_t>(kDepth));
+  for (const double seconds : {0.0, 1.0, 2.5}) {
+    for (int i = 0; i < kDepth; ++i) {
+      const glm::vec3 place = scene.instances[static_cast<std::size_t>(i)].motion(seconds)[3];
+      ASSERT_EQ(place, glm::vec3(2 * seconds, 0.5 * i, 0)) << i;
+    }
+  }
+}
+
 TEST_F(GltfMotion, TransformsMultiplyDownTheTree) {
   GltfFile file;
   const int node = file.triangle();

@@ -60,6 +60,45 @@ TEST_F(LightingTest, SunlightOnARoughWhiteFloorIsNearOne) {
   EXPECT_LT(centre.g, 1.01f);
 }
 
+// A plate is its own mirror image.
+TEST_F(LightingTest, AMirroredInstanceIsLitLikeItsTwin) {
+  Scene scene = floor_scene();
+  scene.instances = {{1, at(-1, 0, 0), {}}, {1, glm::scale(at(1, 0, 0), glm::vec3(-1, 1, 1)), {}}};
+  scene.sun.direction = {0, -0.6f, -0.8f};
+  scene.sun.casts_shadows = false;
+  scene.camera = fixed_camera({0, 0, 4}, {0, 0, 0}, 0.8f);
+  const Picture picture = picture_of(scene);
+  int lit = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width / 2; ++x) {
+      const float own = picture.rgb(x, y).g;
+      EXPECT_NEAR(picture.rgb(kSize.width - 1 - x, y).g, own, 1e-3f) << x << ", " << y;
+      lit += own > 0.7f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(lit, 50);
+}
+
+// Lifted off the shadow map along the normal that is seen, the back is not in its own shadow.
+TEST_F(LightingTest, TheBackOfADoubleSidedSurfaceIsLitLikeItsFront) {
+  Scene scene = floor_scene();
+  scene.materials[0].double_sided = true;
+  scene.sun.direction = {0.3f, -0.5f, -0.8f};
+  scene.camera = fixed_camera({0, 0, 2}, {0, 0, 0}, 0.8f);
+  scene.instances = {{1, glm::mat4(1), {}}};
+  const Picture front = picture_of(scene);
+  scene.instances[0].transform = glm::rotate(glm::mat4(1), 3.14159265f, glm::vec3(0, 1, 0));
+  const Picture back = picture_of(scene);
+  int lit = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      EXPECT_NEAR(back.rgb(x, y).g, front.rgb(x, y).g, 0.01f) << x << ", " << y;
+      lit += front.rgb(x, y).g > 0.5f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(lit, 500);
+}
+
 TEST_F(LightingTest, ShadowLiesUnderItsCasterAndFollowsIt) {
   Scene scene = floor_scene();
   scene.instances.push_back(

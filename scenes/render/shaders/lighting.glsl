@@ -4,6 +4,9 @@
 #ifdef SHADOWS
 layout(binding = 4) uniform sampler2DShadow shadow_map;
 in vec3 v_shadow;  // place in the whole map
+#ifdef DOUBLE_SIDED
+in vec3 v_shadow_back;  // the same of what is seen from the back
+#endif
 #endif
 
 #if POINT_LIGHTS > 0
@@ -42,8 +45,12 @@ vec3 reflected(Surface s, vec3 to_light, float cosine) {
 float sunlight() {
 #ifdef SHADOWS
   const vec2 kAside = vec2(0.5, -0.25) / float(SHADOWS);
-  float depth = min(v_shadow.z, 1.0);
-  vec2 one = min(v_shadow.xy + kAside, frame.shadow.y), other = min(v_shadow.xy - kAside, frame.shadow.y);
+  vec3 place = v_shadow;
+#ifdef DOUBLE_SIDED
+  if (!gl_FrontFacing) place = v_shadow_back;
+#endif
+  float depth = min(place.z, 1.0);
+  vec2 one = min(place.xy + kAside, frame.shadow.y), other = min(place.xy - kAside, frame.shadow.y);
   return 0.5 * (texture(shadow_map, vec3(one, depth)) + texture(shadow_map, vec3(other, depth)));
 #else
   return 1.0;

@@ -1,5 +1,5 @@
-// surface.vert: meshes, instanced. Options (defined or not): VELOCITY, TEXTURED, VERTEX_COLOUR, UNLIT, SHADOWS (never
-// with UNLIT).
+// surface.vert: meshes, instanced. Options (defined or not): VELOCITY, TEXTURED, VERTEX_COLOUR, UNLIT, DOUBLE_SIDED,
+// SHADOWS (never with UNLIT).
 #include "frame.glsl"
 
 layout(location = 0) in vec3 position;
@@ -17,6 +17,9 @@ out vec3 v_normal;
 #endif
 #ifdef SHADOWS
 out vec3 v_shadow;
+#ifdef DOUBLE_SIDED
+out vec3 v_shadow_back;  // seen from the back
+#endif
 #endif
 #ifdef TEXTURED
 out vec2 v_uv;
@@ -29,11 +32,19 @@ out vec3 v_now;     // clip (x, y, w), jitter excluded
 out vec3 v_before;  // the same in the previous frame
 #endif
 
-// Normals go by the matrix of cofactors, which needs no inverse and keeps mirrored meshes right.
+// Normals go by the matrix of cofactors, which needs no inverse, and the sign of the determinant: a mirrored mesh would
+// have them inside.
 vec3 world_normal(vec3 x, vec3 y, vec3 z) {
-  vec3 n = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
-  return n * inversesqrt(max(dot(n, n), 1e-30));
+  vec3 yz = cross(y, z);
+  vec3 n = vec3(dot(yz, normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
+  return n * (inversesqrt(max(dot(n, n), 1e-30)) * (dot(x, yz) < 0.0 ? -1.0 : 1.0));
 }
+
+#ifdef SHADOWS
+vec3 shadow_place(vec3 at) {
+  return (frame.shadow_from_world * vec4(at, 1.0)).xyz * vec3(frame.shadow.xx, 1.0);
+}
+#endif
 
 void main() {
   vec4 local = vec4(position, 1.0);
@@ -45,8 +56,11 @@ void main() {
   v_normal = world_normal(world_rows[0].xyz, world_rows[1].xyz, world_rows[2].xyz);
 #endif
 #ifdef SHADOWS
-  vec3 lifted = world + v_normal * (1.5 * frame.sun_irradiance.w);  // off its own shadow texels
-  v_shadow = (frame.shadow_from_world * vec4(lifted, 1.0)).xyz * vec3(frame.shadow.xx, 1.0);
+  vec3 lift = v_normal * (1.5 * frame.sun_irradiance.w);  // off its own shadow texels
+  v_shadow = shadow_place(world + lift);
+#ifdef DOUBLE_SIDED
+  v_shadow_back = shadow_place(world - lift);
+#endif
 #endif
 #ifdef TEXTURED
   v_uv = uv;
