@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -40,13 +39,14 @@ Value neighbour(Value value, int count, bool back) {
   return static_cast<Value>((static_cast<int>(value) + (back ? count - 1 : 1)) % count);
 }
 
-// Methods of one frame, or those that use earlier ones.
-std::vector<std::string> methods(bool of_one_frame) {
+// The next method of one frame, or of those that use earlier ones.
+template <bool of_one_frame>
+void next_method(WindowSettings& settings, bool back) {
   std::vector<std::string> names;
   for (const VariantInfo& info : all_variants()) {
     if (uses_earlier_frames(info.variant.method) != of_one_frame) names.push_back(info.name);
   }
-  return names;
+  settings.look.method = neighbour(names, settings.look.method, back);
 }
 
 void next_scene(WindowSettings& settings, bool back) {
@@ -92,87 +92,79 @@ void step_split(WindowSettings& settings, float step) {
   settings.split = std::clamp(settings.split + step, 0.0f, 1.0f);
 }
 
-constexpr std::array
-    kBindings =
-        std::to_array<KeyBinding>(
-            {
-                {GLFW_KEY_N, "n", "N", "next scene", next_scene},
-                {GLFW_KEY_UP, "up", "Up", "scale up",
-                 [](WindowSettings& settings, bool) { step_scale(settings, 1); }},
-                {GLFW_KEY_DOWN, "down", "Down", "scale down",
-                 [](WindowSettings& settings, bool) { step_scale(settings, -1); }},
-                {GLFW_KEY_M, "m", "M", "resolution: fixed, controller, sweep, random, lowest",
-                 [](WindowSettings& settings, bool back) {
-                   settings.resolution.mode = neighbour(settings.resolution.mode, kResolutionModes, back);
-                 }},
-                {GLFW_KEY_C, "c", "C", "next controller",
-                 [](WindowSettings& settings, bool back) {
-                   settings.rate.controller = neighbour(settings.rate.controller, kControllers, back);
-                 }},
-                {GLFW_KEY_P, "p", "P", "target: more pictures a second", next_rate},
-                {GLFW_KEY_T, "t", "T", "time: equal steps or by the clock",
-                 [](WindowSettings& settings, bool) { settings.real_time = !settings.real_time; }},
-                {GLFW_KEY_F, "f", "F", "next filter of one frame",
-                 [](WindowSettings& settings, bool back) {
-                   settings.look.method = neighbour(methods(true), settings.look.method, back);
-                 }},
-                {GLFW_KEY_R, "r", "R", "next resolve over frames",
-                 [](WindowSettings& settings, bool back) {
-                   settings.look.method = neighbour(methods(false), settings.look.method, back);
-                 }},
-                {GLFW_KEY_X, "x", "X", "shading: full or checkerboard",
-                 [](WindowSettings& settings, bool) {
-                   Shading& shading = settings.look.shading;
-                   shading = shading == Shading::kFull ? Shading::kCheckerboard : Shading::kFull;
-                 }},
-                {GLFW_KEY_L, "l", "L", "scale of the sun's shadow map",
-                 [](WindowSettings& settings, bool back) {
-                   settings.look.shadow_scale = neighbour(kShadowScales, settings.look.shadow_scale, back);
-                 }},
-                {GLFW_KEY_Q, "q", "Q", "particles: in the frame, or at a scale of their own",
-                 [](WindowSettings& settings, bool back) {
-                   settings.look.particle_scale =
-                       neighbour(kParticleScales, settings.look.particle_scale, back);
-                 }},
-                {GLFW_KEY_G, "g", "G", "gaze: a focus on what the pointer is on",
-                 [](WindowSettings& settings, bool) {
-                   std::string& focus = settings.look.focus;
-                   focus = focus == kFocusPointer ? "" : kFocusPointer;
-                 }},
-                {GLFW_KEY_B, "b", "B", "motion blur: longer shutter", step_shutter},
-                {GLFW_KEY_V, "v", "V", "split view: truth, other methods", next_comparison},
-                {GLFW_KEY_LEFT, "left", "Left", "split to the left",
-                 [](WindowSettings& settings, bool) { step_split(settings, -kSplitStep); }},
-                {GLFW_KEY_RIGHT, "right", "Right", "split to the right",
-                 [](WindowSettings& settings, bool) { step_split(settings, kSplitStep); }},
-                {GLFW_KEY_SPACE, "space", "Space", "freeze the frame",
-                 [](WindowSettings& settings, bool) { settings.frozen = !settings.frozen; }},
-                {GLFW_KEY_PERIOD, "period", ".", "one frame on, while frozen",
-                 [](WindowSettings& settings, bool) { ++settings.step; }},
-                {GLFW_KEY_COMMA, "comma", ",", "one frame back, while frozen",
-                 [](WindowSettings& settings, bool) { --settings.step; }},
-                {GLFW_KEY_Z, "z", "Z", "zoom to pixels: 2, 4 ... 32 times", step_zoom},
-                {GLFW_KEY_A, "a", "A", "allocation of targets: viewport or placed",
-                 [](WindowSettings& settings, bool back) {
-                   settings.look.targets = neighbour(settings.look.targets, kTargetKinds, back);
-                 }},
-                {GLFW_KEY_U, "u", "U", "output: the window's size, or one that follows the viewport",
-                 [](WindowSettings& settings, bool) { switch_dual(settings.look); }},
-                {GLFW_KEY_S, "s", "S", "screenshot (PNG)",
-                 [](WindowSettings& settings, bool) { settings.screenshot = true; }},
-                {GLFW_KEY_D, "d", "D", "dump targets and picture (EXR)",
-                 [](WindowSettings& settings, bool) { settings.dump = true; }},
-                {GLFW_KEY_O, "o", "O", "how this interface is drawn",
-                 [](WindowSettings& settings, bool back) {
-                   settings.drawing = neighbour(settings.drawing, kUiDrawings, back);
-                 }},
-                {GLFW_KEY_TAB, "tab", "Tab", "hide or show the interface",
-                 [](WindowSettings& settings, bool) { settings.show_ui = !settings.show_ui; }},
-                {GLFW_KEY_H, "h", "H", "this help",
-                 [](WindowSettings& settings, bool) { settings.show_help = !settings.show_help; }},
-                {GLFW_KEY_ESCAPE, "escape", "Esc", "close the window",
-                 [](WindowSettings& settings, bool) { settings.close = true; }},
-            });
+// What many keys do: turn a setting over, or wish for something.
+template <auto Member>
+void turn_over(WindowSettings& settings, bool) {
+  settings.*Member = !(settings.*Member);
+}
+template <auto Member>
+void wish(WindowSettings& settings, bool) {
+  settings.*Member = true;
+}
+
+constexpr KeyBinding kBindings[] = {
+    {GLFW_KEY_N, "n", "N", "next scene", next_scene},
+    {GLFW_KEY_UP, "up", "Up", "scale up", [](WindowSettings& settings, bool) { step_scale(settings, 1); }},
+    {GLFW_KEY_DOWN, "down", "Down", "scale down",
+     [](WindowSettings& settings, bool) { step_scale(settings, -1); }},
+    {GLFW_KEY_M, "m", "M", "resolution: fixed, controller, sweep, random, lowest",
+     [](WindowSettings& settings, bool back) {
+       settings.resolution.mode = neighbour(settings.resolution.mode, kResolutionModes, back);
+     }},
+    {GLFW_KEY_C, "c", "C", "next controller",
+     [](WindowSettings& settings, bool back) {
+       settings.rate.controller = neighbour(settings.rate.controller, kControllers, back);
+     }},
+    {GLFW_KEY_P, "p", "P", "target: more pictures a second", next_rate},
+    {GLFW_KEY_T, "t", "T", "time: equal steps or by the clock", turn_over<&WindowSettings::real_time>},
+    {GLFW_KEY_F, "f", "F", "next filter of one frame", next_method<true>},
+    {GLFW_KEY_R, "r", "R", "next resolve over frames", next_method<false>},
+    {GLFW_KEY_X, "x", "X", "shading: full or checkerboard",
+     [](WindowSettings& settings, bool) {
+       Shading& shading = settings.look.shading;
+       shading = shading == Shading::kFull ? Shading::kCheckerboard : Shading::kFull;
+     }},
+    {GLFW_KEY_L, "l", "L", "scale of the sun's shadow map",
+     [](WindowSettings& settings, bool back) {
+       settings.look.shadow_scale = neighbour(kShadowScales, settings.look.shadow_scale, back);
+     }},
+    {GLFW_KEY_Q, "q", "Q", "particles: in the frame, or at a scale of their own",
+     [](WindowSettings& settings, bool back) {
+       settings.look.particle_scale = neighbour(kParticleScales, settings.look.particle_scale, back);
+     }},
+    {GLFW_KEY_G, "g", "G", "gaze: a focus on what the pointer is on",
+     [](WindowSettings& settings, bool) {
+       std::string& focus = settings.look.focus;
+       focus = focus == kFocusPointer ? "" : kFocusPointer;
+     }},
+    {GLFW_KEY_B, "b", "B", "motion blur: longer shutter", step_shutter},
+    {GLFW_KEY_V, "v", "V", "split view: truth, other methods", next_comparison},
+    {GLFW_KEY_LEFT, "left", "Left", "split to the left",
+     [](WindowSettings& settings, bool) { step_split(settings, -kSplitStep); }},
+    {GLFW_KEY_RIGHT, "right", "Right", "split to the right",
+     [](WindowSettings& settings, bool) { step_split(settings, kSplitStep); }},
+    {GLFW_KEY_SPACE, "space", "Space", "freeze the frame", turn_over<&WindowSettings::frozen>},
+    {GLFW_KEY_PERIOD, "period", ".", "one frame on, while frozen",
+     [](WindowSettings& settings, bool) { ++settings.step; }},
+    {GLFW_KEY_COMMA, "comma", ",", "one frame back, while frozen",
+     [](WindowSettings& settings, bool) { --settings.step; }},
+    {GLFW_KEY_Z, "z", "Z", "zoom to pixels: 2, 4 ... 32 times", step_zoom},
+    {GLFW_KEY_A, "a", "A", "allocation of targets: viewport or placed",
+     [](WindowSettings& settings, bool back) {
+       settings.look.targets = neighbour(settings.look.targets, kTargetKinds, back);
+     }},
+    {GLFW_KEY_U, "u", "U", "output: the window's size, or one that follows the viewport",
+     [](WindowSettings& settings, bool) { switch_dual(settings.look); }},
+    {GLFW_KEY_S, "s", "S", "screenshot (PNG)", wish<&WindowSettings::screenshot>},
+    {GLFW_KEY_D, "d", "D", "dump targets and picture (EXR)", wish<&WindowSettings::dump>},
+    {GLFW_KEY_O, "o", "O", "how this interface is drawn",
+     [](WindowSettings& settings, bool back) {
+       settings.drawing = neighbour(settings.drawing, kUiDrawings, back);
+     }},
+    {GLFW_KEY_TAB, "tab", "Tab", "hide or show the interface", turn_over<&WindowSettings::show_ui>},
+    {GLFW_KEY_H, "h", "H", "this help", turn_over<&WindowSettings::show_help>},
+    {GLFW_KEY_ESCAPE, "escape", "Esc", "close the window", wish<&WindowSettings::close>},
+};
 
 }  // namespace
 

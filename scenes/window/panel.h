@@ -27,12 +27,10 @@ struct PanelFacts {
   Extent render = {};
   Extent made = {};  // the picture's, before it is scaled to `output`
   Extent output = {};
-  double target_ms = 0;  // 0: none
-  std::string method;    // that a controller chose; empty: that of the settings
-  std::string reasons;   // why, lines of text; empty: no controller chose it
-  std::string motion;    // what frames say of velocity; empty: nobody asks
-  std::string opengl;
-  std::string opencl;
+  double target_ms = 0;              // 0: none
+  std::string method;                // that a controller chose; empty: that of the settings
+  std::string reasons;               // why, lines of text; empty: no controller chose it
+  std::string motion;                // what frames say of velocity; empty: nobody asks
   std::optional<PickedPixel> pixel;  // under the cursor, where the picture is enlarged
   std::string message;               // the latest news for the user; may be empty
 };

@@ -140,10 +140,6 @@ void Window::restore() {
   glfwRestoreWindow(window_);
 }
 
-void Window::set_title(const std::string& title) {
-  glfwSetWindowTitle(window_, title.c_str());
-}
-
 void Window::swap() {
   glfwSwapBuffers(window_);
 }

@@ -57,7 +57,6 @@ class Window {
   void resize(Extent size);
   void minimise();
   void restore();
-  void set_title(const std::string& title);
   void swap();  // shows the back buffer
 
   GLFWwindow* handle() const { return window_; }

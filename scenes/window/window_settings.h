@@ -3,6 +3,7 @@
 // those who read them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,7 +26,11 @@ enum class ResolutionMode : std::uint8_t {
 
 constexpr int kResolutionModes = 5;
 
-const char* name_of(ResolutionMode mode);  // "sweep"
+inline const char* name_of(ResolutionMode mode) {
+  constexpr const char* kNames[kResolutionModes] = {"fixed scale", "by the controller", "sweep",
+                                                    "random in each frame", "lowest"};
+  return kNames[static_cast<std::size_t>(mode)];
+}
 
 constexpr float kSmallestScale = 0.02f;
 constexpr float kLargestScale = 2.0f;
@@ -83,8 +88,10 @@ struct LookSettings {
   friend bool operator==(const LookSettings&, const LookSettings&) = default;
 };
 
-// Between an output of the window's size and one that follows the viewport.
-void switch_dual(LookSettings& look);
+// Switches between an output of the window's size and one that follows the viewport.
+inline void switch_dual(LookSettings& look) {
+  look.dual = look.dual.empty() ? "auto" : "";
+}
 
 // How the user interface comes over the picture; it always has the window's own resolution.
 enum class UiDrawing : std::uint8_t {
@@ -95,7 +102,11 @@ enum class UiDrawing : std::uint8_t {
 
 constexpr int kUiDrawings = 3;
 
-const char* name_of(UiDrawing drawing);  // "every 2nd frame"
+inline const char* name_of(UiDrawing drawing) {
+  constexpr const char* kNames[kUiDrawings] = {"over the picture", "composited",
+                                               "composited, every 2nd frame"};
+  return kNames[static_cast<std::size_t>(drawing)];
+}
 
 // A part of the picture, enlarged to whole multiples.
 struct ZoomSettings {
