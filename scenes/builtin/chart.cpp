@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "builtin/glyphs.h"
 #include "builtin/scene_assembly.h"
 #include "builtin/scenes.h"
 

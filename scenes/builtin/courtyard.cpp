@@ -8,8 +8,6 @@
 #include <glm/gtc/constants.hpp>
 #include <vector>
 
-#include "builtin/ambient_occlusion.h"
-#include "builtin/props.h"
 #include "builtin/scenes.h"
 #include "random.h"
 
@@ -101,15 +99,14 @@ void add_clouds(SceneAssembly& assembly, std::uint64_t seed) {
   }
 }
 
-Camera camera_at(double seconds) {
+constexpr float kFieldOfView = 0.95f;
+
+glm::mat4 camera_at(double seconds) {
   const float angle = phase_at(seconds, kCourtyardDuration);
-  Camera camera;
-  camera.vertical_fov = 0.95f;
   const glm::vec3 eye(1.5f + 0.75f * std::sin(angle), 1.80f + 0.10f * std::cos(angle),
                       9.4f - 0.45f * std::cos(angle));
   const glm::vec3 target(-0.45f + 0.12f * std::sin(angle), 3.35f, -5.0f);
-  camera.world_from_camera = looking_from(eye, target);
-  return camera;
+  return looking_from(eye, target);
 }
 
 }  // namespace
@@ -131,9 +128,7 @@ Scene make_courtyard(std::uint64_t seed) {
   bake_ambient_occlusion(scene, {}, [](const Material& material) {
     return !material.unlit && material.base_colour_texture.texture >= 0;  // masonry; the rest is thin or dark
   });
-  scene.duration = kCourtyardDuration;
-  scene.camera_moves = true;
-  scene.camera = camera_at;
+  move_camera(scene, kCourtyardDuration, kFieldOfView, camera_at);
   return scene;
 }
 
@@ -250,14 +245,10 @@ void add_smoke(const std::vector<Puff>& puffs, double seconds, std::vector<Parti
 // The courtyard, flown through: a load that changes, for resolution control.
 Scene make_flight(std::uint64_t seed) {
   Scene scene = make_courtyard(seed);
-  scene.duration = kFlight;
-  scene.camera = [](double seconds) {
+  move_camera(scene, kFlight, kFieldOfView, [](double seconds) {
     const Waypoint place = place_at(seconds);
-    Camera camera;
-    camera.vertical_fov = 0.95f;
-    camera.world_from_camera = looking_from(place.eye, place.target);
-    return camera;
-  };
+    return looking_from(place.eye, place.target);
+  });
   scene.particles = [spray = scene.particles, puffs = make_puffs(seed)](double seconds,
                                                                         std::vector<Particle>& particles) {
     spray(seconds, particles);

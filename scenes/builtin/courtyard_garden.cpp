@@ -100,8 +100,8 @@ void add_tree(SceneAssembly& assembly, const PlantMaterials& materials, const Tr
         glm::normalize(glm::vec3(random.signed_unit(), 0.3f * random.signed_unit(), random.signed_unit()));
     const Motion sway =
         swinging(moved_to(pivot), axis, 0.022f, tree.period, 2 + group, random.range(0, kTau));
-    assembly.move(assembly.add(leaves.take()), sway);
-    if (!fruits.empty()) assembly.move(assembly.add(fruits.take()), sway);
+    assembly.move(leaves, sway);
+    if (!fruits.empty()) assembly.move(fruits, sway);
   }
 }
 

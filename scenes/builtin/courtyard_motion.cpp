@@ -150,7 +150,7 @@ void add_cart(SceneAssembly& assembly, const CourtyardMaterials& m) {
   MeshBuilder lamp(m.lamp);
   lamp.sphere({0, 0.36f, -0.46f}, 0.045f, 12);
   for (MeshBuilder* part : {&body, &brass, &lamp})
-    assembly.move(assembly.add(part->take()), ride);
+    assembly.move(*part, ride);
   MeshBuilder wheel(m.iron);
   constexpr float kRadius = 0.12f;
   wheel.ring({0, 0, 0}, {1, 0, 0}, kRadius - 0.012f, 0.014f, 28, 6);
@@ -197,15 +197,14 @@ void add_wind_wheel(SceneAssembly& assembly, const CourtyardMaterials& m) {
   }
   const glm::mat4 rest = moved_to(hub) * turned(0.35f, {0, 1, 0});
   for (MeshBuilder* part : {&wheel, &blades})
-    assembly.move(assembly.add(part->take()), spinning(rest, {0, 0, 1}, kCourtyardDuration, 3));
+    assembly.move(*part, spinning(rest, {0, 0, 1}, kCourtyardDuration, 3));
   MeshBuilder vane(m.gilt);
   vane.rod({0, 0, 0}, {0, 1.1f, 0}, 0.03f, 8);
   vane.sphere({0, 0.45f, 0}, 0.13f, 14);
   vane.rod({-0.7f, 0.85f, 0}, {0.7f, 0.85f, 0}, 0.022f, 6);
   const std::array<glm::vec2, 3> tail{{{-0.75f, 0.62f}, {-0.35f, 0.85f}, {-0.75f, 1.08f}}};
   vane.prism(tail, -0.01f, 0.01f);
-  assembly.move(assembly.add(vane.take()),
-                swinging(moved_to({3.6f, 19.6f, -21}), {0, 1, 0}, 0.5f, kCourtyardDuration, 1, 0.4f));
+  assembly.move(vane, swinging(moved_to({3.6f, 19.6f, -21}), {0, 1, 0}, 0.5f, kCourtyardDuration, 1, 0.4f));
 }
 
 void add_swifts(SceneAssembly& assembly, std::uint64_t seed) {

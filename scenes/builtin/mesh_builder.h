@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// MeshBuilder: meshes from simple solids, for the procedural scenes.
+// MeshBuilder: meshes from simple solids, for the procedural scenes; and how open the sky is to them.
 //
 // Everything comes out with unit normals, triangles counter-clockwise seen from outside, and texture
 // coordinates that read like a picture seen from outside: u to the right, v downwards, in metres times
@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <glm/gtc/constants.hpp>
 #include <span>
@@ -82,5 +83,18 @@ std::array<glm::vec3, 2> frame_around(glm::vec3 axis);
 
 // Points of a wire that hangs between two points; `sag` is how far its middle lies below the chord.
 std::vector<glm::vec3> hanging_wire(glm::vec3 from, glm::vec3 to, float sag, int pieces);
+
+struct OcclusionSettings {
+  float cell = 0.16f;     // metres: size of the cubes that the scene is measured in
+  float reach = 2.6f;     // metres: what is further away does not darken
+  int directions = 32;    // over the hemisphere, cosine weighted
+  float strength = 0.9f;  // 0: nothing happens, 1: a closed corner turns black
+};
+
+// Multiplies the vertex colours of the meshes that stand still once, untransformed, by how open the sky is to
+// them. Only opaque materials hide and are darkened, and only where `takes_part(material)` holds. Small, slow
+// and simple: a bit per cube, marched through; meant for 1e5 vertices and some seconds at most.
+void bake_ambient_occlusion(Scene& scene, const OcclusionSettings& settings,
+                            const std::function<bool(const Material&)>& takes_part);
 
 }  // namespace quincunx::scenes

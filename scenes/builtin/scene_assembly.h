@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// SceneAssembly: collects the parts of a procedural scene. And the motions that they share, all of which
-// repeat.
+// SceneAssembly: collects the parts of a procedural scene. And what several of them share: motions, all of which
+// repeat, cameras, and props.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "builtin/mesh_builder.h"
 #include "builtin/textures.h"
@@ -36,6 +38,7 @@ class SceneAssembly {
 
   void place(int mesh, const glm::mat4& transform);
   void move(int mesh, Motion motion);
+  void move(MeshBuilder& built, Motion motion) { move(add(built.take()), std::move(motion)); }
 
   // Adds what was collected; call once, last.
   Scene finish();
@@ -67,7 +70,38 @@ Motion spinning(const glm::mat4& rest, glm::vec3 axis, double period, int cycles
 
 // A camera that stands still for `duration` seconds, the scene's.
 void hold_camera(Scene& scene, double duration, float vertical_fov, glm::vec3 eye, glm::vec3 target);
+// A camera that moves, over `duration` seconds, the scene's. `place`: world from camera at a time.
+void move_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(double)> place);
 // A camera that swings to and fro once in `duration` seconds, the scene's. `place`: world from camera, of -1 to 1.
 void swing_camera(Scene& scene, double duration, float vertical_fov, std::function<glm::mat4(float)> place);
+
+// Lettering on a sheet: a title, a motif of five pips, lines of text, small print.
+struct Poster {
+  int width = 768;  // pixels
+  int height = 1024;
+  glm::vec3 paper{0.93f, 0.89f, 0.80f};  // as displayed
+  glm::vec3 ink{0.13f, 0.12f, 0.14f};
+  glm::vec3 accent{0.70f, 0.16f, 0.12f};
+  std::string title;
+  std::vector<std::string> lines;
+  std::vector<std::string> small_print;
+  std::uint64_t seed = 0;
+};
+Texture poster_texture(const Poster& poster);
+Poster quincunx_poster(std::uint64_t seed);  // what the name means, and the alphabet
+Poster die_poster(std::uint64_t seed);
+Poster figures_poster(std::uint64_t seed);
+
+// A material that shows a texture, matt.
+int add_picture_material(SceneAssembly& assembly, const std::string& name, Texture texture);
+
+// A brick wall that faces +z, its foot at y = 0, with a stone base and posters; `width` around x = 0.
+void add_poster_wall(SceneAssembly& assembly, float width, float height, float z, std::uint64_t seed);
+
+// Paving at y = 0 in front of such a wall: `width` around x = 0, from z = `front` to `depth` behind it.
+void add_paving(SceneAssembly& assembly, float width, float front, float depth, std::uint64_t seed);
+
+// A sunny day for scenes without a mood of their own.
+void set_daylight(Scene& scene);
 
 }  // namespace quincunx::scenes

@@ -15,40 +15,25 @@ Scene make_courtyard(std::uint64_t seed);
 Scene make_still(std::uint64_t seed);
 Scene make_flight(std::uint64_t seed);
 
-// camera_moves.cpp
+// moving_cameras.cpp
 Scene make_pan(std::uint64_t seed);
 Scene make_zoom(std::uint64_t seed);
 Scene make_cut(std::uint64_t seed);
-
-// thin_lines.cpp
 Scene make_wires(std::uint64_t seed);
 Scene make_cables(std::uint64_t seed);
 Scene make_fence(std::uint64_t seed);
-Scene make_twigs(std::uint64_t seed);
 
-// moving_rods.cpp
-Scene make_crossings(std::uint64_t seed);
-Scene make_jolts(std::uint64_t seed);
-
-// wheels.cpp
+// moving_objects.cpp
 Scene make_wheel(std::uint64_t seed);
-Scene make_spokes(std::uint64_t seed);
-
-// occluders.cpp
 Scene make_occluders(std::uint64_t seed);
 Scene make_shadows(std::uint64_t seed);
-Scene make_runners(std::uint64_t seed);
+Scene make_particles(std::uint64_t seed);
 
-// background.cpp
+// odd_pixels.cpp
 Scene make_backdrop(std::uint64_t seed);
 Scene make_cutout(std::uint64_t seed);
-
-// bright_spots.cpp
 Scene make_sparkles(std::uint64_t seed);
 Scene make_faults(std::uint64_t seed);
-
-// particles.cpp
-Scene make_particles(std::uint64_t seed);
 
 // chart.cpp
 Scene make_chart(std::uint64_t seed);

@@ -70,6 +70,17 @@ void append(Texture& texture, glm::vec4 value) {
     texture.rgba.push_back(to_byte(value[i]));
 }
 
+// Asks `rule`, which gives RGBA, at the middle of each texel; places lie in [0, 1] x [0, 1].
+template <typename Rule>
+Texture make_texture(int width, int height, bool srgb, const Rule& rule) {
+  Texture texture = blank_texture(width, height, srgb);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x)
+      append(texture, rule((glm::vec2(x, y) + 0.5f) / glm::vec2(width, height)));
+  }
+  return texture;
+}
+
 // The place of a point in a course of blocks: which block, and how far from the nearest joint, in units of the
 // course height.
 struct Block {
@@ -303,30 +314,26 @@ Texture leaf_texture(int size, std::uint64_t seed) {
                       random.range(0.30f, 0.40f) * (1.1f - 0.3f * t),
                       random.unit()});
   }
-  Texture texture = blank_texture(size, size, true);
-  texture.wrap_u = texture.wrap_v = Wrap::kClamp;
-  for (int y = 0; y < size; ++y) {
-    for (int x = 0; x < size; ++x) {
-      const glm::vec2 at = (glm::vec2(x, y) + 0.5f) / static_cast<float>(size);
-      glm::vec4 texel(0.24f, 0.36f, 0.13f, 0);
-      const float stem = std::abs(at.x - 0.5f);
-      if (stem < 0.009f && at.y > 0.3f) texel = {0.30f, 0.26f, 0.14f, 1};
-      for (const Leaf& leaf : leaves) {
-        const glm::vec2 to = at - leaf.base;
-        const float along = glm::dot(to, leaf.along) / leaf.length;
-        if (along < 0 || along > 1) continue;
-        const float across = (to.x * leaf.along.y - to.y * leaf.along.x) / leaf.length;
-        const float half_width = 0.55f * std::sqrt(along) * (1 - along) * 0.95f;
-        if (std::abs(across) > half_width) continue;
-        const float vein = smooth(0.0f, 0.02f, std::abs(across));
-        const float side = across > 0 ? 1.0f : 0.86f;
-        const glm::vec3 green =
-            glm::mix(glm::vec3(0.20f, 0.36f, 0.11f), glm::vec3(0.42f, 0.55f, 0.18f), leaf.tone);
-        texel = glm::vec4(green * side * (0.78f + 0.22f * vein) * (0.85f + 0.2f * along), 1);
-      }
-      append(texture, texel);
+  Texture texture = make_texture(size, size, true, [&](glm::vec2 at) {
+    glm::vec4 texel(0.24f, 0.36f, 0.13f, 0);
+    const float stem = std::abs(at.x - 0.5f);
+    if (stem < 0.009f && at.y > 0.3f) texel = {0.30f, 0.26f, 0.14f, 1};
+    for (const Leaf& leaf : leaves) {
+      const glm::vec2 to = at - leaf.base;
+      const float along = glm::dot(to, leaf.along) / leaf.length;
+      if (along < 0 || along > 1) continue;
+      const float across = (to.x * leaf.along.y - to.y * leaf.along.x) / leaf.length;
+      const float half_width = 0.55f * std::sqrt(along) * (1 - along) * 0.95f;
+      if (std::abs(across) > half_width) continue;
+      const float vein = smooth(0.0f, 0.02f, std::abs(across));
+      const float side = across > 0 ? 1.0f : 0.86f;
+      const glm::vec3 green =
+          glm::mix(glm::vec3(0.20f, 0.36f, 0.11f), glm::vec3(0.42f, 0.55f, 0.18f), leaf.tone);
+      texel = glm::vec4(green * side * (0.78f + 0.22f * vein) * (0.85f + 0.2f * along), 1);
     }
-  }
+    return texel;
+  });
+  texture.wrap_u = texture.wrap_v = Wrap::kClamp;
   return texture;
 }
 
@@ -345,21 +352,16 @@ Texture water_normal_texture(int size, std::uint64_t seed) {
 Texture cloud_texture(int width, int height, std::uint64_t seed) {
   const FractalNoise shapes({5, 6}, 6, seed);
   const FractalNoise bends({3, 2}, 3, seed + 90);
-  Texture texture = blank_texture(width, height, true);
+  Texture texture = make_texture(width, height, true, [&](glm::vec2 at) {
+    const glm::vec2 bent = at + glm::vec2(0, 0.16f * bends(at));
+    const float density = smooth(0.50f, 0.78f, shapes(bent));
+    const float below = smooth(0.50f, 0.78f, shapes(bent - glm::vec2(0.006f, 0.03f)));
+    const float ends = smooth(0.0f, 0.25f, at.y) * smooth(1.0f, 0.8f, at.y);
+    const glm::vec3 colour =
+        glm::mix(glm::vec3(1.0f, 0.93f, 0.85f), glm::vec3(0.72f, 0.70f, 0.74f), 0.8f * below);
+    return glm::vec4(colour, 0.85f * density * ends);
+  });
   texture.wrap_v = Wrap::kClamp;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const glm::vec2 at((static_cast<float>(x) + 0.5f) / static_cast<float>(width),
-                         (static_cast<float>(y) + 0.5f) / static_cast<float>(height));
-      const glm::vec2 bent = at + glm::vec2(0, 0.16f * bends(at));
-      const float density = smooth(0.50f, 0.78f, shapes(bent));
-      const float below = smooth(0.50f, 0.78f, shapes(bent - glm::vec2(0.006f, 0.03f)));
-      const float ends = smooth(0.0f, 0.25f, at.y) * smooth(1.0f, 0.8f, at.y);
-      const glm::vec3 colour =
-          glm::mix(glm::vec3(1.0f, 0.93f, 0.85f), glm::vec3(0.72f, 0.70f, 0.74f), 0.8f * below);
-      append(texture, glm::vec4(colour, 0.85f * density * ends));
-    }
-  }
   return texture;
 }
 

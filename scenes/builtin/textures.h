@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Textures made by rule: masonry, wood, foliage, water, and a canvas to letter signs on.
+// Textures made by rule: masonry, wood, foliage, water; and lettering, with a canvas for signs.
 //
 // Row 0 is the top of the picture (v = 0). Colours are given as displayed (sRGB encoded, 0 to 1). All
 // surfaces repeat without a seam. Pure functions of their arguments.
@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "builtin/glyphs.h"
 #include "scene.h"
 
 namespace quincunx::scenes {
@@ -58,6 +57,25 @@ Texture leaf_texture(int size, std::uint64_t seed);  // a sprig of leaves with a
 Texture water_normal_texture(int size, std::uint64_t seed);  // ripples round the centre
 Texture cloud_texture(int width, int height,
                       std::uint64_t seed);  // streaks with alpha; repeats in u, ends softly in v
+
+// A stroke font of our own, as polylines: the same strokes become geometry or texels, sharp at any size. It has printable
+// ASCII; other characters are drawn as an open box. Lengths are in cap heights: a capital stands from y = 0 to y = 1, y
+// up; descenders reach to -1/3.
+using Polyline = std::vector<glm::vec2>;
+
+enum class Align { kLeft, kCentre, kRight };
+
+struct TextStyle {
+  float cap_height = 1;
+  float tracking = 0;  // further space after each character, in cap heights
+  Align align = Align::kLeft;
+};
+
+// Width from the first character's left edge to the last one's right edge.
+float text_width(std::string_view text, const TextStyle& style);
+
+// The strokes of one line, `anchor` being the point of the baseline that `align` speaks of.
+std::vector<Polyline> text_strokes(std::string_view text, glm::vec2 anchor, const TextStyle& style);
 
 // A picture to draw on, in pixels, y down; shapes are antialiased.
 class Canvas {

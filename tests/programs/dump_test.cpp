@@ -245,7 +245,7 @@ TEST_F(Dump, DeviceDepthIsWrittenAsItWasDrawn) {
 }
 
 TEST_F(Dump, ADilatedVelocityIsThatOfTheNearestOfNine) {
-  const std::string run = "-q --scene spokes --output 64x36 --frames 1 --start 1 --device-depth ";
+  const std::string run = "-q --scene wheel --output 64x36 --frames 1 --start 1 --device-depth ";
   expect_done(dump(run + "--sequence '{}/a/f.%04d.exr'"));
   expect_done(dump(run + "--dilate-velocity --sequence '{}/b/f.%04d.exr'"));
   const auto own = image("a/f.0000.exr");

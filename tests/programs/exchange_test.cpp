@@ -115,8 +115,7 @@ TEST_F(Exchange, PresentedAndBlurredFramesComeBack) {
 // Wheels before a wall: where each sample has the velocity of the nearest of its 3x3 the picture is another, and almost
 // what it was once that is said.
 TEST_F(Exchange, ADilatedVelocityIsTakenBack) {
-  const std::string scene =
-      "--scene spokes --output 160x90 --scale 0.5 --start 1 --jitter halton --frames 12";
+  const std::string scene = "--scene wheel --output 160x90 --scale 0.5 --start 1 --jitter halton --frames 12";
   run(QUINCUNX_DUMP, scene + " --sequence '{}/a/f.%04d.exr'");
   run(QUINCUNX_DUMP, scene + " --dilate-velocity --sequence '{}/b/f.%04d.exr'");
   const std::string resolving = " --method temporal --store float --out";

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "builtin/ambient_occlusion.h"
-#include "builtin/glyphs.h"
 #include "builtin/mesh_builder.h"
 #include "builtin/scene_assembly.h"
 #include "builtin/textures.h"

@@ -1,15 +1,137 @@
 // SPDX-License-Identifier: MIT
-// Pixels far brighter than their neighbours: the glints of `sparkles`, the broken pixels of `faults`.
+// Pixels that are no surface, or far brighter than their neighbours: the sky of `backdrop`, nothing at all behind
+// `cutout`, the glints of `sparkles`, the broken pixels of `faults`.
 #include <array>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "builtin/props.h"
+#include "builtin/architecture.h"
+#include "builtin/scene_assembly.h"
 #include "builtin/scenes.h"
 #include "random.h"
 
 namespace quincunx::scenes {
+namespace {
+
+constexpr float kHub = 3.4f;  // height of the wind wheel's hub
+
+void add_colonnade(MeshBuilder& stone, Random& random) {
+  for (int i = 0; i < 9; ++i) {
+    stone.pen.placement = moved_to({-7.2f + 1.8f * static_cast<float>(i), 0, -4.5f - 0.6f * random.unit()});
+    add_column(stone, 0.17f, i % 3 == 2 ? 2.2f : 3.3f);
+  }
+}
+
+// A mast with stays on both sides.
+void add_mast(MeshBuilder& iron, float x) {
+  const glm::vec3 foot(x, 0, -3);
+  const glm::vec3 top = foot + glm::vec3(0, 5, 0);
+  iron.rod(foot, top, 0.035f, 8);
+  for (const float reach : {-2.4f, -1.5f, 1.5f, 2.4f}) {
+    iron.rod(foot + glm::vec3(reach, 0, 0), glm::mix(foot, top, std::abs(reach) / 2.5f), 0.007f, 5);
+  }
+}
+
+void add_wind_wheel(SceneAssembly& assembly, int iron) {
+  constexpr int kBlades = 12;
+  MeshBuilder wheel(iron);
+  wheel.ring({0, 0, 0}, {0, 0, 1}, 0.95f, 0.012f, 64, 6);
+  for (int i = 0; i < kBlades; ++i) {
+    const float turn = glm::two_pi<float>() * static_cast<float>(i) / kBlades;
+    wheel.pen.placement = turned(turn, {0, 0, 1});
+    wheel.box({0.15f, -0.05f, -0.006f}, {0.90f, 0.05f, 0.006f});
+  }
+  assembly.move(wheel, spinning(moved_to({1.1f, kHub, -1.9f}), {0, 0, 1}, kDuration, 2));
+}
+
+}  // namespace
+
+Scene make_backdrop(std::uint64_t seed) {
+  SceneAssembly assembly;
+  Random random(seed, 79);
+  add_colonnade(assembly.still(assembly.add_surface("limestone", stone_surface(256, seed),
+                                                    SceneAssembly::Detail::kColour)),
+                random);
+  const int iron = assembly.add(plain_material("iron", glm::vec3(0.05f, 0.055f, 0.06f), 0.5f));
+  MeshBuilder& still_iron = assembly.still(iron);
+  add_mast(still_iron, -1.9f);
+  still_iron.rod({1.1f, 0, -2.0f}, {1.1f, kHub, -2.0f}, 0.03f, 8);
+  add_wind_wheel(assembly, iron);
+  MeshBuilder& meadow = assembly.still(
+      assembly.add_surface("meadow", grass_surface(512, seed + 1), SceneAssembly::Detail::kColour));
+  meadow.pen.uv_per_metre = 1 / 3.0f;
+  meadow.patch({-120, 0, 12}, {240, 0, 0}, {0, 0, -200});
+
+  Scene& scene = assembly.scene;
+  set_daylight(scene);
+  scene.sun.direction = glm::normalize(glm::vec3(-0.10f, -0.30f, 0.95f));
+  scene.sun.irradiance = {3.0f, 2.2f, 1.4f};
+  scene.sky.zenith = {0.05f, 0.11f, 0.34f};
+  scene.sky.horizon = {0.95f, 0.62f, 0.36f};
+  scene.sky.sun_radiance = {140, 100, 60};
+  scene.sky.sun_radius = 0.03f;
+  scene.sky.has_velocity = false;
+  move_camera(scene, kDuration, 0.8f, [](double seconds) {
+    const float angle = phase_at(seconds, kDuration);
+    return moved_to({0.3f * std::sin(angle), 1.6f, 3.2f}) * turned(0.30f * std::sin(angle), {0, 1, 0}) *
+           turned(0.22f + 0.05f * std::sin(2 * angle), {1, 0, 0});
+  });
+  return assembly.finish();
+}
+
+namespace {
+
+constexpr int kSpokes = 16;
+
+void add_wheel(SceneAssembly& assembly, glm::vec3 centre) {
+  MeshBuilder wheel(assembly.add(plain_material("steel", glm::vec3(0.34f, 0.35f, 0.37f), 0.35f, 0.3f)));
+  wheel.ring({0, 0, 0}, {0, 0, 1}, 1.0f, 0.05f, 72, 10);
+  for (int i = 0; i < kSpokes; ++i) {
+    const float angle = glm::two_pi<float>() * static_cast<float>(i) / kSpokes;
+    wheel.rod({0, 0, 0}, {std::cos(angle), std::sin(angle), 0}, 0.008f, 6);
+  }
+  assembly.move(wheel, spinning(moved_to(centre), {0, 0, -1}, kDuration, 3));
+}
+
+// A poster on a board that hangs by its upper edge.
+void add_sign(SceneAssembly& assembly, glm::vec3 hinge, std::uint64_t seed) {
+  const Motion swing = swinging(moved_to(hinge), {0, 0, 1}, 0.30f, kDuration, 2, 0);
+  MeshBuilder board(assembly.add(plain_material("board", glm::vec3(0.20f, 0.13f, 0.08f), 0.8f)));
+  board.box({-0.62f, -1.65f, -0.03f}, {0.62f, 0, 0});
+  board.rod({0, 0, 0}, {0, 1.5f, 0}, 0.008f, 6);
+  assembly.move(board, swing);
+  MeshBuilder sheet(add_picture_material(assembly, "sheet", poster_texture(quincunx_poster(seed))));
+  sheet.picture({-0.58f, -1.6f, 0.004f}, {1.16f, 0, 0}, {0, 1.55f, 0});
+  assembly.move(sheet, swing);
+}
+
+}  // namespace
+
+Scene make_cutout(std::uint64_t seed) {
+  SceneAssembly assembly;
+  add_wheel(assembly, {-1.15f, 1.75f, 0});
+  add_sign(assembly, {1.25f, 2.75f, 0.1f}, seed);
+  MeshBuilder& cord =
+      assembly.still(assembly.add(plain_material("cord", glm::vec3(0.75f, 0.70f, 0.6f), 0.8f)));
+  MeshBuilder& ball =
+      assembly.still(assembly.add(plain_material("blue enamel", glm::vec3(0.05f, 0.16f, 0.42f), 0.3f)));
+  for (int i = 0; i < 9; ++i) {
+    const float x = -3.0f + 0.75f * static_cast<float>(i);
+    const float low = 0.5f + 0.25f * static_cast<float>(i * 7 % 5);
+    cord.rod({x, low, -0.8f}, {x, 4.2f, -0.8f}, 0.003f + 0.0012f * static_cast<float>(i), 6);
+    ball.sphere({x, low, -0.8f}, 0.12f, 20);
+  }
+
+  Scene& scene = assembly.scene;
+  set_daylight(scene);
+  scene.sky.background = Background::kNone;
+  swing_camera(scene, kDuration, 0.7f, [](float swing) {
+    return moved_to({0.9f * swing, 1.75f, 4.6f}) * turned(0.10f * swing, {0, 1, 0});
+  });
+  return assembly.finish();
+}
+
 namespace {
 
 // Square mirrors in rings on a dark ball, no two quite alike: each flashes where it throws a lamp's light at
@@ -35,7 +157,7 @@ void add_mirror_ball(SceneAssembly& assembly, glm::vec3 centre, float radius, in
   MeshBuilder core(assembly.add(plain_material("core", glm::vec3(0.02f), 0.8f)));
   core.sphere({0, 0, 0}, 0.985f * radius, 32);
   for (MeshBuilder* part : {&mirrors, &core})
-    assembly.move(assembly.add(part->take()), spinning(moved_to(centre), {0, 1, 0}, kDuration, cycles));
+    assembly.move(*part, spinning(moved_to(centre), {0, 1, 0}, kDuration, cycles));
   MeshBuilder& rope = assembly.still(assembly.add(plain_material("rope", glm::vec3(0.05f), 0.9f)));
   rope.rod(centre + glm::vec3(0, radius, 0), centre + glm::vec3(0, 3, 0), 0.012f, 6);
 }
@@ -59,9 +181,9 @@ void add_garlands(SceneAssembly& assembly, Random& random) {
     MeshBuilder line(cord);
     line.rod({0, 0, 0}, {0, -0.25f - 0.14f * kBeads, 0}, 0.002f, 4);
     const Motion swing = swinging(moved_to(top), {0, 0, 1}, 0.10f, kDuration, 3, kTau * random.unit());
-    assembly.move(assembly.add(line.take()), swing);
+    assembly.move(line, swing);
     for (MeshBuilder& part : beads) {
-      if (!part.empty()) assembly.move(assembly.add(part.take()), swing);
+      if (!part.empty()) assembly.move(part, swing);
     }
   }
 }
@@ -114,8 +236,7 @@ void add_signs(SceneAssembly& assembly, std::uint64_t seed) {
     sign.picture({-0.45f, -1.25f, 0}, {0.9f, 0, 0}, {0, 1.2f, 0});
     sign.rod({0, 0, -0.02f}, {0, 1.6f, -0.02f}, 0.01f, 6);
     const glm::vec3 hinge(-2.0f + 2.0f * static_cast<float>(i), 2.9f, -1.0f);
-    assembly.move(assembly.add(sign.take()),
-                  swinging(moved_to(hinge), {0, 0, 1}, 0.25f, kDuration, 2 + i, static_cast<float>(i)));
+    assembly.move(sign, swinging(moved_to(hinge), {0, 0, 1}, 0.25f, kDuration, 2 + i, static_cast<float>(i)));
   }
 }
 
