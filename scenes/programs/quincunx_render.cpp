@@ -40,28 +40,20 @@ Status run_truth(const RenderOptions& options) {
   auto pattern = tools::FramePattern::parse(options.out);
   if (!pattern.ok()) return pattern.status();
   if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
-  auto scene = open_scene(options.scene, options.seed);
-  if (!scene.ok()) return scene.status();
-  auto source = source_settings_for(options);
-  if (!source.ok()) return source.status();
-  auto sequence = FrameSequence::create(source->sequence);
-  if (!sequence.ok()) return sequence.status();
-  auto context = gl::Context::create(options.platform, options.api);
-  if (!context.ok()) return context.status();
-  auto renderer = Renderer::create(scene.value());
-  if (!renderer.ok()) return renderer.status();
-  auto device = Device::open(options.device);
-  if (!device.ok()) return device.status();
-  auto presenter = PicturePresenter::create(device.value(), options.output, options.resolve.output.tone_map,
-                                            options.resolve.output.dither,
-                                            options.exposure > 0 ? options.exposure : scene->exposure);
+  auto settings = source_settings_for(options);
+  if (!settings.ok()) return settings.status();
+  auto opened = FrameSource::create(settings.value());
+  if (!opened.ok()) return opened.status();
+  FrameSource& source = *opened.value();
+  auto presenter = PicturePresenter::create(source.device(), options.output, options.resolve.output.tone_map,
+                                            options.resolve.output.dither, source.exposure());
   if (!presenter.ok()) return presenter.status();
 
-  const TruthSettings settings = {options.output, options.truth, options.shutter / options.fps};
+  const TruthSettings truth = {options.output, options.truth, options.shutter / options.fps};
   using Show = tools::Progress::Show;
   tools::Progress progress("truth", options.frames, options.quiet ? Show::kNever : Show::kOnTerminal);
   for (std::int64_t index = 0; index < options.frames; ++index) {
-    auto rgba = render_truth(renderer.value(), settings, sequence->at(index).seconds);
+    auto rgba = render_truth(source.renderer(), truth, source.sequence().at(index).seconds);
     if (!rgba.ok()) return rgba.status();
     if (Status status = write_truth(presenter.value(), pattern.value(), index, options.output, rgba.value());
         !status.ok()) {
