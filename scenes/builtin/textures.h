@@ -58,9 +58,9 @@ Texture water_normal_texture(int size, std::uint64_t seed);  // ripples round th
 Texture cloud_texture(int width, int height,
                       std::uint64_t seed);  // streaks with alpha; repeats in u, ends softly in v
 
-// A stroke font of our own, as polylines: the same strokes become geometry or texels, sharp at any size. It has printable
-// ASCII; other characters are drawn as an open box. Lengths are in cap heights: a capital stands from y = 0 to y = 1, y
-// up; descenders reach to -1/3.
+// A stroke font of our own, as polylines: the same strokes become geometry or texels, sharp at any size. It has
+// printable ASCII; other characters are drawn as an open box. Lengths are in cap heights: a capital stands from y = 0
+// to y = 1, y up; descenders reach to -1/3.
 using Polyline = std::vector<glm::vec2>;
 
 enum class Align { kLeft, kCentre, kRight };

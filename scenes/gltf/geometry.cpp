@@ -136,7 +136,7 @@ float value_at(const std::uint8_t* bytes, int type, bool normalised) {
   }
 }
 
-// Reads unsigned integers below `limit`: vertex indices. Throws GltfError as read_floats() and for a value out of range.
+// Reads unsigned integers below `limit`: vertex indices. Throws GltfError as read_floats(), and for one out of range.
 std::vector<std::uint32_t> read_indices(const GltfDocument& document, int accessor_index, std::size_t limit,
                                         const std::string& use) {
   const Source source(document, accessor_index, use);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What lies in the buffers of a glTF file: typed reading of accessors, sparse ones included, and of primitives as meshes
+// The contents of a glTF file's buffers: typed reading of accessors, sparse ones included, and of primitives as meshes
 // of a Scene. Private to the glTF loader.
 #pragma once
 
