@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 source scripts/packages.sh
 
 ensure_packages "${build_packages[@]}" "${run_packages[@]}"
-configure_and_build release quincunx-render
+configure_and_build default quincunx-render
 
 if (($# > 0)); then
   exec build/release/bin/quincunx-render "$@"

@@ -23,7 +23,8 @@ set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/host ${PROJECT_BINARY_DIR}/gl_interop)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/host ${PROJECT_BINARY_DIR}/host/control
+                                            ${PROJECT_BINARY_DIR}/gl_interop)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(suite unknown)
 if(EXISTS /etc/os-release)  # packages of two releases of Debian differ in what they depend on
@@ -77,9 +78,13 @@ resolution, another one every frame. Its OpenCL kernels filter, accumulate
 frames over time, blur along motion and sharpen, on any OpenCL device.\n.\n")
 set(opencl "pocl-opencl-icd | opencl-icd")
 set(both "libquincunx1 ${exactly}, libquincunx-gl1 ${exactly}")
+quincunx_package(lib_control libquincunx-control1 libs "dynamic resolution rendering with OpenCL: control"
+  "${about}This package has the library that holds a frame rate by choosing resolutions.
+It needs no OpenCL."
+  LIBRARY libquincunx_control)
 quincunx_package(lib libquincunx1 libs "dynamic resolution rendering with OpenCL: library"
   "${about}This package has the shared library, with its C++ and its C interface."
-  LIBRARY libquincunx RECOMMENDS "${opencl}")
+  LIBRARY libquincunx DEPENDS "libquincunx-control1 ${exactly}" RECOMMENDS "${opencl}")
 quincunx_package(lib_gl libquincunx-gl1 libs "dynamic resolution rendering with OpenCL: OpenGL bridge"
   "${about}This package has the library that hands frames from OpenGL to OpenCL."
   LIBRARY libquincunx_gl DEPENDS "libquincunx1 ${exactly}")
@@ -87,9 +92,14 @@ quincunx_package(lib_record libquincunx-record1 libs "dynamic resolution renderi
   "${about}This package has the library that writes a program's frames, with all settings,
 into files that quincunx-resolve makes the same pictures of."
   LIBRARY libquincunx_record DEPENDS "libquincunx1 ${exactly}")
+quincunx_package(dev_control libquincunx-control-dev libdevel
+  "dynamic resolution rendering with OpenCL: development files of control"
+  "${about}This package has the headers that choose resolutions, and what CMake and
+pkg-config need to find them. They need no OpenCL."
+  DEPENDS "libquincunx-control1 ${exactly}")
 quincunx_package(dev libquincunx-dev libdevel "dynamic resolution rendering with OpenCL: development files"
   "${about}This package has headers and what CMake and pkg-config need to find them."
-  DEPENDS "${both}, libquincunx-record1 ${exactly}, ocl-icd-opencl-dev, libepoxy-dev")
+  DEPENDS "${both}, libquincunx-record1 ${exactly}, libquincunx-control-dev ${exactly}, ocl-icd-opencl-dev, libepoxy-dev")
 quincunx_package(tools quincunx-tools graphics "dynamic resolution rendering with OpenCL: programs"
   "${about}This package has quincunx-render, which renders scenes, quincunx-resolve, which
 makes full-size frames from EXR sequences, quincunx-dump, which shows the

@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
 ensure_packages "${build_packages[@]}" "${run_packages[@]}" blender imagemagick xvfb xauth
-configure_and_build release quincunx-resolve
+configure_and_build default quincunx-resolve
 
 work=$PWD/build/blender
 bin=$PWD/build/release/bin

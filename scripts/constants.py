@@ -116,15 +116,13 @@ class Programs:
         files = []
         for place, _, names in os.walk(kernels):
             for path in (os.path.join(place, n) for n in sorted(names) if n.endswith((".cl", ".h"))):
-                if os.path.dirname(path) == kernels and path.endswith(".h"):
-                    continue  # the embedding's own
                 with open(path, encoding="utf-8") as file:
                     text = file.read()
                 with open(path, "w", encoding="utf-8") as file:
                     file.write(edit(os.path.relpath(path, kernels), text))
                 files.append(path)
         source, made = os.path.join(folder, "kernels.cpp"), os.path.join(folder, "kernels.o")
-        subprocess.run(["cmake", "-D", "OUTPUT=" + source, "-D", "HEADER=embedded_kernels.h", "-D",
+        subprocess.run(["cmake", "-D", "OUTPUT=" + source, "-D",
                         "FUNCTION=quincunx::embedded_kernel_files", "-D", "FILES=" + "|".join(files), "-D",
                         "ROOTS=%s/include|%s" % (kernels, kernels), "-P", os.path.join(ROOT, "cmake/embed.cmake")],
                        check=True)

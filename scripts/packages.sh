@@ -3,7 +3,7 @@
 # Names hold for Debian 12 (bookworm) and 13 (trixie).
 
 build_packages=(
-  g++ cmake ninja-build pkg-config libgtest-dev   # configuring includes the tests
+  g++ cmake ninja-build pkg-config
   libspdlog-dev libfmt-dev libcli11-dev nlohmann-json3-dev libglm-dev libxxhash-dev
   libopenexr-dev libimath-dev libpng-dev libfreetype-dev
   libtinygltf-dev libstb-dev
@@ -17,7 +17,7 @@ run_packages=(
   libgles2                               # OpenGL ES, for --gl es3
   fonts-dejavu-core                      # captions of the contact sheet
 )
-test_packages=(clang clang-format python3 python3-numpy python3-cffi chromium
+test_packages=(libgtest-dev clang clang-format python3 python3-numpy python3-cffi chromium
   libopenimageio-dev                     # a peer of the kernel benchmark
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
@@ -73,20 +73,21 @@ known_packages() {
   done
 }
 
-# configure_and_build PRESET [TARGET...]: into build/PRESET; shows CMake's words only on failure. With ccache, set
-# CMAKE_CXX_COMPILER_LAUNCHER=ccache, which CMake reads; headers are then not precompiled.
+# configure_and_build PRESET [TARGET...]: into build/PRESET, default into build/release, whose options it leaves as they
+# are; shows CMake's words only on failure. With ccache, set CMAKE_CXX_COMPILER_LAUNCHER=ccache, which CMake reads;
+# headers are then not precompiled.
 configure_and_build() {
-  local preset=$1 log
+  local preset=$1 folder=build/${1/default/release} log
   shift
-  mkdir -p "build/$preset"
-  log="build/$preset/configure.log"
+  mkdir -p "$folder"
+  log="$folder/configure.log"
   if ! cmake --preset "$preset" >"$log" 2>&1; then
     cat "$log" >&2
-    fail "cmake could not configure build/$preset; the reason is above."
+    fail "cmake could not configure $folder; the reason is above."
   fi
   local targets=()
   if (($# > 0)); then
     targets=(--target "$@")
   fi
-  cmake --build "build/$preset" "${targets[@]}" || fail "The build in build/$preset failed; the first error is above."
+  cmake --build "$folder" "${targets[@]}" || fail "The build in $folder failed; the first error is above."
 }

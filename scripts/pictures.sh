@@ -308,7 +308,7 @@ names=("$@")
 for name in "${names[@]}"; do
   [[ " ${all[*]} " == *" $name "* ]] || fail "There is no picture '$name'; there are ${all[*]}."
 done
-ensure_packages "${build_packages[@]}" "${run_packages[@]}" imagemagick webp
+ensure_packages "${build_packages[@]}" "${run_packages[@]}" libgtest-dev imagemagick webp
 configure_and_build release quincunx-dump quincunx-resolve quincunx-render
 mkdir -p docs/images
 for name in "${names[@]}"; do

@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/packages.sh
 
-ensure_packages "${build_packages[@]}" "${run_packages[@]}"
+ensure_packages "${build_packages[@]}" "${run_packages[@]}" libgtest-dev
 configure_and_build release quincunx-bench
 mkdir -p build/report docs/report
 build/release/bin/quincunx-bench --output 480x270 --scales 0.5,0.71,1 --frames 3 --rounds 4 --truth 6 "$@" --out build/report

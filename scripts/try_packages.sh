@@ -71,8 +71,12 @@ try_packages() {
     quincunx-resolve 'seq.%04d.exr' --out 'up.%04d.exr' -q
     quincunx-bench --quick --scenes wires --methods bilinear --scales 0.5 --frames 1 --rounds 1 --out bench -q
     ls frame.0002.exr up.0003.exr bench/bench.html"
+  stage "a client of control, without OpenCL" "cd /tmp/packages
+    $install ./libquincunx-control-dev_*.deb ./libquincunx-control1_*.deb g++ cmake make pkg-config >/dev/null
+    cmake -S /tmp/client -B /tmp/work/control -D CONTROL_ALONE=ON >/dev/null; make -C /tmp/work/control 2>&1 >/dev/null
+    /tmp/work/control/control_client"
   stage "clients by CMake" "cd /tmp/packages
-    $install ./libquincunx-dev_*.deb ./libquincunx*1_*.deb g++ cmake make pkg-config >/dev/null
+    $install ./libquincunx-dev_*.deb ./libquincunx*1_*.deb >/dev/null
     cmake -S /tmp/client -B /tmp/work/client -D EXAMPLES=/tmp/examples -D GL_INTEROP=ON >/dev/null; cd /tmp/work/client; make 2>&1 >/dev/null
     ./minimal; ./minimal_c; ./gl_client"
   stage "clients by pkg-config" "mkdir /tmp/work/by_pkg_config; cd /tmp/work/by_pkg_config

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "tools/diagnose/resolve_diagnosis.h"
 #include "tools/image/image_reader.h"
 #include "tools/page/report_page.h"
 #include "tools/program/frame_pattern.h"
@@ -16,6 +15,10 @@
 #include "tools/program/progress.h"
 #include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/resolve_report.h"
+
+#ifdef QUINCUNX_DIAGNOSE
+#include "tools/diagnose/resolve_diagnosis.h"
+#endif
 
 namespace quincunx::tools {
 namespace {
@@ -31,16 +34,7 @@ void stop_on_signals() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-int print_listing(const ResolveOptions& options, const ResolveTask& task) {
-  const Status status = task.check(options.skip_bad_frames);
-  const bool listed = !task.scan.problem().ok();
-  if (!status.ok() && !listed) return fail(status);
-  const std::string diagnosis = diagnosis_line(task);
-  fmt::print("{}", options.json ? listing_json(task, diagnosis)
-                                : listing_text(task, diagnosis, options.verbosity > 0));
-  return status.ok() ? kDone : kFailed;
-}
-
+#ifdef QUINCUNX_DIAGNOSE
 int print_diagnosis(const ResolveOptions& options, const ResolveTask& task) {
   constexpr int kFoundWrong = 3;
   if (const Status status = task.check(options.skip_bad_frames); !status.ok()) return fail(status);
@@ -54,6 +48,21 @@ int print_diagnosis(const ResolveOptions& options, const ResolveTask& task) {
     if (!status.ok()) return fail(status);
   }
   return diagnosis.wrong() ? kFoundWrong : kDone;
+}
+#else
+std::string diagnosis_line(const ResolveTask&) {
+  return {};
+}
+#endif
+
+int print_listing(const ResolveOptions& options, const ResolveTask& task) {
+  const Status status = task.check(options.skip_bad_frames);
+  const bool listed = !task.scan.problem().ok();
+  if (!status.ok() && !listed) return fail(status);
+  const std::string diagnosis = diagnosis_line(task);
+  fmt::print("{}", options.json ? listing_json(task, diagnosis)
+                                : listing_text(task, diagnosis, options.verbosity > 0));
+  return status.ok() ? kDone : kFailed;
 }
 
 // Tells what a careful user would want to know before the first frame.
@@ -155,10 +164,19 @@ int run(int argc, char** argv) {
     print_opencl_devices();
     return kDone;
   }
+#ifndef QUINCUNX_DIAGNOSE
+  if (options.diagnose) {
+    return fail(
+        Status::unsupported("this quincunx-resolve was built without --diagnose; configure with "
+                            "-D QUINCUNX_DIAGNOSE=ON and build it again"));
+  }
+#endif
   auto task = prepare(options);
   if (!task.ok()) return fail(task.status());
   if (options.dry_run) return print_listing(options, task.value());
+#ifdef QUINCUNX_DIAGNOSE
   if (options.diagnose) return print_diagnosis(options, task.value());
+#endif
   if (Status status = task->check(options.skip_bad_frames); !status.ok()) return fail(status);
   if (options.explain) {
     fmt::print("{}{}", device_lines(Device::open(options.device)), explanation_of(task.value()));

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "embedded_shader_files.h"
 #include "quincunx_gl/capabilities.h"
-#include "render/embedded_shaders.h"
 
 namespace quincunx::scenes {
 namespace {

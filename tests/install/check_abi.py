@@ -3,7 +3,7 @@
 """Checks what a shared library of Quincunx shows, and what its installed headers ask for.
 
     check_abi.py --library libquincunx.so --soname libquincunx.so.1 --headers PREFIX/include
-                 [--c-symbols c_symbols.txt] [--archive libquincunx.a --user libtools.a ...]
+                 [--c-symbols c_symbols.txt] [--archive libquincunx.a ... --user libtools.a ...]
 
 Fails, with one line for each finding, on
 - a SONAME other than the one given
@@ -11,7 +11,7 @@ Fails, with one line for each finding, on
 - a header that includes such a library, or a function of the C interface that a header has and the library has not
 - with --c-symbols, the list of the C interface: its SONAME, then its functions with the QUINCUNX_API_VERSION that each
   came with. Whatever the library exports for C is there, and nothing else; the highest version is that of the headers
-- with --archive, the same code as a static library: a symbol of it that a --user needs and the shared one hides
+- with --archive, the same code as static libraries: a symbol of it that a --user needs and the shared one hides
 """
 import argparse
 import os
@@ -106,7 +106,7 @@ def main():
     parser.add_argument("--soname", required=True)
     parser.add_argument("--headers", required=True)
     parser.add_argument("--c-symbols")
-    parser.add_argument("--archive")
+    parser.add_argument("--archive", nargs="*", default=[])
     parser.add_argument("--user", nargs="*", default=[])
     arguments = parser.parse_args()
     exported = symbols_of(arguments.library, "--dynamic", "--defined-only")
@@ -123,7 +123,9 @@ def main():
         with open(arguments.c_symbols, encoding="utf-8") as listed:
             findings += differs_from_list(listed.read(), exported, soname, api_version_of(arguments.headers))
     if arguments.archive:
-        defined = symbols_of(arguments.archive, "--defined-only", "--extern-only")
+        defined = {}
+        for archive in arguments.archive:
+            defined.update(symbols_of(archive, "--defined-only", "--extern-only"))
         needed = [name for user in arguments.user for name in symbols_of(user, "--undefined-only")]
         findings += hidden_but_needed(defined, exported, needed)
     for finding in findings:

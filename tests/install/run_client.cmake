@@ -28,6 +28,22 @@ separate_arguments(flags UNIX_COMMAND "${FLAGS} ${flags}")
 step("build by pkg-config" ${C_COMPILER} -std=c99 ${EXAMPLES}/minimal.c -o ${WORK}/by_pkg_config ${flags} -lm)
 step("run what pkg-config built" ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${pc_folder}/.. ${WORK}/by_pkg_config
      ${WORK}/by_pkg_config.ppm)
+
+# Control in a prefix of its own, where OpenCL is not found.
+foreach(component lib_control dev_control)
+  step("install ${component} alone" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/control --component ${component})
+endforeach()
+step("configure control" ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE} -B ${WORK}/build_control -D CONTROL_ALONE=ON
+     -D CMAKE_PREFIX_PATH=${WORK}/control -D CMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON -D CMAKE_BUILD_TYPE=${BUILD_TYPE}
+     -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS})
+step("build control" ${CMAKE_COMMAND} --build ${WORK}/build_control)
+step("run control" ${WORK}/build_control/control_client)
+execute_process(COMMAND sh -c "readelf --dynamic control_client | grep -i opencl" WORKING_DIRECTORY ${WORK}/build_control
+                OUTPUT_VARIABLE opencl)
+if(opencl)
+  message(FATAL_ERROR "control loads OpenCL: ${opencl}")
+endif()
+
 if(GL_INTEROP)
   step("run with OpenGL" ${WORK}/build/gl_client)
 endif()

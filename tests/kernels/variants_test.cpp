@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "device/program_cache.h"
-#include "embedded_kernels.h"
+#include "embedded_kernel_files.h"
 #include "kernel_fixture.h"
 #include "plan/pass_spec.h"
 #include "quincunx/resolve_plan.h"

@@ -14,11 +14,11 @@
 #include "../tools/own_cache.h"
 #include "device/device_profile_file.h"
 #include "device/program_cache.h"
-#include "embedded_files.h"
 #include "passes/pass.h"
 #include "quincunx/advanced/device_profile.h"
 #include "quincunx/device.h"
 #include "quincunx/resolve_service.h"
+#include "shipped_profile_files.h"
 
 namespace quincunx {
 namespace {

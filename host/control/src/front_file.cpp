@@ -11,10 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "embedded_files.h"
+#include "embedded_front_file.h"
 #include "quincunx/advanced/cache_folder.h"
 #include "quincunx/control/error_front.h"
-#include "quincunx/device.h"
 
 namespace quincunx {
 namespace {
@@ -94,6 +93,19 @@ std::optional<Result<ErrorFront>> read_front(const FrontKey& key, const fs::path
 
 }  // namespace
 
+std::optional<fs::path> cache_folder() {
+  if (const char* own = std::getenv("QUINCUNX_CACHE_DIR")) {
+    return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
+  }
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != '\0') {
+    return fs::path(xdg) / "quincunx";
+  }
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
+    return fs::path(home) / ".cache" / "quincunx";
+  }
+  return std::nullopt;
+}
+
 std::string ErrorFront::to_json() const {
   nlohmann::ordered_json head = {
       {kFrontVersionKey, kFormat}, {"device", source_.device},
@@ -152,10 +164,6 @@ std::string ErrorFront::summary() const {
       fmt::format("measured on {}, driver {}, {}", source_.device, source_.driver, source_.date);
   if (built_in_) return fmt::format("built in, {}: its times are another device's", where);
   return source_.scene.empty() ? where : fmt::format("{}, for scene {}", where, source_.scene);
-}
-
-FrontKey front_key(const DeviceInfo& device, const std::string& scene) {
-  return {.device = device.platform + " " + device.name, .driver = device.driver, .scene = scene};
 }
 
 std::optional<fs::path> front_path(const FrontKey& key) {

@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "quincunx/resolve_plan.h"
-
 namespace quincunx {
 namespace {
 
@@ -127,6 +125,13 @@ std::vector<VariantInfo> variants_of(const MethodInfo& info) {
   return {{.variant = {.method = info.method}, .name = info.name, .summary = info.summary}};
 }
 
+// Returns the name that stands at the value's place; an enumerator that was made up has none.
+template <typename Enum, std::size_t N>
+const char* name_in(const char* const (&names)[N], Enum value) {
+  const auto place = static_cast<std::size_t>(value);
+  return place < N ? names[place] : "unknown";
+}
+
 }  // namespace
 
 std::span<const MethodInfo> methods() {
@@ -178,118 +183,28 @@ Result<MethodVariant> parse_variant(const std::string& name) {
   return Status::invalid(fmt::format("there is no method '{}'; there are {}", name, known));
 }
 
-MethodVariant variant_of(const ResolveSettings& settings) {
-  return {.method = settings.method,
-          .form = settings.quincunx.form,
-          .sampling = settings.quincunx.sampling,
-          .preset = settings.temporal.preset};
-}
-
-void apply(const MethodVariant& variant, ResolveSettings& settings) {
-  settings.method = variant.method;
-  if (form_counts(variant)) settings.quincunx.form = variant.form;
-  if (sampling_counts(variant)) settings.quincunx.sampling = variant.sampling;
-  if (preset_counts(variant)) settings.temporal.preset = variant.preset;
-}
-
 const char* name_of(TwoFrameForm form) {
-  switch (form) {
-    case TwoFrameForm::kMean:
-      return "mean";
-    case TwoFrameForm::kVelocity:
-      return "velocity";
-    case TwoFrameForm::kReprojected:
-      return "reprojected";
-  }
-  return "unknown";
+  return name_in({"mean", "velocity", "reprojected"}, form);
 }
 
 const char* name_of(Sampling sampling) {
-  switch (sampling) {
-    case Sampling::kPoint:
-      return "point";
-    case Sampling::kBilinear:
-      return "bilinear";
-  }
-  return "unknown";
+  return name_in({"point", "bilinear"}, sampling);
 }
 
 const char* name_of(TemporalPreset preset) {
-  switch (preset) {
-    case TemporalPreset::kFast:
-      return "fast";
-    case TemporalPreset::kBalanced:
-      return "balanced";
-    case TemporalPreset::kQuality:
-      return "quality";
-  }
-  return "unknown";
+  return name_in({"fast", "balanced", "quality"}, preset);
 }
 
 const char* name_of(TemporalView view) {
-  switch (view) {
-    case TemporalView::kPicture:
-      return "picture";
-    case TemporalView::kConfidence:
-      return "confidence";
-    case TemporalView::kRejection:
-      return "rejection";
-    case TemporalView::kPhase:
-      return "phase";
-    case TemporalView::kLayers:
-      return "layers";
-    case TemporalView::kCoverage:
-      return "coverage";
-    case TemporalView::kNear:
-      return "near";
-    case TemporalView::kFar:
-      return "far";
-  }
-  return "unknown";
-}
-
-const char* name_of(SkyMotion motion) {
-  switch (motion) {
-    case SkyMotion::kAsDrawn:
-      return "as-drawn";
-    case SkyMotion::kCamera:
-      return "camera";
-    case SkyMotion::kEvidence:
-      return "evidence";
-  }
-  return "unknown";
-}
-
-const char* name_of(DrawnVelocity drawn) {
-  switch (drawn) {
-    case DrawnVelocity::kOwn:
-      return "own";
-    case DrawnVelocity::kDilated:
-      return "dilated";
-  }
-  return "unknown";
+  return name_in({"picture", "confidence", "rejection", "phase", "layers", "coverage", "near", "far"}, view);
 }
 
 const char* name_of(ToneMap tone_map) {
-  switch (tone_map) {
-    case ToneMap::kClamp:
-      return "clamp";
-    case ToneMap::kReinhard:
-      return "reinhard";
-    case ToneMap::kAces:
-      return "aces";
-  }
-  return "unknown";
+  return name_in({"clamp", "reinhard", "aces"}, tone_map);
 }
 
 const char* name_of(Shading shading) {
-  switch (shading) {
-    case Shading::kFull:
-      return "full";
-    case Shading::kCheckerboard:
-      return "checkerboard";
-  }
-  return "unknown";
+  return name_in({"full", "checkerboard"}, shading);
 }
 
 }  // namespace quincunx

@@ -40,6 +40,10 @@ struct DeviceInfo {
   bool gl_sharing = false;  // cl_khr_gl_sharing is advertised (the bridge still probes it)
 };
 
+struct FrontKey;
+// Returns the key of the fronts that are measured on this device, for a scene; empty: for any.
+QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& scene = {});
+
 class QUINCUNX_API Device {
  public:
   // All devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Empty when there are

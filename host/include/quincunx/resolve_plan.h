@@ -149,6 +149,12 @@ struct ResolveSettings {
   friend bool operator==(const ResolveSettings&, const ResolveSettings&) = default;
 };
 
+// Returns the settings' method.
+QUINCUNX_API MethodVariant variant_of(const ResolveSettings& settings);
+
+// Sets the method and the fields that count for it; leaves all others as they are.
+QUINCUNX_API void apply(const MethodVariant& variant, ResolveSettings& settings);
+
 // Where the resolve finds velocity.
 enum class VelocitySource {
   kNone,    // nothing moves, or the method does not ask

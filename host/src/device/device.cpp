@@ -12,6 +12,7 @@
 #include "device/device_impl.h"
 #include "device/device_profile_file.h"
 #include "device/timer_validation.h"
+#include "quincunx/control/front_file.h"
 
 namespace quincunx {
 namespace {
@@ -243,6 +244,10 @@ void repack(const std::byte* from, std::size_t from_row, std::size_t from_texel,
 }
 
 }  // namespace
+
+FrontKey front_key(const DeviceInfo& device, const std::string& scene) {
+  return {.device = device.platform + " " + device.name, .driver = device.driver, .scene = scene};
+}
 
 std::vector<DeviceInfo> Device::list() {
   std::vector<DeviceInfo> infos;

@@ -10,8 +10,8 @@
 
 #include "device/device_profile_file.h"
 #include "device/program_cache.h"
-#include "embedded_files.h"
 #include "quincunx/advanced/log.h"
+#include "shipped_profile_files.h"
 
 namespace quincunx {
 namespace {

@@ -15,7 +15,7 @@
 #include <sstream>
 #include <vector>
 
-#include "embedded_kernels.h"
+#include "embedded_kernel_files.h"
 #include "quincunx/advanced/log.h"
 
 namespace quincunx {
@@ -25,19 +25,6 @@ namespace quincunx {
 const char* const kCommonBuildOptions = "-cl-std=CL1.2 -w";
 
 namespace fs = std::filesystem;
-
-std::optional<fs::path> cache_folder() {
-  if (const char* own = std::getenv("QUINCUNX_CACHE_DIR")) {
-    return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
-  }
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != '\0') {
-    return fs::path(xdg) / "quincunx";
-  }
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0') {
-    return fs::path(home) / ".cache" / "quincunx";
-  }
-  return std::nullopt;
-}
 
 std::string cache_key(const Device::Impl& device, const std::string& source, const std::string& options) {
   const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", options, device.info.platform,

@@ -345,92 +345,64 @@ std::string focus_text(const FocusSettings& focus) {
                      focus.extent.width, focus.extent.height, focus.mask ? "; a mask is given" : "");
 }
 
+// Returns the name that stands at the value's place; an enumerator that was made up has none.
+template <typename Enum, std::size_t N>
+const char* name_in(const char* const (&names)[N], Enum value) {
+  const auto place = static_cast<std::size_t>(value);
+  return place < N ? names[place] : "unknown";
+}
+
 }  // namespace
 
 const char* name_of(DepthConvention depth) {
-  switch (depth) {
-    case DepthConvention::kReversedInfinite:
-      return "reversed infinite";
-    case DepthConvention::kReversed:
-      return "reversed";
-    case DepthConvention::kInfinite:
-      return "infinite";
-    case DepthConvention::kForward:
-      return "forward";
-    case DepthConvention::kLinear:
-      return "linear";
-  }
-  return "unknown";
+  return name_in({"reversed infinite", "reversed", "infinite", "forward", "linear"}, depth);
 }
 
 const char* name_of(ClipSpace clip_space) {
-  switch (clip_space) {
-    case ClipSpace::kDirect3D:
-      return "Direct3D";
-    case ClipSpace::kOpenGl:
-      return "OpenGL";
-    case ClipSpace::kVulkan:
-      return "Vulkan";
-  }
-  return "unknown";
+  return name_in({"Direct3D", "OpenGL", "Vulkan"}, clip_space);
 }
 
 const char* name_of(VelocityUnit unit) {
-  switch (unit) {
-    case VelocityUnit::kUv:
-      return "uv";
-    case VelocityUnit::kPixels:
-      return "pixels";
-    case VelocityUnit::kNdc:
-      return "ndc";
-  }
-  return "unknown";
+  return name_in({"uv", "pixels", "ndc"}, unit);
 }
 
 const char* name_of(Origin origin) {
-  switch (origin) {
-    case Origin::kTop:
-      return "top";
-    case Origin::kBottom:
-      return "bottom";
-  }
-  return "unknown";
+  return name_in({"top", "bottom"}, origin);
 }
 
 const char* name_of(Targets targets) {
-  switch (targets) {
-    case Targets::kViewport:
-      return "viewport";
-    case Targets::kPlaced:
-      return "placed";
-  }
-  return "unknown";
+  return name_in({"viewport", "placed"}, targets);
 }
 
 const char* name_of(VelocitySource source) {
-  switch (source) {
-    case VelocitySource::kNone:
-      return "none";
-    case VelocitySource::kTarget:
-      return "target";
-    case VelocitySource::kCamera:
-      return "depth and camera";
-  }
-  return "unknown";
+  return name_in({"none", "target", "depth and camera"}, source);
 }
 
 const char* name_of(Scaling scaling) {
-  switch (scaling) {
-    case Scaling::kScales:
-      return "scales";
-    case Scaling::kHistory:
-      return "last frame's";
-    case Scaling::kOwn:
-      return "its own";
-    case Scaling::kFixed:
-      return "fixed";
-  }
-  return "unknown";
+  return name_in({"scales", "last frame's", "its own", "fixed"}, scaling);
+}
+
+const char* name_of(SkyMotion motion) {
+  return name_in({"as-drawn", "camera", "evidence"}, motion);
+}
+
+const char* name_of(DrawnVelocity drawn) {
+  return name_in({"own", "dilated"}, drawn);
+}
+
+MethodVariant variant_of(const ResolveSettings& settings) {
+  return {.method = settings.method,
+          .form = settings.quincunx.form,
+          .sampling = settings.quincunx.sampling,
+          .preset = settings.temporal.preset};
+}
+
+void apply(const MethodVariant& variant, ResolveSettings& settings) {
+  settings.method = variant.method;
+  if (variant.method == Method::kTemporal) settings.temporal.preset = variant.preset;
+  if (variant.method != Method::kQuincunx) return;
+  settings.quincunx.form = variant.form;
+  if (variant.form != TwoFrameForm::kReprojected) settings.quincunx.sampling = variant.sampling;
 }
 
 std::string ResolvePlan::explain() const {

@@ -47,8 +47,7 @@ files = \"Write the rendered frames, and run quincunx-resolve on them\"
 endif()
 
 # The program once more, which looks for libraries beside itself before all other places, for itself and for them.
-add_executable(quincunx-resolve-bundled EXCLUDE_FROM_ALL quincunx_resolve.cpp)
-target_link_libraries(quincunx-resolve-bundled PRIVATE quincunx_sequence quincunx_options spdlog::spdlog fmt::fmt)
+quincunx_resolve_program(quincunx-resolve-bundled EXCLUDE_FROM_ALL)
 target_link_options(quincunx-resolve-bundled PRIVATE LINKER:--disable-new-dtags)
 set_target_properties(quincunx-resolve-bundled PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/../lib")
 

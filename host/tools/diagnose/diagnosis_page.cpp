@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "embedded_diagnosis_files.h"
 #include "tools/image/image_io.h"
 #include "tools/page/page_template.h"
 
@@ -53,7 +54,7 @@ Result<std::string> diagnosis_page(const std::string& input, const std::string& 
   auto pictures = pictures_json(maps);
   if (!pictures.ok()) return pictures.status();
   return page_from_template(
-      {.files = {},
+      {.files = embedded_diagnosis_files(),
        .title = "diagnosis",
        .body = "diagnosis.html",
        .scripts = {"elements.js", "viewer.js", "diagnosis.js"}},

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "embedded_page_files.h"
+
 namespace quincunx::tools {
 namespace {
 

@@ -13,10 +13,7 @@
 
 namespace quincunx::tools {
 
-// The files of this folder, which every page may use.
-std::span<const EmbeddedFile> embedded_page_files();
-
-// Parts that a page has of its own. Files are looked for among its own, then among those of this folder.
+// Parts that a page has of its own. Files are looked for among its own, then in this folder, which all share.
 struct PageParts {
   std::span<const EmbeddedFile> files;
   const char* title = nullptr;  // text without "<" and "&"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "bench/page/bench_files.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
+#include "embedded_bench_files.h"
 #include "tools/image/flip.h"
 #include "tools/image/image_io.h"
 #include "tools/page/page_template.h"

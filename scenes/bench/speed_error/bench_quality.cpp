@@ -10,9 +10,9 @@
 #include <filesystem>
 
 #include "bench/speed_error/bench_plan.h"
+#include "embedded_shader_files.h"
 #include "frames/target_file.h"
 #include "quincunx/advanced/cache_folder.h"
-#include "render/embedded_shaders.h"
 #include "render/truth.h"
 #include "tools/image/image_io.h"
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <utility>
 
-#include "bench/page/bench_files.h"
+#include "embedded_bench_files.h"
 #include "tools/page/page_template.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"

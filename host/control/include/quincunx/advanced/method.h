@@ -114,12 +114,6 @@ QUINCUNX_API std::string name_of(const MethodVariant& variant);
 // "temporal:balanced". Errors: kInvalidArgument for another name; the message lists those of all_variants().
 QUINCUNX_API Result<MethodVariant> parse_variant(const std::string& name);
 
-struct ResolveSettings;
-QUINCUNX_API MethodVariant variant_of(const ResolveSettings& settings);
-
-// Sets the method and the fields that count for it; leaves all others as they are.
-QUINCUNX_API void apply(const MethodVariant& variant, ResolveSettings& settings);
-
 enum class ToneMap { kClamp, kReinhard, kAces };
 
 // Which pixels of the viewport a frame has.

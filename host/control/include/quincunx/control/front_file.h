@@ -14,17 +14,14 @@
 
 namespace quincunx {
 
-// Device, driver and scene that a front was measured on, and for.
+// Device, driver and scene that a front was measured on, and for. front_key() in quincunx/device.h makes it.
 struct FrontKey {
   std::string device;  // FrontSource::device: "platform name" of the OpenCL device
   std::string driver;
   std::string scene;  // empty: any
 };
 
-struct DeviceInfo;
-QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& scene = {});
-
-// Nothing where there is no cache folder. The file may not exist yet.
+// Returns where the front of a key lies; nothing where there is no cache folder. The file may not exist yet.
 QUINCUNX_API std::optional<std::filesystem::path> front_path(const FrontKey& key);
 
 struct FoundFront {
