@@ -6,7 +6,7 @@
 
 #include "page_fixture.h"
 #include "skip.h"
-#include "tools/diagnose/diagnosis_page.h"
+#include "tools/diagnose/resolve_diagnosis.h"
 
 namespace quincunx::tools {
 namespace {

@@ -9,8 +9,6 @@
 namespace quincunx::tools {
 namespace {
 
-using Frames = std::span<const DiagnosedFrame>;
-
 bool has_fault(const Finding& finding, const std::string& fault) {
   return std::find(finding.faults.begin(), finding.faults.end(), fault) != finding.faults.end();
 }
@@ -20,8 +18,7 @@ FailureMap failure_map(Frames frames, const DiagnosedInput& input, const std::ve
   const DiagnosedFrame &frame = frames[now], &last = frames[now - 1];
   FailureMap map = {frame.number, frame.render, planes[now].values};
   Pair row = pair_of(frames, now);  // of a picture's rows, one after another
-  const Vec2 shift = {frame.jitter.x * row.ratio.x - last.jitter.x,
-                      frame.jitter.y * row.ratio.y - last.jitter.y};
+  const Vec2 shift = shift_of(row, frame.jitter, last.jitter);
   for (int y = 0; y < frame.render.height; ++y) {
     row.places.clear();
     for (int x = 0; x < frame.render.width; ++x) {
@@ -117,20 +114,12 @@ Diagnosis diagnose_aligned(Frames frames, const DiagnosedInput& input, const For
 }  // namespace
 
 const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kRight:
-      return "right";
-    case Verdict::kWrong:
-      return "wrong";
-    case Verdict::kUnknown:
-      return "cannot tell";
-  }
-  return "";
+  constexpr const char* kNames[] = {"right", "wrong", "cannot tell"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 Vec2 JitterMend::of(Vec2 told) const {
-  return swapped ? Vec2{told.y * factors.x, told.x * factors.y}
-                 : Vec2{told.x * factors.x, told.y * factors.y};
+  return product(swapped ? Vec2{told.y, told.x} : told, factors);
 }
 
 bool Diagnosis::wrong() const {

@@ -10,15 +10,6 @@
 namespace quincunx::tools {
 namespace {
 
-using Frames = std::span<const DiagnosedFrame>;
-
-const DiagnosedFrame* beside(Frames frames, std::size_t i, int later) {
-  const auto from = static_cast<std::ptrdiff_t>(i) + later;
-  if (from < 0 || from >= static_cast<std::ptrdiff_t>(frames.size())) return nullptr;
-  const DiagnosedFrame& frame = frames[static_cast<std::size_t>(from)];
-  return frame.number == frames[i].number + later && frame.world_to_ndc ? &frame : nullptr;
-}
-
 Matrix transposed(Matrix matrix) {
   for (std::size_t row = 0; row < 4; ++row)
     for (std::size_t column = 0; column < row; ++column)
@@ -28,9 +19,12 @@ Matrix transposed(Matrix matrix) {
 
 std::optional<Matrix> matrix_at(const Scene& scene, std::size_t i, Camera camera) {
   const int later = camera == Camera::kLast ? -1 : camera == Camera::kNext ? 1 : 0;
-  const DiagnosedFrame* frame = beside(scene.frames, i, later);
-  if (frame == nullptr) return std::nullopt;
-  return scene.form.transposed.value_or(false) ? transposed(*frame->world_to_ndc) : *frame->world_to_ndc;
+  const auto from =
+      static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + later);  // huge before the first
+  if (from >= scene.frames.size()) return std::nullopt;
+  const DiagnosedFrame& frame = scene.frames[from];
+  if (frame.number != scene.frames[i].number + later || !frame.world_to_ndc) return std::nullopt;
+  return scene.form.transposed.value_or(false) ? transposed(*frame.world_to_ndc) : *frame.world_to_ndc;
 }
 
 // Whether a matrix is that of a camera with a lens: strictly, or so that it may be one.
@@ -131,24 +125,30 @@ std::optional<DepthKind> find_kind(Frames frames) {
   return std::nullopt;
 }
 
-// Motion of a guess at all pairs; empty for a pair that it says nothing of.
-std::vector<Motion> camera_motion_of(const Scene& scene, const DepthGuess& guess) {
-  std::vector<Motion> motion(scene.pairs.size());
-  for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
-    const Pair& pair = scene.pairs[p];
-    const DiagnosedFrame& frame = scene.frames[pair.now];
-    const auto camera = camera_of(scene, pair, guess);
-    if (!camera || frame.depth.empty()) continue;
-    const Vec2 jitter = scene.motion.jitter[pair.now];
-    for (const Place& place : pair.places) {
-      float depth[] = {frame.depth[pixel_of(frame, place.x, place.y)]};
-      to_reversed_depth(guess.kind, scene.input.near_plane, depth);
-      const Vec2 at = {static_cast<float>(place.x) + .5f + jitter.x,
-                       static_cast<float>(place.y) + .5f + jitter.y};
-      const Vec2 moved = camera_moves(*camera, at, depth[0], frame.render);
-      motion[p].push_back(std::isfinite(moved.x) && std::isfinite(moved.y) ? moved : Vec2{1e6f, 1e6f});
-    }
+// Returns the motion of a guess at each pair's places, or every `stride`-th; none for a pair that it says nothing of.
+Motion camera_motion_of(const Scene& scene, const Pair& pair, const DepthGuess& guess,
+                        std::size_t stride = 1) {
+  const DiagnosedFrame& frame = scene.frames[pair.now];
+  const auto camera = camera_of(scene, pair, guess);
+  if (!camera || frame.depth.empty()) return {};
+  Motion motion;
+  const Vec2 jitter = scene.motion.jitter[pair.now];
+  for (std::size_t i = 0; i < pair.places.size(); i += stride) {
+    const Place& place = pair.places[i];
+    float depth[] = {frame.depth[pixel_of(frame, place.x, place.y)]};
+    to_reversed_depth(guess.kind, scene.input.near_plane, depth);
+    const Vec2 at = {static_cast<float>(place.x) + .5f + jitter.x,
+                     static_cast<float>(place.y) + .5f + jitter.y};
+    const Vec2 moved = camera_moves(*camera, at, depth[0], frame.render);
+    motion.push_back(std::isfinite(moved.x) && std::isfinite(moved.y) ? moved : Vec2{1e6f, 1e6f});
   }
+  return motion;
+}
+
+std::vector<Motion> camera_motion_of(const Scene& scene, const DepthGuess& guess) {
+  std::vector<Motion> motion;
+  for (const Pair& pair : scene.pairs)
+    motion.push_back(camera_motion_of(scene, pair, guess));
   return motion;
 }
 
@@ -192,8 +192,8 @@ Foretold foretold_of(const Scene& scene, const std::vector<Motion>& motion, floa
       continue;
     }
     for (std::size_t i = 0; i < motion[p].size(); ++i) {
-      const Vec2 a = motion[p][i], b = scene.motion.motion[p][i];
-      const float apart = std::min(std::sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y)), 1.0f);
+      const float off = square(difference(motion[p][i], scene.motion.motion[p][i]));
+      const float apart = std::min(std::sqrt(off), 1.0f);
       // A motion of exactly 0 was not drawn, as that of many a sky: it tells nothing of the camera.
       const bool drawn = pair.places[i].velocity[1] != Vec2{};
       result.errors[p].push_back(drawn ? apart * apart + step * step : 0);
@@ -214,22 +214,11 @@ float fitting_near(const Scene& scene, DepthKind kind, Camera which) {
   const auto error = [&](float factor) {
     double sum = 0;
     for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
-      const Pair& pair = scene.pairs[p];
-      const DiagnosedFrame& frame = scene.frames[pair.now];
-      const auto camera = camera_of(scene, pair, {kind, which, factor});
-      if (!camera || frame.depth.empty()) continue;
-      const Vec2 jitter = scene.motion.jitter[pair.now];
-      const std::size_t stride = std::max<std::size_t>(pair.places.size() / kEnough, 1);
-      for (std::size_t i = 0; i < pair.places.size(); i += stride) {
-        const Place& place = pair.places[i];
-        const float depth = frame.depth[pixel_of(frame, place.x, place.y)];
-        const Vec2 moved = camera_moves(
-            *camera,
-            {static_cast<float>(place.x) + .5f + jitter.x, static_cast<float>(place.y) + .5f + jitter.y},
-            kind == DepthKind::kDevice ? 1 - depth : depth, frame.render);
-        const Vec2 is = scene.motion.motion[p][i];
-        const float apart = std::hypot(moved.x - is.x, moved.y - is.y);
-        sum += apart < 1 ? apart : 1;  // not a number counts in full
+      const std::size_t stride = std::max<std::size_t>(scene.pairs[p].places.size() / kEnough, 1);
+      const Motion moved = camera_motion_of(scene, scene.pairs[p], {kind, which, factor}, stride);
+      for (std::size_t i = 0; i < moved.size(); ++i) {
+        const Vec2 off = difference(moved[i], scene.motion.motion[p][i * stride]);
+        sum += std::min(std::hypot(off.x, off.y), 1.0f);
       }
     }
     return sum;
@@ -266,10 +255,7 @@ std::vector<DepthGuess> depth_guesses(const Scene& scene) {
 
 // Whether colours are foretold better than by no motion.
 bool betters_rest(const Scene& scene, const Foretold& foretold) {
-  std::vector<Motion> rest;
-  for (const Pair& pair : scene.pairs)
-    rest.emplace_back(pair.places.size());
-  return clear(compare(scene.pairs, scene.frames, foretold, foretold_of(scene, rest, 0)));
+  return clear(compare(scene.pairs, scene.frames, foretold, foretold_of(scene, at_rest(scene.pairs), 0)));
 }
 
 void find_wrong(Finding& finding, const std::string& fault, const std::string& fits,
@@ -292,11 +278,11 @@ bool agrees(const std::vector<Pair>& pairs, const std::vector<Motion>& motion,
   double moving = 0, agree = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     for (std::size_t i = 0; i < camera[p].size(); ++i) {
-      const Vec2 moved = camera[p][i], off = {motion[p][i].x - moved.x, motion[p][i].y - moved.y};
-      const float length = std::sqrt(moved.x * moved.x + moved.y * moved.y);
+      const float length = std::sqrt(square(camera[p][i]));
       if (!(length > std::max(kMoves, 2 * step)) || pairs[p].places[i].velocity[1] == Vec2{}) continue;
       moving += 1;
-      agree += std::sqrt(off.x * off.x + off.y * off.y) < kRoom + kRoomPart * length + step / 2 ? 1 : 0;
+      const float off = std::sqrt(square(difference(motion[p][i], camera[p][i])));
+      agree += off < kRoom + kRoomPart * length + step / 2 ? 1 : 0;
     }
   }
   return moving >= kLeast && agree >= kMost * moving;

@@ -7,12 +7,9 @@
 #include <numeric>
 
 #include "tools/diagnose/findings.h"
-#include "tools/diagnose/motion_guesses.h"
 
 namespace quincunx::tools {
 namespace {
-
-using Frames = std::span<const DiagnosedFrame>;
 
 class Search {
  public:
@@ -38,7 +35,7 @@ class Search {
       const auto now = jitter_at(frames_, input_, jitter, pair.now);
       const auto before = jitter_at(frames_, input_, jitter, pair.now - 1);
       if (!now || !before || (later > 0 && !pair.has_next) || (later < 0 && !pair.has_second)) continue;
-      result.shift[p] = {now->x * pair.ratio.x - before->x, now->y * pair.ratio.y - before->y};
+      result.shift[p] = shift_of(pair, *now, *before);
       result.errors[p] = foretell(pair, planes_[pair.before], motion[p], result.shift[p], stride);
     }
     return result;
@@ -101,17 +98,16 @@ std::vector<double> jitter_factors(Frames frames, const DiagnosedInput& input, c
   std::vector<std::optional<Vec2>> steps(frames.size());
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const auto now = jitter_at(frames, input, jitter, i), before = jitter_at(frames, input, jitter, i - 1);
-    if (now && before) steps[i] = Vec2{now->x - before->x, now->y - before->y};
+    if (now && before) steps[i] = difference(*now, *before);
   }
   for (int cell = 0; cell < kAcross * kAcross; ++cell) {
     const int x = (2 * (cell % kAcross) + 1) * extent.width / (2 * kAcross);
     const int y = (2 * (cell / kAcross) + 1) * extent.height / (2 * kAcross);
-    const auto pixel =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(extent.width) + static_cast<std::size_t>(x);
+    const std::size_t pixel = pixel_of(frames[0], x, y);
     const auto at = [&](std::size_t f) {
       Vec2 v = frames[f].velocity[pixel];
       if (guess.swapped) std::swap(v.x, v.y);
-      return Vec2{v.x * scale.x, v.y * scale.y};
+      return product(v, scale);
     };
     const auto usable = [&](std::size_t f) {
       if (!steps[f] || frames[f].render != extent || frames[f].velocity.empty() || frames[f].reset)
@@ -190,9 +186,9 @@ CameraWord word_of_camera(const Search& search, const DiagnosedInput& input, Ext
                        .errors = std::vector<std::vector<float>>(pairs.size())};
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       for (std::size_t i = 0; i < camera[p].size(); ++i) {
-        const Vec2 off = {motion[p][i].x - camera[p][i].x, motion[p][i].y - camera[p][i].y};
         const bool drawn = pairs[p].places[i].velocity[1] != Vec2{};
-        result.errors[p].push_back(drawn ? std::min(off.x * off.x + off.y * off.y, 1.0f) : 0);
+        const float off = square(difference(motion[p][i], camera[p][i]));
+        result.errors[p].push_back(drawn ? std::min(off, 1.0f) : 0);
       }
     }
     return result;
@@ -299,9 +295,7 @@ void foretell_all(const Search& search, Guesses& guesses) {
 void choose_guess(const Search& search, const std::vector<Pair>& pairs, Frames frames, Guesses& guesses) {
   guesses.chosen = choose(pairs, frames, guesses.candidates);
   if (guesses.motion().unit == Unit::kStated) return;
-  std::vector<Motion> rest;
-  for (const Pair& pair : pairs)
-    rest.emplace_back(pair.places.size());
+  const std::vector<Motion> rest = at_rest(pairs);
   if (clear(search.compared(guesses.best(), search.foretold(rest, guesses.jitter())))) return;
   for (std::size_t m = 0; m < guesses.motions.size(); ++m) {
     for (std::size_t j = 0; j < guesses.jitters.size(); ++j)
@@ -366,17 +360,13 @@ Finding judge_motion(const Search& search, const DiagnosedInput& input, Guesses&
   if (mixed) {
     const bool said = input.units.jittered;
     finding.faults.emplace_back(said ? "no jitter in it" : "jitter in it");
-    finding.fits +=
-        fmt::format("{}{} the jitter in it", finding.fits.empty() ? "" : ", ", said ? "without" : "with");
-    finding.option += fmt::format("{}{}",
-                                  finding.option.empty() ? ""
-                                  : said                 ? ", "
-                                                         : " ",
-                                  said ? "no --velocity-jittered" : "--velocity-jittered");
+    finding.fits += finding.fits.empty() ? "" : ", ";
+    finding.fits += said ? "without the jitter in it" : "with the jitter in it";
+    if (!finding.option.empty()) finding.option += said ? ", " : " ";
+    finding.option += said ? "no --velocity-jittered" : "--velocity-jittered";
   }
   const std::size_t jitter = motion == MotionGuess{} ? 0 : guesses.chosen_jitter();
-  const Comparison compared = search.compared(guesses.best(), foretold(search, guesses, 0, jitter));
-  weigh(finding, compared);
+  weigh(finding, search.compared(guesses.best(), foretold(search, guesses, 0, jitter)));
   return finding;
 }
 
@@ -400,9 +390,7 @@ Finding judge_jitter(const Search& search, Guesses& guesses, const JitterGuess& 
   finding.option = jitter.pattern       ? fmt::format("--jitter {}", tools::name_of(*jitter.pattern))
                    : jitter.factor == 0 ? "--jitter none"
                                         : "--jitter FILE, with what --diagnose --json prints";
-  const Foretold& told = foretold(search, guesses, guesses.chosen_motion(), 0);
-  const Comparison compared = search.compared(guesses.best(), told);
-  weigh(finding, compared);
+  weigh(finding, search.compared(guesses.best(), foretold(search, guesses, guesses.chosen_motion(), 0)));
   return finding;
 }
 
@@ -457,11 +445,9 @@ Vec2 own_motion(const Scene& scene, const Pair& pair, int x, int y) {
   const MotionGuess& guess = scene.motion.guess;
   Vec2 v = frame.velocity[pixel_of(frame, x, y)];
   if (guess.swapped) std::swap(v.x, v.y);
-  const Vec2 factors = factors_of(scene.input, guess, frame.render);
-  const Vec2 moved = {v.x * factors.x, v.y * factors.y};
-  const Vec2 now = scene.motion.jitter[pair.now], before = scene.motion.jitter[pair.now - 1];
-  return {moved.x + scene.motion.jitters * (now.x - before.x),
-          moved.y + scene.motion.jitters * (now.y - before.y)};
+  const Vec2 moved = product(v, factors_of(scene.input, guess, frame.render));
+  const Vec2 step = difference(scene.motion.jitter[pair.now], scene.motion.jitter[pair.now - 1]);
+  return {moved.x + scene.motion.jitters * step.x, moved.y + scene.motion.jitters * step.y};
 }
 
 }  // namespace quincunx::tools

@@ -11,18 +11,6 @@
 namespace quincunx::tools {
 namespace {
 
-// Votes of pixels: how many say yes, of those that say anything.
-struct Votes {
-  std::size_t yes = 0;
-  std::size_t all = 0;
-
-  double share() const { return all > 0 ? static_cast<double>(yes) / static_cast<double>(all) : 0; }
-};
-
-float square(float x, float y) {
-  return x * x + y * y;
-}
-
 // What `better` chooses of the 3x3 pixels about each that is not at the border.
 template <typename Better>
 std::vector<float> of_3x3(const std::vector<float>& values, std::size_t width, Better better) {
@@ -35,13 +23,8 @@ std::vector<float> of_3x3(const std::vector<float>& values, std::size_t width, B
   return chosen;
 }
 
-float nearer(float a, float b) {
-  return b > a ? b : a;
-}
-
-float farther(float a, float b) {
-  return b < a ? b : a;
-}
+constexpr auto nearer = [](float a, float b) { return b > a ? b : a; };
+constexpr auto farther = [](float a, float b) { return b < a ? b : a; };
 
 // Depths of a frame, reversed, and the nearest and farthest of the 3x3 about each.
 struct Depths {
@@ -52,8 +35,7 @@ struct Depths {
 
 Depths depths_of(const Scene& scene, const DiagnosedFrame& frame, DepthKind kind) {
   const auto width = static_cast<std::size_t>(frame.render.width);
-  Depths depths = {.own = frame.depth};
-  to_reversed_depth(kind, scene.input.near_plane, depths.own);
+  Depths depths = {.own = reversed_depth(frame, kind, scene.input.near_plane)};
   depths.nearest = of_3x3(depths.own, width, nearer);
   depths.farthest = of_3x3(depths.own, width, farther);
   return depths;
@@ -174,7 +156,7 @@ Rest rest_of(const Scene& scene, const Pair& pair, const std::vector<Look>& look
       const Vec2 moved = camera_moves(looks[0].camera, point.at, depth, frame.render);
       const Vec2 own = own_motion(scene, pair, x, y);
       const bool zero = frame.velocity[pixel] == Vec2{};
-      const float apart = square(own.x - moved.x, own.y - moved.y);
+      const float apart = square(difference(own, moved));
       rest.moving += surface && apart > kMoves * kMoves && !zero ? 1 : 0;
       if (!zero && !(scene.motion.knows_motion && apart < kApart * kApart)) continue;
       if (surface) {
@@ -193,8 +175,7 @@ Rest rest_of(const Scene& scene, const Pair& pair, const std::vector<Look>& look
 // Whether two pixels beside each other move otherwise, in whatever unit.
 bool other_motion(Vec2 a, Vec2 b) {
   constexpr float kOther = .3f;  // of the faster
-  const float most = std::max(square(a.x, a.y), square(b.x, b.y));
-  return square(a.x - b.x, a.y - b.y) > kOther * kOther * most;
+  return square(difference(a, b)) > kOther * kOther * std::max(square(a), square(b));
 }
 
 // Whether surfaces of two depths meet between each pixel and the one to its right, and the one below: as drawn, and
@@ -203,8 +184,7 @@ std::array<std::vector<char>, 2> rims_of(const DiagnosedFrame& frame, const Diag
   constexpr float kOther = 1.1f;
   std::array<std::vector<char>, 2> rims;
   if (frame.depth.empty()) return rims;
-  std::vector<float> depth = frame.depth;
-  to_reversed_depth(input.depth_kind, input.near_plane, depth);
+  std::vector<float> depth = reversed_depth(frame, input.depth_kind, input.near_plane);
   const auto width = static_cast<std::size_t>(frame.render.width);
   for (std::vector<char>& rim : rims) {
     rim.resize(2 * (depth.size() - width));
@@ -241,8 +221,7 @@ Lateness find_lateness(std::span<const DiagnosedFrame> frames, const DiagnosedIn
           const bool here = rims[f + k - 1][d][i] != 0;
           ends[k][d] += here ? 1 : 0;
           if (here == (rims[f][d][i] != 0)) continue;
-          ++votes[k][d].all;
-          votes[k][d].yes += here ? 1 : 0;
+          votes[k][d].add(here);
         }
       }
     }
@@ -264,20 +243,17 @@ Finding find_dilation(const Scene& scene, DepthKind kind) {
   Votes votes;
   for (const DiagnosedFrame& frame : scene.frames) {
     if (frame.velocity.empty() || frame.depth.empty()) continue;
-    std::vector<float> depth = frame.depth;
-    to_reversed_depth(kind, scene.input.near_plane, depth);
+    const std::vector<float> depth = reversed_depth(frame, kind, scene.input.near_plane);
     const auto vote = [&](std::size_t near, std::size_t middle, std::size_t far) {
       if (!(depth[near] > 1.1f * depth[middle]) || depth[middle] > 1.05f * depth[far] ||
           depth[far] > 1.05f * depth[middle])
         return;
       const Vec2 n = frame.velocity[near], m = frame.velocity[middle], f = frame.velocity[far];
       if (!other_motion(n, f)) return;
-      const float room = .01f * square(n.x - f.x, n.y - f.y);
-      const bool as_near = square(m.x - n.x, m.y - n.y) < room;
-      const bool as_far = square(m.x - f.x, m.y - f.y) < room;
+      const float room = .01f * square(difference(n, f));
+      const bool as_near = square(difference(m, n)) < room, as_far = square(difference(m, f)) < room;
       if (as_near == as_far) return;
-      ++votes.all;
-      votes.yes += as_near ? 1 : 0;
+      votes.add(as_near);
     };
     for (int y = 1; y + 1 < frame.render.height; ++y) {
       for (int x = 1; x + 1 < frame.render.width; ++x) {
@@ -287,16 +263,11 @@ Finding find_dilation(const Scene& scene, DepthKind kind) {
       }
     }
   }
-  if (votes.all < 100) return finding;
-  if (votes.share() > .2 && votes.share() < .8) return finding;
-  const bool dilated = votes.share() >= .8;
-  finding.verdict = dilated == scene.input.dilated ? Verdict::kRight : Verdict::kWrong;
-  finding.share = dilated ? votes.share() : 1 - votes.share();
-  if (finding.verdict == Verdict::kRight) return finding;
-  finding.faults = {dilated ? "dilated" : "not dilated"};
-  finding.fits = dilated ? "that of the nearest of 3x3" : "each pixel's own";
-  finding.option = dilated ? "--drawn-velocity dilated" : "--drawn-velocity own";
-  return finding;
+  if (!votes.agree(100, .2)) return finding;
+  const bool dilated = votes.most();
+  return judged(finding, dilated != scene.input.dilated, votes.agreed(), dilated ? "dilated" : "not dilated",
+                dilated ? "that of the nearest of 3x3" : "each pixel's own",
+                dilated ? "--drawn-velocity dilated" : "--drawn-velocity own");
 }
 
 // Motion of half the size, enlarged: neighbours differ only from every other column on. Columns are counted, not
@@ -315,12 +286,8 @@ Finding find_resolution(const Scene& scene) {
   }
   const std::size_t least = std::min(differ[0], differ[1]), most = std::max(differ[0], differ[1]);
   if (most < 40) return finding;
-  finding.verdict = least * 20 < most ? Verdict::kWrong : Verdict::kRight;
-  if (finding.verdict == Verdict::kRight) return finding;
-  finding.faults = {"half"};
-  finding.fits = "half of it, enlarged";
-  finding.option = "write motion of the frame's own size";
-  return finding;
+  return judged(finding, least * 20 < most, 0, "half", "half of it, enlarged",
+                "write motion of the frame's own size");
 }
 
 Finding find_sky(const Scene& scene, const DepthGuess& guess) {
@@ -343,19 +310,13 @@ Finding find_sky(const Scene& scene, const DepthGuess& guess) {
         const Vec2 moved = camera_moves(*camera, {static_cast<float>(x) + .5f, static_cast<float>(y) + .5f},
                                         0, frame.render);
         if (!(std::hypot(moved.x, moved.y) > kLeastMotion)) continue;
-        ++votes.all;
-        votes.yes += frame.velocity[pixel_of(frame, x, y)] == Vec2{} ? 1 : 0;
+        votes.add(frame.velocity[pixel_of(frame, x, y)] == Vec2{});
       }
     }
   }
-  if (votes.all < 50 || (votes.share() > .2 && votes.share() < .8)) return finding;
-  finding.verdict = votes.share() >= .8 ? Verdict::kWrong : Verdict::kRight;
-  finding.share = finding.verdict == Verdict::kWrong ? votes.share() : 1 - votes.share();
-  if (finding.verdict == Verdict::kRight) return finding;
-  finding.faults = {"at rest"};
-  finding.fits = "0, although the camera turns";
-  finding.option = "--sky-motion camera";
-  return finding;
+  if (!votes.agree(50, .2)) return finding;
+  return judged(finding, votes.most(), votes.agreed(), "at rest", "0, although the camera turns",
+                "--sky-motion camera");
 }
 
 Finding find_objects(const Scene& scene, const DepthGuess& guess, bool coarse) {
@@ -377,23 +338,17 @@ Finding find_objects(const Scene& scene, const DepthGuess& guess, bool coarse) {
     moving += static_cast<double>(rest.moving);
     sudden += static_cast<double>(rest.sudden);
     pixels += area;
-    ++votes.all;
     const auto lost = static_cast<double>(rest.lost);
     const bool lines = !coarse && lost > kLeastPart * area && lost > kLost * static_cast<double>(rest.thin);
-    votes.yes += lines || static_cast<double>(rest.sudden) > kLeastPart * area ? 1 : 0;
+    votes.add(lines || static_cast<double>(rest.sudden) > kLeastPart * area);
   }
   if (votes.all < 2) return finding;
-  if (votes.share() > .6) {
-    finding.verdict = Verdict::kWrong;
-    finding.share = votes.share();
-    finding.faults = {"at rest"};
-    finding.fits = "some move by themselves, with the motion of what is at rest";
-    finding.option = "write the motion of everything that moves";
-  } else if (scene.motion.knows_motion && moving > .005 * pixels && sudden < kFew * pixels) {
-    finding.verdict = Verdict::kRight;
-    finding.share = 1 - votes.share();
-  }
-  return finding;
+  const bool wrong = votes.share() > .6;
+  if (!wrong && !(scene.motion.knows_motion && moving > .005 * pixels && sudden < kFew * pixels))
+    return finding;
+  return judged(finding, wrong, wrong ? votes.share() : 1 - votes.share(), "at rest",
+                "some move by themselves, with the motion of what is at rest",
+                "write the motion of everything that moves");
 }
 
 }  // namespace quincunx::tools

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "tools/diagnose/foretelling.h"
-
+// How well one frame foretells the next.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "tools/diagnose/findings.h"
 
 namespace quincunx::tools {
 namespace {
@@ -40,23 +41,23 @@ Plane plane_of(const std::vector<float>& values, Extent extent, float scale) {
     sharp.values[i] = std::sqrt(value / (1 + value));
   }
   // 1 2 1 along rows, then along columns; borders go on.
-  const auto width = static_cast<std::size_t>(extent.width);
-  const auto height = static_cast<std::size_t>(extent.height);
+  const auto width = static_cast<std::size_t>(extent.width), height = static_cast<std::size_t>(extent.height);
   Plane across = sharp, soft = sharp;
+  const auto mix = [](const float* from, const float* last, const float* next) {
+    return .5f * *from + .25f * (*last + *next);
+  };
   for (std::size_t y = 0; y < height; ++y) {
-    const float* from = &sharp.values[y * width];
-    float* to = &across.values[y * width];
-    for (std::size_t x = 1; x + 1 < width; ++x)
-      to[x] = .5f * from[x] + .25f * (from[x - 1] + from[x + 1]);
-    for (const std::size_t x : {std::size_t{0}, width - 1})
-      to[x] = .5f * from[x] + .25f * (from[x > 0 ? x - 1 : 0] + from[std::min(x + 1, width - 1)]);
+    for (std::size_t x = 0; x < width; ++x) {
+      const float* from = &sharp.values[y * width + x];
+      across.values[y * width + x] = mix(from, x > 0 ? from - 1 : from, x + 1 < width ? from + 1 : from);
+    }
   }
   for (std::size_t y = 0; y < height; ++y) {
-    const float* from = &across.values[y * width];
-    const float* above = y > 0 ? from - width : from;
-    const float* below = y + 1 < height ? from + width : from;
-    for (std::size_t x = 0; x < width; ++x)
-      soft.values[y * width + x] = .5f * from[x] + .25f * (above[x] + below[x]);
+    for (std::size_t x = 0; x < width; ++x) {
+      const float* from = &across.values[y * width + x];
+      soft.values[y * width + x] =
+          mix(from, y > 0 ? from - width : from, y + 1 < height ? from + width : from);
+    }
   }
   return soft;
 }
@@ -99,16 +100,12 @@ float gradient(const Plane& plane, int x, int y) {
 // mixed, and no motion foretells those.
 bool moves_alike(const DiagnosedFrame& frame, int x, int y) {
   if (frame.velocity.empty()) return true;
-  const auto at = [&](int i, int j) {
-    return frame.velocity[static_cast<std::size_t>(j) * static_cast<std::size_t>(frame.render.width) +
-                          static_cast<std::size_t>(i)];
-  };
-  const Vec2 own = at(x, y);
+  const Vec2 own = frame.velocity[pixel_of(frame, x, y)];
   const float room = .1f * std::max(std::abs(own.x), std::abs(own.y));
   for (int j = y - 2; j <= y + 2; ++j) {
     for (int i = x - 2; i <= x + 2; ++i) {
-      const Vec2 v = at(i, j);
-      if (!(std::abs(v.x - own.x) <= room && std::abs(v.y - own.y) <= room)) return false;
+      const Vec2 off = difference(frame.velocity[pixel_of(frame, i, j)], own);
+      if (!(std::abs(off.x) <= room && std::abs(off.y) <= room)) return false;
     }
   }
   return true;
@@ -152,20 +149,15 @@ float square_error(const Pair& pair, const Plane& before, const Motion& motion, 
   return error * error;
 }
 
-Vec2 finite(Vec2 v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) ? v : Vec2{};
-}
-
 // Gives a pair's places their channels.
-void take_velocity(std::span<const DiagnosedFrame> frames, Pair& pair) {
+void take_velocity(Frames frames, Pair& pair) {
   const Extent now = frames[pair.now].render;
   for (Place& place : pair.places) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t from = pair.now + k - 1;
       if (from >= frames.size() || frames[from].velocity.empty() || frames[from].render != now) continue;
-      place.velocity[k] = finite(
-          frames[from].velocity[static_cast<std::size_t>(place.y) * static_cast<std::size_t>(now.width) +
-                                static_cast<std::size_t>(place.x)]);
+      const Vec2 v = frames[from].velocity[pixel_of(frames[from], place.x, place.y)];
+      if (std::isfinite(v.x) && std::isfinite(v.y)) place.velocity[k] = v;
     }
   }
 }
@@ -176,15 +168,14 @@ bool differ_in_length(const Foretold& one, const Foretold& other) {
   constexpr float kOther = 1.2f;  // of the squares
   for (std::size_t p = 0; p < std::min(one.errors.size(), other.errors.size()); ++p) {
     if (one.errors[p].empty() || other.errors[p].empty()) continue;
-    const Vec2 x = one.shift[p], y = other.shift[p];
-    const float a = x.x * x.x + x.y * x.y, b = y.x * y.x + y.y * y.y;
+    const float a = square(one.shift[p]), b = square(other.shift[p]);
     if (std::max(a, b) > kOther * std::min(a, b)) return true;
   }
   return false;
 }
 
-Comparison compare_alike(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames,
-                         const Foretold& one, const Foretold& other) {
+Comparison compare_alike(std::span<const Pair> pairs, Frames frames, const Foretold& one,
+                         const Foretold& other) {
   Comparison result;
   double sum_one = 0, sum_other = 0, sum = 0, squares = 0;
   std::size_t blocks = 0, better = 0, counted = 0;
@@ -200,9 +191,9 @@ Comparison compare_alike(std::span<const Pair> pairs, std::span<const DiagnosedF
     double pair_gain = 0;
     std::size_t in_pair = 0;
     for (std::size_t i = 0; i < pairs[p].places.size(); ++i) {
-      const Vec2 a = (*one.motion)[p][i], b = (*other.motion)[p][i];
-      const float x = (b.x - a.x) * pairs[p].ratio.x + one.shift[p].x - other.shift[p].x;
-      const float y = (b.y - a.y) * pairs[p].ratio.y + one.shift[p].y - other.shift[p].y;
+      const Vec2 moved = product(difference((*other.motion)[p][i], (*one.motion)[p][i]), pairs[p].ratio);
+      const float x = moved.x + one.shift[p].x - other.shift[p].x;
+      const float y = moved.y + one.shift[p].y - other.shift[p].y;
       if (std::abs(x) < one.apart && std::abs(y) < one.apart) continue;
       const Place& place = pairs[p].places[i];
       Block& block = grid[static_cast<std::size_t>(place.y * kBlocks / extent.height * kBlocks +
@@ -241,11 +232,11 @@ Comparison compare_alike(std::span<const Pair> pairs, std::span<const DiagnosedF
 
 }  // namespace
 
-float light_scale(std::span<const DiagnosedFrame> frames) {
+float light_scale(Frames frames) {
   return frames.empty() ? 1 : .5f / middle(frames.front().luminance);
 }
 
-std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames) {
+std::vector<Plane> planes_of(Frames frames) {
   std::vector<Plane> planes;
   const float scale = light_scale(frames);
   for (const DiagnosedFrame& frame : frames)
@@ -253,11 +244,11 @@ std::vector<Plane> planes_of(std::span<const DiagnosedFrame> frames) {
   return planes;
 }
 
-bool follows(std::span<const DiagnosedFrame> frames, std::size_t i) {
+bool follows(Frames frames, std::size_t i) {
   return i > 0 && i < frames.size() && frames[i].number == frames[i - 1].number + 1 && !frames[i].reset;
 }
 
-Pair pair_of(std::span<const DiagnosedFrame> frames, std::size_t now) {
+Pair pair_of(Frames frames, std::size_t now) {
   const Extent extent = frames[now].render, before = frames[now - 1].render;
   return {.now = now,
           .before = now - 1,
@@ -268,7 +259,7 @@ Pair pair_of(std::span<const DiagnosedFrame> frames, std::size_t now) {
           .places = {}};
 }
 
-std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::vector<Plane>& planes) {
+std::vector<Pair> pairs_of(Frames frames, const std::vector<Plane>& planes) {
   std::vector<Pair> pairs;
   for (std::size_t i = 1; i < frames.size(); ++i) {
     if (!follows(frames, i)) continue;
@@ -279,20 +270,17 @@ std::vector<Pair> pairs_of(std::span<const DiagnosedFrame> frames, const std::ve
   return pairs;
 }
 
-std::vector<Pair> add_shapes(std::span<const DiagnosedFrame> frames, const DiagnosedInput& input,
-                             std::vector<Plane>& planes) {
+std::vector<Pair> add_shapes(Frames frames, const DiagnosedInput& input, std::vector<Plane>& planes) {
   constexpr float kNearer = 1.1f;
   const std::size_t first = planes.size();
   std::vector<Pair> pairs;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const DiagnosedFrame& frame = frames[i];
-    std::vector<float> depth = frame.depth;
-    to_reversed_depth(input.depth_kind, input.near_plane, depth);
+    const std::vector<float> depth = reversed_depth(frame, input.depth_kind, input.near_plane);
     planes.push_back(plane_of(depth, depth.empty() ? Extent{} : frame.render, .5f / middle(depth)));
     if (!follows(frames, i) || depth.empty() || frames[i - 1].depth.empty()) continue;
     const auto is_near = [&](int x, int y) {
-      const auto width = static_cast<std::size_t>(frame.render.width);
-      const std::size_t at = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+      const std::size_t at = pixel_of(frame, x, y), width = pixel_of(frame, 0, 1);
       const float least = std::min({depth[at - 1], depth[at + 1], depth[at - width], depth[at + width]});
       return depth[at] > kNearer * least;
     };
@@ -302,6 +290,19 @@ std::vector<Pair> add_shapes(std::span<const DiagnosedFrame> frames, const Diagn
     take_velocity(frames, pairs.back());
   }
   return pairs;
+}
+
+std::vector<Motion> at_rest(const std::vector<Pair>& pairs) {
+  std::vector<Motion> rest;
+  for (const Pair& pair : pairs)
+    rest.emplace_back(pair.places.size());
+  return rest;
+}
+
+std::vector<float> reversed_depth(const DiagnosedFrame& frame, DepthKind kind, float near_plane) {
+  std::vector<float> depth = frame.depth;
+  to_reversed_depth(kind, near_plane, depth);
+  return depth;
 }
 
 std::vector<float> foretold_light(const Pair& pair, const Plane& before, const Motion& motion, Vec2 shift) {
@@ -341,8 +342,7 @@ double least_error(const Pair& pair, const Plane& before, const Motion& motion) 
   return least;
 }
 
-Comparison compare(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames, const Foretold& one,
-                   const Foretold& other) {
+Comparison compare(std::span<const Pair> pairs, Frames frames, const Foretold& one, const Foretold& other) {
   const auto shapes = std::find_if_not(pairs.begin(), pairs.end(), is_of_light);
   const Comparison light = compare_alike({pairs.begin(), shapes}, frames, one, other);
   if (shapes == pairs.end() || differ_in_length(one, other)) return light;
@@ -356,14 +356,21 @@ void weigh(Finding& finding, const Comparison& comparison) {
   finding.share = comparison.share;
 }
 
+Finding judged(Finding finding, bool wrong, double share, const std::string& fault, const std::string& fits,
+               const std::string& option) {
+  finding.verdict = wrong ? Verdict::kWrong : Verdict::kRight;
+  finding.share = share;
+  if (wrong) finding.faults = {fault}, finding.fits = fits, finding.option = option;
+  return finding;
+}
+
 bool clear(const Comparison& comparison, double least_db) {
   if (comparison.places < 60) return false;
   const double least = least_db + 100.0 / static_cast<double>(comparison.places);
   return comparison.margin_db >= least && comparison.certainty >= 6 && comparison.share >= .75;
 }
 
-std::size_t choose(std::span<const Pair> pairs, std::span<const DiagnosedFrame> frames,
-                   const std::vector<Candidate>& candidates) {
+std::size_t choose(std::span<const Pair> pairs, Frames frames, const std::vector<Candidate>& candidates) {
   constexpr std::size_t kMostFaults = 5;
   std::size_t chosen = 0;
   for (std::size_t faults = 1; faults <= kMostFaults; ++faults) {

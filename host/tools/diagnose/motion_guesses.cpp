@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tools/diagnose/motion_guesses.h"
-
+// What the channels of motion may mean, and what jitter the frames may have been drawn with.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +7,10 @@
 #include <utility>
 
 #include "quincunx/advanced/motion_check.h"
+#include "tools/diagnose/findings.h"
 
 namespace quincunx::tools {
 namespace {
-
-using Frames = std::span<const DiagnosedFrame>;
 
 // Factors from channels to uv by the input's word.
 Vec2 stated_factors(const VelocityUnits& units, Extent extent) {
@@ -22,21 +20,26 @@ Vec2 stated_factors(const VelocityUnits& units, Extent extent) {
 }
 
 const char* name_of(Unit unit) {
-  switch (unit) {
-    case Unit::kStated:
-      return "";
-    case Unit::kUv:
-      return "parts of the picture";
-    case Unit::kPixels:
-      return "pixels";
-    case Unit::kOutputPixels:
-      return "pixels of the output";
-    case Unit::kNdc:
-      return "normalised device coordinates";
-    case Unit::kNothing:
-      return "nothing that is known: none at all foretells better";
+  constexpr const char* kNames[] = {"",
+                                    "parts of the picture",
+                                    "pixels",
+                                    "pixels of the output",
+                                    "normalised device coordinates",
+                                    "nothing that is known: none at all foretells better"};
+  return kNames[static_cast<std::size_t>(unit)];
+}
+
+bool near(float a, float b, float part) {
+  return std::abs(a - b) <= part * std::abs(a);
+}
+
+// Calls `add` with each way in which axes may be turned round.
+template <typename Add>
+void each_turn(const Add& add) {
+  for (const bool swapped : {false, true}) {
+    for (const auto& [x, y] : {std::pair(false, false), {true, false}, {false, true}, {true, true}})
+      add(swapped, x, y);
   }
-  return "";
 }
 
 // Adds what motion and jitter can have in common; `both`: the name of both signs being wrong.
@@ -49,32 +52,32 @@ void add_common_faults(std::vector<std::string>& faults, const Guess& guess, con
   if (guess.later != 0) faults.emplace_back("frame");
 }
 
+// Says the same in words; `both`: of both signs, `whose`: before the frame.
+template <typename Guess>
+void add_common_parts(std::vector<std::string>& parts, const Guess& guess, const char* both,
+                      const char* whose) {
+  if (guess.swapped) parts.emplace_back("axes swapped");
+  if (guess.flip_x && guess.flip_y) parts.emplace_back(both);
+  if (guess.flip_x != guess.flip_y)
+    parts.push_back(fmt::format("{} the other way", guess.flip_x ? "x" : "y"));
+  if (guess.later != 0)
+    parts.push_back(fmt::format("{}of the {} frame", whose, guess.later > 0 ? "next" : "last"));
+}
+
 }  // namespace
 
 Vec2 factors_of(const DiagnosedInput& input, const MotionGuess& guess, Extent extent) {
   const auto width = static_cast<float>(extent.width), height = static_cast<float>(extent.height);
   const Vec2 stated = stated_factors(input.units, extent);
   Vec2 sizes = {std::abs(stated.x) * width, std::abs(stated.y) * height};
-  switch (guess.unit) {
-    case Unit::kStated:
-      break;
-    case Unit::kUv:
-      sizes = {width, height};
-      break;
-    case Unit::kPixels:
-      sizes = {1, 1};
-      break;
-    case Unit::kOutputPixels:
-      sizes = {width / static_cast<float>(input.output.width),
-               height / static_cast<float>(input.output.height)};
-      break;
-    case Unit::kNdc:
-      sizes = {width / 2, height / 2};
-      break;
-    case Unit::kNothing:
-      sizes = {};
-      break;
+  if (guess.unit == Unit::kUv) sizes = {width, height};
+  if (guess.unit == Unit::kPixels) sizes = {1, 1};
+  if (guess.unit == Unit::kOutputPixels) {
+    sizes = {width / static_cast<float>(input.output.width),
+             height / static_cast<float>(input.output.height)};
   }
+  if (guess.unit == Unit::kNdc) sizes = {width / 2, height / 2};
+  if (guess.unit == Unit::kNothing) sizes = {};
   return {std::copysign(sizes.x, stated.x) * (guess.flip_x ? -1.0f : 1.0f),
           std::copysign(sizes.y, stated.y) * (guess.flip_y ? -1.0f : 1.0f)};
 }
@@ -87,18 +90,16 @@ Motion motion_of(const Pair& pair, const DiagnosedInput& input, const MotionGues
     const Vec2 own = place.velocity[1];
     Vec2 v = place.velocity[static_cast<std::size_t>(1 + guess.later)];
     // Another surface has come here, which says nothing of when motion was written.
-    const Vec2 off = {v.x - own.x, v.y - own.y};
-    if (off.x * off.x + off.y * off.y > .25f * (own.x * own.x + own.y * own.y)) v = own;
+    if (square(difference(v, own)) > .25f * square(own)) v = own;
     if (guess.swapped) std::swap(v.x, v.y);
-    motion.push_back({v.x * factors.x, v.y * factors.y});
+    motion.push_back(product(v, factors));
   }
   return motion;
 }
 
 bool same(const DiagnosedInput& input, const MotionGuess& a, const MotionGuess& b, Extent extent) {
   const Vec2 x = factors_of(input, a, extent), y = factors_of(input, b, extent);
-  const auto near = [](float p, float q) { return std::abs(p - q) <= .01f * std::abs(p); };
-  return a.swapped == b.swapped && a.later == b.later && near(x.x, y.x) && near(x.y, y.y);
+  return a.swapped == b.swapped && a.later == b.later && near(x.x, y.x, .01f) && near(x.y, y.y, .01f);
 }
 
 std::vector<MotionGuess> motion_guesses(const DiagnosedInput& input, Extent extent) {
@@ -110,10 +111,7 @@ std::vector<MotionGuess> motion_guesses(const DiagnosedInput& input, Extent exte
     if (!known) guesses.push_back(guess);
   };
   for (const Unit unit : {Unit::kStated, Unit::kUv, Unit::kPixels, Unit::kNdc, Unit::kOutputPixels}) {
-    for (const bool swapped : {false, true}) {
-      for (const auto& [x, y] : {std::pair(false, false), {true, false}, {false, true}, {true, true}})
-        add({unit, swapped, x, y});
-    }
+    each_turn([&](bool swapped, bool x, bool y) { add({unit, swapped, x, y}); });
   }
   add({.later = -1});
   add({.later = 1});
@@ -131,11 +129,7 @@ std::vector<std::string> faults_of(const MotionGuess& guess) {
 std::string text_of(const MotionGuess& guess) {
   std::vector<std::string> parts;
   if (guess.unit != Unit::kStated) parts.emplace_back(name_of(guess.unit));
-  if (guess.swapped) parts.emplace_back("axes swapped");
-  if (guess.flip_x && guess.flip_y) parts.emplace_back("the other direction");
-  if (guess.flip_x != guess.flip_y)
-    parts.push_back(fmt::format("{} the other way", guess.flip_x ? "x" : "y"));
-  if (guess.later != 0) parts.push_back(fmt::format("of the {} frame", guess.later > 0 ? "next" : "last"));
+  add_common_parts(parts, guess, "the other direction", "");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -148,9 +142,8 @@ std::string option_of(const DiagnosedInput& input, const MotionGuess& guess, Ext
   for (const auto convention :
        {VelocityConvention::kNuke, VelocityConvention::kFsr2, VelocityConvention::kNdc}) {
     const Vec2 known = stated_factors({convention}, extent);
-    const auto near = [](float p, float q) { return std::abs(p - q) <= 1e-4f * std::abs(p); };
-    if (near(known.x * static_cast<float>(extent.width), factors.x) &&
-        near(known.y * static_cast<float>(extent.height), factors.y))
+    if (near(known.x * static_cast<float>(extent.width), factors.x, 1e-4f) &&
+        near(known.y * static_cast<float>(extent.height), factors.y, 1e-4f))
       return text + fmt::format("--velocity-convention {}", tools::name_of(convention));
   }
   return text + fmt::format("--velocity-scale {:.6g},{:.6g}", factors.x / static_cast<float>(extent.width),
@@ -181,10 +174,9 @@ std::vector<JitterGuess> jitter_guesses(Frames frames, const DiagnosedInput& inp
     return frame.jitter != frames[0].jitter;
   });
   if (told) {
-    for (const bool swapped : {false, true}) {
-      for (const auto& [x, y] : {std::pair(false, false), {true, false}, {false, true}, {true, true}})
-        if (swapped || x || y) guesses.push_back({swapped, x, y});
-    }
+    each_turn([&](bool swapped, bool x, bool y) {
+      if (swapped || x || y) guesses.push_back({swapped, x, y});
+    });
     const float scale = static_cast<float>(frames[0].render.width) / static_cast<float>(input.output.width);
     for (const float factor : {0.0f, .5f, 2.0f})
       guesses.push_back({.factor = factor});
@@ -211,12 +203,7 @@ std::string text_of(const JitterGuess& guess) {
   if (guess.factor == 0) return "none in the frames";
   std::vector<std::string> parts;
   if (guess.factor != 1) parts.push_back(fmt::format("{:.3g} times as far", guess.factor));
-  if (guess.swapped) parts.emplace_back("axes swapped");
-  if (guess.flip_x && guess.flip_y) parts.emplace_back("the other sign");
-  if (guess.flip_x != guess.flip_y)
-    parts.push_back(fmt::format("{} the other way", guess.flip_x ? "x" : "y"));
-  if (guess.later != 0)
-    parts.push_back(fmt::format("that of the {} frame", guess.later > 0 ? "next" : "last"));
+  add_common_parts(parts, guess, "the other sign", "that ");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 

@@ -4,20 +4,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "tools/diagnose/diagnosis_page.h"
+#include "embedded_diagnosis_files.h"
 #include "tools/image/display_light.h"
 #include "tools/image/half.h"
+#include "tools/image/image_io.h"
+#include "tools/page/page_template.h"
 #include "tools/program/atomic_file.h"
 #include "tools/sequence/sequence_reader.h"
 
 namespace quincunx::tools {
-
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kColourEvery = 4;
 constexpr std::int64_t kMostPixels = 24'000'000;  // of all frames, in memory at once
@@ -31,13 +35,29 @@ void take_jitter(std::vector<Vec2>& velocity, const VelocityUnits& units, Extent
   }
 }
 
-// `rgba`: four floats a pixel.
-void set_colour(DiagnosedFrame& frame, std::span<const std::byte> rgba, bool keeps_colour) {
+// Returns all channels of all texels; codes as linear light.
+std::vector<float> values_of(const RecordedImage& image) {
+  const auto read = [&](auto sample, auto&& value_of) {
+    std::vector<float> values(image.texels.size() / sizeof sample);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      std::memcpy(&sample, image.texels.data() + i * sizeof sample, sizeof sample);
+      values[i] = value_of(sample);
+    }
+    return values;
+  };
+  if (image.format == PixelFormat::kRGBA16F || image.format == PixelFormat::kRG16F)
+    return read(std::uint16_t{}, from_half);
+  if (image.format == PixelFormat::kRGBA8)
+    return read(std::uint8_t{},
+                [](std::uint8_t code) { return linear_of_srgb(static_cast<float>(code) / 255); });
+  return read(0.0f, [](float value) { return value; });
+}
+
+void set_colour(DiagnosedFrame& frame, const std::vector<float>& rgba, bool keeps_colour) {
   frame.luminance.resize(static_cast<std::size_t>(frame.render.area()));
   if (keeps_colour) frame.colour.resize(frame.luminance.size());
   for (std::size_t i = 0; i < frame.luminance.size(); ++i) {
-    float c[4];
-    std::memcpy(c, rgba.data() + i * sizeof c, sizeof c);
+    const float* c = &rgba[4 * i];
     if (keeps_colour) frame.colour[i] = {c[0], c[1], c[2]};
     frame.luminance[i] = .2126f * c[0] + .7152f * c[1] + .0722f * c[2];
   }
@@ -63,7 +83,7 @@ Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& sc
                           .velocity = std::move(read.velocity),
                           .depth = std::move(read.depth),
                           .world_to_ndc = read.world_to_ndc};
-  set_colour(frame, read.colour, keeps_colour);
+  set_colour(frame, values_of({PixelFormat::kRGBA32F, std::move(read.colour)}), keeps_colour);
   if (task.format.units.jittered)
     take_jitter(frame.velocity, task.format.units, frame.render, scanned.jitter_since);
   return frame;
@@ -106,36 +126,6 @@ void take_far_plane(std::vector<float>& depth, DepthConvention convention, const
   }
 }
 
-// Returns up to four channels of a texel.
-std::array<float, 4> texel_of(const RecordedImage& image, std::size_t index) {
-  const auto get = [&](auto sample, std::size_t count, auto&& value_of) {
-    std::array<float, 4> values = {};
-    for (std::size_t c = 0; c < count; ++c) {
-      std::memcpy(&sample, image.texels.data() + (index * count + c) * sizeof sample, sizeof sample);
-      values[c] = value_of(sample);
-    }
-    return values;
-  };
-  const auto same = [](float value) { return value; };
-  switch (image.format) {
-    case PixelFormat::kRGBA16F:
-      return get(std::uint16_t{}, 4, from_half);
-    case PixelFormat::kRGBA32F:
-      return get(0.0f, 4, same);
-    case PixelFormat::kRGBA8:
-      return get(std::uint8_t{}, 4,
-                 [](std::uint8_t code) { return linear_of_srgb(static_cast<float>(code) / 255); });
-    case PixelFormat::kRG16F:
-      return get(std::uint16_t{}, 2, from_half);
-    case PixelFormat::kRG32F:
-      return get(0.0f, 2, same);
-    case PixelFormat::kR32F:
-      return get(0.0f, 1, same);
-    default:
-      return {};
-  }
-}
-
 DiagnosedFrame recorded_frame(const ResolveTask& task, const ScannedFrame& scanned, RecordedFrame recorded,
                               bool keeps_colour) {
   const InputConventions& given = task.resolve.conventions;
@@ -146,22 +136,17 @@ DiagnosedFrame recorded_frame(const ResolveTask& task, const ScannedFrame& scann
                           .reset = inputs.reset,
                           .jitter = inputs.jitter};
   if (given.origin == Origin::kBottom) frame.jitter.y = -frame.jitter.y;
-  const auto pixels = static_cast<std::size_t>(frame.render.area());
   for (const RecordedImage& image : recorded[FramePart::kPicture].images) {
     if (image.format == PixelFormat::kR8) continue;
-    std::vector<std::array<float, 4>> texels(pixels);
-    for (std::size_t i = 0; i < pixels; ++i)
-      texels[i] = texel_of(image, i);
+    std::vector<float> values = values_of(image);
     if (image.format == PixelFormat::kR32F) {
-      for (const auto& texel : texels)
-        frame.depth.push_back(texel[0]);
+      frame.depth = std::move(values);
       take_far_plane(frame.depth, given.depth, inputs);
     } else if (image.format == PixelFormat::kRG16F || image.format == PixelFormat::kRG32F) {
-      for (const auto& texel : texels)
-        frame.velocity.push_back({texel[0], texel[1]});
+      for (std::size_t i = 0; i < values.size(); i += 2)
+        frame.velocity.push_back({values[i], values[i + 1]});
     } else {
-      set_colour(frame, std::as_bytes(std::span(texels)),
-                 keeps_colour && image.format != PixelFormat::kRGBA8);
+      set_colour(frame, values, keeps_colour && image.format != PixelFormat::kRGBA8);
     }
   }
   return frame;
@@ -216,6 +201,38 @@ Status read_recording(const ResolveTask& task, const ScannedFrame& scanned, bool
   }
   sequence.frames.push_back(std::move(frame));
   return {};
+}
+
+// Pictures of all maps, cropped to one size about their middle.
+Result<Json> pictures_json(std::span<const FailureMap> maps) {
+  constexpr Extent kLargest = {960, 540};
+  if (maps.empty()) return Json(nullptr);
+  Extent crop = kLargest;
+  for (const FailureMap& map : maps)
+    crop = {std::min(crop.width, map.extent.width), std::min(crop.height, map.extent.height)};
+  Json frames = Json::array();
+  for (const FailureMap& map : maps) {
+    Json pngs = Json::array();
+    const int left = (map.extent.width - crop.width) / 2, top = (map.extent.height - crop.height) / 2;
+    for (const std::vector<float>* values : {&map.light, &map.error}) {
+      std::vector<std::uint8_t> codes;
+      for (int y = top; y < top + crop.height; ++y) {
+        const float* row = values->data() + static_cast<std::ptrdiff_t>(y) * map.extent.width + left;
+        for (int x = 0; x < crop.width; ++x)
+          codes.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(row[x], 0.f, 1.f) * 255)));
+      }
+      const auto png = encode_png(crop, 1, codes);
+      if (!png.ok()) return png.status();
+      pngs.push_back(base64(png.value()));
+    }
+    frames.push_back({{"index", map.number}, {"mean", map.mean}, {"pngs", std::move(pngs)}});
+  }
+  const Extent full = maps.front().extent;
+  return Json({{"width", crop.width},
+               {"height", crop.height},
+               {"x", (full.width - crop.width) / 2},
+               {"y", (full.height - crop.height) / 2},
+               {"frames", std::move(frames)}});
 }
 
 }  // namespace
@@ -297,7 +314,6 @@ std::string diagnosis_line(const ResolveTask& task) {
 }
 
 std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis) {
-  using Json = nlohmann::ordered_json;
   Json findings = Json::array(), jitter = Json::array();
   for (const Finding& finding : diagnosis.findings) {
     findings.push_back({{"subject", finding.subject},
@@ -321,6 +337,18 @@ std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis) 
   }
   const Json json = {{"wrong", diagnosis.wrong()}, {"findings", findings}, {"per_frame", jitter}};
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Result<std::string> diagnosis_page(const std::string& input, const std::string& json,
+                                   std::span<const FailureMap> maps) {
+  auto pictures = pictures_json(maps);
+  if (!pictures.ok()) return pictures.status();
+  return page_from_template(
+      {.files = embedded_diagnosis_files(),
+       .title = "diagnosis",
+       .body = "diagnosis.html",
+       .scripts = {"elements.js", "viewer.js", "diagnosis.js"}},
+      {{"input", input}, {"diagnosis", Json::parse(json)}, {"pictures", std::move(pictures).value()}});
 }
 
 Status write_diagnosis(const std::string& base, const ResolveTask& task, const DiagnosedSequence& sequence,

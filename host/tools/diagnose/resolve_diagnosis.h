@@ -35,6 +35,11 @@ std::string diagnosis_line(const ResolveTask& task);
 // jitter nobody told keeps its own.
 std::string diagnosis_json(const ResolveTask& task, const Diagnosis& diagnosis);
 
+// Returns one HTML file that needs nothing else. `input`: the frames' name; `json`: that of the diagnosis. Pictures of
+// more than 960x540 are cropped about their middle. Errors: kInvalidArgument for maps that are no pictures.
+Result<std::string> diagnosis_page(const std::string& input, const std::string& json,
+                                   std::span<const FailureMap> maps);
+
 // Writes BASE.txt, BASE.json and BASE.html, which shows where in the picture the input's word fails. Errors:
 // kIoFailure.
 Status write_diagnosis(const std::string& base, const ResolveTask& task, const DiagnosedSequence& sequence,
