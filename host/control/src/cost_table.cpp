@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "quincunx/control/resolution_controller.h"
+#include "ranges.h"
 
 namespace quincunx {
 namespace {
@@ -48,14 +49,10 @@ const CostTable::Entry* CostTable::find(int bin) const {
 }
 
 Status CostTable::record(std::uint64_t frame, double area_fraction, double gpu_ms) {
-  if (!within(area_fraction, kMaxArea)) {
-    return Status::invalid(
-        fmt::format("area_fraction is {}; it must lie in (0, {}]", area_fraction, kMaxArea));
-  }
-  if (!within(gpu_ms, ResolutionController::kMaxMs)) {
-    return Status::invalid(
-        fmt::format("gpu_ms is {}; it must lie in (0, {}]", gpu_ms, ResolutionController::kMaxMs));
-  }
+  Ranges ranges;
+  ranges.lies_in("area_fraction", area_fraction, 0, kMaxArea, Ends::kOpenLow);
+  ranges.lies_in("gpu_ms", gpu_ms, 0, ResolutionController::kMaxMs, Ends::kOpenLow);
+  if (!ranges.status().ok()) return ranges.status();
   if (started_ && frame < frame_) {
     return Status::invalid(fmt::format("frame is {}, below the last one, {}", frame, frame_));
   }

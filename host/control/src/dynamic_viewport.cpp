@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ranges.h"
+
 namespace quincunx {
 namespace {
 
@@ -24,18 +26,12 @@ DynamicViewport::DynamicViewport(Extent output, Extent target, int step, Extent 
 
 Result<DynamicViewport> DynamicViewport::create(Extent output, float max_scale, int step, Extent min_extent) {
   constexpr int kLargestSide = 32768;
-  if (output.width < 1 || output.height < 1 || output.width > kLargestSide || output.height > kLargestSide) {
-    return Status::invalid(fmt::format("output is {}x{}; both sides must lie in [1, {}]", output.width,
-                                       output.height, kLargestSide));
-  }
-  if (!(max_scale >= 1 && max_scale <= 2)) {
-    return Status::invalid(fmt::format("max_scale is {}; it must lie in [1, 2]", max_scale));
-  }
-  if (step < 1) return Status::invalid(fmt::format("step is {}; it must be at least 1 pixel", step));
-  if (min_extent.width < 1 || min_extent.height < 1) {
-    return Status::invalid(fmt::format("min_extent is {}x{}; both sides must be at least 1", min_extent.width,
-                                       min_extent.height));
-  }
+  Ranges ranges;
+  ranges.sides_of("output", output, kLargestSide);
+  ranges.lies_in("max_scale", max_scale, 1, 2);
+  ranges.at_least("step", step, 1);
+  ranges.sides_of("min_extent", min_extent);
+  if (!ranges.status().ok()) return ranges.status();
   const double scale = max_scale;
   const Extent target = {static_cast<int>(std::ceil(output.width * scale)),
                          static_cast<int>(std::ceil(output.height * scale))};

@@ -9,6 +9,9 @@
 #include <span>
 #include <tuple>
 
+#include "quincunx/advanced/content_statistics.h"
+#include "ranges.h"
+
 namespace quincunx {
 namespace {
 
@@ -28,30 +31,21 @@ auto place_of(const FrontPoint& point) {
   return std::tuple(point.scene_class, point.method, point.scale);
 }
 
-bool within(double value, double low, double high) {
-  return value >= low && value <= high;
-}
-
 std::string text_of(const FrontPoint& point) {
   return fmt::format("{} of {} at scale {}", name_of(point.method), name_of(point.scene_class), point.scale);
 }
 
 Status check(const FrontPoint& point) {
-  const auto refuse = [&](const char* field, double value, const char* range) {
-    return Status::invalid(
-        fmt::format("{}: {} is {}; it must lie in {}", text_of(point), field, value, range));
-  };
   constexpr double kMaxMs = 60000;
-  if (!(point.scale > 0 && point.scale <= 1)) return refuse("the scale", point.scale, "(0, 1]");
-  if (!within(point.flip, 0, 1)) return refuse("flip", point.flip, "[0, 1]");
-  if (!within(point.flip_spread, 0, 1)) return refuse("flip_spread", point.flip_spread, "[0, 1]");
-  if (!within(point.psnr_db, 0, FrontPoint::kMaxPsnr)) return refuse("psnr_db", point.psnr_db, "[0, 100]");
-  if (!within(point.psnr_spread, 0, FrontPoint::kMaxPsnr))
-    return refuse("psnr_spread", point.psnr_spread, "[0, 100]");
-  if (!(point.ms_per_megapixel > 0 && point.ms_per_megapixel <= kMaxMs))
-    return refuse("ms_per_megapixel", point.ms_per_megapixel, "(0, 60000]");
-  if (!within(point.ms_spread, 0, kMaxMs)) return refuse("ms_spread", point.ms_spread, "[0, 60000]");
-  return {};
+  Ranges ranges;
+  ranges.lies_in("the scale", point.scale, 0, 1, Ends::kOpenLow);
+  ranges.lies_in("flip", point.flip, 0, 1);
+  ranges.lies_in("flip_spread", point.flip_spread, 0, 1);
+  ranges.lies_in("psnr_db", point.psnr_db, 0, FrontPoint::kMaxPsnr);
+  ranges.lies_in("psnr_spread", point.psnr_spread, 0, FrontPoint::kMaxPsnr);
+  ranges.lies_in("ms_per_megapixel", point.ms_per_megapixel, 0, kMaxMs, Ends::kOpenLow);
+  ranges.lies_in("ms_spread", point.ms_spread, 0, kMaxMs);
+  return ranges.status().ok() ? Status() : Status::invalid(text_of(point) + ": " + ranges.status().message());
 }
 
 bool dominates(const FrontPoint& a, const FrontPoint& b) {
@@ -62,21 +56,9 @@ bool dominates(const FrontPoint& a, const FrontPoint& b) {
 }  // namespace
 
 const char* name_of(SceneClass scene_class) {
-  switch (scene_class) {
-    case SceneClass::kStill:
-      return "still";
-    case SceneClass::kPan:
-      return "pan";
-    case SceneClass::kObjects:
-      return "objects";
-    case SceneClass::kThin:
-      return "thin";
-    case SceneClass::kLight:
-      return "light";
-    case SceneClass::kZoom:
-      return "zoom";
-  }
-  return "unknown";
+  constexpr const char* kNames[kSceneClasses] = {"still", "pan", "objects", "thin", "light", "zoom"};
+  const auto place = static_cast<std::size_t>(scene_class);
+  return place < kSceneClasses ? kNames[place] : "unknown";
 }
 
 bool SceneMix::valid() const {
@@ -163,6 +145,36 @@ std::optional<double> ErrorFront::resolve_ms(const MethodVariant& method, double
     sum += *ms;
   }
   return sum / kSceneClasses * output_megapixels;
+}
+
+Status check(const ContentStatistics& content) {
+  Ranges ranges;
+  ranges.lies_in("content.moving", content.moving, 0, 1);
+  ranges.lies_in("content.apart", content.apart, 0, 1);
+  ranges.lies_in("content.thin", content.thin, 0, 1);
+  ranges.lies_in("content.light", content.light, 0, 1);
+  ranges.lies_in("content.zoom", content.zoom, 0, 1);
+  ranges.at_least("content.speed_px", content.speed_px, 0);
+  return ranges.status();
+}
+
+SceneMix mix_of(const ContentStatistics& content) {
+  SceneMix mix;
+  double left = 1;
+  const auto take = [&](SceneClass scene_class, double share) {
+    const double taken = std::min(left, share);
+    mix.share[static_cast<std::size_t>(scene_class)] = taken;
+    left -= taken;
+    return taken;
+  };
+  take(SceneClass::kLight, content.light);
+  double moving = content.moving;
+  moving -= take(SceneClass::kThin, content.thin);
+  moving -= take(SceneClass::kObjects, std::max(0.0, content.apart - content.thin));
+  moving -= take(SceneClass::kZoom, std::clamp(moving, 0.0, content.zoom));
+  take(SceneClass::kPan, std::max(0.0, moving));
+  take(SceneClass::kStill, left);
+  return mix;
 }
 
 }  // namespace quincunx

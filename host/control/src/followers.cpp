@@ -8,26 +8,22 @@
 
 #include "quincunx/control/detail_follower.h"
 #include "quincunx/control/output_follower.h"
+#include "ranges.h"
 
 namespace quincunx {
 
 Result<DetailFollower> DetailFollower::create(const DetailSettings& settings) {
-  if (settings.levels < 2 || settings.levels > 64) {
-    return Status::invalid(fmt::format("levels is {}; it must lie in [2, 64]", settings.levels));
-  }
-  if (!(settings.full_area > 0 && settings.full_area <= 4)) {
-    return Status::invalid(fmt::format("full_area is {}; it must lie in (0, 4]", settings.full_area));
-  }
+  Ranges ranges;
+  ranges.lies_in("levels", settings.levels, 2, 64);
+  ranges.lies_in("full_area", settings.full_area, 0, 4, Ends::kOpenLow);
+  if (!ranges.status().ok()) return ranges.status();
   if (!(settings.min_area > 0 && settings.min_area < settings.full_area)) {
     return Status::invalid(fmt::format("min_area is {}; it must lie in (0, {}), below full_area",
                                        settings.min_area, settings.full_area));
   }
-  if (!(settings.hysteresis >= 0 && settings.hysteresis <= 1)) {
-    return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1]", settings.hysteresis));
-  }
-  if (settings.rest_frames < 0) {
-    return Status::invalid(fmt::format("rest_frames is {}; it must be at least 0", settings.rest_frames));
-  }
+  ranges.lies_in("hysteresis", settings.hysteresis, 0, 1);
+  ranges.at_least("rest_frames", settings.rest_frames, 0);
+  if (!ranges.status().ok()) return ranges.status();
   return DetailFollower(settings);
 }
 
@@ -51,13 +47,10 @@ int DetailFollower::observe(double area_fraction) {
 }
 
 Result<Extent> dual_output(const ResolutionLadder& outputs, Extent render, double max_filled) {
-  if (render.width < 1 || render.height < 1) {
-    return Status::invalid(
-        fmt::format("render is {}x{}; both sides must be at least 1", render.width, render.height));
-  }
-  if (!(max_filled > 0 && max_filled <= 1)) {
-    return Status::invalid(fmt::format("max_filled is {}; it must lie in (0, 1]", max_filled));
-  }
+  Ranges ranges;
+  ranges.sides_of("render", render);
+  ranges.lies_in("max_filled", max_filled, 0, 1, Ends::kOpenLow);
+  if (!ranges.status().ok()) return ranges.status();
   const double needed = outputs.area_fraction(render) / max_filled;
   const int below = outputs.max_rung_within(needed);
   return outputs[std::min(outputs.top(),
@@ -73,17 +66,13 @@ int step_of(const OutputSettings& settings) {
 }
 
 Status check(const OutputSettings& settings) {
-  if (!(settings.min_scale > 0 && settings.min_scale <= 1))
-    return Status::invalid(fmt::format("min_scale is {}; it must lie in (0, 1]", settings.min_scale));
-  if (settings.steps < 1)
-    return Status::invalid(fmt::format("steps is {}; it must be at least 1", settings.steps));
-  if (!(settings.max_filled > 0 && settings.max_filled <= 1))
-    return Status::invalid(fmt::format("max_filled is {}; it must lie in (0, 1]", settings.max_filled));
-  if (!(settings.hysteresis >= 0 && settings.hysteresis < 1))
-    return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1)", settings.hysteresis));
-  if (settings.rest_frames < 0)
-    return Status::invalid(fmt::format("rest_frames is {}; it must be at least 0", settings.rest_frames));
-  return {};
+  Ranges ranges;
+  ranges.lies_in("min_scale", settings.min_scale, 0, 1, Ends::kOpenLow);
+  ranges.at_least("steps", settings.steps, 1);
+  ranges.lies_in("max_filled", settings.max_filled, 0, 1, Ends::kOpenLow);
+  ranges.lies_in("hysteresis", settings.hysteresis, 0, 1, Ends::kOpenHigh);
+  ranges.at_least("rest_frames", settings.rest_frames, 0);
+  return ranges.status();
 }
 
 }  // namespace

@@ -114,8 +114,8 @@ class PresentationBacklog {
   bool certain_ = false;
 };
 
-// Checks settings for every controller that is made from them (predictive_controller.cpp). Errors: kInvalidArgument for
-// a field outside its range, but for the ladder and the target.
+// Checks settings for every controller that is made from them. Errors: kInvalidArgument for a field outside its range,
+// but for the ladder and the target.
 Status check(const PredictiveSettings& settings);
 
 class PredictiveModel {

@@ -10,6 +10,7 @@
 
 #include "method_choice.h"
 #include "predictive_model.h"
+#include "ranges.h"
 
 namespace quincunx {
 namespace {
@@ -29,16 +30,11 @@ Status check_methods(const QualitySettings& settings) {
 Status check_settings(const QualitySettings& settings) {
   if (Status status = check(settings.pacing); !status.ok()) return status;
   if (Status status = check_methods(settings); !status.ok()) return status;
-  if (!(settings.hysteresis >= 0 && settings.hysteresis < 1)) {
-    return Status::invalid(fmt::format("hysteresis is {}; it must lie in [0, 1)", settings.hysteresis));
-  }
-  if (!(settings.rest_seconds >= 0 && settings.rest_seconds <= 60)) {
-    return Status::invalid(fmt::format("rest_seconds is {}; it must lie in [0, 60]", settings.rest_seconds));
-  }
-  if (settings.fade_frames < 0 || settings.fade_frames > 60) {
-    return Status::invalid(fmt::format("fade_frames is {}; it must lie in [0, 60]", settings.fade_frames));
-  }
-  return {};
+  Ranges ranges;
+  ranges.lies_in("hysteresis", settings.hysteresis, 0, 1, Ends::kOpenHigh);
+  ranges.lies_in("rest_seconds", settings.rest_seconds, 0, 60);
+  ranges.lies_in("fade_frames", settings.fade_frames, 0, 60);
+  return ranges.status();
 }
 
 constexpr double kNamedShare = 0.005;  // part of the picture: less is not told

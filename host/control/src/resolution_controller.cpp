@@ -8,14 +8,17 @@
 #include <deque>
 #include <utility>
 
+#include "ranges.h"
+
 namespace quincunx {
 
 ResolutionController::ResolutionController(ResolutionLadder ladder, double target_ms)
     : ladder_(std::move(ladder)), target_ms_(target_ms), rung_(ladder_.top()) {}
 
 Status ResolutionController::check_target(double target_ms) {
-  if (target_ms > 0 && target_ms <= kMaxMs) return {};
-  return Status::invalid(fmt::format("target_ms is {}; it must lie in (0, {}]", target_ms, kMaxMs));
+  Ranges ranges;
+  ranges.lies_in("target_ms", target_ms, 0, kMaxMs, Ends::kOpenLow);
+  return ranges.status();
 }
 
 Status ResolutionController::set_target_ms(double target_ms) {
@@ -33,32 +36,19 @@ Status ResolutionController::check(const FrameTiming& timing) const {
     return Status::invalid(
         fmt::format("next_frame is {}; it must be 0 or above frame, {}", timing.next_frame, timing.frame));
   }
-  if (timing.render_extent.width < 1 || timing.render_extent.height < 1) {
-    return Status::invalid(fmt::format("render_extent is {}x{}; both sides must be at least 1",
-                                       timing.render_extent.width, timing.render_extent.height));
-  }
-  if (!(timing.gpu_ms > 0 && timing.gpu_ms <= kMaxMs)) {
-    return Status::invalid(fmt::format("gpu_ms is {}; it must lie in (0, {}]", timing.gpu_ms, kMaxMs));
-  }
-  const auto unusable = [](double value) { return !(value >= 0 && value <= kMaxMs); };
-  if (unusable(timing.cpu_ms)) {
-    return Status::invalid(fmt::format("cpu_ms is {}; it must lie in [0, {}]", timing.cpu_ms, kMaxMs));
-  }
-  if (unusable(timing.interval_ms)) {
-    return Status::invalid(
-        fmt::format("interval_ms is {}; it must lie in [0, {}]", timing.interval_ms, kMaxMs));
-  }
+  Ranges ranges;
+  ranges.sides_of("render_extent", timing.render_extent);
+  ranges.lies_in("gpu_ms", timing.gpu_ms, 0, kMaxMs, Ends::kOpenLow);
+  ranges.lies_in("cpu_ms", timing.cpu_ms, 0, kMaxMs);
+  ranges.lies_in("interval_ms", timing.interval_ms, 0, kMaxMs);
+  if (!ranges.status().ok()) return ranges.status();
   if (timing.queued < FrameTiming::kUnknownQueue) {
     return Status::invalid(
         fmt::format("queued is {}; it must be at least 0, or -1 for unknown", timing.queued));
   }
-  if (timing.missed_vsyncs < 0) {
-    return Status::invalid(fmt::format("missed_vsyncs is {}; it must be at least 0", timing.missed_vsyncs));
-  }
-  if (!(timing.blur_px >= 0 && std::isfinite(timing.blur_px))) {
-    return Status::invalid(fmt::format("blur_px is {}; it must be finite and at least 0", timing.blur_px));
-  }
-  return {};
+  ranges.at_least("missed_vsyncs", timing.missed_vsyncs, 0);
+  ranges.at_least("blur_px", timing.blur_px, 0);
+  return ranges.status();
 }
 
 Status ResolutionController::observe(const FrameTiming& timing) {
@@ -97,13 +87,10 @@ class ProportionalController final : public ScaleController {
  public:
   static Result<std::unique_ptr<ResolutionController>> create(const ProportionalSettings& settings) {
     if (Status status = check_target(settings.target_ms); !status.ok()) return status;
-    if (!(settings.rate > 0 && settings.rate <= 1)) {
-      return Status::invalid(fmt::format("rate is {}; it must lie in (0, 1]", settings.rate));
-    }
-    if (!(settings.spike_ratio >= 1 && std::isfinite(settings.spike_ratio))) {
-      return Status::invalid(
-          fmt::format("spike_ratio is {}; it must be finite and at least 1", settings.spike_ratio));
-    }
+    Ranges ranges;
+    ranges.lies_in("rate", settings.rate, 0, 1, Ends::kOpenLow);
+    ranges.at_least("spike_ratio", settings.spike_ratio, 1);
+    if (!ranges.status().ok()) return ranges.status();
     Result<ResolutionLadder> ladder = ResolutionLadder::create(settings.ladder);
     if (!ladder.ok()) return ladder.status();
     return std::unique_ptr<ResolutionController>(
@@ -133,15 +120,11 @@ class MinimumOfNController final : public ScaleController {
   static Result<std::unique_ptr<ResolutionController>> create(const MinimumOfNSettings& settings) {
     constexpr int kMostTimes = 1000;
     if (Status status = check_target(settings.target_ms); !status.ok()) return status;
-    if (settings.count < 1 || settings.count > kMostTimes) {
-      return Status::invalid(fmt::format("count is {}; it must lie in [1, {}]", settings.count, kMostTimes));
-    }
-    if (!(settings.factor > 0 && settings.factor <= 1)) {
-      return Status::invalid(fmt::format("factor is {}; it must lie in (0, 1]", settings.factor));
-    }
-    if (!(settings.margin > 0 && settings.margin <= 1)) {
-      return Status::invalid(fmt::format("margin is {}; it must lie in (0, 1]", settings.margin));
-    }
+    Ranges ranges;
+    ranges.lies_in("count", settings.count, 1, kMostTimes);
+    ranges.lies_in("factor", settings.factor, 0, 1, Ends::kOpenLow);
+    ranges.lies_in("margin", settings.margin, 0, 1, Ends::kOpenLow);
+    if (!ranges.status().ok()) return ranges.status();
     Result<ResolutionLadder> ladder = ResolutionLadder::create(settings.ladder);
     if (!ladder.ok()) return ladder.status();
     return std::unique_ptr<ResolutionController>(

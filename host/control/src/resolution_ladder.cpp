@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "ranges.h"
+
 namespace quincunx {
 namespace {
 
@@ -87,12 +89,9 @@ class Walk {
 };
 
 Status check(const LadderSettings& settings) {
-  const Extent output = settings.output_extent;
-  if (output.width < 1 || output.height < 1 || output.width > kLargestOutput ||
-      output.height > kLargestOutput) {
-    return Status::invalid(fmt::format("output_extent is {}x{}; both sides must lie in [1, {}]", output.width,
-                                       output.height, kLargestOutput));
-  }
+  Ranges ranges;
+  ranges.sides_of("output_extent", settings.output_extent, kLargestOutput);
+  if (!ranges.status().ok()) return ranges.status();
   if (!(settings.min_scale > 0 && settings.min_scale <= kMaxScale)) {
     return Status::invalid(
         fmt::format("min_scale is {}; it must be above 0 and at most {}", settings.min_scale, kMaxScale));
@@ -105,11 +104,8 @@ Status check(const LadderSettings& settings) {
     return Status::invalid(
         fmt::format("step is {}; it must lie in [1, {}] pixels", settings.step, kLargestOutput));
   }
-  if (settings.min_extent.width < 1 || settings.min_extent.height < 1) {
-    return Status::invalid(fmt::format("min_extent is {}x{}; both sides must be at least 1",
-                                       settings.min_extent.width, settings.min_extent.height));
-  }
-  return {};
+  ranges.sides_of("min_extent", settings.min_extent);
+  return ranges.status();
 }
 
 }  // namespace
