@@ -64,46 +64,71 @@ namespace {
 
 enum class Kind { kProportional, kMinimumOfN, kPredictive, kQuality };
 
-quincunx_controller_settings default_settings() {
-  const ProportionalSettings proportional;
-  const MinimumOfNSettings minimum;
-  const QualitySettings quality;
-  const PredictiveSettings& pacing = quality.pacing;
-  const LadderSettings& ladder = pacing.ladder;
-  quincunx_controller_settings to = {};
-  to.kind = QUINCUNX_CONTROL_PREDICTIVE;
-  to.order = static_cast<int>(ladder.order);
-  to.step = ladder.step;
-  to.min_width = ladder.min_extent.width;
-  to.min_height = ladder.min_extent.height;
-  to.buffers = pacing.buffers;
-  to.min_scale = ladder.min_scale;
-  to.max_scale = ladder.max_scale;
-  to.target_ms = pacing.target_ms;
-  to.rate = proportional.rate;
-  to.spike_ratio = proportional.spike_ratio;
-  to.factor = minimum.factor;
-  to.margin = minimum.margin;
-  to.count = minimum.count;
-  to.cpu_bound = static_cast<int>(pacing.cpu_bound);
-  to.fixed_part = pacing.fixed_part;
-  to.blur_start_px = pacing.blur_aware.start_px;
-  to.blur_full_px = pacing.blur_aware.full_px;
-  to.blur_min_scale = pacing.blur_aware.min_scale;
-  to.blur_aware = pacing.blur_aware.enabled;
-  to.fade_frames = quality.fade_frames;
-  to.hysteresis = quality.hysteresis;
-  to.rest_seconds = quality.rest_seconds;
-  return to;
-}
-
-// The fields that count for the kind, as the library's own.
+// Settings of every kind as the library's own; ladder and target are those of `quality.pacing`.
 struct ControllerSettings {
   Kind kind = Kind::kPredictive;
   ProportionalSettings proportional;
   MinimumOfNSettings minimum;
   QualitySettings quality;  // pacing: the predictive controller's
 };
+
+// Pairs of fields, as ToC and Reader take them.
+constexpr auto kControllerPairs = [](auto& c, auto& own, auto& pair) {
+  auto& pacing = own.quality.pacing;
+  auto& ladder = pacing.ladder;
+  pair("kind", c.kind, own.kind, Kind::kQuality);
+  pair("order", c.order, ladder.order, AxisOrder::kBoth);
+  pair("cpu_bound", c.cpu_bound, pacing.cpu_bound, CpuBound::kFollow);
+  pair("output_width", c.output_width, ladder.output_extent.width);
+  pair("output_height", c.output_height, ladder.output_extent.height);
+  pair("step", c.step, ladder.step);
+  pair("min_width", c.min_width, ladder.min_extent.width);
+  pair("min_height", c.min_height, ladder.min_extent.height);
+  pair("min_scale", c.min_scale, ladder.min_scale);
+  pair("max_scale", c.max_scale, ladder.max_scale);
+  pair("target_ms", c.target_ms, pacing.target_ms);
+  pair("buffers", c.buffers, pacing.buffers);
+  pair("fixed_part", c.fixed_part, pacing.fixed_part);
+  pair("blur_aware", c.blur_aware, pacing.blur_aware.enabled);
+  pair("blur_start_px", c.blur_start_px, pacing.blur_aware.start_px);
+  pair("blur_full_px", c.blur_full_px, pacing.blur_aware.full_px);
+  pair("blur_min_scale", c.blur_min_scale, pacing.blur_aware.min_scale);
+  pair("rate", c.rate, own.proportional.rate);
+  pair("spike_ratio", c.spike_ratio, own.proportional.spike_ratio);
+  pair("factor", c.factor, own.minimum.factor);
+  pair("margin", c.margin, own.minimum.margin);
+  pair("count", c.count, own.minimum.count);
+  pair("hysteresis", c.hysteresis, own.quality.hysteresis);
+  pair("rest_seconds", c.rest_seconds, own.quality.rest_seconds);
+  pair("fade_frames", c.fade_frames, own.quality.fade_frames);
+};
+
+constexpr auto kOutputPairs = [](auto& c, auto& own, auto& pair) {
+  pair("display_width", c.display_width, own.display.width);
+  pair("display_height", c.display_height, own.display.height);
+  pair("steps", c.steps, own.steps);
+  pair("rest_frames", c.rest_frames, own.rest_frames);
+  pair("min_scale", c.min_scale, own.min_scale);
+  pair("max_filled", c.max_filled, own.max_filled);
+  pair("hysteresis", c.hysteresis, own.hysteresis);
+};
+
+constexpr auto kDetailPairs = [](auto& c, auto& own, auto& pair) {
+  pair("levels", c.levels, own.levels);
+  pair("rest_frames", c.rest_frames, own.rest_frames);
+  pair("full_area", c.full_area, own.full_area);
+  pair("min_area", c.min_area, own.min_area);
+  pair("hysteresis", c.hysteresis, own.hysteresis);
+};
+
+template <typename Struct, typename Own, typename Pairs>
+quincunx_status init(Struct* settings, const Own& defaults, const Pairs& pairs) noexcept {
+  return guarded([&]() -> Status {
+    if (Status status = check_size(settings, "settings"); !status.ok()) return status;
+    write_sized(to_c<Struct>(defaults, pairs), settings);
+    return {};
+  });
+}
 
 Status read_methods(const quincunx_controller_settings& from, std::vector<MethodVariant>& to) {
   if (from.method_count < 0) {
@@ -126,40 +151,14 @@ Status read_methods(const quincunx_controller_settings& from, std::vector<Method
 }
 
 Result<ControllerSettings> read_controller(const quincunx_controller_settings* given) {
-  quincunx_controller_settings from = default_settings();
-  if (Status status = read_sized(given, "settings", from); !status.ok()) return status;
+  quincunx_controller_settings from;
   ControllerSettings to;
-  LadderSettings ladder = {.output_extent = {from.output_width, from.output_height},
-                           .min_scale = from.min_scale,
-                           .max_scale = from.max_scale,
-                           .step = from.step,
-                           .min_extent = {from.min_width, from.min_height}};
-  PredictiveSettings& pacing = to.quality.pacing;
-  Reader read("settings");
-  read.value("kind", from.kind, Kind::kQuality, to.kind);
-  read.value("order", from.order, AxisOrder::kBoth, ladder.order);
-  read.value("cpu_bound", from.cpu_bound, CpuBound::kFollow, pacing.cpu_bound);
-  if (!read.status().ok()) return read.status();
-  to.proportional = {
-      .ladder = ladder, .target_ms = from.target_ms, .rate = from.rate, .spike_ratio = from.spike_ratio};
-  to.minimum = {.ladder = ladder,
-                .target_ms = from.target_ms,
-                .count = from.count,
-                .factor = from.factor,
-                .margin = from.margin};
-  pacing.ladder = ladder;
-  pacing.target_ms = from.target_ms;
-  pacing.buffers = from.buffers;
-  pacing.fixed_part = from.fixed_part;
-  if (from.calibration != nullptr) pacing.calibration = from.calibration->table;
-  pacing.blur_aware = {.enabled = from.blur_aware != 0,
-                       .start_px = from.blur_start_px,
-                       .full_px = from.blur_full_px,
-                       .min_scale = from.blur_min_scale};
+  if (Status status = read_settings(given, from, to, kControllerPairs); !status.ok()) return status;
+  const PredictiveSettings& pacing = to.quality.pacing;
+  to.proportional.ladder = to.minimum.ladder = pacing.ladder;
+  to.proportional.target_ms = to.minimum.target_ms = pacing.target_ms;
+  if (from.calibration != nullptr) to.quality.pacing.calibration = from.calibration->table;
   if (from.front != nullptr) to.quality.front = from.front->front;
-  to.quality.hysteresis = from.hysteresis;
-  to.quality.rest_seconds = from.rest_seconds;
-  to.quality.fade_frames = from.fade_frames;
   if (Status status = read_methods(from, to.quality.methods); !status.ok()) return status;
   return to;
 }
@@ -239,7 +238,7 @@ void write_extent(Extent extent, int32_t to[2]) {
   to[1] = extent.height;
 }
 
-// Writes a number that there may be; false where there is none.
+// Copies `number` to `*to` if it has a value, and returns whether it has.
 bool write_known(const std::optional<double>& number, double* to) {
   if (number) *to = *number;
   return number.has_value();
@@ -266,10 +265,7 @@ SceneMix mix_from(const double* share) {
 template <typename Ask>
 quincunx_status ask_front(const quincunx_front* front, const char* method, const char* name, double* to,
                           const Ask& ask) noexcept {
-  return guarded([&]() -> Status {
-    if (front == nullptr) return null("front");
-    if (method == nullptr) return null("method");
-    if (to == nullptr) return null(name);
+  return guarded({{"front", front}, {"method", method}, {name, to}}, [&]() -> Status {
     const auto variant = parse_variant(method);
     if (!variant.ok()) return variant.status();
     if (write_known(ask(*variant), to)) return {};
@@ -280,34 +276,16 @@ quincunx_status ask_front(const quincunx_front* front, const char* method, const
   });
 }
 
-quincunx_output_settings default_output() {
-  const OutputSettings from;
-  quincunx_output_settings to = {};
-  to.steps = from.steps;
-  to.rest_frames = from.rest_frames;
-  to.min_scale = from.min_scale;
-  to.max_filled = from.max_filled;
-  to.hysteresis = from.hysteresis;
-  return to;
-}
-
-quincunx_detail_settings default_detail() {
-  const DetailSettings from;
-  quincunx_detail_settings to = {};
-  to.levels = from.levels;
-  to.rest_frames = from.rest_frames;
-  to.full_area = from.full_area;
-  to.min_area = from.min_area;
-  to.hysteresis = from.hysteresis;
-  return to;
-}
-
-template <typename Struct>
-quincunx_status init(Struct* settings, const Struct& defaults) noexcept {
-  return guarded([&]() -> Status {
-    if (Status status = check_size(settings, "settings"); !status.ok()) return status;
-    write_sized(defaults, settings);
-    return {};
+// Makes a follower of settings.
+template <typename Follower, typename Own, typename Struct, typename Pairs>
+quincunx_status create_follower(const Struct* settings, Follower** follower, const Pairs& pairs) noexcept {
+  return create("follower", follower, [&]() -> Made<Follower> {
+    Struct from;
+    Own own;
+    if (Status status = read_settings(settings, from, own, pairs); !status.ok()) return status;
+    auto made = decltype(Follower::follower)::create(own);
+    if (!made.ok()) return made.status();
+    return std::make_unique<Follower>(Follower{std::move(made).value()});
   });
 }
 
@@ -319,7 +297,7 @@ using c::null;
 using quincunx::Status;
 
 quincunx_status quincunx_controller_settings_init(quincunx_controller_settings* settings) {
-  return c::init(settings, c::default_settings());
+  return c::init(settings, c::ControllerSettings(), c::kControllerPairs);
 }
 
 quincunx_status quincunx_controller_create(const quincunx_controller_settings* settings,
@@ -339,8 +317,7 @@ const char* quincunx_controller_name(const quincunx_controller* controller) {
 }
 
 quincunx_status quincunx_controller_observe(quincunx_controller* controller, const quincunx_timing* timing) {
-  return c::guarded([&]() -> Status {
-    if (controller == nullptr) return null("controller");
+  return c::guarded({{"controller", controller}}, [&]() -> Status {
     const auto frame = c::read_timing(timing);
     if (!frame.ok()) return frame.status();
     if (controller->quality != nullptr) return controller->quality->observe(*frame);
@@ -349,8 +326,7 @@ quincunx_status quincunx_controller_observe(quincunx_controller* controller, con
 }
 
 quincunx_status quincunx_controller_choice(const quincunx_controller* controller, quincunx_choice* choice) {
-  return c::guarded([&]() -> Status {
-    if (controller == nullptr) return null("controller");
+  return c::guarded({{"controller", controller}}, [&]() -> Status {
     if (Status status = c::check_size(choice, "choice"); !status.ok()) return status;
     c::write_sized(c::choice_of(*controller), choice);
     return {};
@@ -367,10 +343,8 @@ const char* quincunx_controller_text(quincunx_controller* controller) {
 }
 
 quincunx_status quincunx_controller_set_target_ms(quincunx_controller* controller, double target_ms) {
-  return c::guarded([&]() -> Status {
-    if (controller == nullptr) return null("controller");
-    return controller->controller->set_target_ms(target_ms);
-  });
+  return c::guarded({{"controller", controller}},
+                    [&] { return controller->controller->set_target_ms(target_ms); });
 }
 
 double quincunx_controller_target_ms(const quincunx_controller* controller) {
@@ -383,9 +357,7 @@ int32_t quincunx_controller_rung_count(const quincunx_controller* controller) {
 
 quincunx_status quincunx_controller_rung(const quincunx_controller* controller, int32_t rung,
                                          int32_t extent[2]) {
-  return c::guarded([&]() -> Status {
-    if (controller == nullptr) return null("controller");
-    if (extent == nullptr) return null("extent");
+  return c::guarded({{"controller", controller}, {"extent", extent}}, [&]() -> Status {
     const auto& ladder = controller->controller->ladder();
     if (rung < 0 || rung > ladder.top())
       return Status::invalid(fmt::format("rung is {}; it must lie in [0, {}]", rung, ladder.top()));
@@ -395,8 +367,7 @@ quincunx_status quincunx_controller_rung(const quincunx_controller* controller, 
 }
 
 quincunx_status quincunx_mix_of(const quincunx_content* content, double share[QUINCUNX_SCENE_CLASSES]) {
-  return c::guarded([&]() -> Status {
-    if (share == nullptr) return null("share");
+  return c::guarded({{"share", share}}, [&]() -> Status {
     const auto read = c::content_of(content);
     if (!read.ok()) return read.status();
     const quincunx::SceneMix mix = quincunx::mix_of(*read);
@@ -423,10 +394,7 @@ void quincunx_costs_destroy(quincunx_costs* costs) {
 
 quincunx_status quincunx_costs_record(quincunx_costs* costs, uint64_t frame, double area_fraction,
                                       double gpu_ms) {
-  return c::guarded([&]() -> Status {
-    if (costs == nullptr) return null("costs");
-    return costs->table.record(frame, area_fraction, gpu_ms);
-  });
+  return c::guarded({{"costs", costs}}, [&] { return costs->table.record(frame, area_fraction, gpu_ms); });
 }
 
 double quincunx_costs_confidence(const quincunx_costs* costs, double area_fraction) {
@@ -436,9 +404,7 @@ double quincunx_costs_confidence(const quincunx_costs* costs, double area_fracti
 quincunx_status quincunx_costs_predict(const quincunx_costs* costs, double area_fraction, double fixed_part,
                                        double* gpu_ms) {
   bool known = true;
-  const quincunx_status status = c::guarded([&]() -> Status {
-    if (costs == nullptr) return null("costs");
-    if (gpu_ms == nullptr) return null("gpu_ms");
+  const quincunx_status status = c::guarded({{"costs", costs}, {"gpu_ms", gpu_ms}}, [&]() -> Status {
     if (!(area_fraction > 0 && area_fraction <= quincunx::CostTable::kMaxArea)) {
       return Status::invalid(fmt::format("area_fraction is {}; it must lie in (0, {}]", area_fraction,
                                          quincunx::CostTable::kMaxArea));
@@ -453,9 +419,7 @@ quincunx_status quincunx_costs_predict(const quincunx_costs* costs, double area_
 
 quincunx_status quincunx_costs_fixed_part(const quincunx_costs* costs, double* fixed_part) {
   bool known = true;
-  const quincunx_status status = c::guarded([&]() -> Status {
-    if (costs == nullptr) return null("costs");
-    if (fixed_part == nullptr) return null("fixed_part");
+  const quincunx_status status = c::guarded({{"costs", costs}, {"fixed_part", fixed_part}}, [&]() -> Status {
     known = c::write_known(costs->table.fixed_part(), fixed_part);
     return {};
   });
@@ -520,23 +484,13 @@ quincunx_status quincunx_front_resolve_ms(const quincunx_front* front, const cha
 }
 
 quincunx_status quincunx_output_settings_init(quincunx_output_settings* settings) {
-  return c::init(settings, c::default_output());
+  return c::init(settings, quincunx::OutputSettings(), c::kOutputPairs);
 }
 
 quincunx_status quincunx_output_follower_create(const quincunx_output_settings* settings,
                                                 quincunx_output_follower** follower) {
-  return c::create("follower", follower, [&]() -> c::Made<quincunx_output_follower> {
-    quincunx_output_settings from = c::default_output();
-    if (Status status = c::read_sized(settings, "settings", from); !status.ok()) return status;
-    auto made = quincunx::OutputFollower::create({.display = {from.display_width, from.display_height},
-                                                  .min_scale = from.min_scale,
-                                                  .steps = from.steps,
-                                                  .max_filled = from.max_filled,
-                                                  .hysteresis = from.hysteresis,
-                                                  .rest_frames = from.rest_frames});
-    if (!made.ok()) return made.status();
-    return std::make_unique<quincunx_output_follower>(quincunx_output_follower{std::move(made).value()});
-  });
+  return c::create_follower<quincunx_output_follower, quincunx::OutputSettings>(settings, follower,
+                                                                                c::kOutputPairs);
 }
 
 void quincunx_output_follower_destroy(quincunx_output_follower* follower) {
@@ -545,9 +499,7 @@ void quincunx_output_follower_destroy(quincunx_output_follower* follower) {
 
 quincunx_status quincunx_output_follower_observe(quincunx_output_follower* follower, int32_t render_width,
                                                  int32_t render_height, int32_t output[2]) {
-  return c::guarded([&]() -> Status {
-    if (follower == nullptr) return null("follower");
-    if (output == nullptr) return null("output");
+  return c::guarded({{"follower", follower}, {"output", output}}, [&]() -> Status {
     c::write_extent(follower->follower.observe({render_width, render_height}), output);
     return {};
   });
@@ -555,31 +507,20 @@ quincunx_status quincunx_output_follower_observe(quincunx_output_follower* follo
 
 quincunx_status quincunx_output_follower_min_output(const quincunx_output_follower* follower,
                                                     int32_t output[2]) {
-  return c::guarded([&]() -> Status {
-    if (follower == nullptr) return null("follower");
-    if (output == nullptr) return null("output");
+  return c::guarded({{"follower", follower}, {"output", output}}, [&]() -> Status {
     c::write_extent(follower->follower.min_output(), output);
     return {};
   });
 }
 
 quincunx_status quincunx_detail_settings_init(quincunx_detail_settings* settings) {
-  return c::init(settings, c::default_detail());
+  return c::init(settings, quincunx::DetailSettings(), c::kDetailPairs);
 }
 
 quincunx_status quincunx_detail_follower_create(const quincunx_detail_settings* settings,
                                                 quincunx_detail_follower** follower) {
-  return c::create("follower", follower, [&]() -> c::Made<quincunx_detail_follower> {
-    quincunx_detail_settings from = c::default_detail();
-    if (Status status = c::read_sized(settings, "settings", from); !status.ok()) return status;
-    auto made = quincunx::DetailFollower::create({.levels = from.levels,
-                                                  .full_area = from.full_area,
-                                                  .min_area = from.min_area,
-                                                  .hysteresis = from.hysteresis,
-                                                  .rest_frames = from.rest_frames});
-    if (!made.ok()) return made.status();
-    return std::make_unique<quincunx_detail_follower>(quincunx_detail_follower{std::move(made).value()});
-  });
+  return c::create_follower<quincunx_detail_follower, quincunx::DetailSettings>(settings, follower,
+                                                                                c::kDetailPairs);
 }
 
 void quincunx_detail_follower_destroy(quincunx_detail_follower* follower) {
@@ -588,9 +529,7 @@ void quincunx_detail_follower_destroy(quincunx_detail_follower* follower) {
 
 quincunx_status quincunx_detail_follower_observe(quincunx_detail_follower* follower, double area_fraction,
                                                  int32_t* level) {
-  return c::guarded([&]() -> Status {
-    if (follower == nullptr) return null("follower");
-    if (level == nullptr) return null("level");
+  return c::guarded({{"follower", follower}, {"level", level}}, [&]() -> Status {
     *level = follower->follower.observe(area_fraction);
     return {};
   });

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The functions of quincunx.h. Each checks its pointers, calls the library and lets no exception out.
-#include <fmt/format.h>
-
 #include <exception>
 #include <memory>
 #include <new>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "c_interface/c_frame.h"
@@ -67,28 +64,10 @@ quincunx_status report(quincunx_status code, const char* text) noexcept {
   return code;
 }
 
-// Names fields of the settings as C's struct does, which has no groups.
-std::string in_words_of_c(std::string sentence) {
-  constexpr std::pair<std::string_view, std::string_view> kNames[] = {
-      {"output.min_extent", "min_output_extent"},
-      {"output.linear", "linear"},
-      {"output.present", "present"},
-      {"targets.particle_extent", "particle_target_extent"},
-      {"targets.clear", "clear"},
-      {"filter.grain", "grain"},
-      {"control.fades", "fades"}};
-  for (const auto& [ours, theirs] : kNames) {
-    const std::string field = fmt::format("settings.{}", ours);
-    for (std::size_t at = 0; (at = sentence.find(field, at)) != std::string::npos;)
-      sentence.replace(at, field.size(), fmt::format("settings.{}", theirs));
-  }
-  return sentence;
-}
-
 }  // namespace
 
 quincunx_status report(const Status& status) {
-  if (!status.ok()) message = in_words_of_c(status.message());
+  if (!status.ok()) message = status.message();
   return code_of(status.code());
 }
 
@@ -188,8 +167,7 @@ const char* quincunx_variant_name(int32_t variant) {
 }
 
 quincunx_status quincunx_settings_set_method(quincunx_settings* settings, const char* name) {
-  return guarded([&]() -> Status {
-    if (name == nullptr) return null("name");
+  return guarded({{"name", name}}, [&]() -> Status {
     quincunx_settings own = quincunx::c::to_c({});
     if (Status status = quincunx::c::read_sized(settings, "settings", own); !status.ok()) return status;
     const auto variant = quincunx::parse_variant(name);
@@ -234,8 +212,7 @@ void quincunx_plan_destroy(quincunx_plan* plan) {
 }
 
 quincunx_status quincunx_plan_needs(const quincunx_plan* plan, quincunx_needs* needs) {
-  return guarded([&]() -> Status {
-    if (plan == nullptr) return null("plan");
+  return guarded({{"plan", plan}}, [&]() -> Status {
     if (Status status = quincunx::c::check_size(needs, "needs"); !status.ok()) return status;
     quincunx::c::write_sized(quincunx::c::needs_of(plan->plan), needs);
     return {};
@@ -304,17 +281,14 @@ void quincunx_service_destroy(quincunx_service* service) {
 
 quincunx_status quincunx_validate(const quincunx_plan* plan, const quincunx_inputs* inputs,
                                   const quincunx_outputs* outputs) {
-  return guarded([&]() -> Status {
-    if (plan == nullptr) return null("plan");
-    return quincunx::c::checked_frame(plan->plan, inputs, outputs).status();
-  });
+  return guarded({{"plan", plan}},
+                 [&] { return quincunx::c::checked_frame(plan->plan, inputs, outputs).status(); });
 }
 
 quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inputs* inputs,
                                   const quincunx_outputs* outputs, quincunx_report* report) {
   cl_event* done = nullptr;
-  const quincunx_status status = guarded([&]() -> Status {
-    if (service == nullptr) return null("service");
+  const quincunx_status result = guarded({{"service", service}}, [&]() -> Status {
     quincunx_report own = {};
     if (report != nullptr) {
       const auto read = quincunx::c::read_report(report);
@@ -332,18 +306,17 @@ quincunx_status quincunx_dispatch(quincunx_service* service, const quincunx_inpu
     if (report != nullptr) quincunx::c::write_report(made, own, report);
     return service->host.fetch(frame.value());
   });
-  if (status != QUINCUNX_OK && done != nullptr &&
+  if (result != QUINCUNX_OK && done != nullptr &&
       *done != nullptr) {  // the frame ran, and its picture is lost
     clReleaseEvent(*done);
     *done = nullptr;
   }
-  return status;
+  return result;
 }
 
 quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report* report) {
   bool ready = true;
-  const quincunx_status status = guarded([&]() -> Status {
-    if (service == nullptr) return null("service");
+  const quincunx_status status = guarded({{"service", service}}, [&]() -> Status {
     const auto own = quincunx::c::read_report(report);
     if (!own.ok()) return own.status();
     const auto completed = service->service.next_completed();
@@ -355,8 +328,7 @@ quincunx_status quincunx_next_report(quincunx_service* service, quincunx_report*
 }
 
 quincunx_status quincunx_allow_timing_waits(quincunx_service* service, int32_t allow) {
-  return guarded([&]() -> Status {
-    if (service == nullptr) return null("service");
+  return guarded({{"service", service}}, [&]() -> Status {
     service->service.allow_timing_waits(allow != 0);
     return {};
   });
@@ -364,9 +336,7 @@ quincunx_status quincunx_allow_timing_waits(quincunx_service* service, int32_t a
 
 quincunx_status quincunx_clear(quincunx_service* service, const quincunx_image* image, int32_t width,
                                int32_t height, const float value[4]) {
-  return guarded([&]() -> Status {
-    if (service == nullptr) return null("service");
-    if (value == nullptr) return null("value");
+  return guarded({{"service", service}, {"value", value}}, [&]() -> Status {
     const auto view = quincunx::c::memory_object("image", image);
     return view.ok() ? quincunx::c::in_c_words(service->service.clear(view.value(), {width, height}, value))
                      : view.status();
@@ -374,8 +344,5 @@ quincunx_status quincunx_clear(quincunx_service* service, const quincunx_image* 
 }
 
 quincunx_status quincunx_finish(quincunx_service* service) {
-  return guarded([&]() -> Status {
-    if (service == nullptr) return null("service");
-    return service->service.finish();
-  });
+  return guarded({{"service", service}}, [&] { return service->service.finish(); });
 }

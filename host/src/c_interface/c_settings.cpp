@@ -19,129 +19,76 @@ static_assert(static_cast<int>(TemporalView::kFar) == QUINCUNX_VIEW_FAR);
 static_assert(static_cast<int>(PixelFormat::kRGBA32F) == QUINCUNX_RGBA32F);
 static_assert(static_cast<int>(ToneMap::kAces) == QUINCUNX_ACES);
 
-void read_format(Reader& read, const char* field, std::int32_t number, PixelFormat& to) {
-  read.value(field, number, PixelFormat::kRGBA32F, to, QUINCUNX_R8);
-}
+// Pairs of fields, as ToC and Reader take them.
+constexpr auto kPairs = [](auto& c, auto& own, auto& pair) {
+  auto& resolve = own.resolve;
+  auto& given = resolve.conventions;
+  pair("moving_objects", c.moving_objects, own.needs.moving_objects);
+  pair("camera_motion", c.camera_motion, own.needs.camera_motion);
+  pair("transparents", c.transparents, own.needs.transparents);
+  pair("background", c.background, own.needs.background);
+  pair("method", c.method, resolve.method, Method::kTemporal);
+  pair("output_width", c.output_width, resolve.output_extent.width);
+  pair("output_height", c.output_height, resolve.output_extent.height);
+  pair("target_width", c.target_width, resolve.target_extent.width);
+  pair("target_height", c.target_height, resolve.target_extent.height);
+  pair("colour_format", c.colour_format, resolve.colour, PixelFormat::kRGBA32F);
+  pair("velocity_format", c.velocity_format, resolve.velocity, PixelFormat::kRGBA32F);
+  pair("linear_format", c.linear_format, resolve.output.linear, PixelFormat::kRGBA32F);
+  pair("storage", c.storage, resolve.targets.storage, Storage::kImage);
+  pair("targets", c.targets, resolve.targets.placement, Targets::kPlaced);
+  pair("shading", c.shading, resolve.targets.shading, Shading::kCheckerboard);
+  pair("present", c.present, resolve.output.present);
+  pair("clear", c.clear, resolve.targets.clear);
+  pair("tone_map", c.tone_map, resolve.output.tone_map, ToneMap::kAces);
+  pair("dither", c.dither, resolve.output.dither);
+  pair("clamp_ringing", c.clamp_ringing, resolve.filter.clamp_ringing);
+  pair("noise_moves", c.noise_moves, resolve.filter.noise_moves);
+  pair("drawn_velocity", c.drawn_velocity, given.drawn_velocity, DrawnVelocity::kDilated);
+  pair("depth_convention", c.depth_convention, given.depth, DepthConvention::kLinear);
+  pair("clip_space", c.clip_space, given.clip_space, ClipSpace::kVulkan);
+  pair("velocity_unit", c.velocity_unit, given.velocity_unit, VelocityUnit::kNdc);
+  pair("velocity_backward", c.velocity_backward, given.velocity_backward);
+  pair("velocity_up", c.velocity_up, given.velocity_up);
+  pair("velocity_jittered", c.velocity_jittered, given.velocity_jittered);
+  pair("origin", c.origin, given.origin, Origin::kBottom);
+  pair("sky_motion", c.sky_motion, given.sky_motion, SkyMotion::kEvidence);
+  pair("two_frame_form", c.two_frame_form, resolve.quincunx.form, TwoFrameForm::kReprojected);
+  pair("sampling", c.sampling, resolve.quincunx.sampling, Sampling::kBilinear);
+  pair("temporal_preset", c.temporal_preset, resolve.temporal.preset, TemporalPreset::kQuality);
+  pair("temporal_view", c.temporal_view, resolve.temporal.view, TemporalView::kFar);
+  pair("history_format", c.history_format, resolve.temporal.history, PixelFormat::kRGBA32F);
+  pair("blur_samples", c.blur_samples, resolve.blur.samples);
+  pair("shutter", c.shutter, resolve.blur.shutter);
+  pair("sharpness", c.sharpness, resolve.sharpness);
+  pair("grain", c.grain, resolve.filter.grain);
+  pair("velocity_weight", c.velocity_weight, resolve.quincunx.velocity_weight);
+  pair("residual_weight", c.residual_weight, resolve.quincunx.residual_weight);
+  pair("min_output_width", c.min_output_width, resolve.output.min_extent.width);
+  pair("min_output_height", c.min_output_height, resolve.output.min_extent.height);
+  pair("particle_target_width", c.particle_target_width, resolve.targets.particle_extent.width);
+  pair("particle_target_height", c.particle_target_height, resolve.targets.particle_extent.height);
+  pair("focus_width", c.focus_width, resolve.focus.extent.width);
+  pair("focus_height", c.focus_height, resolve.focus.extent.height);
+  pair("focus_target_width", c.focus_target_width, resolve.focus.target_extent.width);
+  pair("focus_target_height", c.focus_target_height, resolve.focus.target_extent.height);
+  pair("focus_mask", c.focus_mask, resolve.focus.mask);
+  pair("measures_content", c.measures_content, resolve.control.measures_content);
+  pair("fades", c.fades, resolve.control.fades);
+  pair("temporal_noise", c.temporal_noise, resolve.temporal.noise);
+  pair("checks_motion", c.checks_motion, resolve.checks_motion);
+};
 
 }  // namespace
 
 quincunx_settings to_c(const SceneSettings& settings) {
-  const ResolveSettings& resolve = settings.resolve;
-  quincunx_settings to = {};
-  to.moving_objects = settings.needs.moving_objects;
-  to.camera_motion = settings.needs.camera_motion;
-  to.transparents = settings.needs.transparents;
-  to.background = settings.needs.background;
-  to.method = static_cast<int>(resolve.method);
-  to.output_width = resolve.output_extent.width;
-  to.output_height = resolve.output_extent.height;
-  to.target_width = resolve.target_extent.width;
-  to.target_height = resolve.target_extent.height;
-  to.colour_format = static_cast<int>(resolve.colour);
-  to.velocity_format = static_cast<int>(resolve.velocity);
-  to.linear_format = static_cast<int>(resolve.output.linear);
-  to.storage = static_cast<int>(resolve.targets.storage);
-  to.targets = static_cast<int>(resolve.targets.placement);
-  to.shading = static_cast<int>(resolve.targets.shading);
-  to.present = resolve.output.present;
-  to.clear = resolve.targets.clear;
-  to.tone_map = static_cast<int>(resolve.output.tone_map);
-  to.dither = resolve.output.dither;
-  to.clamp_ringing = resolve.filter.clamp_ringing;
-  to.noise_moves = resolve.filter.noise_moves;
-  to.drawn_velocity = static_cast<int>(resolve.conventions.drawn_velocity);
-  const InputConventions& given = resolve.conventions;
-  to.depth_convention = static_cast<int>(given.depth);
-  to.clip_space = static_cast<int>(given.clip_space);
-  to.velocity_unit = static_cast<int>(given.velocity_unit);
-  to.velocity_backward = given.velocity_backward;
-  to.velocity_up = given.velocity_up;
-  to.velocity_jittered = given.velocity_jittered;
-  to.origin = static_cast<int>(given.origin);
-  to.sky_motion = static_cast<int>(resolve.conventions.sky_motion);
-  to.two_frame_form = static_cast<int>(resolve.quincunx.form);
-  to.sampling = static_cast<int>(resolve.quincunx.sampling);
-  to.temporal_preset = static_cast<int>(resolve.temporal.preset);
-  to.temporal_view = static_cast<int>(resolve.temporal.view);
-  to.history_format = static_cast<int>(resolve.temporal.history);
-  to.blur_samples = resolve.blur.samples;
-  to.shutter = resolve.blur.shutter;
-  to.sharpness = resolve.sharpness;
-  to.grain = resolve.filter.grain;
-  to.velocity_weight = resolve.quincunx.velocity_weight;
-  to.residual_weight = resolve.quincunx.residual_weight;
-  to.min_output_width = resolve.output.min_extent.width;
-  to.min_output_height = resolve.output.min_extent.height;
-  to.particle_target_width = resolve.targets.particle_extent.width;
-  to.particle_target_height = resolve.targets.particle_extent.height;
-  to.focus_width = resolve.focus.extent.width;
-  to.focus_height = resolve.focus.extent.height;
-  to.focus_target_width = resolve.focus.target_extent.width;
-  to.focus_target_height = resolve.focus.target_extent.height;
-  to.focus_mask = resolve.focus.mask;
-  to.measures_content = resolve.control.measures_content;
-  to.fades = resolve.control.fades;
-  to.temporal_noise = resolve.temporal.noise;
-  to.checks_motion = resolve.checks_motion;
-  return to;
+  return to_c<quincunx_settings>(settings, kPairs);
 }
 
 Result<SceneSettings> from_c(const quincunx_settings* settings) {
   SceneSettings to;
-  quincunx_settings from = to_c(to);
-  if (Status status = read_sized(settings, "settings", from); !status.ok()) return status;
-  to.needs = {.moving_objects = from.moving_objects != 0,
-              .camera_motion = from.camera_motion != 0,
-              .transparents = from.transparents != 0,
-              .background = from.background != 0};
-  ResolveSettings& resolve = to.resolve;
-  Reader read("settings");
-  read.value("method", from.method, Method::kTemporal, resolve.method);
-  resolve.output_extent = {from.output_width, from.output_height};
-  resolve.target_extent = {from.target_width, from.target_height};
-  read_format(read, "colour_format", from.colour_format, resolve.colour);
-  read_format(read, "velocity_format", from.velocity_format, resolve.velocity);
-  read_format(read, "linear_format", from.linear_format, resolve.output.linear);
-  read.value("storage", from.storage, Storage::kImage, resolve.targets.storage);
-  read.value("targets", from.targets, Targets::kPlaced, resolve.targets.placement);
-  read.value("shading", from.shading, Shading::kCheckerboard, resolve.targets.shading);
-  resolve.output.present = from.present != 0;
-  resolve.targets.clear = from.clear != 0;
-  read.value("tone_map", from.tone_map, ToneMap::kAces, resolve.output.tone_map);
-  resolve.output.dither = from.dither != 0;
-  resolve.filter.clamp_ringing = from.clamp_ringing != 0;
-  resolve.filter.noise_moves = from.noise_moves != 0;
-  read.value("drawn_velocity", from.drawn_velocity, DrawnVelocity::kDilated,
-             resolve.conventions.drawn_velocity);
-  InputConventions& given = resolve.conventions;
-  read.value("depth_convention", from.depth_convention, DepthConvention::kLinear, given.depth);
-  read.value("clip_space", from.clip_space, ClipSpace::kVulkan, given.clip_space);
-  read.value("velocity_unit", from.velocity_unit, VelocityUnit::kNdc, given.velocity_unit);
-  given.velocity_backward = from.velocity_backward != 0;
-  given.velocity_up = from.velocity_up != 0;
-  given.velocity_jittered = from.velocity_jittered != 0;
-  read.value("origin", from.origin, Origin::kBottom, given.origin);
-  read.value("sky_motion", from.sky_motion, SkyMotion::kEvidence, resolve.conventions.sky_motion);
-  read.value("two_frame_form", from.two_frame_form, TwoFrameForm::kReprojected, resolve.quincunx.form);
-  read.value("sampling", from.sampling, Sampling::kBilinear, resolve.quincunx.sampling);
-  read.value("temporal_preset", from.temporal_preset, TemporalPreset::kQuality, resolve.temporal.preset);
-  read.value("temporal_view", from.temporal_view, TemporalView::kFar, resolve.temporal.view);
-  read_format(read, "history_format", from.history_format, resolve.temporal.history);
-  resolve.blur = {.shutter = from.shutter, .samples = from.blur_samples};
-  resolve.sharpness = from.sharpness;
-  resolve.filter.grain = from.grain;
-  resolve.quincunx.velocity_weight = from.velocity_weight;
-  resolve.quincunx.residual_weight = from.residual_weight;
-  resolve.output.min_extent = {from.min_output_width, from.min_output_height};
-  resolve.targets.particle_extent = {from.particle_target_width, from.particle_target_height};
-  resolve.focus = {.extent = {from.focus_width, from.focus_height},
-                   .target_extent = {from.focus_target_width, from.focus_target_height},
-                   .mask = from.focus_mask != 0};
-  resolve.control.measures_content = from.measures_content != 0;
-  resolve.control.fades = from.fades != 0;
-  resolve.checks_motion = from.checks_motion != 0;
-  resolve.temporal.noise = from.temporal_noise;
-  if (!read.status().ok()) return read.status();
+  quincunx_settings from;
+  if (Status status = read_settings(settings, from, to, kPairs); !status.ok()) return status;
   return to;
 }
 

@@ -2,6 +2,7 @@
 // The frame of every function of the C interface: what it makes, what is wrong, and no exception that gets out.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <utility>
@@ -35,6 +36,22 @@ quincunx_status guarded(const Call& call) noexcept {
 
 inline Status null(const char* name) {
   return Status::invalid(std::string(name) + " is NULL; it must point to one");
+}
+
+// A pointer that must not be NULL, with the name of its parameter.
+struct Needed {
+  const char* name;
+  const void* pointer;
+};
+
+// The same, if none of those is NULL.
+template <typename Call>
+quincunx_status guarded(std::initializer_list<Needed> all, const Call& call) noexcept {
+  return guarded([&]() -> Status {
+    for (const Needed& needed : all)
+      if (needed.pointer == nullptr) return null(needed.name);
+    return call();
+  });
 }
 
 template <typename Object>

@@ -8,9 +8,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "quincunx/c/frame.h"
 #include "quincunx/c/settings.h"
+#include "quincunx/image.h"
 #include "quincunx/status.h"
 
 namespace quincunx::c {
@@ -91,6 +93,19 @@ class Reader {
           fmt::format("{}.{} is {}; it must lie in [{}, {}]", name_, field, number, first, highest));
     }
   }
+  // As the function that pairs fields calls it: see ToC.
+  template <typename Value>
+  void operator()(const char* field, std::int32_t number, Value& to, Value last) {
+    value(field, number, last, to, std::is_same_v<Value, PixelFormat> ? QUINCUNX_R8 : 0);
+  }
+  template <typename Field, typename Value>
+  void operator()(const char*, const Field& from, Value& to) {
+    if constexpr (std::is_same_v<Value, bool>) {
+      to = from != 0;
+    } else {
+      to = from;
+    }
+  }
   const Status& status() const { return status_; }
 
  private:
@@ -98,11 +113,38 @@ class Reader {
   Status status_;
 };
 
+// Copies the library's fields to those of C. A function pairs both, so that each pair stands in one place: it calls
+// ToC, or a Reader for the way back, with a name, C's field, the library's, and of an enumeration its last value.
+struct ToC {
+  template <typename Field, typename Value>
+  void operator()(const char*, Field& to, const Value& from, Value = {}) const {
+    to = static_cast<Field>(from);
+  }
+};
+
 // Writes the fields that the caller has; its size stays.
 template <typename Struct>
 void write_sized(Struct own, Struct* to) {
   own.struct_size = to->struct_size;
   std::memcpy(to, &own, std::min(to->struct_size, sizeof(Struct)));
+}
+
+template <typename Struct, typename Own, typename Pairs>
+Struct to_c(const Own& own, const Pairs& pairs) {
+  Struct to = {};
+  constexpr ToC kCopy;
+  pairs(to, own, kCopy);
+  return to;
+}
+
+// Reads what the caller gives into `own`, which holds the defaults; `from`: the struct of C.
+template <typename Struct, typename Own, typename Pairs>
+Status read_settings(const Struct* given, Struct& from, Own& own, const Pairs& pairs) {
+  from = to_c<Struct>(own, pairs);
+  if (Status status = read_sized(given, "settings", from); !status.ok()) return status;
+  Reader read("settings");
+  pairs(from, own, read);
+  return read.status();
 }
 
 }  // namespace quincunx::c
