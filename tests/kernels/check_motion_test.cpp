@@ -9,7 +9,7 @@
 #include "error_table.h"
 #include "kernel_fixture.h"
 #include "pass_rig.h"
-#include "passes/pass_check_motion.h"
+#include "passes/pass_measure.h"
 #include "picture_params.h"
 
 namespace quincunx {

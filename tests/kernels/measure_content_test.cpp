@@ -9,7 +9,7 @@
 
 #include "kernel_fixture.h"
 #include "pass_rig.h"
-#include "passes/pass_measure_content.h"
+#include "passes/pass_measure.h"
 #include "picture_params.h"
 #include "temporal/tile.h"
 

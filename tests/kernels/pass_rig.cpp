@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pass_rig.h"
 
-#include "plan/native_frame.h"
+#include "plan/inputs.h"
 
 #include <cstdio>
 #include <cstdlib>
@@ -28,7 +28,7 @@ void PassRig::run(const FrameInputs& current, const FrameInputs& previous, Exten
   PassTables tables(impl(), {current.render_extent, output, output});
   PassFrame frame{.queue = impl().queue,
                   .tables = tables,
-                  .current = current,
+                  .inputs = current,
                   .previous = previous,
                   .jitter_motion = jitter_motion(current, previous),
                   .has_history = true,

@@ -272,6 +272,49 @@ TEST(Service, TheMemoryOfThePreviousFrameIsRefused) {
   EXPECT_TRUE(rig.dispatch(inputs).ok()) << "after a reset nothing of the past is read";
 }
 
+TEST(Service, EveryImageThatIsReadAgainNeedsMemoryOfItsOwn) {
+  struct Case {
+    const char* method;
+    std::string kept;  // what the next frame reads
+    float residual_weight = 0;
+    SkyMotion sky = SkyMotion::kAsDrawn;
+  };
+  const std::pair<const char*, ImageView FrameInputs::*> images[] = {{"colour", &FrameInputs::colour},
+                                                                     {"velocity", &FrameInputs::velocity},
+                                                                     {"depth", &FrameInputs::depth},
+                                                                     {"reactive", &FrameInputs::reactive}};
+  for (const Case& some :
+       {Case{"bilinear", ""}, Case{"quincunx:mean", "colour reactive "},
+        Case{"quincunx:velocity", "colour velocity reactive "},
+        Case{"quincunx:point", "colour velocity reactive "},
+        Case{"quincunx:reprojected", "colour depth reactive "},
+        Case{"quincunx:reprojected", "colour velocity depth reactive ", 1},
+        Case{"temporal:fast", "depth reactive "}, Case{"temporal:balanced", "depth reactive "},
+        Case{"temporal:quality", "depth reactive "},
+        Case{"temporal:balanced", "colour depth reactive ", 0, SkyMotion::kEvidence}}) {
+    SCOPED_TRACE(some.method);
+    ResolveSettings settings;
+    apply(parse_variant(some.method).value(), settings);
+    settings.quincunx.residual_weight = some.residual_weight;
+    settings.conventions.sky_motion = some.sky;
+    ServiceRig rig({}, settings, {16, 16}, {16, 16});
+    std::string kept;
+    for (const auto& [name, image] : images) {
+      const FrameInputs first = rig.upload({.render = {16, 16}, .reset = true});
+      ASSERT_TRUE(rig.dispatch(first).ok());
+      FrameInputs next = rig.upload({.render = {16, 16}});
+      next.*image = first.*image;
+      const FrameReport report = rig.dispatch(next);
+      if (report.ok()) continue;
+      kept += std::string(name) + " ";
+      EXPECT_TRUE(
+          report.status.message().starts_with(std::string(name) + " is the memory of the previous frame"))
+          << report.status.message();
+    }
+    EXPECT_EQ(kept, some.kept);
+  }
+}
+
 TEST(Service, ReportsComeInOrderWithTimesAndBytes) {
   ServiceRig rig({}, Method::kQuincunx, {64, 64}, {64, 64});
   rig.service().allow_timing_waits(true);  // matters where the device's events are not believed

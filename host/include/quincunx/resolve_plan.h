@@ -18,6 +18,8 @@
 
 namespace quincunx {
 
+struct FrameInputs;
+
 // Everything that the scene will ever do while this plan is used.
 struct SceneNeeds {
   bool moving_objects = true;  // anything but the camera moves
@@ -190,6 +192,8 @@ struct PlannedBuffer {
   Scaling scaling = Scaling::kScales;
   std::uint64_t bytes = 0;
   bool owned = false;  // by the service; else the caller brings it
+  // Where the caller brings it, with this frame or (kHistory) the one before; null: it is no image of FrameInputs.
+  ImageView FrameInputs::*input = nullptr;
 
   friend bool operator==(const PlannedBuffer&, const PlannedBuffer&) = default;
 };

@@ -7,7 +7,6 @@
 
 #include "c_interface/c_settings.h"
 #include "c_interface/sized_struct.h"
-#include "plan/resources.h"
 #include "quincunx/c/settings.h"
 
 namespace quincunx::c {
@@ -72,27 +71,14 @@ Status read_into(const char* name, const quincunx_image* given, Storage storage,
   return {};
 }
 
-// Whether the plan reads such an image; of what it does not read nothing is checked and nothing copied.
-bool reads(const ResolvePlan& plan, const InputSlot& slot) {
-  if (slot.image == &FrameInputs::exposure_image || slot.image == &FrameInputs::fading_from) return true;
-  return std::any_of(std::begin(kResources), std::end(kResources), [&](const ResourceInfo& info) {
-    return info.input != nullptr && !is_previous(info.resource) && info.input->image == slot.image &&
-           std::any_of(plan.buffers.begin(), plan.buffers.end(), [&](const PlannedBuffer& buffer) {
-             return buffer.name == info.name && !buffer.owned;
-           });
-  });
-}
-
-Status read_images(const ResolvePlan& plan,
-                   const std::array<const quincunx_image*, kInputSlots.size()>& images, FrameInputs& to,
-                   HostInputs& host) {
-  for (std::size_t i = 0; i < kInputSlots.size(); ++i) {
-    const InputSlot& slot = kInputSlots[i];
-    if (!reads(plan, slot)) continue;
-    const bool is_buffer =
-        slot.image == &FrameInputs::exposure_image || slot.image == &FrameInputs::fading_from;
-    const Storage storage = is_buffer ? Storage::kBuffer : plan.settings.targets.storage;
-    if (Status status = read_into(slot.name, images[i], storage, to.*slot.image, host[i]); !status.ok())
+Status read_images(const ResolvePlan& plan, const CInputs& from, FrameInputs& to, HostInputs& host) {
+  for (std::size_t i = 0; i < std::size(kInputs); ++i) {
+    const InputImage& input = kInputs[i];
+    // Nothing of what the plan does not read is checked or copied.
+    if (input.viewport != nullptr && planned_for(plan, input) == nullptr) continue;
+    const Storage storage = input.viewport != nullptr ? plan.settings.targets.storage : Storage::kBuffer;
+    if (Status status = read_into(input.name_in_c(), input.in_c(from), storage, to.*input.image, host[i]);
+        !status.ok())
       return status;
   }
   return {};
@@ -132,24 +118,19 @@ Status read_sync(const quincunx_sync* given, FrameSync& to) {
 
 // All of a frame but its focus.
 Status read_inputs(const ResolvePlan& plan, const quincunx_inputs& in, FrameInputs& to, HostInputs& host) {
-  quincunx_particles particles = {};
-  quincunx_fade fade = {};
-  fade.weight = 1;
+  CInputs from = {.frame = in};
+  from.fade.weight = 1;
   if (in.particles != nullptr) {
-    if (Status status = read_sized(in.particles, "particles", particles); !status.ok()) return status;
+    if (Status status = read_sized(in.particles, "particles", from.particles); !status.ok()) return status;
   }
   if (in.fade != nullptr) {
-    if (Status status = read_sized(in.fade, "fade", fade); !status.ok()) return status;
-    if (fade.from == nullptr) return Status::invalid("fade.from is NULL; it must point to an image");
+    if (Status status = read_sized(in.fade, "fade", from.fade); !status.ok()) return status;
+    if (from.fade.from == nullptr) return Status::invalid("fade.from is NULL; it must point to an image");
   }
-  const Status status = read_images(plan,
-                                    {in.colour, in.depth, in.velocity, in.reactive, particles.colour,
-                                     particles.depth, particles.reactive, in.exposure_image, fade.from},
-                                    to, host);
-  if (!status.ok()) return status;
+  if (Status status = read_images(plan, from, to, host); !status.ok()) return status;
   read_numbers(in, to);
-  to.particle_render_extent = {particles.render_width, particles.render_height};
-  to.fade_weight = fade.weight;
+  to.particle_render_extent = {from.particles.render_width, from.particles.render_height};
+  to.fade_weight = from.fade.weight;
   return {};
 }
 
@@ -308,17 +289,32 @@ Status make(const Device& device, Image& image, Extent extent, const ImageView& 
 
 }  // namespace
 
+namespace {
+
+// Returns the size in which an input is allocated.
+Extent target_of(const InputImage& input, const ResolveSettings& settings) {
+  if (input.image == &FrameInputs::exposure_image) return {1, 1};
+  if (input.viewport == nullptr) return settings.output_extent;
+  return input.viewport == &FrameInputs::particle_render_extent ? settings.targets.particle_extent
+                                                                : settings.target_extent;
+}
+
+}  // namespace
+
 Status HostStream::bring(FrameInputs& inputs, const HostInputs& host) {
-  for (std::size_t i = 0; i < kInputSlots.size(); ++i) {
+  for (std::size_t i = 0; i < std::size(kInputs); ++i) {
     if (host[i].texels == nullptr) continue;
-    const InputSlot& slot = kInputSlots[i];
-    ImageView& view = inputs.*slot.image;
-    Image& image = images_[slot.kept ? turn_ : 0][i];
-    const Extent size = slot.size != nullptr ? slot.size(settings_) : Extent{1, 1};
-    const Extent used = slot.viewport != nullptr ? inputs.*slot.viewport : size;
+    const InputImage& input = kInputs[i];
+    ImageView& view = inputs.*input.image;
+    const bool is_kept = std::any_of(
+        plan_.buffers.begin(), plan_.buffers.end(),
+        [&](const PlannedBuffer& buffer) { return buffer.input == input.image && !is_input(buffer); });
+    Image& image = images_[is_kept ? turn_ : 0][i];
+    const Extent size = target_of(input, plan_.settings);
+    const Extent used = input.viewport != nullptr ? inputs.*input.viewport : size;
     if (Status status = make(device_, image, size, view); !status.ok()) return status;
     view = image.view();
-    if (slot.viewport != nullptr && settings_.targets.placement == Targets::kPlaced) {
+    if (input.viewport != nullptr && plan_.settings.targets.placement == Targets::kPlaced) {
       view.extent = used;
       view.pitch = 0;
     }

@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 
+#include "plan/resources.h"
 #include "quincunx/c/frame.h"
 #include "quincunx/device.h"
 #include "quincunx/resolve_service.h"
@@ -19,40 +21,9 @@ struct HostMemory {
   std::size_t row_bytes = 0;  // from one row to the next; 0: tightly packed
 };
 
-// An image that a frame brings.
-struct InputSlot {
-  const char* name;
-  ImageView FrameInputs::*image;
-  Extent FrameInputs::*viewport;                    // null: the whole image
-  Extent (*size)(const ResolveSettings& settings);  // of what is allocated; null: 1x1
-  bool kept;                                        // the next frame may read it
-};
-inline Extent target_extent_of(const ResolveSettings& settings) {
-  return settings.target_extent;
-}
-inline Extent particle_extent_of(const ResolveSettings& settings) {
-  return settings.targets.particle_extent;
-}
-inline Extent output_extent_of(const ResolveSettings& settings) {
-  return settings.output_extent;
-}
-constexpr std::array<InputSlot, 9> kInputSlots = {{
-    {"colour", &FrameInputs::colour, &FrameInputs::render_extent, target_extent_of, true},
-    {"depth", &FrameInputs::depth, &FrameInputs::render_extent, target_extent_of, true},
-    {"velocity", &FrameInputs::velocity, &FrameInputs::render_extent, target_extent_of, true},
-    {"reactive", &FrameInputs::reactive, &FrameInputs::render_extent, target_extent_of, true},
-    {"particles.colour", &FrameInputs::particle_colour, &FrameInputs::particle_render_extent,
-     particle_extent_of, false},
-    {"particles.depth", &FrameInputs::particle_depth, &FrameInputs::particle_render_extent,
-     particle_extent_of, false},
-    {"particles.reactive", &FrameInputs::particle_reactive, &FrameInputs::particle_render_extent,
-     particle_extent_of, false},
-    {"exposure_image", &FrameInputs::exposure_image, nullptr, nullptr, false},
-    {"fade.from", &FrameInputs::fading_from, nullptr, output_extent_of, false},
-}};
 constexpr std::array kOutputImages = {&FrameOutputs::linear, &FrameOutputs::presented};
 
-using HostInputs = std::array<HostMemory, kInputSlots.size()>;
+using HostInputs = std::array<HostMemory, std::size(kInputs)>;  // of each row
 
 struct Frame {
   FrameInputs inputs;
@@ -87,7 +58,7 @@ Result<ContentStatistics> content_of(const quincunx_content* given);
 // its Device.
 class HostStream {
  public:
-  HostStream(const Device& device, const ResolvePlan& plan) : device_(device), settings_(plan.settings) {}
+  HostStream(const Device& device, const ResolvePlan& plan) : device_(device), plan_(plan) {}
 
   // Copies inputs of host memory to the device and makes the frame's views name the copies. Errors: of the device.
   Status bring(FrameInputs& inputs, const HostInputs& host);
@@ -95,10 +66,10 @@ class HostStream {
   void advance() { turn_ = 1 - turn_; }  // the frame was taken
 
  private:
-  using Images = std::array<Image, kInputSlots.size()>;
+  using Images = std::array<Image, std::size(kInputs)>;
 
   Device device_;
-  ResolveSettings settings_;
+  ResolvePlan plan_;
   std::array<Images, 2> images_;  // this frame's and those of the one before, in turns
   std::size_t turn_ = 0;
 };

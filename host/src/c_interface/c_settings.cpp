@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "c_interface/sized_struct.h"
+#include "plan/resources.h"
 
 namespace quincunx::c {
 
@@ -132,21 +133,19 @@ constexpr std::pair<std::string_view, std::string_view> kNames[] = {
     {"render_extent", "render_width x render_height"},
     {"output_extent", "output_width x output_height"},
     {"particle_render_extent", "particles.render_width x render_height"},
-    {"particle_colour", "particles.colour"},
-    {"particle_depth", "particles.depth"},
-    {"particle_reactive", "particles.reactive"},
     {"jitter.x", "jitter_x"},
     {"jitter.y", "jitter_y"},
     {"velocity_scale.x", "velocity_scale_x"},
     {"velocity_scale.y", "velocity_scale_y"},
     {"camera.clip_to_previous_clip", "clip_to_previous_clip"},
-    {"fading_from", "fade.from"},
     {"fade_weight", "fade.weight"},
 };
 
 std::string_view c_name(std::string_view name) {
   for (const auto& [own, in_c] : kNames)
     if (name == own) return in_c;
+  for (const InputImage& input : kInputs)
+    if (name == input.name) return input.name_in_c();
   return name;
 }
 

@@ -42,14 +42,6 @@ template <>
 inline constexpr std::size_t kFirstSize<quincunx_sync> = 32;
 template <>
 inline constexpr std::size_t kFirstSize<quincunx_content> = 64;
-// Version 2; a field that is appended raises the left side alone.
-static_assert(sizeof(void*) != 8 ||
-              (sizeof(quincunx_settings) == 232 && sizeof(quincunx_needs) == 48 &&
-               sizeof(quincunx_image) == 48 && sizeof(quincunx_inputs) == 208 &&
-               sizeof(quincunx_outputs) == 24 && sizeof(quincunx_report) == 112 &&
-               sizeof(quincunx_particles) == 40 && sizeof(quincunx_focus) == 48 &&
-               sizeof(quincunx_fade) == 24 && sizeof(quincunx_sync) == 32 && sizeof(quincunx_content) == 64));
-
 template <typename Struct>
 Status check_size(const Struct* given, const char* name) {
   if (given == nullptr) return Status::invalid(fmt::format("{} is NULL; it must point to one", name));

@@ -8,25 +8,25 @@
 
 namespace quincunx {
 
-FarPlaces far_places(const FrameInputs& frame, Extent output) {
+FarPlaces far_places(const FrameInputs& inputs, Extent output) {
   const double aspect = static_cast<double>(output.width) / output.height;
-  const double width = frame.render_extent.width;
-  const double height = frame.render_extent.height;
+  const double width = inputs.render_extent.width;
+  const double height = inputs.render_extent.height;
   return {.step_x = static_cast<float>(aspect / width),
           .step_y = static_cast<float>(1 / height),
-          .start_x = static_cast<float>(((.5 + frame.jitter.x) / width - .5) * aspect),
-          .start_y = static_cast<float>((.5 + frame.jitter.y) / height - .5)};
+          .start_x = static_cast<float>(((.5 + inputs.jitter.x) / width - .5) * aspect),
+          .start_y = static_cast<float>((.5 + inputs.jitter.y) / height - .5)};
 }
 
-CameraVelocity camera_params(const FrameInputs& frame) {
-  const double width = frame.render_extent.width;
-  const double height = frame.render_extent.height;
+CameraVelocity camera_params(const FrameInputs& inputs) {
+  const double width = inputs.render_extent.width;
+  const double height = inputs.render_extent.height;
   CameraVelocity camera{};
   camera.step_x = static_cast<float>(2 / width);
   camera.step_y = static_cast<float>(-2 / height);
-  camera.start_x = static_cast<float>((1 + 2.0 * frame.jitter.x) / width - 1);
-  camera.start_y = static_cast<float>(1 - (1 + 2.0 * frame.jitter.y) / height);
-  std::copy(frame.camera.clip_to_previous_clip.begin(), frame.camera.clip_to_previous_clip.end(),
+  camera.start_x = static_cast<float>((1 + 2.0 * inputs.jitter.x) / width - 1);
+  camera.start_y = static_cast<float>(1 - (1 + 2.0 * inputs.jitter.y) / height);
+  std::copy(inputs.camera.clip_to_previous_clip.begin(), inputs.camera.clip_to_previous_clip.end(),
             camera.to_previous);
   return camera;
 }
@@ -50,12 +50,12 @@ Axis axis_between(int from, double from_jitter, int to, double to_jitter) {
 
 }  // namespace
 
-PreviousPlaces previous_places(const FrameInputs& current, const FrameInputs& previous) {
-  const Axis x = axis_between(current.render_extent.width, current.jitter.x, previous.render_extent.width,
+PreviousPlaces previous_places(const FrameInputs& inputs, const FrameInputs& previous) {
+  const Axis x = axis_between(inputs.render_extent.width, inputs.jitter.x, previous.render_extent.width,
                               previous.jitter.x);
-  const Axis y = axis_between(current.render_extent.height, current.jitter.y, previous.render_extent.height,
+  const Axis y = axis_between(inputs.render_extent.height, inputs.jitter.y, previous.render_extent.height,
                               previous.jitter.y);
-  const VelocityScale to_previous = velocity_scale_to(current, previous.render_extent);
+  const VelocityScale to_previous = velocity_scale_to(inputs, previous.render_extent);
   return {.step_x = x.step,
           .step_y = y.step,
           .start_x = x.start,
@@ -66,13 +66,13 @@ PreviousPlaces previous_places(const FrameInputs& current, const FrameInputs& pr
           .edge_y = -.5f - previous.jitter.y};
 }
 
-int shaded_parity(const PlanFacts& facts, const FrameInputs& frame) {
-  return facts.fills() ? frame.parity : -1;
+int shaded_parity(const PlanFacts& facts, const FrameInputs& inputs) {
+  return facts.fills() ? inputs.parity : -1;
 }
 
 TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts) {
   const Extent output = frame.output;
-  const Extent now = frame.current.render_extent;
+  const Extent now = frame.inputs.render_extent;
   const Extent before = frame.previous.render_extent;
   const Extent tiles = extent_of(Area::kTiles, frame.extents());
   const Ratio spacing = ratio_of(output, now);
@@ -93,7 +93,7 @@ TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, c
           .spacing_y = spacing.y,
           .tiles_x = tiles.width,
           .tiles_y = tiles.height,
-          .parity = shaded_parity(facts, frame.current)};
+          .parity = shaded_parity(facts, frame.inputs)};
 }
 
 int rows_per_item(const WorkShape& shape) {
@@ -119,21 +119,21 @@ struct SamplePlaces {
   Ratio start;
 };
 
-SamplePlaces places_of(const FrameInputs& frame, Extent output) {
-  const Ratio spacing = ratio_of(output, frame.render_extent);
-  return {spacing, {(.5f + frame.jitter.x) * spacing.x, (.5f + frame.jitter.y) * spacing.y}};
+SamplePlaces places_of(const FrameInputs& inputs, Extent output) {
+  const Ratio spacing = ratio_of(output, inputs.render_extent);
+  return {spacing, {(.5f + inputs.jitter.x) * spacing.x, (.5f + inputs.jitter.y) * spacing.y}};
 }
 
 }  // namespace
 
 LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent extent) {
-  const FrameInputs& current = frame.current;
-  const Extent render = current.render_extent;
+  const FrameInputs& inputs = frame.inputs;
+  const Extent render = inputs.render_extent;
   const Extent before = frame.previous.render_extent;
   const Extent tiles = extent_of(Area::kTiles, frame.extents());
-  const SamplePlaces now = places_of(current, frame.output);
+  const SamplePlaces now = places_of(inputs, frame.output);
   const SamplePlaces previous = places_of(frame.previous, frame.output);
-  const VelocityScale motion = velocity_scale_to(current, frame.output);
+  const VelocityScale motion = velocity_scale_to(inputs, frame.output);
   const Ratio to_previous = ratio_of(before, frame.output);
   return {.width = render.width,
           .height = render.height,
@@ -159,11 +159,11 @@ LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent 
           .columns_per_item = columns_per_item(shape, extent.width, 1)};
 }
 
-HistorySamples history_samples(const FrameInputs& frame, Extent output, TexelLayout depth) {
-  const SamplePlaces places = places_of(frame, output);
+HistorySamples history_samples(const FrameInputs& inputs, Extent output, TexelLayout depth) {
+  const SamplePlaces places = places_of(inputs, output);
   return {.depth = depth,
-          .width = frame.render_extent.width,
-          .height = frame.render_extent.height,
+          .width = inputs.render_extent.width,
+          .height = inputs.render_extent.height,
           .spacing_x = places.spacing.x,
           .spacing_y = places.spacing.y,
           .start_x = places.start.x,

@@ -13,9 +13,9 @@
 namespace quincunx {
 
 // Returns where samples lie in the picture whose output has this extent.
-FarPlaces far_places(const FrameInputs& frame, Extent output);
+FarPlaces far_places(const FrameInputs& inputs, Extent output);
 
-CameraVelocity camera_params(const FrameInputs& frame);
+CameraVelocity camera_params(const FrameInputs& inputs);
 
 // Returns the factor from uv to the units of a velocity that `scale` takes to uv; a scale of 0 takes all motion away.
 float inverse_scale(double scale);
@@ -29,7 +29,7 @@ struct PreviousPlaces {
   float edge_x, edge_y;      // the left and the upper edge of the previous frame, as texel coordinates
 };
 
-PreviousPlaces previous_places(const FrameInputs& current, const FrameInputs& previous);
+PreviousPlaces previous_places(const FrameInputs& inputs, const FrameInputs& previous);
 
 // Returns how far a sample reaches in resolve_reprojected, in render pixels, on an axis with `render` samples under
 // `output` pixels: the fewer samples, the sharper. Within [0.875, 1]; measured, see docs/pipeline.md.
@@ -38,7 +38,7 @@ inline double sample_reach(int render, int output) {
 }
 
 // Returns which samples of a frame are shaded: TemporalParams::parity.
-int shaded_parity(const PlanFacts& facts, const FrameInputs& frame);
+int shaded_parity(const PlanFacts& facts, const FrameInputs& inputs);
 
 // Returns those of resolve_temporal and resolve_layers, without reactive values and a view.
 TemporalParams temporal_params(const PassFrame& frame, const WorkShape& shape, const PlanFacts& facts);
@@ -51,12 +51,10 @@ int rows_per_item(const WorkShape& shape);
 TemporalDisplayParams temporal_display_params(const PassFrame& frame, const WorkShape& shape,
                                               Resource picture);
 
-constexpr std::size_t kLayerStateBytes = 4 * sizeof(cl_half);
-
 // Returns those of layer_records, turn_records, advect_records and layer_split; items along rows of `extent`.
 LayerParams layer_params(const PassFrame& frame, const WorkShape& shape, Extent extent);
 
 // Returns the samples of the last frame in a history of extent `output`, for the kernels that read its layers.
-HistorySamples history_samples(const FrameInputs& frame, Extent output, TexelLayout depth);
+HistorySamples history_samples(const FrameInputs& inputs, Extent output, TexelLayout depth);
 
 }  // namespace quincunx

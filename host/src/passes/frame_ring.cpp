@@ -5,8 +5,6 @@
 
 #include <algorithm>
 
-#include "passes/pass_measure_content.h"
-
 namespace quincunx {
 namespace {
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "device/opencl.h"
-#include "passes/pass_check_motion.h"
+#include "passes/pass_measure.h"
 #include "picture_params.h"
 #include "quincunx/frame.h"
 

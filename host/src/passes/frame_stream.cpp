@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "plan/native_frame.h"
+#include "plan/inputs.h"
 
 namespace quincunx {
 
@@ -20,31 +20,27 @@ PlanFacts facts_of(const ResolvePlan& plan, bool two_way) {
 FrameStream::FrameStream(const Device& device, const ResolvePlan& plan, bool two_way)
     : plan_(plan), chain_(device, facts_of(plan, two_way)) {}
 
-// Looks at one of the images that change with every frame and are read again.
 Status FrameStream::check_history(const FrameInputs& inputs) const {
-  if (!has_history(inputs) || !plan_.keeps_previous_frame()) return {};
-  const auto is_shared = [this](Resource resource, const ImageView& now, const ImageView& before) {
-    return chain_.has(previous_of(resource)) && now.memory == before.memory && now.offset == before.offset;
-  };
-  const char* shared = nullptr;
-  if (is_shared(Resource::kColour, inputs.colour, previous_.colour)) {
-    shared = name_of(Resource::kColour);
-  } else if (plan_.accumulates() && is_shared(Resource::kDepth, inputs.depth, previous_.depth)) {
-    shared = name_of(Resource::kDepth);
+  if (!has_history(inputs)) return {};
+  for (const PlannedBuffer& buffer : plan_.buffers) {
+    if (buffer.input == nullptr || is_input(buffer)) continue;
+    const ImageView& now = inputs.*buffer.input;
+    const ImageView& before = previous_.*buffer.input;
+    if (now.memory != before.memory || now.offset != before.offset) continue;
+    return Status::invalid(
+        fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
+                    "consecutive frames different memory, or set reset",
+                    input_of(buffer).name));
   }
-  if (shared == nullptr) return {};
-  return Status::invalid(
-      fmt::format("{} is the memory of the previous frame, which this dispatch reads as history; give "
-                  "consecutive frames different memory, or set reset",
-                  shared));
+  return {};
 }
 
 PassFrame FrameStream::frame(const FrameInputs& inputs, const FrameOutputs& outputs, Counter counter) {
-  const FrameInputs current = native_inputs(plan_.settings, inputs);
-  if (!has_previous_) return chain_.frame(current, nullptr, outputs, counter);
+  const FrameInputs native = native_inputs(plan_.settings, inputs);
+  if (!has_previous_) return chain_.frame(native, nullptr, outputs, counter);
   const FrameInputs previous = native_inputs(plan_.settings, previous_);
-  PassFrame made = chain_.frame(current, has_history(inputs) ? &previous : nullptr, outputs, counter);
-  made.jitter_motion = jitter_motion(current, previous);
+  PassFrame made = chain_.frame(native, has_history(inputs) ? &previous : nullptr, outputs, counter);
+  made.jitter_motion = jitter_motion(native, previous);
   return made;
 }
 

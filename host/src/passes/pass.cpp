@@ -21,11 +21,16 @@ Pass::Pass(const PassSetup& setup, const PassSpec& spec)
       spec_(spec),
       kernel_(build_kernel(setup.device, spec.kernel, spec.options)),
       shape_(with_smaller_group(setup.device.profile.shape_of(spec.kernel),
-                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))) {}
+                                kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(setup.device.device))) {
+  for (const Use& use : spec_.uses)
+    uses_[index_of(use.resource)] = true;
+  stand_ins_[0] = setup.tables.stand_in(Storage::kBuffer);
+  if (settings().targets.storage == Storage::kImage) stand_ins_[1] = setup.tables.stand_in(Storage::kImage);
+}
 
 bool Pass::takes_part(const PassFrame& frame) const {
   const auto serves = [&] {
-    const bool dense = is_dense(frame.current.render_extent, frame.output);
+    const bool dense = is_dense(frame.inputs.render_extent, frame.output);
     switch (spec_.frames) {
       case Frames::kAll:
         return true;
@@ -40,7 +45,7 @@ bool Pass::takes_part(const PassFrame& frame) const {
       case Frames::kWithFocus:
         return frame.focus != nullptr;
       case Frames::kFading:
-        return static_cast<bool>(frame.current.fading_from);
+        return static_cast<bool>(frame.inputs.fading_from);
       case Frames::kResized:
         return !dense && frame.resizes_history();
       case Frames::kScaledOutput:
@@ -51,17 +56,12 @@ bool Pass::takes_part(const PassFrame& frame) const {
     return false;
   };
   if (spec_.viewports == Viewports::kAll) return serves();
-  return widens(frame.current.render_extent, frame.output) == (spec_.viewports == Viewports::kWider) &&
+  return widens(frame.inputs.render_extent, frame.output) == (spec_.viewports == Viewports::kWider) &&
          serves();
 }
 
-bool Pass::uses(Resource resource) const {
-  return std::any_of(spec_.uses.begin(), spec_.uses.end(),
-                     [resource](const Use& use) { return use.resource == resource; });
-}
-
-TexelLayout Pass::layout_if_used(const PassFrame& frame, Resource resource) const {
-  return uses(resource) ? layout_of(frame[resource]) : TexelLayout{};
+cl_mem Pass::stand_in_for(Resource resource) const {
+  return stand_ins_[storage_of(resource, facts_) == Storage::kImage ? 1 : 0]();
 }
 
 void set_memory(cl::Kernel& kernel, cl_uint index, cl_mem memory) {
@@ -84,8 +84,7 @@ void enqueue_rows(const WorkShape& shape, const cl::CommandQueue& queue, const c
 TexelLayout layout_of(const ImageView& view) {
   const std::size_t texel = bytes_per_pixel(view.format);
   if (view.storage == Storage::kImage || texel == 0) return {0, 0};
-  const auto pitch =
-      static_cast<std::ptrdiff_t>(view.row_pitch());  // negative where native_frame.h turns rows
+  const auto pitch = static_cast<std::ptrdiff_t>(view.row_pitch());  // negative where inputs.h turns rows
   return {static_cast<int>(view.offset / texel),
           static_cast<int>(pitch / static_cast<std::ptrdiff_t>(texel))};
 }
@@ -95,8 +94,8 @@ TexelLayout rows_of(const ImageView& view, int height, Origin origin) {
   return origin == Origin::kTop ? TexelLayout{0, 1} : TexelLayout{height - 1, -1};
 }
 
-VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent) {
-  const Vec2 to_uv = frame.velocity_scale != Vec2{} ? frame.velocity_scale : Vec2{1, 1};
+VelocityScale velocity_scale_to(const FrameInputs& inputs, Extent extent) {
+  const Vec2 to_uv = inputs.velocity_scale != Vec2{} ? inputs.velocity_scale : Vec2{1, 1};
   return {static_cast<double>(to_uv.x) * extent.width, static_cast<double>(to_uv.y) * extent.height};
 }
 
@@ -121,10 +120,6 @@ int columns_per_item(const WorkShape& shape, int width, int block) {
 
 const char* precision_of(PixelFormat format) {
   return format == PixelFormat::kRGBA16F || format == PixelFormat::kRG16F ? "HALF" : "FLOAT";
-}
-
-std::size_t alpha_bytes(const ResolveSettings& settings) {
-  return bytes_per_pixel(settings.temporal.history) / 4;
 }
 
 const char* storage_option(Storage storage) {

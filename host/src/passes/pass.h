@@ -40,9 +40,8 @@ struct PassSetup {
 struct PassFrame {
   const cl::CommandQueue& queue;
   PassTables& tables;
-  FrameInputs current =
-      {};  // `views` may hold another velocity: the one that the service makes from the camera
-  FrameInputs previous = {};  // the current one where there is no history
+  FrameInputs inputs = {};  // `views` may hold other images in their place, which the service made from them
+  FrameInputs previous = {};  // those of the previous frame; `inputs` where there is no history
   Vec2 jitter_motion = {};    // jitter_motion() since the last frame, whether or not that counts as history
   bool has_history = false;
   bool merges = false;                 // facts.two_way: there is another history
@@ -60,10 +59,10 @@ struct PassFrame {
   ImageView& operator[](Resource resource) { return views[index_of(resource)]; }
   const ImageView& operator[](Resource resource) const { return views[index_of(resource)]; }
   FrameExtents extents() const {
-    return {current.render_extent,
+    return {inputs.render_extent,
             previous.render_extent,
             output,
-            current.particle_render_extent,
+            inputs.particle_render_extent,
             previous_output,
             display,
             focus_extent};
@@ -71,7 +70,7 @@ struct PassFrame {
   // History has another size than the picture that it becomes.
   bool resizes_history() const { return has_history && previous_output != output; }
   // The tables of this frame's viewport, and of the previous one's.
-  TableKey key() const { return {output, current.render_extent, current.jitter}; }
+  TableKey key() const { return {output, inputs.render_extent, inputs.jitter}; }
   TableKey previous_key() const { return {output, previous.render_extent, previous.jitter}; }
 };
 
@@ -105,12 +104,7 @@ class Pass {
   const WorkShape& shape() const { return shape_; }
   const PlanFacts& facts() const { return facts_; }
   const ResolveSettings& settings() const { return facts_.settings; }
-  // Returns `other`'s view where the variant does not read `resource`: it may be any memory.
-  bool uses(Resource resource) const;
-  const ImageView& view_or(const PassFrame& frame, Resource resource, Resource other) const {
-    return frame[uses(resource) ? resource : other];
-  }
-  TexelLayout layout_if_used(const PassFrame& frame, Resource resource) const;
+  bool uses(Resource resource) const { return uses_[index_of(resource)]; }
   Resource picture() const { return picture_of(facts_); }
 
   // As enqueue_rows().
@@ -118,25 +112,32 @@ class Pass {
     enqueue_rows(shape_, frame.queue, kernel_, extent, columns, event, rows);
   }
 
-  // Sets the kernel's arguments in order: structs by value, buffers, the memory of images and counters.
+  // Sets the kernel's arguments in order: structs by value, buffers, the memory of resources, images and counters. A
+  // resource that the variant does not use gets memory that stands for it.
   template <typename... Arguments>
-  void bind(const Arguments&... arguments) {
+  void bind(const PassFrame& frame, const Arguments&... arguments) {
     cl_uint index = 0;
-    (set(index++, arguments), ...);
+    (set(frame, index++, arguments), ...);
   }
 
  private:
   template <typename Argument>
-  void set(cl_uint index, const Argument& argument) {
-    if constexpr (std::is_same_v<Argument, ImageView> || std::is_same_v<Argument, Counter>) {
+  void set(const PassFrame& frame, cl_uint index, const Argument& argument) {
+    if constexpr (std::is_same_v<Argument, Resource>) {
+      set_memory(kernel_, index, uses(argument) ? frame[argument].memory : stand_in_for(argument));
+    } else if constexpr (std::is_same_v<Argument, ImageView> || std::is_same_v<Argument, Counter>) {
       set_memory(kernel_, index, argument.memory);
     } else {
       kernel_.setArg(index, argument);
     }
   }
 
+  cl_mem stand_in_for(Resource resource) const;
+
   const PlanFacts& facts_;
   PassSpec spec_;
+  std::array<bool, kResourceCount> uses_ = {};
+  std::array<cl::Memory, 2> stand_ins_;  // a buffer, and an image where inputs are images
   cl::Kernel kernel_;
   WorkShape shape_;
 };
@@ -159,7 +160,7 @@ struct VelocityScale {
   double x;
   double y;
 };
-VelocityScale velocity_scale_to(const FrameInputs& frame, Extent extent);
+VelocityScale velocity_scale_to(const FrameInputs& inputs, Extent extent);
 
 // From one extent to another on each axis, rounded once.
 struct Ratio {
@@ -174,7 +175,6 @@ int columns_per_item(const WorkShape& shape, int width, int block = kBlock);
 // buffers only.
 const char* precision_of(PixelFormat format);          // "HALF" or "FLOAT"
 const char* storage_option(Storage storage);           // "IMAGE" or "BUFFER"
-std::size_t alpha_bytes(const ResolveSettings&);       // bytes of a value of the history's alpha
 std::string colour_options(const ResolveSettings&);    // SOURCE_STORAGE, SOURCE_FORMAT
 std::string scale_options(const ResolveSettings&);     // the same and OUTPUT_FORMAT
 std::string velocity_options(const ResolveSettings&);  // SOURCE_STORAGE, VELOCITY_FORMAT

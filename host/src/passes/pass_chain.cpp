@@ -153,27 +153,28 @@ ImageView PassChain::newest(Resource resource) const {
 }
 
 void bind_inputs(PassFrame& frame) {
-  for (const ResourceInfo& info : kResources) {
+  for (std::size_t i = 0; i < kResourceCount; ++i) {
+    const ResourceInfo& info = info_of(static_cast<Resource>(i));
     if (info.input == nullptr) continue;
-    const FrameInputs& inputs = is_previous(info.resource) ? frame.previous : frame.current;
-    frame[info.resource] = inputs.*info.input->image;
+    const FrameInputs& inputs = info.is_previous ? frame.previous : frame.inputs;
+    frame.views[i] = inputs.*info.input->image;
   }
 }
 
-PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previous,
+PassFrame PassChain::frame(const FrameInputs& inputs, const FrameInputs* previous,
                            const FrameOutputs& outputs, Counter counter) {
   PassFrame frame{.queue = device_.impl()->queue,
                   .tables = tables_,
-                  .current = current,
-                  .previous = previous != nullptr ? *previous : current,
+                  .inputs = inputs,
+                  .previous = previous != nullptr ? *previous : inputs,
                   .has_history = previous != nullptr,
                   .focus_extent = facts_.settings.focus.extent,
-                  .output = output_of(current),
-                  .previous_output = output_of(previous != nullptr ? *previous : current),
+                  .output = output_of(inputs),
+                  .previous_output = output_of(previous != nullptr ? *previous : inputs),
                   .display = facts_.settings.output_extent,
                   .counter = counter};
   if (facts_.velocity == VelocitySource::kCamera) {  // the service's own target, in uv
-    frame.current.velocity_scale = {};
+    frame.inputs.velocity_scale = {};
     frame.previous.velocity_scale = {};
   }
   bind_inputs(frame);
@@ -182,10 +183,10 @@ PassFrame PassChain::frame(const FrameInputs& current, const FrameInputs* previo
     frame[owned.resource] = owned.images[paired ? next_ : 0].view();
     if (paired) frame[previous_of(owned.resource)] = owned.images[1 - next_].view();
     if (!facts_.places_targets()) continue;
-    place(frame[owned.resource], owned.area, frame.current.render_extent);
+    place(frame[owned.resource], owned.area, frame.inputs.render_extent);
     if (paired) place(frame[previous_of(owned.resource)], owned.area, frame.previous.render_extent);
   }
-  frame[Resource::kFadingFrom] = current.fading_from;
+  frame[Resource::kFadingFrom] = inputs.fading_from;
   if (outputs.linear) frame[shown_of(facts_)] = outputs.linear;
   frame[Resource::kPresented] = outputs.presented;
   // A picture that has the size in which it is shown is made where it is shown.
@@ -250,7 +251,7 @@ void PassChain::enqueue(Pass& pass, const PassFrame& frame, cl::Event* event) {
 }
 
 void PassChain::run(PassFrame frame, const FrameOutputs& outputs, FrameReport& report, cl::Event* events) {
-  if (facts_.accumulates() && !frame.has_history && !is_dense(frame.current.render_extent, frame.output))
+  if (facts_.accumulates() && !frame.has_history && !is_dense(frame.inputs.render_extent, frame.output))
     forget(frame);
   mark_needed(frame, outputs, 0);
   run_needed(frame, report, events);
@@ -298,8 +299,8 @@ void PassChain::warm_up() {
                   .previous_output = kPixel,
                   .display = kPixel,
                   .counter = {counter(), 0}};
-  frame.current.render_extent = kPixel;
-  frame.current.particle_render_extent = kPixel;
+  frame.inputs.render_extent = kPixel;
+  frame.inputs.particle_render_extent = kPixel;
   frame.previous.render_extent = kPixel;
   for (const auto& pass : passes_) {
     for (const Use& use : pass->spec().uses) {

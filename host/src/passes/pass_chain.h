@@ -19,7 +19,7 @@
 
 namespace quincunx {
 
-// Sets the views of the caller's inputs from frame.current and frame.previous.
+// Sets the views of the caller's inputs from frame.inputs and frame.previous.
 void bind_inputs(PassFrame& frame);
 
 // Memory that the device would not give.
@@ -68,7 +68,7 @@ class PassChain {
 
   // A frame with every resource of the plan bound: the caller's images, the outputs, and what the chain owns.
   // `previous` null: no history.
-  PassFrame frame(const FrameInputs& current, const FrameInputs* previous, const FrameOutputs& outputs,
+  PassFrame frame(const FrameInputs& inputs, const FrameInputs* previous, const FrameOutputs& outputs,
                   Counter counter);
 
   // Enqueues what the outputs need, in order. Adds each pass to the report and, if not null, its event to `events`.

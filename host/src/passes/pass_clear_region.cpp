@@ -96,13 +96,13 @@ void ClearRegionPass::clear(const PassFrame& frame, const ImageView& image, Exte
   params.output = layout_of(image);
   encode_texel(image.format, value, params.bits);
   stored_value(image.format, value, params.value);
-  bind(params, image);
+  bind(frame, params, image);
   launch(frame, render, params.columns_per_item, event);
 }
 
 void ClearRegionPass::enqueue(const PassFrame& frame, cl::Event* event) {
   const float zero[4] = {};
-  clear(frame, frame[spec().uses.front().resource], frame.current.render_extent, zero, event);
+  clear(frame, frame[spec().uses.front().resource], frame.inputs.render_extent, zero, event);
 }
 
 PassSpec clear_region_spec(Storage storage, Resource resource, PixelFormat format) {

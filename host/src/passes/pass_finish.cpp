@@ -27,7 +27,7 @@ class SharpenPass : public Pass {
                                .output = layout_of(frame[Resource::kResolved]),
                                .columns_per_item = columns_per_item(shape(), frame.output.width),
                                .sharpness = settings().sharpness};
-    bind(params, frame[Resource::kUnsharpened], frame[Resource::kResolved]);
+    bind(frame, params, Resource::kUnsharpened, Resource::kResolved);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -46,8 +46,7 @@ void plan_sharpen(const PlanFacts& facts, PassList& list) {
        .options =
            fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.output.linear)),
        .reason = "sharpness is wanted: contrast between neighbours, within their range",
-       .uses = {{Resource::kUnsharpened, Access::kRead, Area::kOutput, settings.output.linear},
-                {Resource::kResolved, Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {Resource::kUnsharpened}, .writes = {Resource::kResolved}}),
        .make = make_pass<SharpenPass>});
 }
 
@@ -121,13 +120,13 @@ class LayFocusPass : public Pass {
                        .width = laid.part.width,
                        .height = laid.part.height,
                        .focus = layout_of(frame[Resource::kFocus]),
-                       .mask = layout_if_used(frame, Resource::kFocusMask),
+                       .mask = layout_of(frame[Resource::kFocusMask]),
                        .output = output,
                        .columns_per_item = columns_per_item(shape(), laid.part.width),
                        .rectangle_count = laid.count,
                        .rectangles = {}};
     std::copy(laid.rectangles.begin(), laid.rectangles.end(), params.rectangles);
-    bind(params, frame[Resource::kFocus], view_or(frame, Resource::kFocusMask, Resource::kFocus), picture);
+    bind(frame, params, Resource::kFocus, Resource::kFocusMask, picture);
     launch(frame, {params.width, params.height}, params.columns_per_item, event);
   }
 };
@@ -142,15 +141,14 @@ void plan_lay_focus(const PlanFacts& facts, PassList& list) {
     return;
   }
   PassSpec spec{.kernel = "lay_focus",
-                .options = fmt::format("-D MASK={0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}",
-                                       settings.focus.mask ? 1 : 0, precision_of(settings.output.linear)),
                 .reason = "a part is in focus: its own picture is laid over",
                 .uses = {{Resource::kFocus, Access::kRead, Area::kFocus, settings.output.linear},
                          {shown_of(facts), Access::kUpdate, Area::kFocus, settings.output.linear}},
                 .make = make_pass<LayFocusPass>,
                 .frames = Frames::kWithFocus};
-  if (settings.focus.mask)
-    spec.uses.push_back({Resource::kFocusMask, Access::kRead, Area::kFocus, PixelFormat::kR8});
+  spec.add_where(settings.focus.mask, "MASK", settings, {.reads = {Resource::kFocusMask}});
+  spec.add_options(
+      fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}", precision_of(settings.output.linear)));
   list.passes.push_back(std::move(spec));
 }
 
@@ -170,8 +168,8 @@ class CrossFadePass : public Pass {
                                  .other = layout_of(other),
                                  .output = layout_of(picture),
                                  .columns_per_item = columns_per_item(shape(), frame.display.width, 1),
-                                 .weight = frame.current.fade_weight};
-    bind(params, other, picture);
+                                 .weight = frame.inputs.fade_weight};
+    bind(frame, params, other, picture);
     launch(frame, frame.display, params.columns_per_item, event);
   }
 };
@@ -206,7 +204,7 @@ class PresentPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ImageView& source = frame[shown_of(facts())];
     const ImageView& presented = frame[Resource::kPresented];
-    const float exposure = facts().is_display_referred() ? 1 : frame.current.exposure;
+    const float exposure = facts().is_display_referred() ? 1 : frame.inputs.exposure;
     const PresentParams params{
         .width = frame.display.width,
         .height = frame.display.height,
@@ -215,14 +213,14 @@ class PresentPass : public Pass {
         .counter = frame.counter.index,
         .columns_per_item = columns_per_item(shape(), frame.display.width, 1),
         .exposure = exposure == 0 ? 1 : exposure};
-    bind(params, source, exposure_of(frame), presented, frame.counter);
+    bind(frame, params, source, exposure_of(frame), presented, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);
   }
 
  private:
   // Copied, so that one kernel serves buffers and images.
   const cl::Buffer& exposure_of(const PassFrame& frame) const {
-    const ImageView& image = frame.current.exposure_image;
+    const ImageView& image = frame.inputs.exposure_image;
     if (!image || facts().is_display_referred()) return one_;
     if (image.storage == Storage::kImage) {
       frame.queue.enqueueCopyImageToBuffer(borrow<cl::Image2D>(image.memory), given_, {0, 0, 0}, {1, 1, 1},

@@ -18,11 +18,11 @@ class LayerRecordsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const LayerParams params = layer_params(frame, shape(), render);
-    bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kReprojection],
-         frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
-         frame[Resource::kRecordKeys], frame[Resource::kRecords]);
+    bind(frame, params, Resource::kVelocity, Resource::kDepth, Resource::kReprojection,
+         Resource::kPreviousRecordKeys, Resource::kPreviousRecords, Resource::kRecordKeys,
+         Resource::kRecords);
     launch(frame, render, params.columns_per_item, event);
   }
 };
@@ -42,13 +42,10 @@ void plan_layer_records(const PlanFacts& facts, PassList& list) {
       {.kernel = "layer_records",
        .options = velocity_options(facts.settings),
        .reason = "the second layer: samples of near surfaces at edges of motion",
-       .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, facts.settings.velocity},
-                {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F},
-                {Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
-                {Resource::kPreviousRecords, Access::kRead, Area::kPreviousViewport, {}, sizeof(LayerRecord)},
-                {Resource::kRecordKeys, Access::kWrite, Area::kViewport, {}, sizeof(cl_uint)},
-                {Resource::kRecords, Access::kWrite, Area::kViewport, {}, sizeof(LayerRecord)}},
+       .uses =
+           uses_of(facts.settings, {.reads = {Resource::kVelocity, Resource::kDepth, Resource::kReprojection,
+                                              Resource::kPreviousRecordKeys, Resource::kPreviousRecords},
+                                    .writes = {Resource::kRecordKeys, Resource::kRecords}}),
        .make = make_pass<LayerRecordsPass>,
        .frames = Frames::kSparse});
 }
@@ -64,8 +61,8 @@ class TurnRecordsPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent before = frame.previous.render_extent;
     const LayerParams params = layer_params(frame, shape(), before);
-    bind(params, frame[Resource::kPreviousRecordKeys], frame[Resource::kRecordKeys],
-         frame[Resource::kRecords], frame[Resource::kPreviousRecords]);
+    bind(frame, params, Resource::kPreviousRecordKeys, Resource::kRecordKeys, Resource::kRecords,
+         Resource::kPreviousRecords);
     launch(frame, before, params.columns_per_item, event);
   }
 };
@@ -78,11 +75,9 @@ void plan_turn_records(const PlanFacts& facts, PassList& list) {
       {.kernel = "turn_records",
        .options = {},
        .reason = "the second layer: thin things that stop, start or turn about leave no ghosts",
-       .uses =
-           {{Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
-            {Resource::kRecordKeys, Access::kRead, Area::kViewport, {}, sizeof(cl_uint)},
-            {Resource::kRecords, Access::kRead, Area::kViewport, {}, sizeof(LayerRecord)},
-            {Resource::kPreviousRecords, Access::kUpdate, Area::kPreviousViewport, {}, sizeof(LayerRecord)}},
+       .uses = uses_of(facts.settings,
+                       {.reads = {Resource::kPreviousRecordKeys, Resource::kRecordKeys, Resource::kRecords},
+                        .updates = {Resource::kPreviousRecords}}),
        .make = make_pass<TurnRecordsPass>,
        .frames = Frames::kSparse});
 }
@@ -98,8 +93,7 @@ class AdvectRecordsPass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent before = frame.previous.render_extent;
     const LayerParams params = layer_params(frame, shape(), before);
-    bind(params, frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords],
-         frame[Resource::kRecordKeys]);
+    bind(frame, params, Resource::kPreviousRecordKeys, Resource::kPreviousRecords, Resource::kRecordKeys);
     launch(frame, before, params.columns_per_item, event);
   }
 };
@@ -112,9 +106,8 @@ void plan_advect_records(const PlanFacts& facts, PassList& list) {
       {.kernel = "advect_records",
        .options = {},
        .reason = "the second layer: thin things that no sample shows keep their motion",
-       .uses = {{Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
-                {Resource::kPreviousRecords, Access::kRead, Area::kPreviousViewport, {}, sizeof(LayerRecord)},
-                {Resource::kRecordKeys, Access::kWrite, Area::kViewport, {}, sizeof(cl_uint)}},
+       .uses = uses_of(facts.settings, {.reads = {Resource::kPreviousRecordKeys, Resource::kPreviousRecords},
+                                        .writes = {Resource::kRecordKeys}}),
        .make = make_pass<AdvectRecordsPass>,
        .frames = Frames::kSparse});
 }
@@ -128,12 +121,11 @@ class LayerSplitPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const LayerParams params = layer_params(frame, shape(), render);
-    bind(params, frame[Resource::kVelocity], frame[Resource::kDepth], frame[Resource::kOpenTrust],
-         frame[Resource::kPreviousRecordKeys], frame[Resource::kRecordKeys],
-         frame[Resource::kPreviousRecords], frame[Resource::kRecords], frame[Resource::kReprojection],
-         frame[Resource::kSplits], frame[Resource::kSplitMarks]);
+    bind(frame, params, Resource::kVelocity, Resource::kDepth, Resource::kOpenTrust,
+         Resource::kPreviousRecordKeys, Resource::kRecordKeys, Resource::kPreviousRecords, Resource::kRecords,
+         Resource::kReprojection, Resource::kSplits, Resource::kSplitMarks);
     launch(frame, render, params.columns_per_item, event);
   }
 };
@@ -146,16 +138,12 @@ void plan_layer_split(const PlanFacts& facts, PassList& list) {
       {.kernel = "layer_split",
        .options = velocity_options(facts.settings),
        .reason = "the second layer: which samples have two layers",
-       .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, facts.settings.velocity},
-                {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kOpenTrust, Access::kUpdate, Area::kViewport, {}, sizeof(cl_float)},
-                {Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
-                {Resource::kRecordKeys, Access::kRead, Area::kViewport, {}, sizeof(cl_uint)},
-                {Resource::kPreviousRecords, Access::kRead, Area::kPreviousViewport, {}, sizeof(LayerRecord)},
-                {Resource::kRecords, Access::kWrite, Area::kViewport, {}, sizeof(LayerRecord)},
-                {Resource::kReprojection, Access::kWrite, Area::kViewport, PixelFormat::kRGBA32F},
-                {Resource::kSplits, Access::kWrite, Area::kViewport, {}, sizeof(LayerSplit)},
-                {Resource::kSplitMarks, Access::kAccumulate, Area::kTiles, {}, sizeof(cl_int)}},
+       .uses = uses_of(facts.settings,
+                       {.reads = {Resource::kVelocity, Resource::kDepth, Resource::kPreviousRecordKeys,
+                                  Resource::kRecordKeys, Resource::kPreviousRecords},
+                        .writes = {Resource::kRecords, Resource::kReprojection, Resource::kSplits},
+                        .updates = {Resource::kOpenTrust},
+                        .sums = {Resource::kSplitMarks}}),
        .make = make_pass<LayerSplitPass>,
        .frames = Frames::kSparse});
 }
@@ -174,16 +162,13 @@ class ResolveLayersPass : public Pass {
     const TemporalParams params = temporal_params(frame, shape(), facts());
     const HistorySamples before =
         history_samples(frame.previous, frame.output, layout_of(frame[Resource::kPreviousDepth]));
-    bind(params, before, layout_of(frame[Resource::kDepth]),
-         frame.tables.positions().get(frame.queue, frame.key()), frame[Resource::kColour],
-         frame[Resource::kReprojection], frame[Resource::kDepth], frame[Resource::kPreviousDepth],
-         frame[Resource::kOpenTrust], frame[Resource::kSplits], frame[Resource::kPreviousHistory],
-         view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
-         frame[Resource::kPreviousNearHistory], frame[Resource::kPreviousLayerStates],
-         frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousLayerTiles],
-         frame[Resource::kTileReprojection], frame[Resource::kLayerTiles], frame[Resource::kTileLight],
-         frame[Resource::kHistory], view_or(frame, Resource::kHistoryAlpha, Resource::kHistory),
-         frame[Resource::kNearHistory], frame[Resource::kLayerStates], frame.counter);
+    bind(frame, params, before, layout_of(frame[Resource::kDepth]),
+         frame.tables.positions().get(frame.queue, frame.key()), Resource::kColour, Resource::kReprojection,
+         Resource::kDepth, Resource::kPreviousDepth, Resource::kOpenTrust, Resource::kSplits,
+         Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousNearHistory,
+         Resource::kPreviousLayerStates, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
+         Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight, Resource::kHistory,
+         Resource::kHistoryAlpha, Resource::kNearHistory, Resource::kLayerStates, frame.counter);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -196,34 +181,20 @@ void plan_resolve_layers(const PlanFacts& facts, PassList& list) {
   const PixelFormat history = settings.temporal.history;
   PassSpec spec{
       .kernel = "resolve_layers",
-      .options = fmt::format("-D ALPHA={} {} -D HISTORY_FORMAT={}", facts.accumulates_alpha() ? 1 : 0,
-                             colour_options(settings), precision_of(history)),
       .reason = "the second layer: this frame added to the history of pixels that have two",
-      .uses =
-          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-           {Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F},
-           {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-           {Resource::kPreviousDepth, Access::kRead, Area::kPreviousViewport, PixelFormat::kR32F},
-           {Resource::kOpenTrust, Access::kRead, Area::kViewport, {}, sizeof(cl_float)},
-           {Resource::kSplits, Access::kRead, Area::kViewport, {}, sizeof(LayerSplit)},
-           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, history},
-           {Resource::kPreviousNearHistory, Access::kRead, Area::kOutput, history},
-           {Resource::kPreviousLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kPreviousLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
-           {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
-           {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
-           {Resource::kHistory, Access::kWrite, Area::kOutput, history},
-           {Resource::kNearHistory, Access::kWrite, Area::kOutput, history},
-           {Resource::kLayerStates, Access::kWrite, Area::kOutput, {}, kLayerStateBytes}},
+      .uses = uses_of(
+          settings,
+          {.reads = {Resource::kColour, Resource::kReprojection, Resource::kDepth, Resource::kPreviousDepth,
+                     Resource::kOpenTrust, Resource::kSplits, Resource::kPreviousHistory,
+                     Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
+                     Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
+                     Resource::kTileReprojection, Resource::kLayerTiles, Resource::kTileLight},
+           .writes = {Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates}}),
       .make = make_pass<ResolveLayersPass>,
       .frames = Frames::kSparse};
-  if (facts.accumulates_alpha()) {
-    const std::size_t bytes = alpha_bytes(settings);
-    spec.uses.push_back({Resource::kPreviousHistoryAlpha, Access::kRead, Area::kOutput, {}, bytes});
-    spec.uses.push_back({Resource::kHistoryAlpha, Access::kWrite, Area::kOutput, {}, bytes});
-  }
+  spec.add_where(facts.accumulates_alpha(), "ALPHA", settings,
+                 {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}});
+  spec.add_options(fmt::format("{} -D HISTORY_FORMAT={}", colour_options(settings), precision_of(history)));
   list.passes.push_back(std::move(spec));
 }
 
@@ -252,10 +223,9 @@ class DisplayLayersPass : public Pass {
     const Resource shown = centred_of(facts());
     const TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
     const HistorySamples now =
-        history_samples(frame.current, frame.output, layout_of(frame[Resource::kDepth]));
-    bind(params, now, frame[Resource::kDepth], frame[Resource::kTileReprojection],
-         frame[Resource::kLayerTiles], frame[Resource::kHistory], frame[Resource::kNearHistory],
-         frame[Resource::kLayerStates], frame[shown]);
+        history_samples(frame.inputs, frame.output, layout_of(frame[Resource::kDepth]));
+    bind(frame, params, now, Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
+         Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates, shown);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -271,13 +241,10 @@ void plan_display_layers(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}", layer_view_option(settings.temporal.view),
                               scale_options(settings), precision_of(history)),
        .reason = "the second layer: the near one laid over the picture",
-       .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-                {Resource::kLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
-                {Resource::kHistory, Access::kRead, Area::kOutput, history},
-                {Resource::kNearHistory, Access::kRead, Area::kOutput, history},
-                {Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes},
-                {centred_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses =
+           uses_of(settings, {.reads = {Resource::kDepth, Resource::kTileReprojection, Resource::kLayerTiles,
+                                        Resource::kHistory, Resource::kNearHistory, Resource::kLayerStates},
+                              .writes = {centred_of(facts)}}),
        .make = make_pass<DisplayLayersPass>,
        .frames = Frames::kSparse});
 }

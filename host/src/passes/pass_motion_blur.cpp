@@ -26,7 +26,7 @@ Vec2 streak_scale(const FrameInputs& inputs, Extent output, float shutter) {
 MotionParams motion_params(const PassFrame& frame, const WorkShape& shape,
                            const MotionBlurSettings& settings) {
   const Extent grid = extent_of(Area::kBlurTiles, frame.extents());
-  const Vec2 scale = streak_scale(frame.current, frame.output, settings.shutter);
+  const Vec2 scale = streak_scale(frame.inputs, frame.output, settings.shutter);
   return {.output_width = frame.output.width,
           .output_height = frame.output.height,
           .tiles_x = grid.width,
@@ -53,8 +53,9 @@ class MotionTilesPass : public Pass {
   MotionTilesPass(const PassSetup& setup, const PassSpec& spec) : Pass(setup, spec) { setup.tables.axis(); }
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    bind(motion_params(frame, shape(), settings().blur), frame.tables.axis().get(frame.queue, frame.key()),
-         frame[Resource::kVelocity], frame[Resource::kStreaks], frame[Resource::kLongestStreak]);
+    bind(frame, motion_params(frame, shape(), settings().blur),
+         frame.tables.axis().get(frame.queue, frame.key()), Resource::kVelocity, Resource::kStreaks,
+         Resource::kLongestStreak);
     launch(frame, extent_of(Area::kBlurTiles, frame.extents()), 1, event);
   }
 };
@@ -67,14 +68,13 @@ void plan_motion_tiles(const PlanFacts& facts, PassList& list) {
         {"motion blur", facts.settings.blur.shutter > 0 ? "nothing moves" : "the shutter opens for no time"});
     return;
   }
-  list.passes.push_back(
-      {.kernel = "motion_tiles",
-       .options = velocity_options(facts.settings),
-       .reason = "motion blur: how far the surfaces of a tile move",
-       .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, facts.settings.velocity},
-                {Resource::kStreaks, Access::kWrite, Area::kBlurTiles, {}, sizeof(TileStreaks)},
-                {Resource::kLongestStreak, Access::kAccumulate, Area::kWhole, {}, sizeof(cl_int)}},
-       .make = make_pass<MotionTilesPass>});
+  list.passes.push_back({.kernel = "motion_tiles",
+                         .options = velocity_options(facts.settings),
+                         .reason = "motion blur: how far the surfaces of a tile move",
+                         .uses = uses_of(facts.settings, {.reads = {Resource::kVelocity},
+                                                          .writes = {Resource::kStreaks},
+                                                          .sums = {Resource::kLongestStreak}}),
+                         .make = make_pass<MotionTilesPass>});
 }
 
 // motion_neighbours: the motion that reaches each tile from those around it.
@@ -86,8 +86,8 @@ class MotionNeighboursPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    bind(motion_params(frame, shape(), settings().blur), frame[Resource::kStreaks],
-         frame[Resource::kLongestStreak], frame[Resource::kTileBlurs]);
+    bind(frame, motion_params(frame, shape(), settings().blur), Resource::kStreaks, Resource::kLongestStreak,
+         Resource::kTileBlurs);
     launch(frame, extent_of(Area::kBlurTiles, frame.extents()), 1, event);
   }
 };
@@ -100,9 +100,8 @@ void plan_motion_neighbours(const PlanFacts& facts, PassList& list) {
       {.kernel = "motion_neighbours",
        .options = "",
        .reason = "motion blur: what reaches a tile",
-       .uses = {{Resource::kStreaks, Access::kRead, Area::kBlurTiles, {}, sizeof(TileStreaks)},
-                {Resource::kLongestStreak, Access::kRead, Area::kWhole, {}, sizeof(cl_int)},
-                {Resource::kTileBlurs, Access::kWrite, Area::kBlurTiles, {}, sizeof(TileBlur)}},
+       .uses = uses_of(facts.settings, {.reads = {Resource::kStreaks, Resource::kLongestStreak},
+                                        .writes = {Resource::kTileBlurs}}),
        .make = make_pass<MotionNeighboursPass>});
 }
 
@@ -116,9 +115,8 @@ class MotionBlurPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const MotionParams params = motion_params(frame, shape(), settings().blur);
-    bind(params, frame.tables.axis().get(frame.queue, frame.key()), frame[Resource::kTileBlurs],
-         frame[Resource::kResolved], frame[Resource::kVelocity], frame[Resource::kDepth],
-         frame[Resource::kBlurred]);
+    bind(frame, params, frame.tables.axis().get(frame.queue, frame.key()), Resource::kTileBlurs,
+         Resource::kResolved, Resource::kVelocity, Resource::kDepth, Resource::kBlurred);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -133,11 +131,9 @@ void plan_motion_blur(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("{0} -D SOURCE_FORMAT={1} -D OUTPUT_FORMAT={1}", velocity_options(settings),
                               precision_of(settings.output.linear)),
        .reason = "motion blur: the mean over the shutter's time",
-       .uses = {{Resource::kResolved, Access::kRead, Area::kOutput, settings.output.linear},
-                {Resource::kVelocity, Access::kRead, Area::kViewport, settings.velocity},
-                {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kTileBlurs, Access::kRead, Area::kBlurTiles, {}, sizeof(TileBlur)},
-                {Resource::kBlurred, Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {Resource::kResolved, Resource::kVelocity, Resource::kDepth,
+                                            Resource::kTileBlurs},
+                                  .writes = {Resource::kBlurred}}),
        .make = make_pass<MotionBlurPass>});
 }
 

@@ -12,8 +12,8 @@
 namespace quincunx {
 namespace {
 
-void set_positions(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous) {
-  const PreviousPlaces places = previous_places(current, previous);
+void set_positions(ReprojectParams& params, const FrameInputs& inputs, const FrameInputs& previous) {
+  const PreviousPlaces places = previous_places(inputs, previous);
   params.step_x = places.step_x;
   params.step_y = places.step_y;
   params.start_x = places.start_x;
@@ -24,16 +24,16 @@ void set_positions(ReprojectParams& params, const FrameInputs& current, const Fr
   params.edge_y = places.edge_y;
 }
 
-void set_motion_edge(ReprojectParams& params, const FrameInputs& current, Extent output) {
-  const VelocityScale to_output = velocity_scale_to(current, output);
+void set_motion_edge(ReprojectParams& params, const FrameInputs& inputs, Extent output) {
+  const VelocityScale to_output = velocity_scale_to(inputs, output);
   params.motion_edge_x = static_cast<float>(to_output.x);
   params.motion_edge_y = static_cast<float>(to_output.y);
 }
 
-void set_speeds(ReprojectParams& params, const FrameInputs& current, const FrameInputs& previous,
+void set_speeds(ReprojectParams& params, const FrameInputs& inputs, const FrameInputs& previous,
                 float weight) {
   const double root = std::sqrt(static_cast<double>(weight));
-  const VelocityScale now = velocity_scale_to(current, current.render_extent);
+  const VelocityScale now = velocity_scale_to(inputs, inputs.render_extent);
   const VelocityScale before = velocity_scale_to(previous, previous.render_extent);
   params.speed0_x = static_cast<float>(root * now.x);
   params.speed0_y = static_cast<float>(root * now.y);
@@ -43,9 +43,9 @@ void set_speeds(ReprojectParams& params, const FrameInputs& current, const Frame
 
 // From the fourth row of the camera's matrix, which gives the previous clip coordinates' w over the present one. The
 // third makes the depth of the previous frame of the same: both may have a common factor, which is taken out.
-void set_distances(ReprojectParams& params, const FrameInputs& frame) {
-  const auto& m = frame.camera.clip_to_previous_clip;
-  const CameraVelocity camera = camera_params(frame);
+void set_distances(ReprojectParams& params, const FrameInputs& inputs) {
+  const auto& m = inputs.camera.clip_to_previous_clip;
+  const CameraVelocity camera = camera_params(inputs);
   const double unit = m[10] > 0 && std::isfinite(m[10]) ? m[10] : 1;
   params.distance_x = static_cast<float>(m[3] / unit * camera.step_x);
   params.distance_y = static_cast<float>(m[7] / unit * camera.step_y);
@@ -59,33 +59,30 @@ class ReprojectPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const FrameInputs& current = frame.current;
+    const FrameInputs& inputs = frame.inputs;
     const FrameInputs& previous = frame.previous;
     ReprojectParams params{};
-    params.width = current.render_extent.width;
-    params.height = current.render_extent.height;
+    params.width = inputs.render_extent.width;
+    params.height = inputs.render_extent.height;
     params.previous_width = previous.render_extent.width;
     params.previous_height = previous.render_extent.height;
     params.velocity0 = layout_of(frame[Resource::kVelocity]);
-    params.velocity1 = layout_if_used(frame, Resource::kPreviousVelocity);
+    params.velocity1 = layout_of(frame[Resource::kPreviousVelocity]);
     params.depth0 = layout_of(frame[Resource::kDepth]);
     params.depth1 = layout_of(frame[Resource::kPreviousDepth]);
     params.reprojection = layout_of(frame[Resource::kReprojection]);
-    params.previous_reprojection = layout_if_used(frame, Resource::kPreviousReprojection);
-    params.columns_per_item = columns_per_item(shape(), current.render_extent.width);
-    params.reactive0 = layout_if_used(frame, Resource::kReactive);
-    params.reactive1 = layout_if_used(frame, Resource::kPreviousReactive);
-    set_positions(params, current, previous);
-    set_motion_edge(params, current, frame.output);
-    set_distances(params, current);
-    if (facts().weighs_residual()) set_speeds(params, current, previous, settings().quincunx.residual_weight);
-    bind(params, frame[Resource::kVelocity], view_or(frame, Resource::kPreviousVelocity, Resource::kVelocity),
-         frame[Resource::kDepth], frame[Resource::kPreviousDepth],
-         view_or(frame, Resource::kReactive, Resource::kDepth),
-         view_or(frame, Resource::kPreviousReactive, Resource::kPreviousDepth),
-         view_or(frame, Resource::kPreviousReprojection, Resource::kReprojection),
-         frame[Resource::kReprojection], view_or(frame, Resource::kOpenTrust, Resource::kReprojection));
-    launch(frame, current.render_extent, params.columns_per_item, event);
+    params.previous_reprojection = layout_of(frame[Resource::kPreviousReprojection]);
+    params.columns_per_item = columns_per_item(shape(), inputs.render_extent.width);
+    params.reactive0 = layout_of(frame[Resource::kReactive]);
+    params.reactive1 = layout_of(frame[Resource::kPreviousReactive]);
+    set_positions(params, inputs, previous);
+    set_motion_edge(params, inputs, frame.output);
+    set_distances(params, inputs);
+    if (facts().weighs_residual()) set_speeds(params, inputs, previous, settings().quincunx.residual_weight);
+    bind(frame, params, Resource::kVelocity, Resource::kPreviousVelocity, Resource::kDepth,
+         Resource::kPreviousDepth, Resource::kReactive, Resource::kPreviousReactive,
+         Resource::kPreviousReprojection, Resource::kReprojection, Resource::kOpenTrust);
+    launch(frame, inputs.render_extent, params.columns_per_item, event);
   }
 };
 
@@ -93,29 +90,20 @@ class ReprojectPass : public Pass {
 
 void plan_reproject(const PlanFacts& facts, PassList& list) {
   if (!facts.reprojects()) return;
-  const PixelFormat velocity = facts.settings.velocity;
+  const ResolveSettings& settings = facts.settings;
   PassSpec spec{
       .kernel = "reproject",
-      .options = fmt::format("-D REACTIVE={} -D RESIDUAL={} -D MOTION_EDGE={} -D OPEN_TRUST={} {}",
-                             facts.reads_reactive() ? 1 : 0, facts.weighs_residual() ? 1 : 0,
-                             facts.accumulates() ? 1 : 0, facts.has_layers() ? 1 : 0,
-                             velocity_options(facts.settings)),
       .reason = "the method: where each sample was, and whether it could be seen",
-      .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, velocity},
-               {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-               {Resource::kPreviousDepth, Access::kRead, Area::kPreviousViewport, PixelFormat::kR32F},
-               {Resource::kReprojection, Access::kWrite, Area::kViewport, PixelFormat::kRGBA32F}},
+      .uses = uses_of(settings, {.reads = {Resource::kVelocity, Resource::kDepth, Resource::kPreviousDepth},
+                                 .writes = {Resource::kReprojection}}),
       .make = make_pass<ReprojectPass>,
       .frames = facts.accumulates() ? Frames::kSparse : Frames::kWithHistory};
-  if (facts.accumulates()) {  // motion edges of the previous frame
-    spec.uses.push_back(
-        {Resource::kPreviousReprojection, Access::kRead, Area::kPreviousViewport, PixelFormat::kRGBA32F});
-  }
-  if (facts.has_layers())
-    spec.uses.push_back({Resource::kOpenTrust, Access::kWrite, Area::kViewport, {}, sizeof(float)});
-  if (facts.weighs_residual())
-    spec.uses.push_back({Resource::kPreviousVelocity, Access::kRead, Area::kPreviousViewport, velocity});
-  if (facts.reads_reactive()) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
+  spec.add_where(facts.reads_reactive(), "REACTIVE", settings,
+                 {.reads = {Resource::kReactive, Resource::kPreviousReactive}});
+  spec.add_where(facts.weighs_residual(), "RESIDUAL", settings, {.reads = {Resource::kPreviousVelocity}});
+  spec.add_where(facts.accumulates(), "MOTION_EDGE", settings, {.reads = {Resource::kPreviousReprojection}});
+  spec.add_where(facts.has_layers(), "OPEN_TRUST", settings, {.writes = {Resource::kOpenTrust}});
+  spec.add_options(velocity_options(settings));
   list.passes.push_back(std::move(spec));
 }
 

@@ -68,10 +68,9 @@ class ResizeHistoryPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ResizeParams params = resize_params(frame, shape());
-    bind(params, frame.tables.positions().get(frame.queue, resize_key(frame)),
-         frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousHistory],
-         view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
-         frame[Resource::kHistory], view_or(frame, Resource::kHistoryAlpha, Resource::kHistory));
+    bind(frame, params, frame.tables.positions().get(frame.queue, resize_key(frame)),
+         Resource::kPreviousTileReprojection, Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha,
+         Resource::kHistory, Resource::kHistoryAlpha);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -82,10 +81,9 @@ class ResizeTilesPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const ResizeParams params = resize_params(frame, shape());
-    bind(params, frame[Resource::kPreviousTileReprojection], frame[Resource::kPreviousTileLight],
-         view_or(frame, Resource::kPreviousLayerTiles, Resource::kPreviousTileReprojection),
-         frame[Resource::kTileReprojection], frame[Resource::kTileLight],
-         view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection));
+    bind(frame, params, Resource::kPreviousTileReprojection, Resource::kPreviousTileLight,
+         Resource::kPreviousLayerTiles, Resource::kTileReprojection, Resource::kTileLight,
+         Resource::kLayerTiles);
     launch(frame, {params.tiles_x, params.tiles_y}, 1, event);
   }
 };
@@ -96,44 +94,36 @@ constexpr const char* kHistoryReason = "where the output's size changes: the his
 
 void plan_resize_history(const PlanFacts& facts, PassList& list) {
   if (!facts.resizes_history()) return;
-  const PixelFormat history = facts.settings.temporal.history;
-  const bool alpha = facts.accumulates_alpha();
+  const ResolveSettings& settings = facts.settings;
   PassSpec spec{
       .kernel = "resize_history",
-      .options = fmt::format("-D ALPHA={} -D HISTORY_FORMAT={}", alpha ? 1 : 0, precision_of(history)),
       .reason = kHistoryReason,
-      .uses = {{Resource::kPreviousTileReprojection,
-                Access::kRead,
-                Area::kPreviousTiles,
-                {},
-                sizeof(TileReprojection)},
-               {Resource::kPreviousHistory, Access::kRead, Area::kPreviousOutput, history},
-               {Resource::kHistory, Access::kWrite, Area::kOutput, history}},
+      .uses = uses_of(settings, {.reads = {Resource::kPreviousTileReprojection, Resource::kPreviousHistory},
+                                 .writes = {Resource::kHistory},
+                                 .resizes = true}),
       .make = make_pass<ResizeHistoryPass>,
       .frames = Frames::kResized};
-  if (alpha) {
-    const std::size_t bytes = alpha_bytes(facts.settings);
-    spec.uses.push_back({Resource::kPreviousHistoryAlpha, Access::kRead, Area::kPreviousOutput, {}, bytes});
-    spec.uses.push_back({Resource::kHistoryAlpha, Access::kWrite, Area::kOutput, {}, bytes});
-  }
+  spec.add_where(
+      facts.accumulates_alpha(), "ALPHA", settings,
+      {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}, .resizes = true});
+  spec.add_options(fmt::format("-D HISTORY_FORMAT={}", precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(spec));
 }
 
 void plan_resize_tiles(const PlanFacts& facts, PassList& list) {
   if (!facts.resizes_history()) return;
   PassSpec spec{.kernel = "resize_tiles",
-                .options = fmt::format("-D LAYERS={}", facts.has_layers() ? 1 : 0),
+                .options = "",
                 .reason = kHistoryReason,
-                .uses = {},
+                .uses = uses_of(facts.settings,
+                                {.reads = {Resource::kPreviousTileReprojection, Resource::kPreviousTileLight},
+                                 .writes = {Resource::kTileReprojection, Resource::kTileLight},
+                                 .resizes = true}),
                 .make = make_pass<ResizeTilesPass>,
                 .frames = Frames::kResized};
-  const auto add = [&spec](Resource resource, std::size_t bytes) {
-    spec.uses.push_back({previous_of(resource), Access::kRead, Area::kPreviousTiles, {}, bytes});
-    spec.uses.push_back({resource, Access::kWrite, Area::kTiles, {}, bytes});
-  };
-  add(Resource::kTileReprojection, sizeof(TileReprojection));
-  add(Resource::kTileLight, sizeof(TileLight));
-  if (facts.has_layers()) add(Resource::kLayerTiles, sizeof(LayerTile));
+  spec.add_where(
+      facts.has_layers(), "LAYERS", facts.settings,
+      {.reads = {Resource::kPreviousLayerTiles}, .writes = {Resource::kLayerTiles}, .resizes = true});
   list.passes.push_back(std::move(spec));
 }
 
@@ -151,11 +141,10 @@ class ResizeLayersPass : public Pass {
     const ResizeParams params = resize_params(frame, shape());
     const HistorySamples before =
         history_samples(frame.previous, frame.previous_output, layout_of(frame[Resource::kPreviousDepth]));
-    bind(params, before, frame.tables.positions().get(frame.queue, resize_key(frame)),
-         frame[Resource::kPreviousDepth], frame[Resource::kPreviousTileReprojection],
-         frame[Resource::kPreviousLayerTiles], frame[Resource::kPreviousHistory],
-         frame[Resource::kPreviousNearHistory], frame[Resource::kPreviousLayerStates],
-         frame[Resource::kLayerTiles], frame[Resource::kNearHistory], frame[Resource::kLayerStates]);
+    bind(frame, params, before, frame.tables.positions().get(frame.queue, resize_key(frame)),
+         Resource::kPreviousDepth, Resource::kPreviousTileReprojection, Resource::kPreviousLayerTiles,
+         Resource::kPreviousHistory, Resource::kPreviousNearHistory, Resource::kPreviousLayerStates,
+         Resource::kLayerTiles, Resource::kNearHistory, Resource::kLayerStates);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -168,8 +157,8 @@ class ResizeRecordsPass : public Pass {
     const Extent grid = frame.previous.render_extent;
     const Ratio ratio = ratio_of(frame.output, frame.previous_output);
     const int columns = columns_per_item(shape(), grid.width);
-    bind(grid.width, grid.height, columns, cl_float2{{ratio.x, ratio.y}},
-         frame[Resource::kPreviousRecordKeys], frame[Resource::kPreviousRecords]);
+    bind(frame, grid.width, grid.height, columns, cl_float2{{ratio.x, ratio.y}},
+         Resource::kPreviousRecordKeys, Resource::kPreviousRecords);
     launch(frame, grid, columns, event);
   }
 };
@@ -179,38 +168,31 @@ class ResizeRecordsPass : public Pass {
 void plan_resize_layers(const PlanFacts& facts, PassList& list) {
   if (!facts.resizes_history() || !facts.has_layers()) return;
   const PixelFormat history = facts.settings.temporal.history;
-  const auto tiles = [](Resource resource, Area area, std::size_t bytes) {
-    return Use{resource, Access::kRead, area, {}, bytes};
-  };
   list.passes.push_back(
       {.kernel = "resize_layers",
        .options = fmt::format("-D SOURCE_STORAGE={} -D HISTORY_FORMAT={}",
                               storage_option(facts.settings.targets.storage), precision_of(history)),
        .reason = "where the output's size changes: the second layer in the new one",
-       .uses = {{Resource::kPreviousDepth, Access::kRead, Area::kPreviousViewport, PixelFormat::kR32F},
-                tiles(Resource::kPreviousTileReprojection, Area::kPreviousTiles, sizeof(TileReprojection)),
-                tiles(Resource::kPreviousLayerTiles, Area::kPreviousTiles, sizeof(LayerTile)),
-                {Resource::kPreviousHistory, Access::kRead, Area::kPreviousOutput, history},
-                {Resource::kPreviousNearHistory, Access::kRead, Area::kPreviousOutput, history},
-                tiles(Resource::kPreviousLayerStates, Area::kPreviousOutput, kLayerStateBytes),
-                tiles(Resource::kLayerTiles, Area::kTiles, sizeof(LayerTile)),
-                {Resource::kNearHistory, Access::kWrite, Area::kOutput, history},
-                {Resource::kLayerStates, Access::kWrite, Area::kOutput, {}, kLayerStateBytes}},
+       .uses = uses_of(
+           facts.settings,
+           {.reads = {Resource::kPreviousDepth, Resource::kPreviousTileReprojection,
+                      Resource::kPreviousLayerTiles, Resource::kPreviousHistory,
+                      Resource::kPreviousNearHistory, Resource::kPreviousLayerStates, Resource::kLayerTiles},
+            .writes = {Resource::kNearHistory, Resource::kLayerStates},
+            .resizes = true}),
        .make = make_pass<ResizeLayersPass>,
        .frames = Frames::kResized});
 }
 
 void plan_resize_records(const PlanFacts& facts, PassList& list) {
   if (!facts.resizes_history() || !facts.has_layers()) return;
-  list.passes.push_back(
-      {.kernel = "resize_records",
-       .options = {},
-       .reason = "where the output's size changes: records in its pixels",
-       .uses =
-           {{Resource::kPreviousRecordKeys, Access::kRead, Area::kPreviousViewport, {}, sizeof(cl_uint)},
-            {Resource::kPreviousRecords, Access::kWrite, Area::kPreviousViewport, {}, sizeof(LayerRecord)}},
-       .make = make_pass<ResizeRecordsPass>,
-       .frames = Frames::kResized});
+  list.passes.push_back({.kernel = "resize_records",
+                         .options = {},
+                         .reason = "where the output's size changes: records in its pixels",
+                         .uses = uses_of(facts.settings, {.reads = {Resource::kPreviousRecordKeys},
+                                                          .writes = {Resource::kPreviousRecords}}),
+                         .make = make_pass<ResizeRecordsPass>,
+                         .frames = Frames::kResized});
 }
 
 }  // namespace quincunx

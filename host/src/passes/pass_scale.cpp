@@ -80,7 +80,7 @@ class ScalePass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const ImageView& colour = frame[Resource::kColour];
     const ImageView& output = frame[picture()];
     const ScaleParams params{.output_width = extent.width,
@@ -94,13 +94,13 @@ class ScalePass : public Pass {
                              .columns_per_item = columns_per_item(shape(), extent.width)};
     const cl::Buffer& taps = frame.tables.axis().get(frame.queue, frame.key());
     if (is_noise(settings().method)) {
-      const auto seed = static_cast<unsigned>(settings().filter.noise_moves ? frame.current.frame_index : 0);
+      const auto seed = static_cast<unsigned>(settings().filter.noise_moves ? frame.inputs.frame_index : 0);
       const NoiseParams noise{params, seed, grain_amplitude(settings().filter.grain, render, extent),
                               random_reach(render.width, extent.width),
                               random_reach(render.height, extent.height)};
-      bind(noise, taps, colour, output, frame.counter);
+      bind(frame, noise, taps, colour, output, frame.counter);
     } else {
-      bind(params, taps, colour, output, frame.counter);
+      bind(frame, params, taps, colour, output, frame.counter);
     }
     launch(frame, extent, params.columns_per_item, event);
   }
@@ -142,8 +142,7 @@ void plan_scale(const PlanFacts& facts, PassList& list) {
       {.kernel = choice.kernel,
        .options = scale_options(settings),
        .reason = choice.reason,
-       .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {Resource::kColour}, .writes = {picture_of(facts)}}),
        .make = make_pass<ScalePass>,
        .frames = choice.frames,
        // Bilinear widens above scale 1, which is scale_filter's work.
@@ -163,11 +162,11 @@ class ScaleFilterPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent extent = frame.output;
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const FilterParams params = filter_params(filter_, shape(), {render, frame[Resource::kColour]},
                                               {extent, frame[picture()]}, frame.counter);
-    bind(params, frame.tables.filter(filter_).get(frame.queue, frame.key()), frame[Resource::kColour],
-         frame[picture()], frame.counter);
+    bind(frame, params, frame.tables.filter(filter_).get(frame.queue, frame.key()), Resource::kColour,
+         picture(), frame.counter);
     launch(frame, extent, params.columns_per_item, event);
   }
 
@@ -190,8 +189,7 @@ void plan_scale_filter(const PlanFacts& facts, PassList& list) {
         {.kernel = "scale_filter",
          .options = fmt::format("-D TAPS={} -D CLAMP={} {}", taps, clamps ? 1 : 0, scale_options(settings)),
          .reason = reason,
-         .uses = {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-                  {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+         .uses = uses_of(settings, {.reads = {Resource::kColour}, .writes = {picture_of(facts)}}),
          .make = make_pass<ScaleFilterPass>,
          .frames = facts.accumulates()           ? Frames::kDense
                    : facts.resolves_two_frames() ? Frames::kWithoutHistory
@@ -233,8 +231,9 @@ class ScaleToDisplayPass : public Pass {
     const ImageView& displayed = frame[Resource::kDisplayed];
     const FilterParams params = filter_params(display_filter(), shape(), {frame.output, finished},
                                               {frame.display, displayed}, frame.counter);
-    bind(params, frame.tables.filter(display_filter()).get(frame.queue, {frame.display, frame.output, {}}),
-         finished, displayed, frame.counter);
+    bind(frame, params,
+         frame.tables.filter(display_filter()).get(frame.queue, {frame.display, frame.output, {}}), finished,
+         displayed, frame.counter);
     launch(frame, frame.display, params.columns_per_item, event);
   }
 };
@@ -250,8 +249,7 @@ void plan_scale_to_display(const PlanFacts& facts, PassList& list) {
            "-D TAPS=4 -D CLAMP=1 -D SOURCE_STORAGE=BUFFER -D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0}",
            precision_of(settings.output.linear)),
        .reason = "the output is dynamic: its picture in the size in which it is shown",
-       .uses = {{finished_of(facts), Access::kRead, Area::kOutput, settings.output.linear},
-                {Resource::kDisplayed, Access::kWrite, Area::kDisplay, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {finished_of(facts)}, .writes = {Resource::kDisplayed}}),
        .make = make_pass<ScaleToDisplayPass>,
        .frames = Frames::kScaledOutput});
 }

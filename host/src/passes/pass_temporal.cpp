@@ -20,9 +20,9 @@ class TemporalTilesPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const FrameInputs& current = frame.current;
+    const FrameInputs& inputs = frame.inputs;
     const Extent output = frame.output;
-    const Extent render = current.render_extent;
+    const Extent render = inputs.render_extent;
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
     const Ratio spacing = ratio_of(output, render);
     const Ratio motion = ratio_of(output, frame.previous.render_extent);
@@ -32,23 +32,18 @@ class TemporalTilesPass : public Pass {
         .output_height = output.height,
         .tiles_x = tiles.width,
         .tiles_y = tiles.height,
-        .reprojection = layout_if_used(frame, Resource::kReprojection),
+        .reprojection = layout_of(frame[Resource::kReprojection]),
         .spacing_x = spacing.x,
         .spacing_y = spacing.y,
-        .start_x = (.5f + current.jitter.x) * spacing.x,
-        .start_y = (.5f + current.jitter.y) * spacing.y,
+        .start_x = (.5f + inputs.jitter.x) * spacing.x,
+        .start_y = (.5f + inputs.jitter.y) * spacing.y,
         .motion_x = motion.x,
         .motion_y = motion.y,
-        .parity = shaded_parity(facts(), current)};
-    bind(params, frame[Resource::kColour],
-         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
-         frame[Resource::kPreviousHistory], frame[Resource::kPreviousTileReprojection],
-         view_or(frame, Resource::kDepth, Resource::kColour), layout_if_used(frame, Resource::kDepth),
-         view_or(frame, Resource::kSplits, Resource::kTileReprojection),
-         view_or(frame, Resource::kSplitMarks, Resource::kTileReprojection),
-         view_or(frame, Resource::kPreviousLayerTiles, Resource::kTileReprojection),
-         view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
-         frame[Resource::kTileReprojection], frame[Resource::kTileEvidence], frame[Resource::kTotalLight]);
+        .parity = shaded_parity(facts(), inputs)};
+    bind(frame, params, Resource::kColour, Resource::kReprojection, Resource::kPreviousHistory,
+         Resource::kPreviousTileReprojection, Resource::kDepth, layout_of(frame[Resource::kDepth]),
+         Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles, Resource::kLayerTiles,
+         Resource::kTileReprojection, Resource::kTileEvidence, Resource::kTotalLight);
     launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
@@ -58,31 +53,21 @@ class TemporalTilesPass : public Pass {
 void plan_temporal_tiles(const PlanFacts& facts, PassList& list) {
   if (!facts.accumulates()) return;
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{
-      .kernel = "temporal_tiles",
-      .options = fmt::format("-D MOTION={} -D LAYERS={} {} -D HISTORY_FORMAT={}", facts.reprojects() ? 1 : 0,
-                             facts.has_layers() ? 1 : 0, colour_options(settings),
-                             precision_of(settings.temporal.history)),
-      .reason = "the method: which tiles move as a whole",
-      .uses =
-          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kTileReprojection, Access::kWrite, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kTileEvidence, Access::kWrite, Area::kTiles, {}, sizeof(TileEvidence)},
-           {Resource::kTotalLight, Access::kAccumulate, Area::kWhole, {}, sizeof(TotalLight)}},
-      .make = make_pass<TemporalTilesPass>,
-      .frames = Frames::kSparse};
-  if (facts.reprojects())
-    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
-  if (facts.has_layers()) {
-    spec.uses.insert(spec.uses.end(),
-                     {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                      {Resource::kSplits, Access::kRead, Area::kViewport, {}, sizeof(LayerSplit)},
-                      {Resource::kSplitMarks, Access::kRead, Area::kTiles, {}, sizeof(int)},
-                      {Resource::kPreviousLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)},
-                      {Resource::kLayerTiles, Access::kWrite, Area::kTiles, {}, sizeof(LayerTile)}});
-  }
+  PassSpec spec{.kernel = "temporal_tiles",
+                .reason = "the method: which tiles move as a whole",
+                .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
+                                                     Resource::kPreviousTileReprojection},
+                                           .writes = {Resource::kTileReprojection, Resource::kTileEvidence},
+                                           .sums = {Resource::kTotalLight}}),
+                .make = make_pass<TemporalTilesPass>,
+                .frames = Frames::kSparse};
+  spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
+  spec.add_where(
+      facts.has_layers(), "LAYERS", settings,
+      {.reads = {Resource::kDepth, Resource::kSplits, Resource::kSplitMarks, Resource::kPreviousLayerTiles},
+       .writes = {Resource::kLayerTiles}});
+  spec.add_options(fmt::format("{} -D HISTORY_FORMAT={}", colour_options(settings),
+                               precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(spec));
 }
 
@@ -96,8 +81,8 @@ class TemporalLightPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Extent tiles = extent_of(Area::kTiles, frame.extents());
-    bind(tiles.width, tiles.height, frame[Resource::kTileReprojection], frame[Resource::kTileEvidence],
-         frame[Resource::kTotalLight], frame[Resource::kPreviousTileLight], frame[Resource::kTileLight]);
+    bind(frame, tiles.width, tiles.height, Resource::kTileReprojection, Resource::kTileEvidence,
+         Resource::kTotalLight, Resource::kPreviousTileLight, Resource::kTileLight);
     launch(frame, tiles, columns_per_item(shape(), tiles.width, 1), event);
   }
 };
@@ -110,11 +95,9 @@ void plan_temporal_light(const PlanFacts& facts, PassList& list) {
       {.kernel = "temporal_light",
        .options = "",
        .reason = "the method: where the light has changed",
-       .uses = {{Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-                {Resource::kTileEvidence, Access::kRead, Area::kTiles, {}, sizeof(TileEvidence)},
-                {Resource::kTotalLight, Access::kRead, Area::kWhole, {}, sizeof(TotalLight)},
-                {Resource::kPreviousTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
-                {Resource::kTileLight, Access::kWrite, Area::kTiles, {}, sizeof(TileLight)}},
+       .uses = uses_of(facts.settings, {.reads = {Resource::kTileReprojection, Resource::kTileEvidence,
+                                                  Resource::kTotalLight, Resource::kPreviousTileLight},
+                                        .writes = {Resource::kTileLight}}),
        .make = make_pass<TemporalLightPass>,
        .frames = Frames::kSparse});
 }
@@ -151,18 +134,14 @@ class ResolveTemporalPass : public Pass {
     // A debug view is written here, the picture by temporal_display.
     const Resource shown = uses(Resource::kResolved) ? Resource::kResolved : Resource::kHistory;
     TemporalParams params = temporal_params(frame, shape(), facts());
-    params.frame0.reactive = layout_if_used(frame, Resource::kReactive);
-    params.frame1.reactive = layout_if_used(frame, Resource::kPreviousReactive);
+    params.frame0.reactive = layout_of(frame[Resource::kReactive]);
+    params.frame1.reactive = layout_of(frame[Resource::kPreviousReactive]);
     params.output = layout_of(frame[shown]);
-    bind(params, frame.tables.positions().get(frame.queue, frame.key()), frame[Resource::kColour],
-         view_or(frame, Resource::kReprojection, Resource::kTileReprojection),
-         view_or(frame, Resource::kReactive, Resource::kColour),
-         view_or(frame, Resource::kPreviousReactive, Resource::kColour), frame[Resource::kPreviousHistory],
-         view_or(frame, Resource::kPreviousHistoryAlpha, Resource::kPreviousHistory),
-         frame[Resource::kPreviousTileReprojection], frame[Resource::kTileReprojection],
-         frame[Resource::kTileLight], view_or(frame, Resource::kLayerTiles, Resource::kTileReprojection),
-         frame[Resource::kHistory], view_or(frame, Resource::kHistoryAlpha, Resource::kHistory), frame[shown],
-         frame.counter);
+    bind(frame, params, frame.tables.positions().get(frame.queue, frame.key()), Resource::kColour,
+         Resource::kReprojection, Resource::kReactive, Resource::kPreviousReactive,
+         Resource::kPreviousHistory, Resource::kPreviousHistoryAlpha, Resource::kPreviousTileReprojection,
+         Resource::kTileReprojection, Resource::kTileLight, Resource::kLayerTiles, Resource::kHistory,
+         Resource::kHistoryAlpha, shown, frame.counter);
     launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
@@ -181,51 +160,33 @@ int taps_of(const PlanFacts& facts) {
   return 16;
 }
 
-std::string options_of(const PlanFacts& facts, bool reactive) {
-  const ResolveSettings& settings = facts.settings;
-  std::string format;
-  if (!facts.displays_history())
-    format = fmt::format(" -D OUTPUT_FORMAT={}", precision_of(settings.output.linear));
-  return fmt::format(
-      "-D ALPHA={} -D MOTION={} -D REACTIVE={} -D TAPS={} -D LAYERS={} -D VIEW={} {} "
-      "-D HISTORY_FORMAT={}{}",
-      facts.accumulates_alpha() ? 1 : 0, facts.reprojects() ? 1 : 0, reactive ? 1 : 0, taps_of(facts),
-      facts.has_layers() ? 1 : 0, view_option(settings.temporal.view), colour_options(settings),
-      precision_of(settings.temporal.history), format);
-}
-
 }  // namespace
 
 void plan_resolve_temporal(const PlanFacts& facts, PassList& list) {
   if (!facts.accumulates()) return;
   const ResolveSettings& settings = facts.settings;
+  PassSpec spec{.kernel = "resolve_temporal",
+                .reason = "the method: this frame added to the history",
+                .uses = uses_of(settings, {.reads = {Resource::kColour, Resource::kPreviousHistory,
+                                                     Resource::kPreviousTileReprojection,
+                                                     Resource::kTileReprojection, Resource::kTileLight},
+                                           .writes = {Resource::kHistory}}),
+                .make = make_pass<ResolveTemporalPass>,
+                .frames = Frames::kSparse};
+  spec.add_where(facts.accumulates_alpha(), "ALPHA", settings,
+                 {.reads = {Resource::kPreviousHistoryAlpha}, .writes = {Resource::kHistoryAlpha}});
+  spec.add_where(facts.reprojects(), "MOTION", settings, {.reads = {Resource::kReprojection}});
   // Where samples are reprojected, that already holds what reactive values take.
-  const bool reactive = !facts.reprojects() && facts.reads_reactive();
-  PassSpec spec{
-      .kernel = "resolve_temporal",
-      .options = options_of(facts, reactive),
-      .reason = "the method: this frame added to the history",
-      .uses =
-          {{Resource::kColour, Access::kRead, Area::kViewport, settings.colour},
-           {Resource::kPreviousHistory, Access::kRead, Area::kOutput, settings.temporal.history},
-           {Resource::kPreviousTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)},
-           {Resource::kTileLight, Access::kRead, Area::kTiles, {}, sizeof(TileLight)},
-           {Resource::kHistory, Access::kWrite, Area::kOutput, settings.temporal.history}},
-      .make = make_pass<ResolveTemporalPass>,
-      .frames = Frames::kSparse};
-  if (facts.reprojects())
-    spec.uses.push_back({Resource::kReprojection, Access::kRead, Area::kViewport, PixelFormat::kRGBA32F});
-  if (facts.has_layers())
-    spec.uses.push_back({Resource::kLayerTiles, Access::kRead, Area::kTiles, {}, sizeof(LayerTile)});
-  if (facts.accumulates_alpha()) {
-    const std::size_t bytes = alpha_bytes(settings);
-    spec.uses.push_back({Resource::kPreviousHistoryAlpha, Access::kRead, Area::kOutput, {}, bytes});
-    spec.uses.push_back({Resource::kHistoryAlpha, Access::kWrite, Area::kOutput, {}, bytes});
+  spec.add_where(!facts.reprojects() && facts.reads_reactive(), "REACTIVE", settings,
+                 {.reads = {Resource::kReactive, Resource::kPreviousReactive}});
+  spec.add_options(fmt::format("-D TAPS={}", taps_of(facts)));
+  spec.add_where(facts.has_layers(), "LAYERS", settings, {.reads = {Resource::kLayerTiles}});
+  spec.add_options(fmt::format("-D VIEW={} {} -D HISTORY_FORMAT={}", view_option(settings.temporal.view),
+                               colour_options(settings), precision_of(settings.temporal.history)));
+  if (!facts.displays_history()) {
+    spec.add_options(fmt::format("-D OUTPUT_FORMAT={}", precision_of(settings.output.linear)));
+    spec.uses.push_back(use(Resource::kResolved, settings, Access::kWrite));
   }
-  if (reactive) read_both_frames(spec.uses, Resource::kReactive, PixelFormat::kR8);
-  if (!facts.displays_history())
-    spec.uses.push_back({Resource::kResolved, Access::kWrite, Area::kOutput, settings.output.linear});
   list.passes.push_back(std::move(spec));
 }
 
@@ -243,37 +204,33 @@ class TemporalDisplayPass : public Pass {
     const Resource shown = merged ? shown_history_of(facts()) : centred_of(facts());
     const Resource history = merged ? Resource::kMergedHistory : Resource::kHistory;
     TemporalDisplayParams params = temporal_display_params(frame, shape(), shown);
-    bind(params, frame[merged ? Resource::kCentredTiles : Resource::kTileReprojection], frame[history],
-         view_or(frame, merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, history), frame[shown]);
+    bind(frame, params, merged ? Resource::kCentredTiles : Resource::kTileReprojection, history,
+         merged ? Resource::kMergedAlpha : Resource::kHistoryAlpha, shown);
     launch(frame, frame.output, params.columns_per_item, event, params.rows_per_item);
   }
 };
 
-PassSpec display_spec(const PlanFacts& facts, Resource shown) {
+PassSpec display_spec(const PlanFacts& facts, const Touched& touched, Resource alpha) {
   const ResolveSettings& settings = facts.settings;
-  return {
-      .kernel = "temporal_display",
-      .options = fmt::format("-D ALPHA={} -D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
-                             facts.accumulates_alpha() ? 1 : 0, facts.smooths_history() ? 1 : 0,
-                             precision_of(settings.output.linear), precision_of(settings.temporal.history)),
-      .reason = "the method: the history's picture",
-      .uses = {{shown, Access::kWrite, Area::kOutput, settings.output.linear}},
-      .make = make_pass<TemporalDisplayPass>,
-      .frames = Frames::kSparse};
+  PassSpec spec{.kernel = "temporal_display",
+                .reason = "the method: the history's picture",
+                .uses = uses_of(settings, touched),
+                .make = make_pass<TemporalDisplayPass>,
+                .frames = Frames::kSparse};
+  spec.add_where(facts.accumulates_alpha(), "ALPHA", settings, {.reads = {alpha}});
+  spec.add_options(fmt::format("-D SMOOTH={} -D OUTPUT_FORMAT={} -D HISTORY_FORMAT={}",
+                               facts.smooths_history() ? 1 : 0, precision_of(settings.output.linear),
+                               precision_of(settings.temporal.history)));
+  return spec;
 }
 
 }  // namespace
 
 void plan_temporal_display(const PlanFacts& facts, PassList& list) {
   if (!facts.displays_history()) return;
-  const ResolveSettings& settings = facts.settings;
-  PassSpec spec = display_spec(facts, centred_of(facts));
-  spec.uses.push_back(
-      {Resource::kTileReprojection, Access::kRead, Area::kTiles, {}, sizeof(TileReprojection)});
-  spec.uses.push_back({Resource::kHistory, Access::kRead, Area::kOutput, settings.temporal.history});
-  if (facts.accumulates_alpha())
-    spec.uses.push_back({Resource::kHistoryAlpha, Access::kRead, Area::kOutput, {}, alpha_bytes(settings)});
-  list.passes.push_back(std::move(spec));
+  list.passes.push_back(display_spec(
+      facts, {.reads = {Resource::kTileReprojection, Resource::kHistory}, .writes = {centred_of(facts)}},
+      Resource::kHistoryAlpha));
 }
 
 // merge_histories: the histories of frames before and after, made one; its picture.
@@ -290,11 +247,9 @@ class MergeHistoriesPass : public Pass {
                              .centred = layout_of(frame[Resource::kCentred]),
                              .columns_per_item = columns_per_item(shape(), frame.output.width),
                              .has_other = frame.merges ? 1 : 0};
-    bind(params, frame[Resource::kCentred], frame[Resource::kHistory],
-         view_or(frame, Resource::kNearHistory, Resource::kHistory),
-         view_or(frame, Resource::kLayerStates, Resource::kHistory), frame[Resource::kOtherHistory],
-         view_or(frame, Resource::kOtherAlpha, Resource::kOtherHistory), frame[Resource::kMergedHistory],
-         view_or(frame, Resource::kMergedAlpha, Resource::kMergedHistory));
+    bind(frame, params, Resource::kCentred, Resource::kHistory, Resource::kNearHistory,
+         Resource::kLayerStates, Resource::kOtherHistory, Resource::kOtherAlpha, Resource::kMergedHistory,
+         Resource::kMergedAlpha);
     launch(frame, frame.output, params.columns_per_item, event);
   }
 };
@@ -304,34 +259,28 @@ class MergeHistoriesPass : public Pass {
 void plan_merge_histories(const PlanFacts& facts, PassList& list) {
   if (!facts.two_way) return;
   const ResolveSettings& settings = facts.settings;
-  const PixelFormat history = settings.temporal.history;
-  const std::size_t alpha = alpha_bytes(settings);
   PassSpec merge{.kernel = "merge_histories",
-                 .options = fmt::format("-D ALPHA={} -D SOURCE_FORMAT={} -D HISTORY_FORMAT={}",
-                                        facts.accumulates_alpha() ? 1 : 0,
-                                        precision_of(settings.output.linear), precision_of(history)),
                  .reason = "both ways: the histories of frames before and after made one",
-                 .uses = {{Resource::kCentred, Access::kRead, Area::kOutput, settings.output.linear},
-                          {Resource::kHistory, Access::kRead, Area::kOutput, history},
-                          {Resource::kOtherHistory, Access::kUpdate, Area::kOutput, history},
-                          {Resource::kMergedHistory, Access::kWrite, Area::kOutput, history}},
+                 .uses = uses_of(settings, {.reads = {Resource::kCentred, Resource::kHistory},
+                                            .writes = {Resource::kMergedHistory},
+                                            .updates = {Resource::kOtherHistory}}),
                  .make = make_pass<MergeHistoriesPass>,
                  .frames = Frames::kSparse};
-  PassSpec shown = display_spec(facts, shown_history_of(facts));
-  shown.uses.push_back(
-      {Resource::kCentredTiles, Access::kAccumulate, Area::kTiles, {}, sizeof(TileReprojection)});
-  shown.uses.push_back({Resource::kMergedHistory, Access::kRead, Area::kOutput, history});
   if (facts.has_layers()) {
-    merge.uses.push_back({Resource::kNearHistory, Access::kRead, Area::kOutput, history});
-    merge.uses.push_back({Resource::kLayerStates, Access::kRead, Area::kOutput, {}, kLayerStateBytes});
+    for (const Resource layer : {Resource::kNearHistory, Resource::kLayerStates})
+      merge.uses.push_back(use(layer, settings));
   }
-  if (facts.accumulates_alpha()) {
-    merge.uses.push_back({Resource::kOtherAlpha, Access::kUpdate, Area::kOutput, {}, alpha});
-    merge.uses.push_back({Resource::kMergedAlpha, Access::kWrite, Area::kOutput, {}, alpha});
-    shown.uses.push_back({Resource::kMergedAlpha, Access::kRead, Area::kOutput, {}, alpha});
-  }
+  merge.add_where(facts.accumulates_alpha(), "ALPHA", settings,
+                  {.writes = {Resource::kMergedAlpha}, .updates = {Resource::kOtherAlpha}});
+  merge.add_options(fmt::format("-D SOURCE_FORMAT={} -D HISTORY_FORMAT={}",
+                                precision_of(settings.output.linear),
+                                precision_of(settings.temporal.history)));
   list.passes.push_back(std::move(merge));
-  list.passes.push_back(std::move(shown));
+  list.passes.push_back(display_spec(facts,
+                                     {.reads = {Resource::kMergedHistory},
+                                      .writes = {shown_history_of(facts)},
+                                      .sums = {Resource::kCentredTiles}},
+                                     Resource::kMergedAlpha));
 }
 
 // temporal_denoise, temporal_refine: the history's picture without noise; sharpened, and smoothed along its edges.
@@ -356,9 +305,8 @@ class TemporalDenoisePass : public Pass {
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const Resource denoised = denoised_of(facts());
     const ImageView& albedo = frame.albedo ? frame.albedo : frame[Resource::kNoisy];
-    bind(refine_params(frame, Resource::kNoisy, denoised), layout_of(albedo), frame.albedo ? 1 : 0,
-         facts().settings.temporal.noise, frame[Resource::kNoisy], albedo,
-         frame[displayed_history_of(facts())], frame[denoised]);
+    bind(frame, refine_params(frame, Resource::kNoisy, denoised), layout_of(albedo), frame.albedo ? 1 : 0,
+         facts().settings.temporal.noise, Resource::kNoisy, albedo, displayed_history_of(facts()), denoised);
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -369,8 +317,8 @@ class TemporalRefinePass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    bind(refine_params(frame, Resource::kUnrefined, picture()), frame[Resource::kUnrefined],
-         frame[displayed_history_of(facts())], frame[picture()]);
+    bind(frame, refine_params(frame, Resource::kUnrefined, picture()), Resource::kUnrefined,
+         displayed_history_of(facts()), picture());
     const Extent blocks = {divided_up(frame.output.width), divided_up(frame.output.height)};
     launch(frame, blocks, columns_per_item(shape(), blocks.width, 1), event);
   }
@@ -386,9 +334,8 @@ void plan_temporal_denoise(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the frames' noise: pixels become means of such around them as differ by chance alone",
-       .uses = {{Resource::kNoisy, Access::kRead, Area::kOutput, settings.output.linear},
-                {displayed_history_of(facts), Access::kRead, Area::kOutput, settings.temporal.history},
-                {denoised_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {Resource::kNoisy, displayed_history_of(facts)},
+                                  .writes = {denoised_of(facts)}}),
        .make = make_pass<TemporalDenoisePass>,
        .frames = Frames::kSparse});
 }
@@ -401,9 +348,8 @@ void plan_temporal_refine(const PlanFacts& facts, PassList& list) {
        .options = fmt::format("-D SOURCE_FORMAT={0} -D OUTPUT_FORMAT={0} -D HISTORY_FORMAT={1}",
                               precision_of(settings.output.linear), precision_of(settings.temporal.history)),
        .reason = "the preset, or both ways: sharpened, and smoothed along edges where little is known",
-       .uses = {{Resource::kUnrefined, Access::kRead, Area::kOutput, settings.output.linear},
-                {displayed_history_of(facts), Access::kRead, Area::kOutput, settings.temporal.history},
-                {picture_of(facts), Access::kWrite, Area::kOutput, settings.output.linear}},
+       .uses = uses_of(settings, {.reads = {Resource::kUnrefined, displayed_history_of(facts)},
+                                  .writes = {picture_of(facts)}}),
        .make = make_pass<TemporalRefinePass>,
        .frames = Frames::kSparse});
 }

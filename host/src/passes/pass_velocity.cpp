@@ -21,7 +21,7 @@ class VelocityFromDepthPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const ImageView& depth = frame[Resource::kDepth];
     const ImageView& velocity = frame[Resource::kVelocity];
     const VelocityParams params{.width = render.width,
@@ -29,8 +29,8 @@ class VelocityFromDepthPass : public Pass {
                                 .depth = layout_of(depth),
                                 .velocity = layout_of(velocity),
                                 .columns_per_item = columns_per_item(shape(), render.width),
-                                .camera = camera_params(frame.current)};
-    bind(params, depth, velocity);
+                                .camera = camera_params(frame.inputs)};
+    bind(frame, params, depth, velocity);
     launch(frame, render, params.columns_per_item, event);
   }
 };
@@ -43,8 +43,7 @@ void plan_velocity_from_depth(const PlanFacts& facts, PassList& list) {
       {.kernel = "velocity_from_depth",
        .options = velocity_options(facts.settings),
        .reason = "nothing but the camera moves",
-       .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                {Resource::kVelocity, Access::kWrite, Area::kViewport, facts.settings.velocity}},
+       .uses = uses_of(facts.settings, {.reads = {Resource::kDepth}, .writes = {Resource::kVelocity}}),
        .make = make_pass<VelocityFromDepthPass>});
 }
 
@@ -57,22 +56,21 @@ class UndilateVelocityPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const Resource own = drawn_velocity_of(facts());
-    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
-    const bool has_camera =
-        frame.current.camera.clip_to_previous_clip != CameraMotion{}.clip_to_previous_clip;
+    const VelocityScale to_uv = velocity_scale_to(frame.inputs, {1, 1});
+    const bool has_camera = frame.inputs.camera.clip_to_previous_clip != CameraMotion{}.clip_to_previous_clip;
     const UndilateParams params{.frame = {.width = render.width,
                                           .height = render.height,
                                           .depth = layout_of(frame[Resource::kDepth]),
                                           .velocity = layout_of(frame[own]),
                                           .columns_per_item = columns_per_item(shape(), render.width),
-                                          .camera = camera_params(frame.current)},
+                                          .camera = camera_params(frame.inputs)},
                                 .dilated = layout_of(frame[Resource::kDilatedVelocity]),
                                 .to_drawn_x = inverse_scale(to_uv.x),
                                 .to_drawn_y = inverse_scale(to_uv.y),
                                 .has_camera = has_camera ? 1 : 0};
-    bind(params, frame[Resource::kDepth], frame[Resource::kDilatedVelocity], frame[own]);
+    bind(frame, params, Resource::kDepth, Resource::kDilatedVelocity, own);
     launch(frame, render, params.frame.columns_per_item, event);
   }
 };
@@ -87,14 +85,13 @@ void plan_undilate_velocity(const PlanFacts& facts, PassList& list) {
                                                       : "no pass reads velocity"});
     return;
   }
-  const PixelFormat velocity = facts.settings.velocity;
-  list.passes.push_back({.kernel = "undilate_velocity",
-                         .options = velocity_options(facts.settings),
-                         .reason = "each sample gets its own velocity back from the nearest's of 3x3",
-                         .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                                  {Resource::kDilatedVelocity, Access::kRead, Area::kViewport, velocity},
-                                  {drawn_velocity_of(facts), Access::kWrite, Area::kViewport, velocity}},
-                         .make = make_pass<UndilateVelocityPass>});
+  list.passes.push_back(
+      {.kernel = "undilate_velocity",
+       .options = velocity_options(facts.settings),
+       .reason = "each sample gets its own velocity back from the nearest's of 3x3",
+       .uses = uses_of(facts.settings, {.reads = {Resource::kDepth, Resource::kDilatedVelocity},
+                                        .writes = {drawn_velocity_of(facts)}}),
+       .make = make_pass<UndilateVelocityPass>});
 }
 
 // far_surroundings, far_fit, far_match: how the camera moves what is infinitely far away, from what all else does.
@@ -106,9 +103,9 @@ class FarSurroundingsPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const Extent cells = extent_of(Area::kFarCells, frame.extents());
-    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const VelocityScale to_uv = velocity_scale_to(frame.inputs, {1, 1});
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
     const FarSumsParams params{.width = render.width,
                                .height = render.height,
@@ -116,12 +113,12 @@ class FarSurroundingsPass : public Pass {
                                .cells_y = cells.height,
                                .depth = layout_of(frame[Resource::kDepth]),
                                .drawn = layout_of(frame[Resource::kDrawnVelocity]),
-                               .places = far_places(frame.current, frame.output),
+                               .places = far_places(frame.inputs, frame.output),
                                .from_drawn_x = static_cast<float>(to_uv.x * aspect),
                                .from_drawn_y = static_cast<float>(to_uv.y),
                                .pixels = static_cast<float>(frame.output.height)};
-    bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity],
-         frame[Resource::kPreviousFarMotion], frame[Resource::kFarSums]);
+    bind(frame, params, Resource::kDepth, Resource::kDrawnVelocity, Resource::kPreviousFarMotion,
+         Resource::kFarSums);
     launch(frame, cells, 1, event);
   }
 };
@@ -132,8 +129,8 @@ class FarFitPass : public Pass {
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
     const auto cells = static_cast<cl_int>(extent_of(Area::kFarCells, frame.extents()).area());
-    bind(cells, frame[Resource::kFarSums], frame[Resource::kPreviousFarMotion], frame[Resource::kFarMatch],
-         frame[Resource::kFarMotion]);
+    bind(frame, cells, Resource::kFarSums, Resource::kPreviousFarMotion, Resource::kFarMatch,
+         Resource::kFarMotion);
     launch(frame, {1, 1}, 1, event);
   }
 };
@@ -143,18 +140,18 @@ class FarMatchPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const FrameInputs& current = frame.current;
+    const FrameInputs& inputs = frame.inputs;
     const FrameInputs& previous = frame.previous;
     const Extent cells = extent_of(Area::kFarCells, frame.extents());
     const auto step = [](int to, int from) { return static_cast<double>(to) / from; };
-    const double step_x = step(previous.render_extent.width, current.render_extent.width);
-    const double step_y = step(previous.render_extent.height, current.render_extent.height);
+    const double step_x = step(previous.render_extent.width, inputs.render_extent.width);
+    const double step_y = step(previous.render_extent.height, inputs.render_extent.height);
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
     // So that the sum over all cells fits into an int.
     constexpr double kMost = 1 << 30, kSamples = kFarCell * kFarCell / 4.;
     const FarMatchParams params{
-        .width = current.render_extent.width,
-        .height = current.render_extent.height,
+        .width = inputs.render_extent.width,
+        .height = inputs.render_extent.height,
         .previous_width = previous.render_extent.width,
         .previous_height = previous.render_extent.height,
         .cells_x = cells.width,
@@ -164,17 +161,16 @@ class FarMatchPass : public Pass {
         .drawn = layout_of(frame[Resource::kDrawnVelocity]),
         .colour0 = layout_of(frame[Resource::kColour]),
         .colour1 = layout_of(frame[Resource::kPreviousColour]),
-        .places = far_places(current, frame.output),
+        .places = far_places(inputs, frame.output),
         .step_x = static_cast<float>(step_x),
         .step_y = static_cast<float>(step_y),
-        .start_x = static_cast<float>((.5 + current.jitter.x) * step_x - .5 - previous.jitter.x),
-        .start_y = static_cast<float>((.5 + current.jitter.y) * step_y - .5 - previous.jitter.y),
+        .start_x = static_cast<float>((.5 + inputs.jitter.x) * step_x - .5 - previous.jitter.x),
+        .start_y = static_cast<float>((.5 + inputs.jitter.y) * step_y - .5 - previous.jitter.y),
         .to_previous_x = static_cast<float>(previous.render_extent.width / aspect),
         .to_previous_y = static_cast<float>(previous.render_extent.height),
         .units = static_cast<float>(std::min(1024., kMost / (kSamples * static_cast<double>(cells.area()))))};
-    bind(params, frame[Resource::kDepth], frame[Resource::kPreviousDepth], frame[Resource::kDrawnVelocity],
-         frame[Resource::kColour], frame[Resource::kPreviousColour], frame[Resource::kFarMotion],
-         frame[Resource::kFarMatch]);
+    bind(frame, params, Resource::kDepth, Resource::kPreviousDepth, Resource::kDrawnVelocity,
+         Resource::kColour, Resource::kPreviousColour, Resource::kFarMotion, Resource::kFarMatch);
     launch(frame, cells, 1, event);
   }
 };
@@ -184,38 +180,32 @@ class FarMatchPass : public Pass {
 void plan_far_motion(const PlanFacts& facts, PassList& list) {
   if (!facts.fits_sky()) return;
   const ResolveSettings& settings = facts.settings;
-  const Use depth = {Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F};
-  const Use drawn = {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, settings.velocity};
-  list.passes.push_back(
-      {.kernel = "far_surroundings",
-       .options = velocity_options(settings),
-       .reason = "how the camera moves, by what is drawn with motion",
-       .uses = {depth,
-                drawn,
-                {Resource::kPreviousFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
-                {Resource::kFarSums, Access::kWrite, Area::kFarCells, {}, sizeof(FarSums)}},
-       .make = make_pass<FarSurroundingsPass>});
+  list.passes.push_back({.kernel = "far_surroundings",
+                         .options = velocity_options(settings),
+                         .reason = "how the camera moves, by what is drawn with motion",
+                         .uses = uses_of(settings, {.reads = {Resource::kDepth, Resource::kDrawnVelocity,
+                                                              Resource::kPreviousFarMotion},
+                                                    .writes = {Resource::kFarSums}}),
+                         .make = make_pass<FarSurroundingsPass>});
   // far_match, which comes after it, has not yet begun this frame's sums: these are the previous one's.
   list.passes.push_back(
       {.kernel = "far_fit",
        .options = "",
        .reason = "how the camera moves: the fit",
-       .uses = {{Resource::kFarSums, Access::kRead, Area::kFarCells, {}, sizeof(FarSums)},
-                {Resource::kPreviousFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
-                {Resource::kFarMatch, Access::kRead, Area::kWhole, {}, sizeof(FarMatch)},
-                {Resource::kFarMotion, Access::kWrite, Area::kWhole, {}, sizeof(FarModel)}},
+       .uses = uses_of(settings,
+                       {.reads = {Resource::kFarSums, Resource::kPreviousFarMotion, Resource::kFarMatch},
+                        .writes = {Resource::kFarMotion}}),
        .make = make_pass<FarFitPass>});
   PassSpec match{.kernel = "far_match",
                  .options = colour_options(settings),
                  .reason = "whether that explains the colour of what is infinitely far away",
-                 .uses = {drawn,
-                          {Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)},
-                          {Resource::kFarMatch, Access::kAccumulate, Area::kWhole, {}, sizeof(FarMatch)}},
+                 .uses = uses_of(settings, {.reads = {Resource::kDrawnVelocity, Resource::kDepth,
+                                                      Resource::kPreviousDepth, Resource::kColour,
+                                                      Resource::kPreviousColour, Resource::kFarMotion},
+                                            .sums = {Resource::kFarMatch}}),
                  .make = make_pass<FarMatchPass>};
   if (settings.targets.storage == Storage::kBuffer)
     match.options += std::string(" -D VELOCITY_FORMAT=") + precision_of(settings.velocity);
-  read_both_frames(match.uses, Resource::kDepth, PixelFormat::kR32F);
-  read_both_frames(match.uses, Resource::kColour, settings.colour);
   list.passes.push_back(std::move(match));
 }
 
@@ -228,23 +218,22 @@ class FarVelocityPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent;
+    const Extent render = frame.inputs.render_extent;
     const bool fitted = facts().fits_sky();
     const double aspect = static_cast<double>(frame.output.width) / frame.output.height;
-    const VelocityScale to_uv = velocity_scale_to(frame.current, {1, 1});
+    const VelocityScale to_uv = velocity_scale_to(frame.inputs, {1, 1});
     const FarVelocityParams params{.frame = {.width = render.width,
                                              .height = render.height,
                                              .depth = layout_of(frame[Resource::kDepth]),
                                              .velocity = layout_of(frame[Resource::kVelocity]),
                                              .columns_per_item = columns_per_item(shape(), render.width),
-                                             .camera = camera_params(frame.current)},
+                                             .camera = camera_params(frame.inputs)},
                                    .drawn = layout_of(frame[Resource::kDrawnVelocity]),
-                                   .places = far_places(frame.current, frame.output),
+                                   .places = far_places(frame.inputs, frame.output),
                                    .to_drawn_x = inverse_scale(fitted ? to_uv.x * aspect : to_uv.x),
                                    .to_drawn_y = inverse_scale(to_uv.y)};
-    // With the camera's own motion there is no other: their memory is null, which OpenCL allows for a buffer.
-    bind(params, frame[Resource::kDepth], frame[Resource::kDrawnVelocity], frame[Resource::kFarMotion],
-         frame[Resource::kFarMatch], frame[Resource::kVelocity]);
+    bind(frame, params, Resource::kDepth, Resource::kDrawnVelocity, Resource::kFarMotion, Resource::kFarMatch,
+         Resource::kVelocity);
     launch(frame, render, params.frame.columns_per_item, event);
   }
 };
@@ -262,18 +251,16 @@ void plan_far_velocity(const PlanFacts& facts, PassList& list) {
     list.left_out.push_back({"far_velocity", reason});
     return;
   }
-  const PixelFormat velocity = facts.settings.velocity;
   PassSpec spec{.kernel = "far_velocity",
                 .options = fmt::format("-D FAR={} {}", facts.fits_sky() ? "EVIDENCE" : "CAMERA",
                                        velocity_options(facts.settings)),
                 .reason = "what is infinitely far away moves with the camera",
-                .uses = {{Resource::kDepth, Access::kRead, Area::kViewport, PixelFormat::kR32F},
-                         {Resource::kDrawnVelocity, Access::kRead, Area::kViewport, velocity},
-                         {Resource::kVelocity, Access::kWrite, Area::kViewport, velocity}},
+                .uses = uses_of(facts.settings, {.reads = {Resource::kDepth, Resource::kDrawnVelocity},
+                                                 .writes = {Resource::kVelocity}}),
                 .make = make_pass<FarVelocityPass>};
   if (facts.fits_sky()) {
-    spec.uses.push_back({Resource::kFarMotion, Access::kRead, Area::kWhole, {}, sizeof(FarModel)});
-    spec.uses.push_back({Resource::kFarMatch, Access::kRead, Area::kWhole, {}, sizeof(FarMatch)});
+    for (const Resource found : {Resource::kFarMotion, Resource::kFarMatch})
+      spec.uses.push_back(use(found, facts.settings));
   }
   list.passes.push_back(std::move(spec));
 }

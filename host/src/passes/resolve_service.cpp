@@ -9,8 +9,7 @@
 #include "device/program_cache.h"
 #include "motion/blur_params.h"
 #include "passes/resolve_service_impl.h"
-#include "plan/native_frame.h"
-#include "plan/validate.h"
+#include "plan/inputs.h"
 #include "quincunx/advanced/log.h"
 
 namespace quincunx {
@@ -104,7 +103,7 @@ void FrameAdvice::look_at_jitter(Extent render, Extent output, Vec2 jitter) {
 
 void ResolveService::Impl::warm_up() {
   picture.chain().warm_up();
-  if (focus) focus->chain().warm_up();
+  if (region) region->chain().warm_up();
   // The commands around the kernels have a first time too.
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
@@ -113,38 +112,38 @@ void ResolveService::Impl::warm_up() {
   queue.enqueueReadBuffer(counter, CL_TRUE, 0, sizeof(back), &back);  // waits: `back` must outlive it
 }
 
-Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* given,
+Status ResolveService::Impl::check(const FrameInputs& inputs, const FocusInputs* focus,
                                    const FrameOutputs& outputs) const {
   const bool adds = picture.chain().facts().two_way;  // and shows nothing
   Status valid = adds ? validate_inputs(picture.plan(), inputs) : validate(picture.plan(), inputs, outputs);
   if (!valid.ok()) return valid;
   if (Status status = picture.check_history(inputs); !status.ok()) return status;
-  if (given == nullptr) return {};
-  const Status status = validate_focus(picture.plan(), focus ? &focus->plan() : nullptr, *given);
-  return status.ok() ? focus->check_history(*given) : status;
+  if (focus == nullptr) return {};
+  const Status status = validate_focus(picture.plan(), region ? &region->plan() : nullptr, *focus);
+  return status.ok() ? region->check_history(*focus) : status;
 }
 
-void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* given,
-                                   const FrameOutputs& given_outputs, FrameRing::Slot& slot) {
+void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs* focus,
+                                   const FrameOutputs& outputs, FrameRing::Slot& slot) {
   const ResolveSettings& settings = picture.plan().settings;
-  const FrameOutputs outputs = native_outputs(settings, given_outputs);
+  const FrameOutputs native = native_outputs(settings, outputs);
   const cl::CommandQueue& queue = device.impl()->queue;
   const cl_uint zero = 0;
   const Counter counted = {counter(), ring.index_of(slot)};
   const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(zero);
   queue.enqueueFillBuffer(counter, zero, at, sizeof(zero));
-  PassFrame frame = picture.frame(inputs, outputs, counted);
+  PassFrame frame = picture.frame(inputs, native, counted);
   frame.merges = merges;
   frame.keeps_merged = keeps;
   FocusInputs laid;  // outlives the frame
-  if (given != nullptr) {
-    focus->run(*given, counted, slot.report, slot.passes.data());
-    laid = native_focus(settings, *given);
-    focus->lay_over(frame, laid);
-  } else if (focus) {
-    focus->forget();
+  if (focus != nullptr) {
+    region->run(*focus, counted, slot.report, slot.passes.data());
+    laid = native_focus(settings, *focus);
+    region->lay_over(frame, laid);
+  } else if (region) {
+    region->forget();
   }
-  picture.chain().run(frame, outputs, slot.report, slot.passes.data() + slot.report.passes.size());
+  picture.chain().run(frame, native, slot.report, slot.passes.data() + slot.report.passes.size());
   // Where nothing moves there are no sums, and nothing is what there is to tell.
   slot.measures_content = settings.control.measures_content;
   if (const ImageView sums = picture.chain().newest(Resource::kContentSums); sums) {
@@ -163,21 +162,21 @@ void ResolveService::Impl::enqueue(const FrameInputs& inputs, const FocusInputs*
 
 void ResolveService::Impl::forget() {
   picture.forget();
-  if (focus) focus->forget();
+  if (region) region->forget();
 }
 
-FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const FocusInputs* given,
+FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const FocusInputs* focus,
                                            const FrameOutputs& outputs, const FrameSync& sync) {
   if (sync.done != nullptr) *sync.done = nullptr;
   FrameReport refused;
   refused.frame_index = inputs.frame_index;
   refused.render_extent = inputs.render_extent;
-  refused.status = check(inputs, given, outputs);
+  refused.status = check(inputs, focus, outputs);
   if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
   if (!refused.ok()) return refused;
   try {
     wait_in_queue(device.impl()->queue, sync.wait_for);
-    if (observer && !observer(inputs, given)) observer = nullptr;
+    if (observer && !observer(inputs, focus)) observer = nullptr;
     FrameRing::Slot& slot = ring.begin();
     slot.report.frame_index = inputs.frame_index;
     slot.report.render_extent = inputs.render_extent;
@@ -187,7 +186,7 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
                          static_cast<float>(inputs.render_extent.height) / static_cast<float>(output.height)};
     slot.report.used_previous =
         picture.has_history(inputs) && picture.plan().reads_history(inputs.render_extent, output);
-    enqueue(inputs, given, outputs, slot);
+    enqueue(inputs, focus, outputs, slot);
     ring.commit();
     picture.keep(inputs);
     advice.look_at(picture.plan(), inputs);
@@ -268,7 +267,7 @@ std::optional<FrameReport> ResolveService::next_completed() {
 void ResolveService::allow_timing_waits(bool allow) {
   const bool wait = allow && pass_timer(impl_->device) == PassTimer::kHostClock;
   impl_->picture.chain().wait_for_each_pass(wait);
-  if (impl_->focus) impl_->focus->chain().wait_for_each_pass(wait);
+  if (impl_->region) impl_->region->chain().wait_for_each_pass(wait);
 }
 
 Status ResolveService::clear(const ImageView& image, Extent render, const float value[4]) {

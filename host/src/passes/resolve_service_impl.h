@@ -45,15 +45,15 @@ struct ResolveService::Impl {
         advice(to_do),
         counter(on.impl()->context, CL_MEM_READ_WRITE, FrameRing::kFrames * sizeof(cl_uint)),
         ring(pass_timer(on) == PassTimer::kEvents) {
-    if (const auto of_focus = to_do.focus_plan()) focus.emplace(on, *of_focus);
+    if (const auto of_focus = to_do.focus_plan()) region.emplace(on, *of_focus);
   }
 
   void warm_up();
-  Status check(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs) const;
-  void enqueue(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
+  Status check(const FrameInputs& inputs, const FocusInputs* focus, const FrameOutputs& outputs) const;
+  void enqueue(const FrameInputs& inputs, const FocusInputs* focus, const FrameOutputs& outputs,
                FrameRing::Slot& slot);
   void forget();
-  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* given, const FrameOutputs& outputs,
+  FrameReport dispatch(const FrameInputs& inputs, const FocusInputs* focus, const FrameOutputs& outputs,
                        const FrameSync& sync);
   ClearRegionPass* clear_pass(const ImageView& image) const;
   // What TwoWay does, in two_way.cpp.
@@ -64,8 +64,8 @@ struct ResolveService::Impl {
   Device device;
   FrameStream picture;
   FrameAdvice advice;
-  std::optional<FocusStream> focus;  // where the plan has one
-  cl::Buffer counter;                // numbers of non-finite pixels, one uint a slot of the ring
+  std::optional<FocusStream> region;  // of the focus, where the plan has one
+  cl::Buffer counter;                 // numbers of non-finite pixels, one uint a slot of the ring
   FrameRing ring;
   FrameObserver observer;  // may be empty
   // For TwoWay: whether the next frame's history is merged with another one, and read; the inputs of blur.

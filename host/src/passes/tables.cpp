@@ -306,4 +306,14 @@ FilterTables& PassTables::filter(const Filter& filter) {
   return *filters_.emplace_back(std::make_unique<FilterTables>(device_, filter, limits_));
 }
 
+const cl::Memory& PassTables::stand_in(Storage storage) {
+  cl::Memory& memory = stand_ins_[storage == Storage::kImage ? 1 : 0];
+  if (memory() != nullptr) return memory;
+  if (storage == Storage::kImage)
+    memory = cl::Image2D(device_.context, CL_MEM_READ_WRITE, {CL_RGBA, CL_FLOAT}, 1, 1);
+  else
+    memory = cl::Buffer(device_.context, CL_MEM_READ_WRITE, sizeof(cl_float16));
+  return memory;
+}
+
 }  // namespace quincunx

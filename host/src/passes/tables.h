@@ -181,9 +181,12 @@ class PassTables {
   AxisTables& axis();
   PositionTables& positions();
   FilterTables& filter(const Filter& filter);
+  // Returns memory for an argument that a variant does not read.
+  const cl::Memory& stand_in(Storage storage);
 
  private:
   const Device::Impl& device_;
+  std::array<cl::Memory, 2> stand_ins_;
   TableLimits limits_;
   std::unique_ptr<AxisTables> axis_;
   std::unique_ptr<PositionTables> positions_;

@@ -5,7 +5,7 @@
 
 #include "device/opencl.h"
 #include "passes/resolve_service_impl.h"
-#include "plan/native_frame.h"
+#include "plan/inputs.h"
 
 namespace quincunx {
 namespace {
@@ -60,9 +60,9 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOut
     const Counter counted = {counter(), ring.index_of(slot)};
     const std::size_t at = static_cast<std::size_t>(counted.index) * sizeof(cl_uint);
     queue.enqueueFillBuffer(counter, cl_uint{0}, at, sizeof(cl_uint));
-    const FrameInputs current = native_inputs(picture.plan().settings, inputs);
+    const FrameInputs native = native_inputs(picture.plan().settings, inputs);
     const FrameOutputs made = native_outputs(picture.plan().settings, outputs);
-    PassFrame frame = picture.chain().frame(current, nullptr, made, counted);
+    PassFrame frame = picture.chain().frame(native, nullptr, made, counted);
     frame.albedo = albedo;
     frame[Resource::kVelocity] = shown_velocity.view();
     frame[Resource::kDepth] = shown_depth.view();

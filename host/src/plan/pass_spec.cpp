@@ -1,12 +1,69 @@
 // SPDX-License-Identifier: MIT
 #include "plan/pass_spec.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "layers/layer.h"
 #include "motion/velocity_params.h"
+#include "params.h"
+#include "picture_params.h"
 #include "temporal/temporal_params.h"
+#include "temporal/tile.h"
 
 namespace quincunx {
+namespace {
+
+bool method_reads_velocity(const ResolveSettings& settings) {
+  if (settings.method == Method::kTemporal) return true;
+  return settings.method == Method::kQuincunx && settings.quincunx.form != TwoFrameForm::kMean;
+}
+
+VelocitySource velocity_source(const SceneNeeds& needs, const ResolveSettings& settings) {
+  const bool fills = settings.targets.shading == Shading::kCheckerboard;
+  if (!method_reads_velocity(settings) && settings.blur.shutter == 0 && !fills &&
+      !settings.control.measures_content)
+    return VelocitySource::kNone;
+  if (needs.moving_objects) return VelocitySource::kTarget;
+  return needs.camera_motion ? VelocitySource::kCamera : VelocitySource::kNone;
+}
+
+}  // namespace
+
+PlanFacts::PlanFacts(const SceneNeeds& scene_needs, const ResolveSettings& resolve_settings)
+    : needs(scene_needs), settings(resolve_settings), velocity(velocity_source(needs, settings)) {
+  if (settings.output.min_extent == Extent{}) settings.output.min_extent = settings.output_extent;
+}
+
+bool PlanFacts::may_widen() const {
+  return widens(settings.target_extent, settings.output.min_extent);
+}
+
+bool PlanFacts::may_be_dense() const {
+  return is_dense(settings.target_extent, settings.output.min_extent);
+}
+
+bool PlanFacts::reads_velocity() const {
+  return has_velocity() &&
+         (method_reads_velocity(settings) || settings.blur.shutter > 0 || settings.control.measures_content);
+}
+
+bool is_dense(Extent render, Extent output) {
+  constexpr double kDense = .64;  // output pixels a sample
+  return static_cast<double>(output.area()) < kDense * static_cast<double>(render.area());
+}
+
+bool widens(Extent render, Extent output) {
+  return render.width > output.width || render.height > output.height;
+}
+
+std::size_t alpha_bytes(const ResolveSettings& settings) {
+  return bytes_per_pixel(settings.temporal.history) / 4;
+}
+
 namespace {
 
 Extent tiles_of(Extent output, int side) {
@@ -18,11 +75,234 @@ std::int64_t rank(Area area) {
   return area == Area::kViewport || area == Area::kPreviousViewport ? 1 : 0;
 }
 
+// What the caller gives in place of an input where a pass makes that from it.
+struct EarlierInput {
+  Resource resource;
+  const char* state;
+  Resource input;
+};
+
+constexpr EarlierInput kEarlierInputs[] = {
+    {Resource::kDilatedVelocity, "dilated", Resource::kVelocity},
+    {Resource::kDrawnVelocity, "drawn", Resource::kVelocity},
+    {Resource::kShadedColour, "shaded", Resource::kColour},
+    {Resource::kShadedVelocity, "shaded", Resource::kVelocity},
+    {Resource::kShadedDepth, "shaded", Resource::kDepth},
+    {Resource::kShadedReactive, "shaded", Resource::kReactive},
+    {Resource::kBareColour, "bare", Resource::kColour},
+    {Resource::kBareReactive, "bare", Resource::kReactive},
+};
+
+// An element of a resource: a pixel of a format that settings name or that is always the same, or a record.
+struct Element {
+  enum Kind : std::uint8_t { kFixed, kLinear, kHistory, kAlpha };
+  Kind kind = kFixed;
+  PixelFormat format = PixelFormat::kNone;
+  std::size_t bytes = 0;
+};
+
+// A resource that no frame brings.
+struct OwnResource {
+  Resource resource;
+  const char* name;
+  Area area;
+  Element element;
+  std::optional<Resource> previous = {};
+};
+
+constexpr OwnResource kOwnResources[] = {
+    {Resource::kContentSums, "content sums", Area::kWhole, {.bytes = sizeof(ContentSums)}},
+    {Resource::kMotionSums, "motion sums", Area::kWhole, {.bytes = sizeof(MotionSums)}},
+    {Resource::kFarSums, "far sums", Area::kFarCells, {.bytes = sizeof(FarSums)}},
+    {Resource::kFarMotion,
+     "far motion",
+     Area::kWhole,
+     {.bytes = sizeof(FarModel)},
+     Resource::kPreviousFarMotion},
+    {Resource::kFarMatch, "far match", Area::kWhole, {.bytes = sizeof(FarMatch)}},
+    {Resource::kReprojection,
+     "reprojection",
+     Area::kViewport,
+     {.format = PixelFormat::kRGBA32F},
+     Resource::kPreviousReprojection},
+    {Resource::kTileReprojection,
+     "tile reprojection",
+     Area::kTiles,
+     {.bytes = sizeof(TileReprojection)},
+     Resource::kPreviousTileReprojection},
+    {Resource::kTileEvidence, "tile evidence", Area::kTiles, {.bytes = sizeof(TileEvidence)}},
+    {Resource::kTileLight,
+     "tile light",
+     Area::kTiles,
+     {.bytes = sizeof(TileLight)},
+     Resource::kPreviousTileLight},
+    {Resource::kTotalLight, "total light", Area::kWhole, {.bytes = sizeof(TotalLight)}},
+    {Resource::kHistory, "history", Area::kOutput, {Element::kHistory}, Resource::kPreviousHistory},
+    {Resource::kOpenTrust, "open trust", Area::kViewport, {.bytes = sizeof(cl_float)}},
+    {Resource::kRecordKeys,
+     "record keys",
+     Area::kViewport,
+     {.bytes = sizeof(cl_uint)},
+     Resource::kPreviousRecordKeys},
+    {Resource::kRecords,
+     "records",
+     Area::kViewport,
+     {.bytes = sizeof(LayerRecord)},
+     Resource::kPreviousRecords},
+    {Resource::kSplits, "splits", Area::kViewport, {.bytes = sizeof(LayerSplit)}},
+    {Resource::kSplitMarks, "split marks", Area::kTiles, {.bytes = sizeof(cl_int)}},
+    {Resource::kLayerTiles,
+     "layer tiles",
+     Area::kTiles,
+     {.bytes = sizeof(LayerTile)},
+     Resource::kPreviousLayerTiles},
+    {Resource::kNearHistory,
+     "near history",
+     Area::kOutput,
+     {Element::kHistory},
+     Resource::kPreviousNearHistory},
+    {Resource::kLayerStates,
+     "layer states",
+     Area::kOutput,
+     {.bytes = 4 * sizeof(cl_half)},
+     Resource::kPreviousLayerStates},
+    {Resource::kHistoryAlpha,
+     "history alpha",
+     Area::kOutput,
+     {Element::kAlpha},
+     Resource::kPreviousHistoryAlpha},
+    {Resource::kCentred, "centred", Area::kOutput, {Element::kLinear}},
+    {Resource::kCentredTiles, "centred tiles", Area::kTiles, {.bytes = sizeof(TileReprojection)}},
+    {Resource::kOtherHistory, "other history", Area::kOutput, {Element::kHistory}},
+    {Resource::kOtherAlpha, "other history alpha", Area::kOutput, {Element::kAlpha}},
+    {Resource::kMergedHistory, "merged history", Area::kOutput, {Element::kHistory}},
+    {Resource::kMergedAlpha, "merged history alpha", Area::kOutput, {Element::kAlpha}},
+    {Resource::kNoisy, "noisy", Area::kOutput, {Element::kLinear}},
+    {Resource::kUnrefined, "unrefined", Area::kOutput, {Element::kLinear}},
+    {Resource::kUnsharpened, "unsharpened", Area::kOutput, {Element::kLinear}},
+    {Resource::kResolved, "resolved", Area::kOutput, {Element::kLinear}},
+    {Resource::kStreaks, "streaks", Area::kBlurTiles, {.bytes = sizeof(TileStreaks)}},
+    {Resource::kLongestStreak, "longest streak", Area::kWhole, {.bytes = sizeof(cl_int)}},
+    {Resource::kTileBlurs, "blur tiles", Area::kBlurTiles, {.bytes = sizeof(TileBlur)}},
+    {Resource::kBlurred, "blurred", Area::kOutput, {Element::kLinear}},
+    {Resource::kDisplayed, "displayed", Area::kDisplay, {Element::kLinear}},
+    {Resource::kFocus, "focus", Area::kFocus, {Element::kLinear}},
+    {Resource::kFocusMask, "focus mask", Area::kFocus, {.format = PixelFormat::kR8}},
+    {Resource::kFadingFrom, "fading from", Area::kDisplay, {Element::kLinear}},
+    {Resource::kPresented, "presented", Area::kDisplay, {.format = PixelFormat::kRGBA8}},
+};
+
+// In the order of the enumerators, in which plans list them.
+constexpr auto kResources = [] {
+  std::array<ResourceInfo, kResourceCount> all = {};
+  const auto add = [&all](Resource resource, ResourceInfo info) {
+    all[index_of(resource)] = info;
+    if (info.previous) all[index_of(*info.previous)] = {info.name, nullptr, info.input, {}, true};
+  };
+  for (const InputImage& input : kInputs) {
+    const std::optional<Resource> resource = resource_of(input);
+    if (!resource) continue;
+    const auto before = static_cast<Resource>(index_of(Resource::kPrevious) + index_of(*resource));
+    add(*resource, {input.name, nullptr, &input, before});
+    add(given_of(*resource), {input.name, "given", &input});
+  }
+  for (const EarlierInput& earlier : kEarlierInputs) {
+    const ResourceInfo& input = all[index_of(earlier.input)];
+    add(earlier.resource, {input.name, earlier.state, input.input});
+  }
+  for (const OwnResource& own : kOwnResources)
+    add(own.resource, {own.name, nullptr, nullptr, own.previous});
+  return all;
+}();
+static_assert(std::all_of(std::begin(kInputs), std::end(kInputs),
+                          [](const InputImage& input) {
+                            return (input.viewport != nullptr) ==
+                                   (&input - kInputs < static_cast<std::ptrdiff_t>(Resource::kInputCount));
+                          }),
+              "rendered inputs go first, each with an enumerator");
+static_assert(std::all_of(kResources.begin(), kResources.end(),
+                          [](const ResourceInfo& info) { return info.name != nullptr; }),
+              "each enumerator of Resource needs a row");
+
+Use own_use(const OwnResource& own, const ResolveSettings& settings) {
+  switch (own.element.kind) {
+    case Element::kFixed:
+      break;
+    case Element::kLinear:
+      return {own.resource, Access::kRead, own.area, settings.output.linear};
+    case Element::kHistory:
+      return {own.resource, Access::kRead, own.area, settings.temporal.history};
+    case Element::kAlpha:
+      return {own.resource, Access::kRead, own.area, {}, alpha_bytes(settings)};
+  }
+  return {own.resource, Access::kRead, own.area, own.element.format, own.element.bytes};
+}
+
 }  // namespace
 
-void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat format) {
-  uses.push_back({resource, Access::kRead, Area::kViewport, format});
-  uses.push_back({previous_of(resource), Access::kRead, Area::kPreviousViewport, format});
+const ResourceInfo& info_of(Resource resource) {
+  return kResources[index_of(resource)];
+}
+
+std::string name_of(Resource resource) {
+  const ResourceInfo& info = info_of(resource);
+  std::string name = info.state != nullptr ? fmt::format("{} {}", info.state, info.name) : info.name;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return info.is_previous ? name + " of the previous frame" : name;
+}
+
+Storage storage_of(Resource resource, const PlanFacts& facts) {
+  if (resource == Resource::kPresented) return facts.presented_storage();
+  return info_of(resource).input != nullptr ? facts.settings.targets.storage : Storage::kBuffer;
+}
+
+Use use(Resource resource, const ResolveSettings& settings, Access access) {
+  const ResourceInfo& info = info_of(resource);
+  Use made = {resource, access, Area::kViewport};
+  if (info.input != nullptr) {
+    const InputImage& input = *info.input;
+    made.format = input.chosen != nullptr ? settings.*input.chosen : input.format;
+    if (input.viewport == &FrameInputs::particle_render_extent) made.area = Area::kParticles;
+  } else {
+    const auto* own = std::find_if(
+        std::begin(kOwnResources), std::end(kOwnResources),
+        [resource](const OwnResource& row) { return row.resource == resource || row.previous == resource; });
+    made = own_use(*own, settings);
+    made.resource = resource;
+    made.access = access;
+  }
+  if (info.is_previous && made.area == Area::kViewport) made.area = Area::kPreviousViewport;
+  return made;
+}
+
+std::vector<Use> uses_of(const ResolveSettings& settings, const Touched& touched) {
+  std::vector<Use> uses;
+  const auto add = [&](const std::vector<Resource>& resources, Access access) {
+    for (const Resource resource : resources) {
+      Use& made = uses.emplace_back(use(resource, settings, access));
+      if (!touched.resizes || !is_previous(resource)) continue;
+      if (made.area == Area::kOutput) made.area = Area::kPreviousOutput;
+      if (made.area == Area::kTiles) made.area = Area::kPreviousTiles;
+    }
+  };
+  add(touched.reads, Access::kRead);
+  add(touched.writes, Access::kWrite);
+  add(touched.updates, Access::kUpdate);
+  add(touched.sums, Access::kAccumulate);
+  return uses;
+}
+
+void PassSpec::add_options(const std::string& more) {
+  if (!options.empty()) options += ' ';
+  options += more;
+}
+
+void PassSpec::add_where(bool wanted, const char* name, const ResolveSettings& settings,
+                         const Touched& touched) {
+  add_options(fmt::format("-D {}={}", name, wanted ? 1 : 0));
+  if (!wanted) return;
+  const std::vector<Use> more = uses_of(settings, touched);
+  uses.insert(uses.end(), more.begin(), more.end());
 }
 
 FrameExtents largest_extents(const ResolveSettings& settings) {
@@ -100,9 +380,9 @@ std::vector<ResourceUse> resources_of(const std::vector<PassSpec>& passes) {
   return found;
 }
 
-bool reads(const std::vector<ResourceUse>& used, const InputImage& input) {
-  return std::any_of(used.begin(), used.end(), [&input](const ResourceUse& use) {
-    return !use.written && info_of(use.resource).input == &input;
+bool reads(const std::vector<ResourceUse>& used, Resource input) {
+  return std::any_of(used.begin(), used.end(), [input](const ResourceUse& use) {
+    return !use.written && info_of(use.resource).input == info_of(input).input;
   });
 }
 
@@ -183,13 +463,13 @@ void note_unused_inputs(const PlanFacts& facts, const std::vector<ResourceUse>& 
   if (!several && !facts.fills()) note("the previous frame", "the method uses one frame only");
   if (facts.velocity == VelocitySource::kCamera) {
     note("velocity target", "nothing but the camera moves: velocity comes from depth and the camera");
-  } else if (!reads(used, kVelocityInput)) {
+  } else if (!reads(used, Resource::kVelocity)) {
     note("velocity", !several && !facts.fills()            ? "the method uses one frame only"
                      : facts.has_form(TwoFrameForm::kMean) ? "the form is the plain mean"
                                                            : "nothing moves: all frames count alike");
   }
-  if (!reads(used, kDepthInput)) note("depth", "no pass reads it");
-  if (!reads(used, kReactiveInput))
+  if (!reads(used, Resource::kDepth)) note("depth", "no pass reads it");
+  if (!reads(used, Resource::kReactive))
     note("reactive values",
          facts.needs.transparents ? "the method uses one frame only" : "the scene has no transparents");
 }

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "motion/blur_params.h"
-#include "plan/resources.h"
+#include "plan/plan_facts.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {
@@ -68,6 +68,20 @@ struct Use {
   std::size_t element_bytes() const { return record_bytes != 0 ? record_bytes : bytes_per_pixel(format); }
 };
 
+// Returns the use of a resource where its row of the table has it, in the format that its row or the settings name.
+Use use(Resource resource, const ResolveSettings& settings, Access access = Access::kRead);
+
+// Returns the bytes of a value of the history's alpha.
+std::size_t alpha_bytes(const ResolveSettings& settings);
+
+// The resources that a pass uses, by access.
+struct Touched {
+  std::vector<Resource> reads = {}, writes = {}, updates = {};
+  std::vector<Resource> sums = {};  // kAccumulate
+  bool resizes = false;             // those of the previous frame lie over kPreviousOutput and kPreviousTiles
+};
+std::vector<Use> uses_of(const ResolveSettings& settings, const Touched& touched);
+
 // The frames that a pass takes part in.
 enum class Frames : std::uint8_t {
   kAll,
@@ -88,17 +102,19 @@ enum class Viewports : std::uint8_t { kAll, kNotWider, kWider };
 using MakePass = std::unique_ptr<Pass> (*)(const PassSetup& setup, const PassSpec& spec);
 
 struct PassSpec {
-  const char* kernel = "";  // static
-  std::string options;      // -D options of the variant
-  std::string reason;       // why the plan has it
+  const char* kernel = "";   // static
+  std::string options = {};  // -D options of the variant
+  std::string reason = {};   // why the plan has it
   std::vector<Use> uses;
   MakePass make = nullptr;
   Frames frames = Frames::kAll;
   Viewports viewports = Viewports::kAll;
-};
 
-// Adds to a pass's uses that it reads an input of this frame and of the previous one.
-void read_both_frames(std::vector<Use>& uses, Resource resource, PixelFormat format);
+  // Adds the option "-D NAME=1" and these uses where they are wanted; else "-D NAME=0" alone, and the pass binds
+  // stand-ins for them.
+  void add_where(bool wanted, const char* name, const ResolveSettings& settings, const Touched& touched);
+  void add_options(const std::string& more);
+};
 
 // The extents that uses follow.
 struct FrameExtents {
@@ -132,8 +148,8 @@ struct ResourceUse {
 };
 std::vector<ResourceUse> resources_of(const std::vector<PassSpec>& passes);
 
-// Whether passes read this image of the caller's.
-bool reads(const std::vector<ResourceUse>& used, const InputImage& input);
+// Whether the caller has to bring this input.
+bool reads(const std::vector<ResourceUse>& used, Resource input);
 
 // Returns a resource that passes keep for two frames over the output or its tiles and that no pass of the list resizes
 // where the output's size changes; nothing where there is none, as there must be if that is dynamic.

@@ -2,6 +2,7 @@
 // PlanFacts: what passes ask of a plan: the scene's needs, the settings, and what follows from both.
 #pragma once
 
+#include "plan/resources.h"
 #include "quincunx/resolve_plan.h"
 
 namespace quincunx {
@@ -91,5 +92,45 @@ bool is_dense(Extent render, Extent output);
 
 // Whether a viewport is larger than the output on an axis, so that filters widen.
 bool widens(Extent render, Extent output);
+
+// Returns the plan's storage for inputs, whoever makes them, and for the presented picture; all else is in buffers.
+Storage storage_of(Resource resource, const PlanFacts& facts);
+
+// The velocity that undilate_velocity writes, and that resolve_checkerboard does.
+inline Resource drawn_velocity_of(const PlanFacts& facts) {
+  return facts.moves_sky() ? Resource::kDrawnVelocity : Resource::kVelocity;
+}
+inline Resource filled_velocity_of(const PlanFacts& facts) {
+  return facts.undilates_velocity() ? Resource::kDilatedVelocity : drawn_velocity_of(facts);
+}
+
+// The picture that the method makes, before sharpening.
+inline Resource picture_of(const PlanFacts& facts) {
+  return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+}
+
+// The picture of the history, before the preset `quality` refines it, and before it is denoised.
+inline Resource denoised_of(const PlanFacts& facts) {
+  return facts.refines() ? Resource::kUnrefined : picture_of(facts);
+}
+inline Resource shown_history_of(const PlanFacts& facts) {
+  return facts.denoises() ? Resource::kNoisy : denoised_of(facts);
+}
+
+// The picture of this direction's history alone, and the history that is shown.
+inline Resource centred_of(const PlanFacts& facts) {
+  return facts.two_way ? Resource::kCentred : shown_history_of(facts);
+}
+inline Resource displayed_history_of(const PlanFacts& facts) {
+  return facts.two_way ? Resource::kMergedHistory : Resource::kHistory;
+}
+
+// The picture with all that is made of it, in the output's size, and the one that is shown.
+inline Resource finished_of(const PlanFacts& facts) {
+  return facts.blurs() ? Resource::kBlurred : Resource::kResolved;
+}
+inline Resource shown_of(const PlanFacts& facts) {
+  return facts.is_dual() ? Resource::kDisplayed : finished_of(facts);
+}
 
 }  // namespace quincunx

@@ -180,12 +180,16 @@ Scaling scaling_of(Area area, const PlanFacts& facts) {
 
 PlannedBuffer planned(const ResourceUse& use, const PlanFacts& facts, const FrameExtents& largest) {
   const Extent extent = extent_of(use.largest.area, largest);
+  const bool owned =
+      (use.written && use.resource != Resource::kPresented) || use.resource == Resource::kFocus;
+  const InputImage* input = info_of(use.resource).input;
   return {.name = name_of(use.resource),
           .extent = extent,
           .format = use.largest.format,
           .scaling = scaling_of(use.largest.area, facts),
           .bytes = static_cast<std::uint64_t>(extent.area()) * use.largest.element_bytes(),
-          .owned = (use.written && use.resource != Resource::kPresented) || use.resource == Resource::kFocus};
+          .owned = owned,
+          .input = input != nullptr && !owned ? input->image : nullptr};
 }
 
 }  // namespace
@@ -218,8 +222,8 @@ ResolvePlan plan_of(const PlanFacts& facts) {
   const std::vector<ResourceUse> used = resources_of(list.passes);
   for (const ResourceUse& use : used)
     plan.buffers.push_back(planned(use, facts, largest));
-  plan.reads_depth = reads(used, kDepthInput);
-  plan.reads_reactive = reads(used, kReactiveInput);
+  plan.reads_depth = reads(used, Resource::kDepth);
+  plan.reads_reactive = reads(used, Resource::kReactive);
   plan.left_out = std::move(list.left_out);
   return plan;
 }

@@ -1,54 +1,55 @@
 // SPDX-License-Identifier: MIT
-// The resources that passes read and write, and a table of all that is known of each.
+// The resources that passes read and write, and a table of the images that a frame brings.
 //
-// A new resource is an enumerator and a row of kResources; all else follows from these and from the passes' uses.
+// A new input is an enumerator and a row of kInputs; see "Adding an input" in docs/pipeline.md. Another resource is an
+// enumerator and a row of kOwnResources in pass_spec.cpp. All else follows from these and from the passes' uses.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <optional>
+#include <string>
 
-#include "plan/plan_facts.h"
+#include "quincunx/c/frame.h"
 #include "quincunx/frame.h"
 #include "quincunx/image.h"
+#include "quincunx/resolve_plan.h"
 
 namespace quincunx {
 
 // A resource that a pass of the plan writes belongs to the service; the others are the caller's. A name that begins
 // with kPrevious is the frame before's: the service keeps two of its own resources and exchanges them after each frame.
 enum class Resource : std::uint8_t {
+  // The rendered images as passes read them, in the order of kInputs.
   kColour,
   kVelocity,
   kDepth,
   kReactive,
+  kParticleColour,
+  kParticleDepth,
+  kParticleReactive,
+  kInputCount,
   // The caller's velocity, where the service makes kVelocity from it: dilated becomes drawn where both are.
-  kDilatedVelocity,
+  kDilatedVelocity = kInputCount,
   kDrawnVelocity,
   // The caller's images where half of the pixels are shaded; the service fills the ones above from them.
   kShadedColour,
   kShadedVelocity,
   kShadedDepth,
   kShadedReactive,
-  // The caller's images where particles have a viewport of their own: without the particles, and the particles.
+  // The caller's images where particles have a viewport of their own: without the particles.
   kBareColour,
   kBareReactive,
-  kParticleColour,
-  kParticleDepth,
-  kParticleReactive,
-  // The caller's images where convert_inputs makes from them what stands for them above.
-  kGivenColour,
-  kGivenVelocity,
-  kGivenDepth,
-  kGivenReactive,
-  kGivenParticleColour,
-  kGivenParticleDepth,
-  kGivenParticleReactive,
-  kPreviousColour,
+  kGiven,                            // given_of() of each input
+  kPrevious = kGiven + kInputCount,  // previous_of() of each input
+  kPreviousColour = kPrevious,
   kPreviousVelocity,
   kPreviousDepth,
   kPreviousReactive,
-  kContentSums,
+  kContentSums = kPrevious + kInputCount,
   kMotionSums,
   kFarSums,
   kFarMotion,
@@ -102,175 +103,137 @@ enum class Resource : std::uint8_t {
   kPresented,
 };
 
-// An image that the caller brings with a frame.
-struct InputImage {
-  const char* field;  // "particle_colour"
-  ImageView FrameInputs::*image;
-  Resource given;  // it, where it has to be converted
-  Extent FrameInputs::*viewport = &FrameInputs::render_extent;
-};
-
-inline constexpr InputImage kColourInput = {"colour", &FrameInputs::colour, Resource::kGivenColour};
-inline constexpr InputImage kVelocityInput = {"velocity", &FrameInputs::velocity, Resource::kGivenVelocity};
-inline constexpr InputImage kDepthInput = {"depth", &FrameInputs::depth, Resource::kGivenDepth};
-inline constexpr InputImage kReactiveInput = {"reactive", &FrameInputs::reactive, Resource::kGivenReactive};
-inline constexpr InputImage kParticleColourInput = {"particle_colour", &FrameInputs::particle_colour,
-                                                    Resource::kGivenParticleColour,
-                                                    &FrameInputs::particle_render_extent};
-inline constexpr InputImage kParticleDepthInput = {"particle_depth", &FrameInputs::particle_depth,
-                                                   Resource::kGivenParticleDepth,
-                                                   &FrameInputs::particle_render_extent};
-inline constexpr InputImage kParticleReactiveInput = {"particle_reactive", &FrameInputs::particle_reactive,
-                                                      Resource::kGivenParticleReactive,
-                                                      &FrameInputs::particle_render_extent};
-
-inline constexpr const InputImage* kInputImages[] = {
-    &kColourInput,         &kVelocityInput,      &kDepthInput,           &kReactiveInput,
-    &kParticleColourInput, &kParticleDepthInput, &kParticleReactiveInput};
-
-struct ResourceInfo {
-  Resource resource;
-  const char* name;
-  // The image that is bound to it unless a pass writes it: of the frame, or of the one before. Whoever makes it, it
-  // has the plan's storage. Null: it is the service's, in a buffer.
-  const InputImage* input = nullptr;
-  std::optional<Resource> previous = {};  // its name in the next frame, where a pass of that may read it
-};
-
-// A row for each, in the order of the enumerators, in which plans list them.
-inline constexpr ResourceInfo kResources[] = {
-    {Resource::kColour, "colour", &kColourInput, Resource::kPreviousColour},
-    {Resource::kVelocity, "velocity", &kVelocityInput, Resource::kPreviousVelocity},
-    {Resource::kDepth, "depth", &kDepthInput, Resource::kPreviousDepth},
-    {Resource::kReactive, "reactive", &kReactiveInput, Resource::kPreviousReactive},
-    {Resource::kDilatedVelocity, "dilated velocity", &kVelocityInput},
-    {Resource::kDrawnVelocity, "drawn velocity", &kVelocityInput},
-    {Resource::kShadedColour, "shaded colour", &kColourInput},
-    {Resource::kShadedVelocity, "shaded velocity", &kVelocityInput},
-    {Resource::kShadedDepth, "shaded depth", &kDepthInput},
-    {Resource::kShadedReactive, "shaded reactive", &kReactiveInput},
-    {Resource::kBareColour, "bare colour", &kColourInput},
-    {Resource::kBareReactive, "bare reactive", &kReactiveInput},
-    {Resource::kParticleColour, "particle colour", &kParticleColourInput},
-    {Resource::kParticleDepth, "particle depth", &kParticleDepthInput},
-    {Resource::kParticleReactive, "particle reactive", &kParticleReactiveInput},
-    {Resource::kGivenColour, "given colour", &kColourInput},
-    {Resource::kGivenVelocity, "given velocity", &kVelocityInput},
-    {Resource::kGivenDepth, "given depth", &kDepthInput},
-    {Resource::kGivenReactive, "given reactive", &kReactiveInput},
-    {Resource::kGivenParticleColour, "given particle colour", &kParticleColourInput},
-    {Resource::kGivenParticleDepth, "given particle depth", &kParticleDepthInput},
-    {Resource::kGivenParticleReactive, "given particle reactive", &kParticleReactiveInput},
-    {Resource::kPreviousColour, "colour of the previous frame", &kColourInput},
-    {Resource::kPreviousVelocity, "velocity of the previous frame", &kVelocityInput},
-    {Resource::kPreviousDepth, "depth of the previous frame", &kDepthInput},
-    {Resource::kPreviousReactive, "reactive of the previous frame", &kReactiveInput},
-    {Resource::kContentSums, "content sums"},
-    {Resource::kMotionSums, "motion sums"},
-    {Resource::kFarSums, "far sums"},
-    {Resource::kFarMotion, "far motion", nullptr, Resource::kPreviousFarMotion},
-    {Resource::kPreviousFarMotion, "far motion of the previous frame"},
-    {Resource::kFarMatch, "far match"},
-    {Resource::kReprojection, "reprojection", nullptr, Resource::kPreviousReprojection},
-    {Resource::kPreviousReprojection, "reprojection of the previous frame"},
-    {Resource::kTileReprojection, "tile reprojection", nullptr, Resource::kPreviousTileReprojection},
-    {Resource::kPreviousTileReprojection, "tile reprojection of the previous frame"},
-    {Resource::kTileEvidence, "tile evidence"},
-    {Resource::kTileLight, "tile light", nullptr, Resource::kPreviousTileLight},
-    {Resource::kPreviousTileLight, "tile light of the previous frame"},
-    {Resource::kTotalLight, "total light"},
-    {Resource::kHistory, "history", nullptr, Resource::kPreviousHistory},
-    {Resource::kPreviousHistory, "history of the previous frame"},
-    {Resource::kOpenTrust, "open trust"},
-    {Resource::kRecordKeys, "record keys", nullptr, Resource::kPreviousRecordKeys},
-    {Resource::kPreviousRecordKeys, "record keys of the previous frame"},
-    {Resource::kRecords, "records", nullptr, Resource::kPreviousRecords},
-    {Resource::kPreviousRecords, "records of the previous frame"},
-    {Resource::kSplits, "splits"},
-    {Resource::kSplitMarks, "split marks"},
-    {Resource::kLayerTiles, "layer tiles", nullptr, Resource::kPreviousLayerTiles},
-    {Resource::kPreviousLayerTiles, "layer tiles of the previous frame"},
-    {Resource::kNearHistory, "near history", nullptr, Resource::kPreviousNearHistory},
-    {Resource::kPreviousNearHistory, "near history of the previous frame"},
-    {Resource::kLayerStates, "layer states", nullptr, Resource::kPreviousLayerStates},
-    {Resource::kPreviousLayerStates, "layer states of the previous frame"},
-    {Resource::kHistoryAlpha, "history alpha", nullptr, Resource::kPreviousHistoryAlpha},
-    {Resource::kPreviousHistoryAlpha, "history alpha of the previous frame"},
-    {Resource::kCentred, "centred"},
-    {Resource::kCentredTiles, "centred tiles"},
-    {Resource::kOtherHistory, "other history"},
-    {Resource::kOtherAlpha, "other history alpha"},
-    {Resource::kMergedHistory, "merged history"},
-    {Resource::kMergedAlpha, "merged history alpha"},
-    {Resource::kNoisy, "noisy"},
-    {Resource::kUnrefined, "unrefined"},
-    {Resource::kUnsharpened, "unsharpened"},
-    {Resource::kResolved, "resolved"},
-    {Resource::kStreaks, "streaks"},
-    {Resource::kLongestStreak, "longest streak"},
-    {Resource::kTileBlurs, "blur tiles"},
-    {Resource::kBlurred, "blurred"},
-    {Resource::kDisplayed, "displayed"},
-    {Resource::kFocus, "focus"},
-    {Resource::kFocusMask, "focus mask"},
-    {Resource::kFadingFrom, "fading from"},
-    {Resource::kPresented, "presented"},
-};
-constexpr std::size_t kResourceCount = std::size(kResources);
-
 constexpr std::size_t index_of(Resource resource) {
   return static_cast<std::size_t>(resource);
 }
-constexpr const ResourceInfo& info_of(Resource resource) {
-  return kResources[index_of(resource)];
+constexpr std::size_t kResourceCount = index_of(Resource::kPresented) + 1;
+
+// The structs in which a caller of the C interface gives a frame's images.
+struct CInputs {
+  quincunx_inputs frame = {};
+  quincunx_particles particles = {};
+  quincunx_fade fade = {};
+};
+
+// An image of FrameInputs.
+struct InputImage {
+  const char* name;  // the field's: "particle_colour"
+  ImageView FrameInputs::*image;
+  // The part of it that counts. Null: it was not rendered; the pass that reads it takes it from the frame, and its
+  // extent and format are checked apart.
+  Extent FrameInputs::*viewport = nullptr;
+  PixelFormat format = PixelFormat::kNone;         // kNone: as `chosen` says
+  PixelFormat ResolveSettings::*chosen = nullptr;  // the setting that names its format
+  std::array<const char*, 4> channels = {};        // its values in a file of the exchange format
+  const char* c_name = nullptr;  // the field of the C interface, where that has another name
+  const quincunx_image* (*in_c)(const CInputs&) = nullptr;
+
+  const char* name_in_c() const { return c_name != nullptr ? c_name : name; }
+};
+
+// A row for each image of FrameInputs: rendered ones first, in the order of Resource.
+inline constexpr InputImage kInputs[] = {
+    {.name = "colour",
+     .image = &FrameInputs::colour,
+     .viewport = &FrameInputs::render_extent,
+     .chosen = &ResolveSettings::colour,
+     .channels = {"R", "G", "B", "A"},
+     .in_c = [](const CInputs& c) { return c.frame.colour; }},
+    {.name = "velocity",
+     .image = &FrameInputs::velocity,
+     .viewport = &FrameInputs::render_extent,
+     .chosen = &ResolveSettings::velocity,
+     .channels = {"velocity.u", "velocity.v"},
+     .in_c = [](const CInputs& c) { return c.frame.velocity; }},
+    {.name = "depth",
+     .image = &FrameInputs::depth,
+     .viewport = &FrameInputs::render_extent,
+     .format = PixelFormat::kR32F,
+     .channels = {"Z"},
+     .in_c = [](const CInputs& c) { return c.frame.depth; }},
+    {.name = "reactive",
+     .image = &FrameInputs::reactive,
+     .viewport = &FrameInputs::render_extent,
+     .format = PixelFormat::kR8,
+     .channels = {"reactive.mask"},
+     .in_c = [](const CInputs& c) { return c.frame.reactive; }},
+    {.name = "particle_colour",
+     .image = &FrameInputs::particle_colour,
+     .viewport = &FrameInputs::particle_render_extent,
+     .chosen = &ResolveSettings::colour,
+     .channels = {"R", "G", "B", "A"},
+     .c_name = "particles.colour",
+     .in_c = [](const CInputs& c) { return c.particles.colour; }},
+    {.name = "particle_depth",
+     .image = &FrameInputs::particle_depth,
+     .viewport = &FrameInputs::particle_render_extent,
+     .format = PixelFormat::kR32F,
+     .channels = {"Z"},
+     .c_name = "particles.depth",
+     .in_c = [](const CInputs& c) { return c.particles.depth; }},
+    {.name = "particle_reactive",
+     .image = &FrameInputs::particle_reactive,
+     .viewport = &FrameInputs::particle_render_extent,
+     .format = PixelFormat::kR8,
+     .channels = {"reactive.mask"},
+     .c_name = "particles.reactive",
+     .in_c = [](const CInputs& c) { return c.particles.reactive; }},
+    {.name = "exposure_image",
+     .image = &FrameInputs::exposure_image,
+     .in_c = [](const CInputs& c) { return c.frame.exposure_image; }},
+    {.name = "fading_from",
+     .image = &FrameInputs::fading_from,
+     .channels = {"R", "G", "B", "A"},
+     .c_name = "fade.from",
+     .in_c = [](const CInputs& c) { return c.fade.from; }},
+};
+
+// Returns the resource as which passes read an input; nothing where that was not rendered.
+constexpr std::optional<Resource> resource_of(const InputImage& input) {
+  if (input.viewport == nullptr) return std::nullopt;
+  return static_cast<Resource>(&input - kInputs);
 }
-constexpr const char* name_of(Resource resource) {
-  return info_of(resource).name;
+
+struct ResourceInfo {
+  const char* name = nullptr;
+  const char* state = nullptr;  // goes before the name
+  // The image that is bound to it unless a pass writes it. Whoever makes it, it has the plan's storage. Null: it is the
+  // service's, in a buffer.
+  const InputImage* input = nullptr;
+  std::optional<Resource> previous = {};  // its name in the next frame, where a pass of that may read it
+  bool is_previous = false;
+};
+const ResourceInfo& info_of(Resource resource);
+
+// Returns the input as it comes, where convert_inputs has to make from it what passes read.
+constexpr Resource given_of(Resource input) {
+  return static_cast<Resource>(index_of(Resource::kGiven) + index_of(input));
 }
+
+std::string name_of(Resource resource);  // "particle colour of the previous frame"
 // Returns what `resource` is to the next frame; itself where no pass of the next frame can read it.
-constexpr Resource previous_of(Resource resource) {
+inline Resource previous_of(Resource resource) {
   return info_of(resource).previous.value_or(resource);
 }
-bool is_previous(Resource resource);
-
-// Returns the plan's storage for inputs, whoever makes them, and for the presented picture; all else is in buffers.
-Storage storage_of(Resource resource, const PlanFacts& facts);
-
-// The velocity that undilate_velocity writes, and that resolve_checkerboard does.
-inline Resource drawn_velocity_of(const PlanFacts& facts) {
-  return facts.moves_sky() ? Resource::kDrawnVelocity : Resource::kVelocity;
-}
-inline Resource filled_velocity_of(const PlanFacts& facts) {
-  return facts.undilates_velocity() ? Resource::kDilatedVelocity : drawn_velocity_of(facts);
+inline bool is_previous(Resource resource) {
+  return info_of(resource).is_previous;
 }
 
-// The picture that the method makes, before sharpening.
-inline Resource picture_of(const PlanFacts& facts) {
-  return facts.sharpens() ? Resource::kUnsharpened : Resource::kResolved;
+// Whether a frame has to bring this buffer of its plan, as which input. The previous frame's are not among them.
+inline bool is_input(const PlannedBuffer& buffer) {
+  return buffer.input != nullptr && buffer.scaling != Scaling::kHistory;
 }
-
-// The picture of the history, before the preset `quality` refines it, and before it is denoised.
-inline Resource denoised_of(const PlanFacts& facts) {
-  return facts.refines() ? Resource::kUnrefined : picture_of(facts);
+// Returns the buffer as which a frame of the plan has to bring an input; null: the plan does not read it.
+inline const PlannedBuffer* planned_for(const ResolvePlan& plan, const InputImage& input) {
+  const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(), [&](const PlannedBuffer& buffer) {
+    return is_input(buffer) && buffer.input == input.image;
+  });
+  return found != plan.buffers.end() ? &*found : nullptr;
 }
-inline Resource shown_history_of(const PlanFacts& facts) {
-  return facts.denoises() ? Resource::kNoisy : denoised_of(facts);
-}
-
-// The picture of this direction's history alone, and the history that is shown.
-inline Resource centred_of(const PlanFacts& facts) {
-  return facts.two_way ? Resource::kCentred : shown_history_of(facts);
-}
-inline Resource displayed_history_of(const PlanFacts& facts) {
-  return facts.two_way ? Resource::kMergedHistory : Resource::kHistory;
-}
-
-// The picture with all that is made of it, in the output's size, and the one that is shown.
-inline Resource finished_of(const PlanFacts& facts) {
-  return facts.blurs() ? Resource::kBlurred : Resource::kResolved;
-}
-inline Resource shown_of(const PlanFacts& facts) {
-  return facts.is_dual() ? Resource::kDisplayed : finished_of(facts);
+// Returns the row of a buffer that the caller brings.
+constexpr const InputImage& input_of(const PlannedBuffer& buffer) {
+  return *std::find_if(std::begin(kInputs), std::end(kInputs),
+                       [&](const InputImage& input) { return input.image == buffer.input; });
 }
 
 }  // namespace quincunx

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "plan/validate.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "plan/resources.h"
+#include "plan/inputs.h"
+#include "plan/plan_facts.h"
 #include "quincunx/resolve_service.h"
 
 namespace quincunx {
@@ -121,12 +120,6 @@ void check_camera(FrameCheck& check, const CameraMotion& camera) {
   }
 }
 
-const PlannedBuffer* find(const ResolvePlan& plan, std::string_view name) {
-  const auto found = std::find_if(plan.buffers.begin(), plan.buffers.end(),
-                                  [name](const PlannedBuffer& buffer) { return buffer.name == name; });
-  return found != plan.buffers.end() ? &*found : nullptr;
-}
-
 // At least one pixel must be shaded.
 void check_parity(FrameCheck& check, const FrameInputs& inputs) {
   const bool has_both = inputs.render_extent.width > 1 || inputs.render_extent.height > 1;
@@ -202,12 +195,10 @@ void check_inputs(FrameCheck& check, const ResolvePlan& plan, const FrameInputs&
     check.viewport("particle_render_extent", inputs.particle_render_extent,
                    plan.settings.targets.particle_extent);
   check_output_extent(check, plan, inputs.output_extent);
-  for (const ResourceInfo& info : kResources) {
-    if (info.input == nullptr || is_previous(info.resource)) continue;
-    const PlannedBuffer* buffer = find(plan, info.name);
-    if (buffer == nullptr || buffer->owned) continue;
-    const InputImage& input = *info.input;
-    check.input(input.field, inputs.*input.image, buffer->format, inputs.*input.viewport);
+  for (const PlannedBuffer& buffer : plan.buffers) {
+    if (!is_input(buffer)) continue;
+    const InputImage& input = input_of(buffer);
+    check.input(input.name, inputs.*input.image, buffer.format, inputs.*input.viewport);
   }
   if (plan.velocity == VelocitySource::kTarget) {
     check.finite("velocity_scale.x", inputs.velocity_scale.x, -kLargest, kLargest);

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: MIT
-// MotionWatch: what check_motion's sums over several frames say of velocity. Pure.
+// Conclusions from the sums that check_motion and measure_content write. Pure.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
 #include "picture_params.h"
+#include "quincunx/advanced/content_statistics.h"
+#include "quincunx/advanced/extent.h"
 #include "quincunx/advanced/motion_check.h"
 
 namespace quincunx {
 
+// Judges velocity by the sums of several frames.
 class MotionWatch {
  public:
   // Takes the sums of a frame; an axis along which little moves says nothing.
@@ -42,5 +45,11 @@ class MotionWatch {
 
   Axis x_, y_;
 };
+
+// Returns the tiles that measure_content counts a picture of this size by.
+Extent content_tiles(Extent output);
+
+// Returns the shares that follow from measure_content's counts.
+ContentStatistics statistics_of(const ContentSums& sums, Extent output);
 
 }  // namespace quincunx

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "passes/pass_check_motion.h"
+#include "passes/pass_measure.h"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,12 @@
 #include "passes/frame_params.h"
 #include "passes/pass.h"
 #include "plan/pass_spec.h"
+#include "temporal/tile.h"
 
 namespace quincunx {
+
+// check_motion: whether velocity foretells frames.
+
 namespace {
 
 constexpr unsigned kLeastSamples = 32;  // of a frame that tells
@@ -27,9 +31,9 @@ class CheckMotionPass : public Pass {
   using Pass::Pass;
 
   void enqueue(const PassFrame& frame, cl::Event* event) override {
-    const Extent render = frame.current.render_extent, previous = frame.previous.render_extent;
+    const Extent render = frame.inputs.render_extent, previous = frame.previous.render_extent;
     const Extent items = motion_items(render);
-    const PreviousPlaces places = previous_places(frame.current, frame.previous);
+    const PreviousPlaces places = previous_places(frame.inputs, frame.previous);
     const MotionCheckParams params{.width = render.width,
                                    .height = render.height,
                                    .previous_width = previous.width,
@@ -45,8 +49,8 @@ class CheckMotionPass : public Pass {
                                    .start_y = places.start_y,
                                    .motion_x = places.motion_x,
                                    .motion_y = places.motion_y};
-    bind(params, frame[Resource::kVelocity], frame[Resource::kColour], frame[Resource::kPreviousColour],
-         frame[Resource::kMotionSums]);
+    bind(frame, params, Resource::kVelocity, Resource::kColour, Resource::kPreviousColour,
+         Resource::kMotionSums);
     launch(frame, items, 1, event);
   }
 };
@@ -154,16 +158,97 @@ void plan_check_motion(const PlanFacts& facts, PassList& list) {
     return;
   }
   const ResolveSettings& settings = facts.settings;
-  PassSpec spec{.kernel = "check_motion",
-                .options = colour_options(settings),
-                .reason = "whether velocity foretells frames is wanted: a sample of it",
-                .uses = {{Resource::kVelocity, Access::kRead, Area::kViewport, settings.velocity},
-                         {Resource::kMotionSums, Access::kAccumulate, Area::kWhole, {}, sizeof(MotionSums)}},
-                .make = make_pass<CheckMotionPass>,
-                .frames = Frames::kWithHistory};
+  PassSpec spec{
+      .kernel = "check_motion",
+      .options = colour_options(settings),
+      .reason = "whether velocity foretells frames is wanted: a sample of it",
+      .uses = uses_of(settings, {.reads = {Resource::kVelocity, Resource::kColour, Resource::kPreviousColour},
+                                 .sums = {Resource::kMotionSums}}),
+      .make = make_pass<CheckMotionPass>,
+      .frames = Frames::kWithHistory};
   if (settings.targets.storage == Storage::kBuffer)
     spec.options += std::string(" -D VELOCITY_FORMAT=") + precision_of(settings.velocity);
-  read_both_frames(spec.uses, Resource::kColour, settings.colour);
+  list.passes.push_back(std::move(spec));
+}
+
+// measure_content: what a frame shows.
+
+namespace {
+
+constexpr double kSpeedUnits = 16;  // steps of ContentSums::speed in an output pixel
+
+constexpr double kThinReach = 3;  // output pixels to either side of what is thin
+
+int reach(int render, int output) {
+  return std::max(1, static_cast<int>(std::lround(kThinReach * render / output)));
+}
+
+float step(int output, int tiles) {
+  return static_cast<float>(static_cast<double>(output) / (tiles * kContentSamples));
+}
+
+class MeasureContentPass : public Pass {
+ public:
+  using Pass::Pass;
+
+  void enqueue(const PassFrame& frame, cl::Event* event) override {
+    const Extent render = frame.inputs.render_extent;
+    const Extent tiles = content_tiles(frame.output);
+    const VelocityScale pixels = velocity_scale_to(frame.inputs, frame.output);
+    const bool is_judged = uses(Resource::kTileLight) && frame.has_history && !is_dense(render, frame.output);
+    const Extent judged = is_judged ? frame.output : Extent{};
+    const ContentParams params{.width = render.width,
+                               .height = render.height,
+                               .tiles_x = tiles.width,
+                               .tiles_y = tiles.height,
+                               .velocity = layout_of(frame[Resource::kVelocity]),
+                               .depth = layout_of(frame[Resource::kDepth]),
+                               .reactive = layout_of(frame[Resource::kReactive]),
+                               .reach_x = reach(render.width, frame.output.width),
+                               .reach_y = reach(render.height, frame.output.height),
+                               .pixels_x = static_cast<float>(pixels.x),
+                               .pixels_y = static_cast<float>(pixels.y),
+                               .step_x = step(frame.output.width, tiles.width),
+                               .step_y = step(frame.output.height, tiles.height),
+                               .judged_width = judged.width,
+                               .judged_height = judged.height};
+    bind(frame, params, Resource::kVelocity, Resource::kDepth, Resource::kReactive, Resource::kTileLight,
+         Resource::kContentSums);
+    launch(frame, tiles, 1, event);
+  }
+};
+
+}  // namespace
+
+Extent content_tiles(Extent output) {
+  return {(output.width + kContentTile - 1) / kContentTile,
+          (output.height + kContentTile - 1) / kContentTile};
+}
+
+ContentStatistics statistics_of(const ContentSums& sums, Extent output) {
+  constexpr int kSamples = kContentSamples * kContentSamples;
+  const auto all = static_cast<double>(content_tiles(output).area() * kSamples);
+  ContentStatistics content;
+  content.moving = sums.moving / all;
+  if (sums.moving > 0) content.speed_px = sums.speed / kSpeedUnits / sums.moving;
+  content.apart = sums.apart / all;
+  content.thin = sums.thin / all;
+  content.light = sums.light / all;
+  content.zoom = sums.zoom / all;
+  content.judged = sums.judged > 0;
+  return content;
+}
+
+void plan_measure_content(const PlanFacts& facts, PassList& list) {
+  if (!facts.measures_content()) return;
+  PassSpec spec{.kernel = "measure_content",
+                .reason = "what the picture shows is wanted: a sample of it",
+                .uses = uses_of(facts.settings, {.reads = {Resource::kVelocity, Resource::kDepth},
+                                                 .sums = {Resource::kContentSums}}),
+                .make = make_pass<MeasureContentPass>};
+  spec.add_where(facts.needs.transparents, "REACTIVE", facts.settings, {.reads = {Resource::kReactive}});
+  spec.add_options(velocity_options(facts.settings));
+  if (facts.accumulates()) spec.uses.push_back(use(Resource::kTileLight, facts.settings));
   list.passes.push_back(std::move(spec));
 }
 
