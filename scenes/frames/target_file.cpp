@@ -120,7 +120,7 @@ Status write_targets(const std::string& path, const TargetFile& file) {
                       .type = ChannelType::kFloat,
                       .data = z.data(),
                       .stored = ChannelType::kFloat});
-  const auto add_motion = [&channels](const std::array<std::string, 2>& names,
+  const auto add_motion = [&channels](const std::vector<std::string>& names,
                                       const std::vector<Vec2>& motion) {
     for (std::size_t i = 0; i < 2 && !motion.empty(); ++i) {
       channels.push_back({.name = names[i],

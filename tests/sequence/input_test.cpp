@@ -42,12 +42,12 @@ TEST_F(Input, TheExchangeFormatNeedsNoWords) {
   const auto format = settled({}, file);
   ASSERT_TRUE(format.ok()) << format.status().message();
   EXPECT_EQ(format->motion, MotionSource::kChannels);
-  EXPECT_EQ(format->channels.velocity, kBackwardChannels);
+  EXPECT_EQ(format->channels[InputPlane::kVelocity], kBackwardChannels);
   EXPECT_EQ(format->units.convention, VelocityConvention::kNuke);
-  EXPECT_EQ(format->channels.depth, "Z");
+  EXPECT_EQ(format->channels[InputPlane::kDepth].front(), "Z");
   EXPECT_EQ(format->depth_kind, DepthKind::kDeviceReversed);
   EXPECT_EQ(format->near_plane, 0.25f);
-  EXPECT_EQ(format->channels.reactive, "reactive.mask");
+  EXPECT_EQ(format->channels[InputPlane::kReactive].front(), "reactive.mask");
   EXPECT_EQ(format->jitter.text(), "attribute");
   EXPECT_EQ(format->output, kOutput);
   const SceneNeeds needs = needs_of(format.value());
@@ -62,7 +62,7 @@ TEST_F(Input, WhatIsNotThereIsNotNeeded) {
   const auto format = settled({}, file);
   ASSERT_TRUE(format.ok());
   EXPECT_EQ(format->motion, MotionSource::kNone);
-  EXPECT_FALSE(format->channels.has_depth());
+  EXPECT_FALSE(format->channels.has(InputPlane::kDepth));
   EXPECT_EQ(format->jitter.text(), "none");
   const SceneNeeds needs = needs_of(format.value());
   EXPECT_FALSE(needs.moving_objects);
@@ -78,9 +78,9 @@ TEST_F(Input, WhatThePlanDoesNotReadIsForgotten) {
   settings.method = Method::kBilinear;
   settings.output_extent = settings.target_extent = kOutput;
   ASSERT_TRUE(keep_what_is_read(format, plan_for(needs_of(format), settings).value()).ok());
-  EXPECT_FALSE(format.channels.has_velocity());
-  EXPECT_FALSE(format.channels.has_depth());
-  EXPECT_FALSE(format.channels.has_reactive());
+  EXPECT_FALSE(format.channels.has(InputPlane::kVelocity));
+  EXPECT_FALSE(format.channels.has(InputPlane::kDepth));
+  EXPECT_FALSE(format.channels.has(InputPlane::kReactive));
 }
 
 TEST_F(Input, MotionOfOtherNamesNeedsItsMeaning) {
@@ -99,7 +99,7 @@ TEST_F(Input, MotionOfOtherNamesNeedsItsMeaning) {
 TEST_F(Input, ChannelsAreNamedInMessages) {
   const ImageHeader header = header_of(frame(1));
   ChannelNames names;
-  names.colour = colour_channels_in(header, "ViewLayer.Combined");
+  names[InputPlane::kColour] = colour_channels_in(header, "ViewLayer.Combined");
   const auto places = find_channels("f.0001.exr", header, names);
   ASSERT_FALSE(places.ok());
   EXPECT_EQ(places.status().message(),
@@ -108,7 +108,7 @@ TEST_F(Input, ChannelsAreNamedInMessages) {
 
 TEST_F(Input, ChannelsThatCannotBeUsedAreRefused) {
   ChannelNames names;
-  names.depth = "Z";
+  names[InputPlane::kDepth] = {"Z"};
   const auto message_of = [&](const std::vector<testing::ExrPart>& parts) {
     testing::write_exr_parts(input(1), parts);
     return find_channels("f.exr", ImageReader::open(input(1))->header(), names).status().message();
@@ -118,7 +118,7 @@ TEST_F(Input, ChannelsThatCannotBeUsedAreRefused) {
   whole.types[3] = Imf::UINT;
   EXPECT_EQ(message_of({whole}), "'f.exr' holds integers in channel 'Z'; half or float is needed");
   testing::write_deep_exr(input(1), {2, 2});
-  names.depth.clear();
+  names[InputPlane::kDepth].clear();
   EXPECT_EQ(find_channels("f.exr", ImageReader::open(input(1))->header(), names).status().message(),
             "'f.exr' holds deep pixels in channel 'R'; flat ones are needed");
 }

@@ -29,8 +29,9 @@ class ReadFrame : public testing::SequenceTest {
 
   template <typename Texel>
   static std::vector<Texel> texels_of(const SequenceFrame& frame) {
-    std::vector<Texel> texels(frame.colour.size() / sizeof(Texel));
-    std::memcpy(texels.data(), frame.colour.data(), frame.colour.size());
+    std::vector<Texel> texels(frame.texels[InputPlane::kColour].size() / sizeof(Texel));
+    std::memcpy(texels.data(), frame.texels[InputPlane::kColour].data(),
+                frame.texels[InputPlane::kColour].size());
     return texels;
   }
 };
@@ -67,25 +68,26 @@ TEST_F(ReadFrame, EachKindOfValueGoesToItsPlane) {
   write_frame(input(1), file);
   SequenceFormat format;
   format.motion = MotionSource::kChannels;
-  format.channels.velocity = kBackwardChannels;
-  format.channels.depth = "Z";
-  format.channels.reactive = "reactive.mask";
+  format.channels[InputPlane::kVelocity] = kBackwardChannels;
+  format.channels[InputPlane::kDepth] = {"Z"};
+  format.channels[InputPlane::kReactive] = {"reactive.mask"};
   format.near_plane = 0.5f;
   const SequenceFrame got = read(format, file.extent, PixelFormat::kRGBA32F);
   const auto colour = texels_of<float>(got);
   const auto width = static_cast<float>(file.extent.width);
   const auto height = static_cast<float>(file.extent.height);
   const LoadedImage stored = image(input(1));
-  ASSERT_EQ(got.velocity.size(), static_cast<std::size_t>(file.extent.area()));
+  ASSERT_EQ(got.velocity().size(), static_cast<std::size_t>(file.extent.area()));
   for (int y = 0; y < file.extent.height; ++y) {
     for (int x = 0; x < file.extent.width; ++x) {
       const auto i = static_cast<std::size_t>(y * file.extent.width + x);
       const auto value = [&](const char* name) { return stored.at(x, y, stored.channel(name)); };
       ASSERT_EQ(colour[4 * i + 1], value("G"));
       ASSERT_EQ(colour[4 * i + 3], value("A"));
-      ASSERT_EQ(got.velocity[i], (Vec2{-value("backward.u") / width, value("backward.v") / height}));
-      ASSERT_EQ(got.depth[i], 0.5f / value("Z"));
-      ASSERT_EQ(got.reactive[i], static_cast<int>(value("reactive.mask") * 255 + 0.5f));
+      ASSERT_EQ(got.velocity()[i], (Vec2{-value("backward.u") / width, value("backward.v") / height}));
+      ASSERT_EQ(got.depth()[i], 0.5f / value("Z"));
+      ASSERT_EQ(std::to_integer<int>(got.texels[InputPlane::kReactive][i]),
+                static_cast<int>(value("reactive.mask") * 255 + 0.5f));
     }
   }
 }
@@ -95,8 +97,9 @@ TEST_F(ReadFrame, JitterIsTakenOutOfMotion) {
   write_frame(input(1), file);
   SequenceFormat format;
   format.motion = MotionSource::kChannels;
-  format.channels.velocity = kBackwardChannels;
-  const std::vector<Vec2> jittered = read(format, file.extent).velocity;
+  format.channels[InputPlane::kVelocity] = kBackwardChannels;
+  const SequenceFrame read_once = read(format, file.extent);
+  const std::vector<Vec2> jittered(read_once.velocity().begin(), read_once.velocity().end());
   format.units.jittered = true;
   SequenceFrame got;
   const ScannedFrame scanned = {
@@ -108,7 +111,7 @@ TEST_F(ReadFrame, JitterIsTakenOutOfMotion) {
     ASSERT_TRUE(read_frame(input(1), format, scanned, PixelFormat::kRGBA16F, got).ok());
     for (std::size_t i = 0; i < jittered.size(); ++i) {
       const Vec2 v = {turned * jittered[i].x, turned * jittered[i].y};
-      ASSERT_EQ(got.velocity[i], (Vec2{v.x + step.x, v.y + step.y})) << i;
+      ASSERT_EQ(got.velocity()[i], (Vec2{v.x + step.x, v.y + step.y})) << i;
     }
   }
 }
@@ -126,10 +129,10 @@ TEST_F(ReadFrame, ReactiveCodesReturn) {
   channels.push_back({.name = "reactive.mask", .type = ChannelType::kFloat, .data = mask.data()});
   ASSERT_TRUE(write_exr(input(1), extent, channels).ok());
   SequenceFormat format;
-  format.channels.reactive = "reactive.mask";
+  format.channels[InputPlane::kReactive] = {"reactive.mask"};
   const SequenceFrame frame = read(format, extent);
   for (std::size_t i = 0; i < 256; ++i)
-    ASSERT_EQ(frame.reactive[i], i);
+    ASSERT_EQ(std::to_integer<std::size_t>(frame.texels[InputPlane::kReactive][i]), i);
 }
 
 // The first read fills the memory with other values, which must not shine through.
@@ -140,9 +143,9 @@ TEST_F(ReadFrame, OutsideTheDataWindowThereIsNothing) {
   part.data = {1, 1, {2, 1}};
   SequenceFormat format;
   format.motion = MotionSource::kChannels;
-  format.channels.velocity = {"u", "v"};
+  format.channels[InputPlane::kVelocity] = {"u", "v"};
   format.units = {VelocityConvention::kScale, {1, 1}};
-  format.channels.depth = "Z";
+  format.channels[InputPlane::kDepth] = {"Z"};
   format.near_plane = 1;
   testing::ExrPart full = testing::simple_part({4, 3}, part.channels, std::vector<float>(84, 3.0f));
   SequenceFrame frame;
@@ -156,8 +159,8 @@ TEST_F(ReadFrame, OutsideTheDataWindowThereIsNothing) {
     const bool covered = i == 5 || i == 6;
     EXPECT_EQ(colour[4 * i], covered ? 2.0f : 0.0f) << i;
     EXPECT_EQ(colour[4 * i + 3], covered ? 2.0f : 0.0f) << i;
-    EXPECT_EQ(frame.velocity[i].x, covered ? 2.0f : 0.0f) << i;
-    EXPECT_EQ(frame.depth[i], covered ? 0.5f : 0.0f) << i;
+    EXPECT_EQ(frame.velocity()[i].x, covered ? 2.0f : 0.0f) << i;
+    EXPECT_EQ(frame.depth()[i], covered ? 0.5f : 0.0f) << i;
   }
 }
 
@@ -171,11 +174,11 @@ TEST_F(ReadFrame, SeveralPartsAndTiles) {
   testing::write_exr_parts(input(1), {beauty, motion});
   SequenceFormat format;
   format.motion = MotionSource::kChannels;
-  format.channels.velocity = {"motion.X", "motion.Y"};
+  format.channels[InputPlane::kVelocity] = {"motion.X", "motion.Y"};
   format.units = {VelocityConvention::kFsr2, {}};
   const SequenceFrame frame = read(format, {20, 10});
   EXPECT_EQ(texels_of<std::uint16_t>(frame), std::vector<std::uint16_t>(800, kOneHalf));
-  for (const Vec2& velocity : frame.velocity)
+  for (const Vec2& velocity : frame.velocity())
     ASSERT_EQ(velocity, (Vec2{-5.0f / 20, -5.0f / 10}));
 }
 
@@ -227,8 +230,8 @@ SequenceFrame square(std::int64_t number, Vec2 at, Vec2 jitter, Vec2 motion = {}
   SequenceFrame frame;
   frame.number = number;
   frame.render = kExtent;
-  frame.velocity.assign(static_cast<std::size_t>(kExtent.area()), Vec2{});
-  frame.velocity[77] = motion;
+  frame.texels[InputPlane::kVelocity].resize(static_cast<std::size_t>(kExtent.area()) * sizeof(Vec2));
+  frame.velocity()[77] = motion;
   std::vector<float> colour;
   for (int y = 0; y < kExtent.height; ++y) {
     for (int x = 0; x < kExtent.width; ++x) {
@@ -238,8 +241,9 @@ SequenceFrame square(std::int64_t number, Vec2 at, Vec2 jitter, Vec2 motion = {}
       colour.insert(colour.end(), {value, value, value, 1});
     }
   }
-  frame.colour.resize(colour.size() * sizeof(float));
-  std::memcpy(frame.colour.data(), colour.data(), frame.colour.size());
+  frame.texels[InputPlane::kColour].resize(colour.size() * sizeof(float));
+  std::memcpy(frame.texels[InputPlane::kColour].data(), colour.data(),
+              frame.texels[InputPlane::kColour].size());
   return frame;
 }
 
@@ -277,7 +281,8 @@ TEST(Watch, ValuesThatAreNotFiniteDoNoHarm) {
   for (int i = 0; i < 3; ++i) {
     SequenceFrame frame = square(i, {16, 16}, {});
     const float odd[] = {std::nanf(""), std::numeric_limits<float>::infinity(), -1};
-    std::memcpy(frame.colour.data() + 4 * sizeof(float) * static_cast<std::size_t>(i), odd, sizeof odd);
+    std::memcpy(frame.texels[InputPlane::kColour].data() + 4 * sizeof(float) * static_cast<std::size_t>(i),
+                odd, sizeof odd);
     EXPECT_TRUE(watch.see(frame, i == 0).empty());
   }
 }
@@ -299,9 +304,10 @@ std::vector<std::string> said_of_sky(double degrees, Vec2 motion, float depth, S
   std::vector<std::string> said;
   for (int i = 0; i < 4; ++i) {
     SequenceFrame frame = square(i, {16, 16}, {});
-    frame.velocity.assign(frame.velocity.size(), motion);
-    frame.velocity[0] = {.5f, 0};  // something moves
-    frame.depth.assign(frame.velocity.size(), depth);
+    std::ranges::fill(frame.velocity(), motion);
+    frame.velocity()[0] = {.5f, 0};  // something moves
+    frame.texels[InputPlane::kDepth].resize(frame.velocity().size() * sizeof(float));
+    std::ranges::fill(frame.depth(), depth);
     frame.world_to_ndc = camera(degrees * i);
     const auto now = watch.see(frame, i == 0);
     said.insert(said.end(), now.begin(), now.end());
@@ -326,8 +332,10 @@ class WatchedRun : public testing::SequenceTest {};
 TEST_F(WatchedRun, SaysWhatThePixelsTell) {
   for (int number = 1; number <= 3; ++number) {
     const SequenceFrame picture = square(number, {4 + 8.0f * static_cast<float>(number), 12}, {});
-    std::vector<float> colour(picture.colour.size() / sizeof(float)), still(colour.size());
-    std::memcpy(colour.data(), picture.colour.data(), picture.colour.size());
+    std::vector<float> colour(picture.texels[InputPlane::kColour].size() / sizeof(float)),
+        still(colour.size());
+    std::memcpy(colour.data(), picture.texels[InputPlane::kColour].data(),
+                picture.texels[InputPlane::kColour].size());
     std::vector<Channel> channels;
     for (std::size_t c = 0; c < 3; ++c) {
       channels.push_back({.name = std::string(1, "RGB"[c]),

@@ -39,7 +39,7 @@ struct DiagnosedInput {
   bool dilated = false;    // velocity is said to be
   bool sky_moves = false;  // what moves a sky of velocity 0 is said
   // Names of velocity's channels, for the options that mend.
-  std::array<std::string, 2> channels = kBackwardChannels;
+  std::vector<std::string> channels = kBackwardChannels;
 };
 
 enum class Verdict : std::uint8_t {

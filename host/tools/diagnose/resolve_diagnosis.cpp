@@ -80,10 +80,11 @@ Result<DiagnosedFrame> read_file(const ResolveTask& task, const ScannedFrame& sc
                           .render = scanned.render,
                           .reset = scanned.reset,
                           .jitter = scanned.jitter,
-                          .velocity = std::move(read.velocity),
-                          .depth = std::move(read.depth),
+                          .velocity = {read.velocity().begin(), read.velocity().end()},
+                          .depth = {read.depth().begin(), read.depth().end()},
                           .world_to_ndc = read.world_to_ndc};
-  set_colour(frame, values_of({PixelFormat::kRGBA32F, std::move(read.colour)}), keeps_colour);
+  set_colour(frame, values_of({PixelFormat::kRGBA32F, std::move(read.texels[InputPlane::kColour])}),
+             keeps_colour);
   if (task.format.units.jittered)
     take_jitter(frame.velocity, task.format.units, frame.render, scanned.jitter_since);
   return frame;
@@ -175,7 +176,7 @@ DiagnosedInput input_of(const ResolveTask& task) {
           .output = task.format.output,
           .dilated = conventions.drawn_velocity == DrawnVelocity::kDilated,
           .sky_moves = conventions.sky_motion != SkyMotion::kAsDrawn,
-          .channels = task.format.channels.velocity};
+          .channels = task.format.channels[InputPlane::kVelocity]};
 }
 
 // What the recording says of its first frame holds for all: `inputs`.

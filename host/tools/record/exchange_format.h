@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "quincunx/advanced/extent.h"
 #include "quincunx/frame.h"
@@ -18,12 +19,12 @@
 namespace quincunx::tools {
 
 // The format's channels.
-inline const std::array<std::string, 4> kColourChannels = {"R", "G", "B", "A"};
-inline const std::array<std::string, 2> kBackwardChannels = {"backward.u", "backward.v"};
+inline const std::vector<std::string> kColourChannels = {"R", "G", "B", "A"};
+inline const std::vector<std::string> kBackwardChannels = {"backward.u", "backward.v"};
 // Motion to the next frame: next - this position, as Nuke has it.
-inline const std::array<std::string, 2> kForwardChannels = {"forward.u", "forward.v"};
+inline const std::vector<std::string> kForwardChannels = {"forward.u", "forward.v"};
 // Of recorded frames: velocity as it was given, in whatever unit.
-inline const std::array<std::string, 2> kVelocityChannels = {"velocity.u", "velocity.v"};
+inline const std::vector<std::string> kVelocityChannels = {"velocity.u", "velocity.v"};
 inline const std::string kDepthChannel = "Z";
 inline const std::string kReactiveChannel = "reactive.mask";
 

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "src/plan/resources.h"
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
 #include "tools/image/image_reader.h"
@@ -32,45 +33,37 @@ struct PartImage {
   ImageView* view = nullptr;
   PixelFormat format = PixelFormat::kNone;
   Storage storage = Storage::kBuffer;
+  std::array<const char*, 4> channels = {};
+
+  std::size_t channel_count() const {
+    return static_cast<std::size_t>(
+        std::count_if(channels.begin(), channels.end(), [](auto name) { return name; }));
+  }
 };
 
-bool brings(const ResolvePlan& plan, const std::string& name) {
-  return std::any_of(plan.buffers.begin(), plan.buffers.end(), [&](const PlannedBuffer& buffer) {
-    return !buffer.owned && buffer.name.ends_with(name);
-  });
+// The viewport of a part's images; null: they have a fixed size.
+Extent FrameInputs::*viewport_of(FramePart part) {
+  if (part == FramePart::kPicture) return &FrameInputs::render_extent;
+  return part == FramePart::kParticles ? &FrameInputs::particle_render_extent : nullptr;
 }
 
 // The images that the plan reads of a frame with a focus. `inputs` and `focus` are where their views are.
 std::vector<PartImage> images_of(const ResolvePlan& plan, FramePart part, FrameInputs& inputs,
                                  FocusInputs& focus) {
   const ResolveSettings& settings = plan.settings;
-  const Storage storage = settings.targets.storage;
   std::vector<PartImage> images;
-  const auto add = [&](bool there, ImageView& view, PixelFormat format, Storage stored) {
-    if (there) images.push_back({&view, format, stored});
-  };
-  switch (part) {
-    case FramePart::kPicture:
-      add(true, inputs.colour, settings.colour, storage);
-      add(plan.velocity == VelocitySource::kTarget, inputs.velocity, settings.velocity, storage);
-      add(plan.reads_depth, inputs.depth, PixelFormat::kR32F, storage);
-      add(plan.reads_reactive, inputs.reactive, PixelFormat::kR8, storage);
-      break;
-    case FramePart::kParticles:
-      add(brings(plan, "particle colour"), inputs.particle_colour, settings.colour, storage);
-      add(brings(plan, "particle depth"), inputs.particle_depth, PixelFormat::kR32F, storage);
-      add(brings(plan, "particle reactive"), inputs.particle_reactive, PixelFormat::kR8, storage);
-      break;
-    case FramePart::kFadingFrom:
-      add(settings.control.fades, inputs.fading_from, settings.output.linear, Storage::kBuffer);
-      break;
-    case FramePart::kFocus:
-      if (const auto region = plan.focus_plan())
-        return images_of(*region, FramePart::kPicture, focus.frame, focus);
-      break;
-    case FramePart::kFocusMask:
-      add(settings.focus.mask, focus.mask, PixelFormat::kR8, Storage::kBuffer);
-      break;
+  if (part == FramePart::kFocus) {
+    if (const auto region = plan.focus_plan())
+      return images_of(*region, FramePart::kPicture, focus.frame, focus);
+  } else if (part == FramePart::kFocusMask && settings.focus.mask) {
+    images.push_back({&focus.mask, PixelFormat::kR8, Storage::kBuffer, {kReactiveChannel.c_str()}});
+  }
+  for (const InputImage& input : kInputs) {
+    if (part == FramePart::kFadingFrom && settings.control.fades && input.image == &FrameInputs::fading_from)
+      images.push_back({&(inputs.*input.image), settings.output.linear, Storage::kBuffer, input.channels});
+    const PlannedBuffer* planned = planned_for(plan, input);
+    if (planned != nullptr && input.viewport == viewport_of(part))
+      images.push_back({&(inputs.*input.image), planned->format, settings.targets.storage, input.channels});
   }
   return images;
 }
@@ -83,27 +76,9 @@ bool is_of_focus(FramePart part) {
 // The extent in use of a part's images.
 Extent extent_of(const ResolvePlan& plan, FramePart part, const FrameInputs& inputs,
                  const FocusInputs& focus) {
-  switch (part) {
-    case FramePart::kPicture:
-      return inputs.render_extent;
-    case FramePart::kParticles:
-      return inputs.particle_render_extent;
-    case FramePart::kFadingFrom:
-      return plan.settings.output_extent;
-    case FramePart::kFocus:
-      return focus.frame.render_extent;
-    case FramePart::kFocusMask:
-      return plan.settings.focus.extent;
-  }
-  return {};
-}
-
-FrameInputs without_images(FrameInputs inputs) {
-  for (ImageView* view :
-       {&inputs.colour, &inputs.depth, &inputs.velocity, &inputs.reactive, &inputs.particle_colour,
-        &inputs.particle_depth, &inputs.particle_reactive, &inputs.exposure_image, &inputs.fading_from})
-    *view = {};
-  return inputs;
+  if (part == FramePart::kFocus) return focus.frame.render_extent;
+  if (part == FramePart::kFocusMask) return plan.settings.focus.extent;
+  return part == FramePart::kFadingFrom ? plan.settings.output_extent : inputs.*viewport_of(part);
 }
 
 std::size_t row_bytes(PixelFormat format, Extent extent) {
@@ -123,31 +98,10 @@ void turn_rows(std::vector<std::byte>& texels, std::size_t row) {
 
 // ---- Files.
 
-// How texels of a format are channels: names, and whether the file has halves.
-struct FormatChannels {
-  std::vector<std::string> names;
-  ChannelType stored = ChannelType::kHalf;
-};
-
-FormatChannels channels_of(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kRGBA8:
-    case PixelFormat::kRGBA16F:
-      return {{kColourChannels.begin(), kColourChannels.end()}, ChannelType::kHalf};
-    case PixelFormat::kRGBA32F:
-      return {{kColourChannels.begin(), kColourChannels.end()}, ChannelType::kFloat};
-    case PixelFormat::kRG16F:
-      return {{kVelocityChannels.begin(), kVelocityChannels.end()}, ChannelType::kHalf};
-    case PixelFormat::kRG32F:
-      return {{kVelocityChannels.begin(), kVelocityChannels.end()}, ChannelType::kFloat};
-    case PixelFormat::kR32F:
-      return {{kDepthChannel}, ChannelType::kFloat};
-    case PixelFormat::kR8:
-      return {{kReactiveChannel}, ChannelType::kHalf};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
+ChannelType stored_type(PixelFormat format) {
+  const bool is_float =
+      format == PixelFormat::kRGBA32F || format == PixelFormat::kRG32F || format == PixelFormat::kR32F;
+  return is_float ? ChannelType::kFloat : ChannelType::kHalf;
 }
 
 bool is_codes(PixelFormat format) {
@@ -288,54 +242,57 @@ FrameAttributes attributes_of(const ResolvePlan& plan, FramePart part, const Rec
 
 Status write_part(const std::string& path, const ResolvePlan& plan, FramePart part,
                   const RecordedFrame& frame) {
-  const RecordedPart& images = frame[part];
+  const RecordedPart& recorded = frame[part];
+  FrameInputs inputs;
+  FocusInputs focus;
+  const std::vector<PartImage> parts = images_of(plan, part, inputs, focus);
   std::vector<std::vector<float>> values;
   std::vector<Channel> channels;
-  for (const RecordedImage& image : images.images) {
+  for (std::size_t i = 0; i < recorded.images.size(); ++i) {
+    const RecordedImage& image = recorded.images[i];
     values.push_back(values_of(image));
-    const FormatChannels format = channels_of(image.format);
     const bool codes = is_codes(image.format);
-    const std::size_t size = codes || format.stored == ChannelType::kFloat ? 4 : 2;
+    const ChannelType stored = stored_type(image.format);
+    const ChannelType type = codes ? ChannelType::kFloat : stored;
+    const std::size_t size = type == ChannelType::kFloat ? 4 : 2, count = parts[i].channel_count();
     const auto* first =
         codes ? reinterpret_cast<const std::byte*>(values.back().data()) : image.texels.data();
-    for (std::size_t i = 0; i < format.names.size(); ++i) {
-      channels.push_back({.name = format.names[i],
-                          .type = size == 4 ? ChannelType::kFloat : ChannelType::kHalf,
-                          .data = first + i * size,
-                          .pixel_stride = format.names.size() * size,
-                          .stored = format.stored});
+    for (std::size_t c = 0; c < count; ++c) {
+      channels.push_back({.name = parts[i].channels[c],
+                          .type = type,
+                          .data = first + c * size,
+                          .pixel_stride = count * size,
+                          .stored = stored});
     }
   }
-  return write_exr(path, images.extent, channels, to_attributes(attributes_of(plan, part, frame)));
+  return write_exr(path, recorded.extent, channels, to_attributes(attributes_of(plan, part, frame)));
 }
 
 // Nothing where the file has no such channels.
-Result<std::optional<RecordedImage>> read_image(ImageReader& reader, PixelFormat format, Extent extent) {
-  const FormatChannels wanted = channels_of(format);
-  const bool codes = is_codes(format);
-  const ChannelType type = codes ? ChannelType::kFloat : wanted.stored;
+Result<std::optional<RecordedImage>> read_image(ImageReader& reader, const PartImage& wanted, Extent extent) {
+  const bool codes = is_codes(wanted.format);
+  const ChannelType type = codes ? ChannelType::kFloat : stored_type(wanted.format);
   const std::size_t size = type == ChannelType::kHalf ? 2 : 4;
-  const std::size_t pixels = static_cast<std::size_t>(extent.area());
-  std::vector<std::byte> read(pixels * wanted.names.size() * size);
+  const std::size_t pixel = wanted.channel_count() * size;
+  std::vector<std::byte> read(static_cast<std::size_t>(extent.area()) * pixel);
   std::vector<ChannelTarget> targets;
-  for (const std::string& name : wanted.names) {
-    const auto place = reader.header().find(name);
+  for (std::size_t c = 0; c < wanted.channel_count(); ++c) {
+    const auto place = reader.header().find(wanted.channels[c]);
     if (!place) return std::optional<RecordedImage>();
-    const std::size_t pixel = wanted.names.size() * size;
-    targets.push_back({*place, type, read.data() + targets.size() * size, pixel,
-                       pixel * static_cast<std::size_t>(extent.width)});
+    targets.push_back(
+        {*place, type, read.data() + c * size, pixel, pixel * static_cast<std::size_t>(extent.width)});
   }
   if (Status status = reader.read(targets); !status.ok()) return status;
-  RecordedImage image = {.format = format, .texels = {}};
+  RecordedImage image = {.format = wanted.format, .texels = {}};
   if (!codes) {
     image.texels = std::move(read);
     return std::optional(std::move(image));
   }
-  image.texels.resize(pixels * wanted.names.size());
+  image.texels.resize(read.size() / size);
   for (std::size_t i = 0; i < image.texels.size(); ++i) {
     float value = 0;
     std::memcpy(&value, read.data() + i * sizeof value, sizeof value);
-    image.texels[i] = static_cast<std::byte>(code_of(value, is_encoded(format, i)));
+    image.texels[i] = static_cast<std::byte>(code_of(value, is_encoded(wanted.format, i)));
   }
   return std::optional(std::move(image));
 }
@@ -368,12 +325,11 @@ Status read_part(const std::string& path, const ResolvePlan& plan, FramePart par
   }
   FocusInputs of_focus;
   for (const PartImage& wanted : images_of(plan, part, frame.inputs, of_focus)) {
-    auto image = read_image(*reader, wanted.format, extent);
+    auto image = read_image(*reader, wanted, extent);
     if (!image.ok()) return image.status();
     if (!image->has_value()) {
       return Status::io(fmt::format("'{}' has no channel '{}', which these settings read; it has {}", path,
-                                    channels_of(wanted.format).names.front(),
-                                    reader->header().channel_names()));
+                                    wanted.channels.front(), reader->header().channel_names()));
     }
     frame[part].images.push_back(std::move(**image));
   }
@@ -394,6 +350,12 @@ bool is_frame_file(const std::string& name) {
     const std::string number = name.substr(before.size(), name.size() - before.size() - after.size());
     return number.find_first_not_of("0123456789") == std::string::npos;
   });
+}
+
+FrameInputs without_images(FrameInputs inputs) {
+  for (const InputImage& input : kInputs)
+    inputs.*input.image = {};
+  return inputs;
 }
 
 Result<RecordedFrame> download(const Device& device, const ResolvePlan& plan, const FrameInputs& inputs,
@@ -445,11 +407,10 @@ Result<UploadedFrame> upload(const Device& device, const ResolvePlan& plan, cons
   FocusInputs& focus = uploaded.focus ? *uploaded.focus : none;
   for (const FramePart part : kParts) {
     const RecordedPart& recorded = frame[part];
-    for (const PartImage& image : images_of(plan, part, uploaded.inputs, focus)) {
-      const auto found = std::find_if(recorded.images.begin(), recorded.images.end(),
-                                      [&](const RecordedImage& one) { return one.format == image.format; });
-      if (found == recorded.images.end()) continue;
-      if (Status status = put(recorded.extent, *found, image.storage, *image.view); !status.ok())
+    const std::vector<PartImage> images = images_of(plan, part, uploaded.inputs, focus);
+    for (std::size_t i = 0; i < recorded.images.size(); ++i) {
+      if (Status status = put(recorded.extent, recorded.images[i], images[i].storage, *images[i].view);
+          !status.ok())
         return status;
     }
   }

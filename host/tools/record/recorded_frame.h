@@ -32,7 +32,8 @@ struct RecordedImage {
 
 struct RecordedPart {
   Extent extent = {};
-  std::vector<RecordedImage> images = {};  // of different formats; none: the part is not there
+  std::vector<RecordedImage> images =
+      {};  // those that the plan reads, as kInputs lists them; none: it is not there
 };
 
 // The inputs' images are empty: their texels are in the parts.
@@ -45,6 +46,9 @@ struct RecordedFrame {
   RecordedPart& operator[](FramePart part) { return parts[static_cast<std::size_t>(part)]; }
   const RecordedPart& operator[](FramePart part) const { return parts[static_cast<std::size_t>(part)]; }
 };
+
+// Returns what a frame tells but for its images.
+FrameInputs without_images(FrameInputs inputs);
 
 // Reads back what the plan reads of these inputs; waits for the queue. Errors: of the device.
 Result<RecordedFrame> download(const Device& device, const ResolvePlan& plan, const FrameInputs& inputs,

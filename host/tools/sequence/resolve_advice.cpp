@@ -66,7 +66,8 @@ std::string on_jitter(const ResolveTask& task, const std::vector<ScannedFrame>& 
 std::string on_compression(const ResolveTask& task, const std::vector<ScannedFrame>& frames) {
   const auto lossy = std::find_if(frames.begin(), frames.end(), [](const auto& frame) { return frame.dwa; });
   if (lossy == frames.end()) return {};
-  const bool data = task.format.channels.has_velocity() || task.format.channels.has_depth();
+  const bool data =
+      task.format.channels.has(InputPlane::kVelocity) || task.format.channels.has(InputPlane::kDepth);
   return fmt::format("'{}' is compressed with DWA, which loses something of colour{}; render with ZIP",
                      task.input.expand(lossy->number),
                      data ? ", and of motion and depth whose channels end in the letters of colour" : "");
@@ -161,7 +162,7 @@ MethodDefault default_method(const SequenceFormat& format, JitterKind jitter,
   const bool needs_depth = format.motion == MotionSource::kCamera ||
                            settings.conventions.sky_motion != SkyMotion::kAsDrawn ||
                            settings.conventions.drawn_velocity == DrawnVelocity::kDilated;
-  if (format.channels.has_depth() || needs_depth) {
+  if (format.channels.has(InputPlane::kDepth) || needs_depth) {
     if (jitter == JitterKind::kNone)
       return {{.method = Method::kQuincunx, .form = TwoFrameForm::kReprojected},
               "motion and depth are known, but no jitter"};

@@ -32,8 +32,8 @@ std::uint64_t parse_bytes(const std::string& option, const std::string& text) {
 // The channels that are read, and what they mean.
 
 // "A,B" into two words that are not empty.
-std::array<std::string, 2> split_pair(const std::string& option, const std::string& text,
-                                      const std::string& example) {
+std::vector<std::string> split_pair(const std::string& option, const std::string& text,
+                                    const std::string& example) {
   const std::size_t comma = text.find(',');
   const bool good = comma != std::string::npos && comma > 0 && comma + 1 < text.size() &&
                     text.find(',', comma + 1) == std::string::npos;

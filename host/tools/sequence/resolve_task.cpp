@@ -197,9 +197,11 @@ Status settle_recorded(const ResolveOptions& options, ResolveTask& task) {
   if (!plan.ok()) return plan.status();
   task.plan = std::move(plan).value();
   ChannelNames& channels = task.format.channels;
-  if (task.plan.velocity == VelocitySource::kTarget) channels.velocity = kVelocityChannels;
-  if (task.plan.reads_depth) channels.depth = kDepthChannel;
-  if (task.plan.reads_reactive) channels.reactive = kReactiveChannel;
+  for (const InputImage& input : kInputs) {
+    if (input.viewport != &FrameInputs::render_extent || planned_for(task.plan, input) == nullptr) continue;
+    channels[plane_of(input)].assign(input.channels.begin(),
+                                     std::find(input.channels.begin(), input.channels.end(), nullptr));
+  }
   if (task.output)
     task.output->settings += "; " + to_line({.needs = options.recorded->needs, .settings = settings});
   return {};

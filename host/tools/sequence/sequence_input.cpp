@@ -110,12 +110,13 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
     format.motion = has_backward ? MotionSource::kChannels : MotionSource::kNone;
   if (format.motion == MotionSource::kChannels) {
     const bool automatic = input.motion == MotionSource::kAutomatic;
-    format.channels.velocity = automatic ? kBackwardChannels : input.velocity;
-    if (!input.units && format.channels.velocity != kBackwardChannels) {
+    const auto& names = format.channels[InputPlane::kVelocity] =
+        automatic ? kBackwardChannels : input.velocity;
+    if (!input.units && names != kBackwardChannels) {
       return Status::invalid(
-          fmt::format("--velocity {},{} needs --velocity-convention or --velocity-scale: what the values "
+          fmt::format("--velocity {} needs --velocity-convention or --velocity-scale: what the values "
                       "mean cannot be seen from them",
-                      format.channels.velocity[0], format.channels.velocity[1]));
+                      fmt::join(names, ",")));
     }
     format.units = input.units.value_or(VelocityUnits{});
     format.units.jittered = input.velocity_jittered;
@@ -126,8 +127,8 @@ Status settle_motion(const SequenceInput& input, const std::string& path, const 
   return {};
 }
 
-// Channels of a layer that is called "albedo", or "Denoising Albedo" as Cycles has it; empty names where there is none.
-std::array<std::string, 3> albedo_channels_in(const ImageHeader& header) {
+// Channels of a layer that is called "albedo", or "Denoising Albedo" as Cycles has it; none where there is none.
+std::vector<std::string> albedo_channels_in(const ImageHeader& header) {
   for (const std::string& layer : colour_layers(header)) {
     std::string name = layer.substr(layer.rfind('.') + 1);  // of all, where there is no dot
     std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
@@ -138,25 +139,31 @@ std::array<std::string, 3> albedo_channels_in(const ImageHeader& header) {
   return {};
 }
 
-// A channel that is read if the command line names it, or if it has its usual name.
-std::string optional_channel(const std::optional<std::string>& wanted, const std::string& usual,
-                             const ImageHeader& first) {
-  if (wanted) return *wanted;
-  return first.find(usual) ? usual : "";
+// Channels of an input that are read if the command line names one, or if the file has those of the exchange format.
+std::vector<std::string> optional_channels(const std::optional<std::string>& wanted, const InputImage& usual,
+                                           const ImageHeader& first) {
+  if (wanted) return wanted->empty() ? std::vector<std::string>() : std::vector{*wanted};
+  std::vector<std::string> names;
+  for (const char* name : usual.channels) {
+    if (name == nullptr) break;
+    if (!first.find(name)) return {};
+    names.emplace_back(name);
+  }
+  return names;
 }
 
 }  // namespace
 
-std::array<std::string, 4> colour_channels_in(const ImageHeader& header, const std::string& layer) {
+std::vector<std::string> colour_channels_in(const ImageHeader& header, const std::string& layer) {
   const std::string prefix = prefix_of(layer);
   if (is_grey(header, prefix)) return {prefix + "Y", prefix + "Y", prefix + "Y", prefix + "A"};
   return {prefix + "R", prefix + "G", prefix + "B", prefix + "A"};
 }
 
 std::string colour_text(const ChannelNames& names) {
-  const auto& colour = names.colour;
+  const auto& colour = names[InputPlane::kColour];
   if (colour[0] == colour[1]) return fmt::format("grey {},{}", colour[0], colour[3]);
-  return fmt::format("colour {},{},{},{}", colour[0], colour[1], colour[2], colour[3]);
+  return fmt::format("colour {}", fmt::join(colour, ","));
 }
 
 bool leaves_pixels_open(const ImagePart& part) {
@@ -172,24 +179,24 @@ Result<ChannelPlaces> find_channels(const std::string& path, const ImageHeader& 
   Search search(path, header);
   ChannelPlaces places;
   const std::string advice = layers_text(header, option);
-  for (std::size_t i = 0; i < 3; ++i)
-    places.colour[i] = search.find(names.colour[i], advice);
-  if (header.find(names.colour[3])) places.colour[3] = search.find(names.colour[3]);
-  if (names.has_velocity()) {
-    for (std::size_t i = 0; i < 2; ++i)
-      places.velocity[i] = search.find(names.velocity[i]);
+  for (std::size_t p = 0; p < kPlaneCount; ++p) {
+    const auto plane = static_cast<InputPlane>(p);
+    for (const std::string& name : names[plane]) {
+      const bool is_alpha = plane == InputPlane::kColour && &name == &names[plane].back();
+      if (is_alpha && !header.find(name)) {
+        places[plane].push_back(std::nullopt);
+      } else {
+        places[plane].push_back(search.find(name, plane == InputPlane::kColour && !is_alpha ? advice : ""));
+      }
+    }
   }
-  if (names.has_depth()) places.depth = search.find(names.depth);
-  if (names.has_reactive()) places.reactive = search.find(names.reactive);
-  for (std::size_t i = 0; i < 3 && names.has_albedo(); ++i)
-    places.albedo[i] = search.find(names.albedo[i]);
   if (!search.status().ok()) return search.status();
   places.display = *search.display();
   places.dwa = search.dwa();
-  places.background = !places.colour[3];
-  for (const auto& place : places.colour)
+  places.background = !places[InputPlane::kColour].back();
+  for (const auto& place : places[InputPlane::kColour])
     places.background &= !place || !leaves_pixels_open(header.parts[place->part]);
-  for (const auto& place : places.colour)
+  for (const auto& place : places[InputPlane::kColour])
     places.half_colour &= !place || header.at(*place).stored == ChannelType::kHalf;
   return places;
 }
@@ -212,12 +219,18 @@ float samples_in(const ImageHeader& header) {
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes) {
   SequenceFormat format;
-  format.channels.colour = colour_channels_in(first, input.colour_layer);
+  format.channels[InputPlane::kColour] = colour_channels_in(first, input.colour_layer);
   if (Status status = settle_motion(input, first_path, first, attributes, format); !status.ok())
     return status;
-  format.channels.depth = optional_channel(input.depth, kDepthChannel, first);
-  format.channels.reactive = optional_channel(input.reactive, kReactiveChannel, first);
-  format.channels.albedo = albedo_channels_in(first);
+  for (const InputImage& image : kInputs) {
+    const InputPlane plane = plane_of(image);
+    if (image.viewport != &FrameInputs::render_extent || plane <= InputPlane::kVelocity) continue;
+    const auto wanted = plane == InputPlane::kDepth      ? input.depth
+                        : plane == InputPlane::kReactive ? input.reactive
+                                                         : std::nullopt;
+    format.channels[plane] = optional_channels(wanted, image, first);
+  }
+  format.channels[InputPlane::kAlbedo] = albedo_channels_in(first);
   const bool goes_on = first.find(kForwardChannels[0]) && first.find(kForwardChannels[1]);
   format.next_velocity = input.next_velocity.value_or(goes_on ? kForwardChannels : format.next_velocity);
   format.depth_kind = input.depth_kind.value_or(attributes.depth_kind.value_or(DepthKind::kLinear));
@@ -239,14 +252,14 @@ SceneNeeds needs_of(const SequenceFormat& format) {
   SceneNeeds needs;
   needs.moving_objects = format.motion == MotionSource::kChannels;
   needs.camera_motion = format.motion != MotionSource::kNone;
-  needs.transparents = format.channels.has_reactive();
+  needs.transparents = format.channels.has(InputPlane::kReactive);
   needs.background = format.background;
   return needs;
 }
 
 Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   ChannelNames& channels = format.channels;
-  if (plan.reads_depth && !channels.has_depth()) {
+  if (plan.reads_depth && !channels.has(InputPlane::kDepth)) {
     const std::string reader =
         plan.blurs()                ? "motion blur"
         : plan.undilates_velocity() ? "--drawn-velocity dilated"
@@ -255,9 +268,9 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
     return Status::io(fmt::format("{} reads depth here, but the frames have no channel '{}'; say --depth",
                                   reader, kDepthChannel));
   }
-  if (plan.velocity != VelocitySource::kTarget) channels.velocity = {};
-  if (!plan.reads_depth) channels.depth.clear();
-  if (!plan.reads_reactive) channels.reactive.clear();
+  for (const InputImage& input : kInputs) {
+    if (input.viewport != nullptr && planned_for(plan, input) == nullptr) channels[plane_of(input)].clear();
+  }
   format.needs_camera = plan.reads_camera();
   return {};
 }
@@ -268,7 +281,7 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
     format.next_motion = NextMotion::kNothing;
   } else if (plan.velocity == VelocitySource::kCamera) {
     format.next_motion = NextMotion::kCamera;
-  } else if (!format.next_velocity[0].empty()) {
+  } else if (!format.next_velocity.empty()) {
     format.next_motion = NextMotion::kChannels;
     // The format's own channels say where a surface goes, others where it comes from, as those of velocity do.
     if (format.next_velocity == kForwardChannels)
@@ -282,7 +295,7 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
   const bool known = format.next_motion == NextMotion::kChannels || format.next_motion == NextMotion::kCamera;
   format.two_way = input.two_way.value_or(possible && known ? kDefaultAhead : 0);
   const bool denoises = format.two_way > 0 && plan.settings.temporal.noise > 0;
-  if (!denoises) format.channels.albedo = {};
+  if (!denoises) format.channels[InputPlane::kAlbedo].clear();
   if (format.two_way > 0 && !possible) {
     return Status::invalid(
         fmt::format("--two-way merges the histories of method temporal, and this is {}; say --two-way 0",
@@ -294,7 +307,8 @@ Status settle_two_way(const SequenceInput& input, const ResolvePlan& plan, Seque
 SequenceFormat backward_format(const SequenceFormat& format) {
   SequenceFormat backward = format;
   backward.units = format.next_units;
-  if (format.next_motion == NextMotion::kChannels) backward.channels.velocity = format.next_velocity;
+  if (format.next_motion == NextMotion::kChannels)
+    backward.channels[InputPlane::kVelocity] = format.next_velocity;
   return backward;
 }
 
@@ -304,7 +318,7 @@ std::string two_way_text(const SequenceFormat& format) {
   const std::string ahead = fmt::format("; both ways, {} frames ahead", format.two_way);
   if (format.next_motion == NextMotion::kTurned) return ahead + " by their own motion, turned round";
   if (format.next_motion != NextMotion::kChannels) return ahead;
-  return ahead + fmt::format(" by {},{}", format.next_velocity[0], format.next_velocity[1]);
+  return ahead + fmt::format(" by {}", fmt::join(format.next_velocity, ","));
 }
 
 }  // namespace
@@ -313,22 +327,24 @@ std::string summary_of(const SequenceFormat& format) {
   if (!format.recording.empty()) return "a recording, by its settings";
   const ChannelNames& channels = format.channels;
   std::string text = colour_text(channels);
-  if (channels.has_velocity()) {
-    text += fmt::format("; velocity {},{} {}", channels.velocity[0], channels.velocity[1],
+  if (channels.has(InputPlane::kVelocity)) {
+    text += fmt::format("; velocity {} {}", fmt::join(channels[InputPlane::kVelocity], ","),
                         name_of(format.units.convention));
     if (format.units.convention == VelocityConvention::kScale)
       text += fmt::format(" {},{}", format.units.scale.x, format.units.scale.y);
     if (format.units.jittered) text += ", jittered";
-  } else if (format.motion == MotionSource::kCamera && channels.has_depth()) {
+  } else if (format.motion == MotionSource::kCamera && channels.has(InputPlane::kDepth)) {
     text += "; velocity from depth and worldToNDC";
   }
-  if (channels.has_depth()) {
-    text += fmt::format("; depth {} {}", channels.depth, name_of(format.depth_kind));
+  if (channels.has(InputPlane::kDepth)) {
+    text += fmt::format("; depth {} {}", channels[InputPlane::kDepth].front(), name_of(format.depth_kind));
     if (format.depth_kind == DepthKind::kLinear) text += fmt::format(", near {}", format.near_plane);
   }
-  if (channels.has_reactive()) text += fmt::format("; reactive {}", channels.reactive);
-  if (channels.has_albedo())
-    text += fmt::format("; albedo {},{},{}", channels.albedo[0], channels.albedo[1], channels.albedo[2]);
+  for (std::size_t p = static_cast<std::size_t>(InputPlane::kReactive); p < kPlaneCount; ++p) {
+    const auto plane = static_cast<InputPlane>(p);
+    const char* name = plane == InputPlane::kAlbedo ? "albedo" : kInputs[p].name;
+    if (channels.has(plane)) text += fmt::format("; {} {}", name, fmt::join(channels[plane], ","));
+  }
   if (format.two_way > 0) text += two_way_text(format);
   if (!format.cuts.empty()) text += fmt::format("; cuts before {}", fmt::join(format.cuts, ","));
   return text + fmt::format("; jitter {}", format.jitter.text());

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "quincunx/resolve_plan.h"
+#include "src/plan/resources.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/record/exchange_format.h"
@@ -17,34 +18,44 @@
 
 namespace quincunx::tools {
 
-// By name. An empty name: this kind of value is not read.
-struct ChannelNames {
-  std::array<std::string, 4> colour = {"R", "G", "B", "A"};  // A may be missing in the file: 1
-  std::array<std::string, 2> velocity;                       // both or none
-  std::string depth;
-  std::string reactive;
-  std::array<std::string, 3> albedo;  // all or none: what part of light the surfaces throw back
+// The images that frames of a sequence bring: the inputs of plan/resources.h, numbered as there, and albedo, which is
+// the colour of a service of its own.
+enum class InputPlane : std::uint8_t {
+  kColour,
+  kVelocity,
+  kDepth,
+  kReactive,
+  kAlbedo = static_cast<std::uint8_t>(Resource::kInputCount),
+};
+inline constexpr std::size_t kPlaneCount = static_cast<std::size_t>(InputPlane::kAlbedo) + 1;
 
-  bool has_velocity() const { return !velocity[0].empty(); }
-  bool has_depth() const { return !depth.empty(); }
-  bool has_reactive() const { return !reactive.empty(); }
-  bool has_albedo() const { return !albedo[0].empty(); }
+constexpr InputPlane plane_of(const InputImage& input) {
+  return static_cast<InputPlane>(&input - kInputs);
+}
+
+template <typename Value>
+struct PerPlane {
+  std::array<Value, kPlaneCount> values = {};
+
+  Value& operator[](InputPlane plane) { return values[static_cast<std::size_t>(plane)]; }
+  const Value& operator[](InputPlane plane) const { return values[static_cast<std::size_t>(plane)]; }
+};
+
+// By name; none: this plane is not read. The fourth of colour, A, may be missing in the file: 1.
+struct ChannelNames : PerPlane<std::vector<std::string>> {
+  ChannelNames() { (*this)[InputPlane::kColour] = kColourChannels; }
+  bool has(InputPlane plane) const { return !(*this)[plane].empty(); }
 };
 
 // "ViewLayer.Combined" -> its R, G, B and A; "" -> R, G, B and A. A layer of one channel Y is grey: Y stands for the
 // first three. Where the file has neither they are R, G and B.
-std::array<std::string, 4> colour_channels_in(const ImageHeader& header, const std::string& layer);
+std::vector<std::string> colour_channels_in(const ImageHeader& header, const std::string& layer);
 
 // "colour R,G,B,A", "grey Y,A".
 std::string colour_text(const ChannelNames& names);
 
 // Where they are in one file.
-struct ChannelPlaces {
-  std::array<std::optional<ChannelPlace>, 4> colour;  // only A may be absent
-  std::array<std::optional<ChannelPlace>, 2> velocity;
-  std::optional<ChannelPlace> depth;
-  std::optional<ChannelPlace> reactive;
-  std::array<std::optional<ChannelPlace>, 3> albedo;
+struct ChannelPlaces : PerPlane<std::vector<std::optional<ChannelPlace>>> {  // only A may be absent
   ImageWindow display;  // display window of the parts in use
   bool half_colour = true;
   bool background = true;  // colour covers the display window, and there is no alpha
@@ -75,13 +86,13 @@ enum class MotionSource : std::uint8_t {
 struct SequenceInput {
   std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
   MotionSource motion = MotionSource::kAutomatic;
-  std::array<std::string, 2> velocity;                      // names of kChannels
-  std::optional<std::array<std::string, 2>> next_velocity;  // channels of motion to the next frame
-  std::optional<VelocityUnits> units;                       // needed for other channels than backward.u/.v
-  bool velocity_jittered = false;                           // as VelocityUnits has it
-  std::optional<std::string> depth;                         // absent: Z where there is one; empty: none
-  std::optional<DepthKind> depth_kind;                      // absent: the attribute depthKind, else linear
-  std::optional<float> near_plane;                          // absent: the attribute near, else kUnknownNear
+  std::vector<std::string> velocity;                      // names of kChannels
+  std::optional<std::vector<std::string>> next_velocity;  // channels of motion to the next frame
+  std::optional<VelocityUnits> units;                     // needed for other channels than backward.u/.v
+  bool velocity_jittered = false;                         // as VelocityUnits has it
+  std::optional<std::string> depth;                       // absent: Z where there is one; empty: none
+  std::optional<DepthKind> depth_kind;                    // absent: the attribute depthKind, else linear
+  std::optional<float> near_plane;                        // absent: the attribute near, else kUnknownNear
   std::optional<std::string> reactive;  // absent: reactive.mask where there is one; empty: none
   JitterSource jitter;
   std::vector<std::int64_t> cuts;  // frames that begin another shot, ascending, whatever their attributes say
@@ -106,7 +117,7 @@ struct SequenceFormat {
   VelocityUnits units;
   int two_way = 0;                                // frames to look ahead; 0: only earlier frames count
   NextMotion next_motion = NextMotion::kNothing;  // told where the plan accumulates
-  std::array<std::string, 2> next_velocity;  // channels of kChannels, if the frames have such; else empty
+  std::vector<std::string> next_velocity;         // channels of kChannels, if the frames have such
   VelocityUnits next_units;
   bool background = true;  // each frame's colour covers it, without alpha: known when all headers were read
   DepthKind depth_kind = DepthKind::kLinear;

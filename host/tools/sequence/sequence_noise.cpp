@@ -131,13 +131,13 @@ LitFrame middle_of(const SequenceFrame& frame, const ScannedFrame& scanned, bool
           static_cast<std::size_t>(top + y) * static_cast<std::size_t>(frame.render.width) +
           static_cast<std::size_t>(left + x);
       float rgb[3];
-      std::memcpy(rgb, frame.colour.data() + index * 4 * sizeof(float), sizeof rgb);
+      std::memcpy(rgb, frame.texels[InputPlane::kColour].data() + index * 4 * sizeof(float), sizeof rgb);
       lit.light.push_back((rgb[0] + 2 * rgb[1] + rgb[2]) / 4);
-      Vec2 velocity = frame.velocity[index];
+      Vec2 velocity = frame.velocity()[index];
       if (jittered && velocity != Vec2{})
         velocity = {velocity.x + scanned.jitter_since.x, velocity.y + scanned.jitter_since.y};
       lit.seen.velocity.push_back({velocity.x * scale.x, velocity.y * scale.y});
-      if (!frame.depth.empty()) lit.seen.depth.push_back(frame.depth[index]);
+      if (!frame.depth().empty()) lit.seen.depth.push_back(frame.depth()[index]);
     }
   }
   return lit;

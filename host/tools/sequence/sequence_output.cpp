@@ -43,15 +43,15 @@ Result<std::vector<float>> read_truth(const std::string& path, const std::string
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
   ChannelNames names;
-  names.colour = colour_channels_in(reader->header(), layer);
+  names[InputPlane::kColour] = colour_channels_in(reader->header(), layer);
   const auto places = find_channels(path, reader->header(), names, "--truth-colour");
   if (!places.ok()) return Status::io("truth " + places.status().message());
   if (Status status = check_size(path, places->display.extent, extent); !status.ok()) return status;
   std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
   std::vector<ChannelTarget> targets;
   for (std::size_t c = 0; c < 3; ++c) {
-    targets.push_back({*places->colour[c], ChannelType::kFloat, rgba.data() + c, 4 * sizeof(float),
-                       4 * sizeof(float) * static_cast<std::size_t>(extent.width)});
+    targets.push_back({*(*places)[InputPlane::kColour][c], ChannelType::kFloat, rgba.data() + c,
+                       4 * sizeof(float), 4 * sizeof(float) * static_cast<std::size_t>(extent.width)});
   }
   if (Status status = reader->read(targets); !status.ok()) return status;
   return rgba;

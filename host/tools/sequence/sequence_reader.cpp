@@ -60,50 +60,54 @@ bool leave_pixels_open(const ImageHeader& header, const std::vector<ChannelTarge
 }
 
 // NaN counts as 0, as everywhere.
-std::uint8_t reactive_value(float mask) {
-  return static_cast<std::uint8_t>(mask > 0 ? std::min(mask, 1.0f) * 255.0f + 0.5f : 0.0f);
+std::uint8_t code_of(float value) {
+  return static_cast<std::uint8_t>(value > 0 ? std::min(value, 1.0f) * 255.0f + 0.5f : 0.0f);
 }
 
-void allocate(SequenceFrame& frame, const ChannelNames& names, std::size_t colour_texel) {
-  const auto pixels = static_cast<std::size_t>(frame.render.area());
-  frame.colour.resize(pixels * 4 * colour_texel);
-  frame.velocity.resize(names.has_velocity() ? pixels : 0);
-  frame.depth.resize(names.has_depth() ? pixels : 0);
-  frame.reactive.resize(names.has_reactive() ? pixels : 0);
-  frame.albedo.resize(names.has_albedo() ? frame.colour.size() : 0);
-}
-
-void clear(SequenceFrame& frame, DepthKind depth_kind, std::vector<float>& mask) {
-  std::fill(frame.colour.begin(), frame.colour.end(), std::byte{0});
-  std::fill(frame.albedo.begin(), frame.albedo.end(), std::byte{0});
-  std::fill(frame.velocity.begin(), frame.velocity.end(), Vec2{});
-  std::fill(frame.depth.begin(), frame.depth.end(), nothing_seen(depth_kind));
-  std::fill(mask.begin(), mask.end(), 0.0f);
+// Returns the format of a plane's texels.
+PixelFormat format_of(InputPlane plane, PixelFormat colour) {
+  if (plane == InputPlane::kVelocity) return PixelFormat::kRG32F;
+  if (plane == InputPlane::kAlbedo) return colour;
+  const InputImage& input = kInputs[static_cast<std::size_t>(plane)];
+  return input.format != PixelFormat::kNone ? input.format : colour;
 }
 
 // As InputConventions::velocity_jittered has it: a motion of exactly 0 is none that was drawn.
-void take_jitter(std::vector<Vec2>& velocity, Vec2 step) {
+void take_jitter(std::span<Vec2> velocity, Vec2 step) {
   for (Vec2& v : velocity) {
     if (v != Vec2{}) v = {v.x + step.x, v.y + step.y};
   }
 }
 
 Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const SequenceFormat& format,
-                   ChannelType colour_type, SequenceFrame& frame) {
-  const std::size_t texel = colour_type == ChannelType::kHalf ? 2 : 4;
-  std::vector<float> mask(frame.reactive.size());
+                   PixelFormat colour, SequenceFrame& frame) {
+  const auto pixels = static_cast<std::size_t>(frame.render.area());
+  PerPlane<std::vector<float>> values;  // of planes that have codes
   Targets targets(frame.render);
-  for (std::size_t i = 0; i < 4; ++i)
-    targets.add(places.colour[i], colour_type, frame.colour.data() + i * texel, 4 * texel);
-  for (std::size_t i = 0; i < 2 && !frame.velocity.empty(); ++i)
-    targets.add(places.velocity[i], ChannelType::kFloat, &frame.velocity.data()->x + i, sizeof(Vec2));
-  targets.add(places.depth, ChannelType::kFloat, frame.depth.data(), sizeof(float));
-  for (std::size_t i = 0; i < 3 && !frame.albedo.empty(); ++i)
-    targets.add(places.albedo[i], colour_type, frame.albedo.data() + i * texel, 4 * texel);
-  targets.add(places.reactive, ChannelType::kFloat, mask.data(), sizeof(float));
-  if (leave_pixels_open(reader.header(), targets.all())) clear(frame, format.depth_kind, mask);
+  for (std::size_t p = 0; p < kPlaneCount; ++p) {
+    const auto plane = static_cast<InputPlane>(p);
+    const PixelFormat texels = format_of(plane, colour);
+    const bool is_codes = texels == PixelFormat::kR8;
+    const bool is_half = texels == PixelFormat::kRGBA16F;
+    const bool is_read = format.channels.has(plane);
+    frame.texels[plane].resize(is_read ? pixels * bytes_per_pixel(texels) : 0);
+    values[plane].resize(is_read && is_codes ? pixels : 0);
+    auto* first = is_codes ? reinterpret_cast<std::byte*>(values[plane].data()) : frame.texels[plane].data();
+    for (std::size_t i = 0; i < places[plane].size(); ++i) {
+      targets.add(places[plane][i], is_half ? ChannelType::kHalf : ChannelType::kFloat,
+                  first + i * (is_half ? 2 : 4), is_codes ? sizeof(float) : bytes_per_pixel(texels));
+    }
+  }
+  if (leave_pixels_open(reader.header(), targets.all())) {
+    for (std::vector<std::byte>& texels : frame.texels.values)
+      std::fill(texels.begin(), texels.end(), std::byte{0});
+    std::fill(frame.depth().begin(), frame.depth().end(), nothing_seen(format.depth_kind));
+  }
   if (Status status = reader.read(targets.all()); !status.ok()) return status;
-  std::transform(mask.begin(), mask.end(), frame.reactive.begin(), reactive_value);
+  for (std::size_t p = 0; p < kPlaneCount; ++p) {
+    std::transform(values.values[p].begin(), values.values[p].end(), frame.texels.values[p].begin(),
+                   [](float value) { return std::byte{code_of(value)}; });
+  }
   return {};
 }
 
@@ -118,7 +122,6 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   const auto attributes = frame_attributes(path, reader->header());
   if (!attributes.ok()) return attributes.status();
 
-  const ChannelType type = colour == PixelFormat::kRGBA16F ? ChannelType::kHalf : ChannelType::kFloat;
   frame.number = expected.number;
   frame.render = expected.render;
   frame.world_to_ndc = attributes->world_to_ndc;
@@ -126,21 +129,21 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
   for (const char* name : kKeptAttributes) {
     if (const Attribute* attribute = reader->header().attribute(name)) frame.kept.push_back(*attribute);
   }
-  allocate(frame, format.channels, type == ChannelType::kHalf ? sizeof(std::uint16_t) : sizeof(float));
-  if (Status status = read_pixels(reader.value(), places.value(), format, type, frame); !status.ok())
+  if (Status status = read_pixels(reader.value(), places.value(), format, colour, frame); !status.ok())
     return status;
-  if (!places->colour[3]) {
-    const ImagePart& part = reader->header().parts[places->colour[0]->part];
-    if (type == ChannelType::kHalf) {
-      fill_alpha(frame.colour, part, kHalfOne);
+  const auto& colour_places = (*places)[InputPlane::kColour];
+  if (!colour_places.back()) {
+    const ImagePart& part = reader->header().parts[colour_places[0]->part];
+    if (colour == PixelFormat::kRGBA16F) {
+      fill_alpha(frame.texels[InputPlane::kColour], part, kHalfOne);
     } else {
-      fill_alpha(frame.colour, part, 1.0f);
+      fill_alpha(frame.texels[InputPlane::kColour], part, 1.0f);
     }
   }
-  to_velocity(format.units, frame.render, frame.velocity);
+  to_velocity(format.units, frame.render, frame.velocity());
   if (format.units.jittered)
-    take_jitter(frame.velocity, format.units.to_next ? expected.jitter_until : expected.jitter_since);
-  to_reversed_depth(format.depth_kind, format.near_plane, frame.depth);
+    take_jitter(frame.velocity(), format.units.to_next ? expected.jitter_until : expected.jitter_since);
+  to_reversed_depth(format.depth_kind, format.near_plane, frame.depth());
   return {};
 }
 
@@ -255,8 +258,8 @@ std::vector<std::string> SequenceWatch::see(const SequenceFrame& frame, bool res
 }
 
 std::string SequenceWatch::see_motion(const SequenceFrame& frame, bool reset) {
-  if (motion_is_known_ || frame.velocity.empty()) return {};
-  motion_is_known_ = !std::all_of(frame.velocity.begin(), frame.velocity.end(), is_at_rest);
+  if (motion_is_known_ || frame.velocity().empty()) return {};
+  motion_is_known_ = !std::all_of(frame.velocity().begin(), frame.velocity().end(), is_at_rest);
   if (motion_is_known_) return {};
   Cells now = cells_of(frame);
   if (reset || !first_ || first_->render != frame.render) {
@@ -276,14 +279,15 @@ std::string SequenceWatch::see_sky(const SequenceFrame& frame, bool reset) {
   constexpr float kLeastMotion = .25f;  // pixels
   constexpr int kLeastPart = 100;       // one pixel of so many
   const bool asked = plan_.settings.conventions.sky_motion == SkyMotion::kAsDrawn && !sky_is_known_ && !reset;
-  if (!asked || !frame.world_to_ndc || !last_world_to_ndc_ || frame.velocity.empty() || frame.depth.empty())
+  if (!asked || !frame.world_to_ndc || !last_world_to_ndc_ || frame.velocity().empty() ||
+      frame.depth().empty())
     return {};
   const auto camera = camera_motion(*frame.world_to_ndc, *last_world_to_ndc_, near_plane_);
   if (!camera || !(sky_motion(*camera, frame.render) >= kLeastMotion)) return {};
   std::size_t resting = 0;
-  for (std::size_t i = 0; i < frame.depth.size(); ++i)
-    resting += frame.depth[i] <= kFarDepth && is_at_rest(frame.velocity[i]) ? 1 : 0;
-  if (resting * kLeastPart < frame.depth.size()) return {};
+  for (std::size_t i = 0; i < frame.depth().size(); ++i)
+    resting += frame.depth()[i] <= kFarDepth && is_at_rest(frame.velocity()[i]) ? 1 : 0;
+  if (resting * kLeastPart < frame.depth().size()) return {};
   sky_is_known_ = true;
   return fmt::format(
       "the sky of frame {} has a motion of 0, although the camera turns: --sky-motion camera moves it",
@@ -296,10 +300,10 @@ SequenceWatch::Cells SequenceWatch::cells_of(const SequenceFrame& frame) const {
     std::uint16_t bits = 0;
     float number = 0;
     if (half) {
-      std::memcpy(&bits, frame.colour.data() + index * sizeof bits, sizeof bits);
+      std::memcpy(&bits, frame.texels[InputPlane::kColour].data() + index * sizeof bits, sizeof bits);
       return tone_mapped(from_half(bits));
     }
-    std::memcpy(&number, frame.colour.data() + index * sizeof number, sizeof number);
+    std::memcpy(&number, frame.texels[InputPlane::kColour].data() + index * sizeof number, sizeof number);
     return tone_mapped(number);
   };
   const int across = frame.render.width / kCell, down = frame.render.height / kCell;

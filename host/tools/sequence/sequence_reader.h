@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,14 +22,24 @@ namespace quincunx::tools {
 struct SequenceFrame {
   std::int64_t number = 0;
   Extent render;
-  std::vector<std::byte> colour;       // RGBA16F or RGBA32F as asked for
-  std::vector<Vec2> velocity;          // uv, this - previous position, +v down; empty where not read
-  std::vector<float> depth;            // reversed infinite; empty where not read
-  std::vector<std::uint8_t> reactive;  // empty where not read
-  std::vector<std::byte> albedo;       // as colour; empty where not read
+  // In the plan's formats; colour and albedo as asked for, RGBA16F or RGBA32F. Empty where not read.
+  PerPlane<std::vector<std::byte>> texels;
   std::optional<Matrix> world_to_ndc;
   std::optional<RecordedFrame> recorded;  // then the images above are empty
   std::vector<Attribute> kept;            // the file's (camera, rate and the like); the resolved frame's too
+
+  // uv, this - previous position, +v down.
+  std::span<Vec2> velocity() { return values_of<Vec2>(texels[InputPlane::kVelocity]); }
+  std::span<const Vec2> velocity() const { return values_of<const Vec2>(texels[InputPlane::kVelocity]); }
+  // Reversed infinite.
+  std::span<float> depth() { return values_of<float>(texels[InputPlane::kDepth]); }
+  std::span<const float> depth() const { return values_of<const float>(texels[InputPlane::kDepth]); }
+
+ private:
+  template <typename Value, typename Bytes>
+  static std::span<Value> values_of(Bytes& bytes) {
+    return {reinterpret_cast<Value*>(bytes.data()), bytes.size() / sizeof(Value)};
+  }
 };
 
 // Reads the channels of `format` of the file that `expected` was scanned from. Where the data window leaves

@@ -80,7 +80,7 @@ Result<std::unique_ptr<SequenceResolver>> SequenceResolver::create(const Device&
     SceneNeeds opaque = plan.needs;
     opaque.background = true;
     for (Stream* stream : {&resolver->forward_, &*resolver->backward_}) {
-      if (!resolver->job_.format.channels.has_albedo()) break;
+      if (!resolver->job_.format.channels.has(InputPlane::kAlbedo)) break;
       auto albedo = make(opaque);
       if (!albedo.ok()) return albedo.status();
       stream->albedo.emplace(std::move(albedo).value());
@@ -99,18 +99,13 @@ Status SequenceResolver::allocate(Stream& stream) const {
   };
   for (DeviceFrame& frame : stream.ring) {
     if (!job_.format.recording.empty()) break;
-    if (Status status = make(frame.colour, plan.settings.colour); !status.ok()) return status;
-    if (plan.velocity == VelocitySource::kTarget) {
-      if (Status status = make(frame.velocity, plan.settings.velocity); !status.ok()) return status;
-    }
-    if (plan.reads_depth) {
-      if (Status status = make(frame.depth, PixelFormat::kR32F); !status.ok()) return status;
-    }
-    if (plan.reads_reactive) {
-      if (Status status = make(frame.reactive, PixelFormat::kR8); !status.ok()) return status;
+    for (const InputImage& input : kInputs) {
+      const PlannedBuffer* planned = planned_for(plan, input);
+      if (planned == nullptr) continue;
+      if (Status status = make(frame[plane_of(input)], planned->format); !status.ok()) return status;
     }
     if (stream.albedo) {
-      if (Status status = make(frame.albedo, plan.settings.colour); !status.ok()) return status;
+      if (Status status = make(frame[InputPlane::kAlbedo], plan.settings.colour); !status.ok()) return status;
     }
   }
   return {};
@@ -137,14 +132,12 @@ Status SequenceResolver::allocate() {
 }
 
 Status SequenceResolver::upload(const SequenceFrame& frame, const DeviceFrame& to) const {
-  const auto copy = [&](const Image& image, const void* texels) {
-    return image ? device_.upload(image.view(), frame.render, texels) : Status();
-  };
-  if (Status status = copy(to.colour, frame.colour.data()); !status.ok()) return status;
-  if (Status status = copy(to.velocity, frame.velocity.data()); !status.ok()) return status;
-  if (Status status = copy(to.depth, frame.depth.data()); !status.ok()) return status;
-  if (Status status = copy(to.albedo, frame.albedo.data()); !status.ok()) return status;
-  return copy(to.reactive, frame.reactive.data());
+  for (std::size_t p = 0; p < kPlaneCount; ++p) {
+    if (!to.values[p]) continue;
+    const Status status = device_.upload(to.values[p].view(), frame.render, frame.texels.values[p].data());
+    if (!status.ok()) return status;
+  }
+  return {};
 }
 
 Status SequenceResolver::camera_of(const Stream& stream, const SequenceFrame& frame,
@@ -191,10 +184,9 @@ Result<FrameInputs> SequenceResolver::inputs_of(Stream& stream, const SequenceFr
   if (Status status = upload(frame, device_frame); !status.ok()) return status;
   outcome_.upload_ms.push_back(ms_since(start));
   FrameInputs inputs;
-  inputs.colour = device_frame.colour.view();
-  inputs.velocity = device_frame.velocity.view();
-  inputs.depth = device_frame.depth.view();
-  inputs.reactive = device_frame.reactive.view();
+  for (const InputImage& input : kInputs) {
+    if (input.viewport != nullptr) inputs.*input.image = device_frame[plane_of(input)].view();
+  }
   inputs.render_extent = frame.render;
   inputs.jitter = scanned.jitter;
   inputs.exposure = job_.exposure;
@@ -264,7 +256,7 @@ Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) 
     if (!status.ok()) return status;
   }
   return job_.scores != nullptr
-             ? job_.scores->add(number, std::move(picture.linear), {frame.render, frame.velocity})
+             ? job_.scores->add(number, std::move(picture.linear), {frame.render, frame.velocity()})
              : Status();
 }
 
@@ -317,7 +309,7 @@ Status SequenceResolver::deliver(const SequenceFrame& frame, const ScannedFrame&
 Status SequenceResolver::add_albedo(Stream& stream, FrameInputs inputs, std::size_t index, bool merges,
                                     bool keeps) {
   if (!stream.albedo) return {};
-  inputs.colour = stream.ring[static_cast<std::size_t>((stream.count - 1) % 2)].albedo.view();
+  inputs.colour = stream.ring[static_cast<std::size_t>((stream.count - 1) % 2)][InputPlane::kAlbedo].view();
   auto history = merges ? histories_.take(~index) : KeptHistory();
   if (!history.ok()) return history.status();
   const FrameReport report = TwoWay::add(*stream.albedo, inputs, merges, keeps ? &history.value() : nullptr);
@@ -344,9 +336,9 @@ Status SequenceResolver::add_forward(std::size_t index) {
     kept.frame.number = frame.number;
     kept.frame.render = frame.render;
     kept.frame.kept = frame.kept;
-    if (job_.scores != nullptr) kept.frame.velocity = frame.velocity;
-    kept.inputs = inputs.value();
-    kept.inputs.colour = kept.inputs.velocity = kept.inputs.depth = kept.inputs.reactive = {};
+    if (job_.scores != nullptr)
+      kept.frame.texels[InputPlane::kVelocity] = frame.texels[InputPlane::kVelocity];
+    kept.inputs = without_images(inputs.value());
     kept_.emplace(index, std::move(kept));
   }
   outcome_.resolve_ms.push_back(ms_since(start));
@@ -357,11 +349,15 @@ Status SequenceResolver::add_forward(std::size_t index) {
 
 // Gives a frame that was read backwards motion to the next one, which was read before it.
 void SequenceResolver::turn_motion(SequenceFrame& frame, const ScannedFrame& scanned) {
-  MotionSamples own = {frame.render, scanned.jitter, frame.velocity, frame.depth};
+  const std::span<Vec2> motion = frame.velocity();
+  MotionSamples own = {frame.render,
+                       scanned.jitter,
+                       {motion.begin(), motion.end()},
+                       {frame.depth().begin(), frame.depth().end()}};
   if (backward_->last - 1 == frame.number) {
-    frame.velocity = turned_motion(own, later_);
+    std::ranges::copy(turned_motion(own, later_), motion.begin());
   } else {
-    for (Vec2& velocity : frame.velocity)
+    for (Vec2& velocity : motion)
       velocity = {-velocity.x, -velocity.y};  // as if it went on
   }
   later_ = std::move(own);

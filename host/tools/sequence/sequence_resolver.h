@@ -62,9 +62,7 @@ class SequenceResolver {
   const SequenceOutcome& outcome() const { return outcome_; }
 
  private:
-  struct DeviceFrame {
-    Image colour, velocity, depth, reactive, albedo;
-  };
+  using DeviceFrame = PerPlane<Image>;
 
   // In host memory; what nobody wants is empty.
   struct Picture {
