@@ -23,8 +23,6 @@ inline const std::vector<std::string> kColourChannels = {"R", "G", "B", "A"};
 inline const std::vector<std::string> kBackwardChannels = {"backward.u", "backward.v"};
 // Motion to the next frame: next - this position, as Nuke has it.
 inline const std::vector<std::string> kForwardChannels = {"forward.u", "forward.v"};
-// Of recorded frames: velocity as it was given, in whatever unit.
-inline const std::vector<std::string> kVelocityChannels = {"velocity.u", "velocity.v"};
 inline const std::string kDepthChannel = "Z";
 inline const std::string kReactiveChannel = "reactive.mask";
 
