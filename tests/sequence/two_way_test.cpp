@@ -516,6 +516,13 @@ TEST_F(BothWays, HistoriesBeyondMemoryGoIntoFilesThatVanish) {
   EXPECT_FALSE(std::filesystem::exists(output(1, "refused")));
 }
 
+TEST(SequenceHistories, NothingIsTakenTwice) {
+  tools::SequenceHistories histories(100'000);
+  ASSERT_TRUE(histories.put(3, {}).ok());
+  EXPECT_TRUE(histories.take(3).ok());
+  EXPECT_EQ(histories.take(3).status().message(), "no history is kept under the key 3");
+}
+
 TEST(SequenceHistories, AFullDiskIsRefusedInASentence) {
   tools::SequenceHistories histories(100'000);
   const KeptHistory kept = {std::vector<std::byte>(60'000, std::byte{3}), {}, {}, {std::byte{4}}};

@@ -3,7 +3,10 @@
 #include <atomic>
 #include <fstream>
 #include <future>
+#include <new>
 #include <sstream>
+#include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -56,12 +59,36 @@ TEST(AtomicFile, IsAbandonedWhereNobodyHoldsIt) {
   ASSERT_TRUE(file.ok());
   const std::filesystem::path part = file->temporary_path();
   std::ofstream(part) << "half";
-  EXPECT_EQ(abandoned_target(part), std::nullopt);
+  const auto any = [](const std::string&) { return true; };
+  EXPECT_FALSE(remove_abandoned(part, any));
   const std::filesystem::path copy = folder.file(part.filename().string().replace(0, 2, ".b"));
   std::filesystem::copy_file(part, copy);
-  EXPECT_EQ(abandoned_target(copy), "b.0001.exr");
+  EXPECT_FALSE(remove_abandoned(copy, [](const std::string& target) { return target != "b.0001.exr"; }));
+  EXPECT_TRUE(remove_abandoned(copy, [](const std::string& target) { return target == "b.0001.exr"; }));
+  EXPECT_FALSE(std::filesystem::exists(copy));
   std::ofstream(folder.file(".b.part")) << "another program's";
-  EXPECT_EQ(abandoned_target(folder.file(".b.part")), std::nullopt);
+  EXPECT_FALSE(remove_abandoned(folder.file(".b.part"), any));
+}
+
+TEST(AtomicFile, IsNeverTakenForAbandonedWhileItIsMade) {
+  const testing::TemporaryFolder folder;
+  std::atomic<bool> done = false;
+  std::thread remover([&] {
+    while (!done) {
+      std::error_code error;
+      for (std::filesystem::directory_iterator entry(folder.file(""), error), end; !error && entry != end;
+           entry.increment(error))
+        remove_abandoned(entry->path(), [](const std::string&) { return true; });
+    }
+  });
+  int lost = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Result<AtomicFile> file = AtomicFile::create(folder.file("a.txt"));
+    if (!file.ok() || !std::filesystem::exists(file->temporary_path())) ++lost;
+  }
+  done = true;
+  remover.join();
+  EXPECT_EQ(lost, 0);
 }
 
 TEST(AtomicFile, MakesMissingFolders) {
@@ -139,6 +166,27 @@ TEST(WorkQueue, TheFirstErrorStopsWhatFollows) {
             "first");
   EXPECT_EQ(queue.finish().message(), "first");
   EXPECT_FALSE(ran);
+}
+
+// What leaves a thread ends the process.
+TEST(WorkQueue, AJobThatThrowsIsAnError) {
+  WorkQueue queue;
+  ASSERT_TRUE(queue.push([]() -> Status { throw std::runtime_error("what a library said"); }).ok());
+  EXPECT_EQ(queue.finish().message(), "work on another thread failed: what a library said");
+  WorkQueue starved;
+  ASSERT_TRUE(starved.push([]() -> Status { throw std::bad_alloc(); }).ok());
+  EXPECT_EQ(starved.finish().message(), "out of memory");
+}
+
+TEST(ReadAhead, AReaderThatThrowsIsAnError) {
+  ReadAhead<int> ahead(2, 1, 1, [](std::size_t index, int& item) -> Status {
+    if (index == 0) throw std::runtime_error("what a library said");
+    item = 7;
+    return {};
+  });
+  EXPECT_EQ(ahead.take().status().message(), "work on another thread failed: what a library said");
+  ahead.release();
+  EXPECT_EQ(*ahead.take().value(), 7);
 }
 
 TEST(ReadAhead, GivesItemsInOrderWhateverTheThreads) {

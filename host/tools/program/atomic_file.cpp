@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -36,6 +38,30 @@ bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
+// Returns the name in ".NAME.PROCESS-COUNT.part", as temporary_name() makes it. By hand, because <regex> compiles for
+// seconds.
+std::optional<std::string> target_in(const std::string& name) {
+  constexpr std::string_view kEnd = ".part";
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return std::nullopt;
+  const std::string_view text = std::string_view(name).substr(1, name.size() - 1 - kEnd.size());
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string_view::npos || dot == 0) return std::nullopt;
+  const std::string_view numbers = text.substr(dot + 1);
+  const std::size_t dash = numbers.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  if (!is_number(numbers.substr(0, dash)) || !is_number(numbers.substr(dash + 1))) return std::nullopt;
+  return std::string(text.substr(0, dot));
+}
+
+// Locks a new file, and returns whether it still has its name: remove_abandoned() of another process may have come in
+// between. Where files cannot be locked none is taken for abandoned.
+bool is_kept(int descriptor) {
+  while (::flock(descriptor, LOCK_EX) != 0 && errno == EINTR) {
+  }
+  struct stat found = {};
+  return ::fstat(descriptor, &found) == 0 && found.st_nlink > 0;
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
@@ -51,11 +77,13 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
     }
   }
   // Opened once here so that a folder without write permission is reported before any work is done.
-  std::string temporary = temporary_name(target);
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) return cannot_store(path, std::strerror(errno));
-  ::flock(descriptor, LOCK_EX | LOCK_NB);  // where files cannot be locked, none is taken for abandoned
-  return AtomicFile(path, std::move(temporary), descriptor);
+  for (;;) {
+    std::string temporary = temporary_name(target);
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0) return cannot_store(path, std::strerror(errno));
+    if (is_kept(descriptor)) return AtomicFile(path, std::move(temporary), descriptor);
+    ::close(descriptor);
+  }
 }
 
 AtomicFile::AtomicFile(std::string path, std::string temporary, int lock)
@@ -99,23 +127,16 @@ void AtomicFile::discard() noexcept {
   lock_ = -1;
 }
 
-std::optional<std::string> abandoned_target(const std::filesystem::path& file) {
-  // As temporary_name() makes it: ".TARGET.PROCESS-COUNT.part". By hand, because <regex> compiles for seconds.
-  constexpr std::string_view kEnd = ".part";
-  const std::string name = file.filename().string();
-  if (!name.starts_with('.') || !name.ends_with(kEnd)) return std::nullopt;
-  const std::string_view text = std::string_view(name).substr(1, name.size() - 1 - kEnd.size());
-  const std::size_t dot = text.rfind('.');
-  if (dot == std::string_view::npos || dot == 0) return std::nullopt;
-  const std::string_view numbers = text.substr(dot + 1);
-  const std::size_t dash = numbers.find('-');
-  if (dash == std::string_view::npos) return std::nullopt;
-  if (!is_number(numbers.substr(0, dash)) || !is_number(numbers.substr(dash + 1))) return std::nullopt;
+bool remove_abandoned(const std::filesystem::path& file,
+                      const std::function<bool(const std::string&)>& wanted) {
+  const auto target = target_in(file.filename().string());
+  if (!target || !wanted(*target)) return false;
   const int descriptor = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) return std::nullopt;
-  const bool locked = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (descriptor < 0) return false;
+  // Under the lock, so that whoever makes the file at this moment sees that it has gone.
+  const bool removed = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(file.c_str()) == 0;
   ::close(descriptor);
-  return locked ? std::optional(std::string(text.substr(0, dot))) : std::nullopt;
+  return removed;
 }
 
 Status write_text(const std::string& path, std::string_view text) {

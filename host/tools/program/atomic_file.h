@@ -3,7 +3,7 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -36,9 +36,11 @@ class AtomicFile {
   int lock_;  // descriptor that holds the temporary file's lock, which ends with the process; -1: none
 };
 
-// Returns the name that a temporary file was meant to get, if the process that left it behind is no longer there: it
-// had the file locked. Nothing for a file of any other name. Sees other machines' processes where locks are shared.
-std::optional<std::string> abandoned_target(const std::filesystem::path& file);
+// Removes a temporary file that was meant to get a name which `wanted` accepts, if the process that left it behind is no
+// longer there: it had the file locked. Sees other machines' processes where locks are shared. Returns whether the file
+// was removed.
+bool remove_abandoned(const std::filesystem::path& file,
+                      const std::function<bool(const std::string&)>& wanted);
 
 // Writes a text file whole or not at all. Errors: kIoFailure.
 Status write_text(const std::string& path, std::string_view text);

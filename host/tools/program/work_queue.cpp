@@ -3,9 +3,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <new>
+#include <string>
 #include <utility>
 
 namespace quincunx::tools {
+
+Status run_job(const std::function<Status()>& job) {
+  try {
+    return job();
+  } catch (const std::bad_alloc&) {
+    return Status::device("out of memory");  // short enough to need none
+  } catch (const std::exception& error) {
+    return Status::device(std::string("work on another thread failed: ") + error.what());
+  }
+}
 
 WorkQueue::WorkQueue(int threads, int depth) : depth_(static_cast<std::size_t>(std::max(depth, 1))) {
   for (int i = 0; i < std::max(threads, 1); ++i)
@@ -53,7 +66,7 @@ void WorkQueue::run() {
     ++busy_;
     lock.unlock();
     const Clock::time_point start = Clock::now();
-    Status status = job();
+    Status status = run_job(job);
     job = nullptr;  // what it held goes before the next may come
     const std::chrono::duration<double> took = Clock::now() - start;
     lock.lock();

@@ -17,6 +17,9 @@
 
 namespace quincunx::tools {
 
+// Runs a job of another thread, from which no exception may come: it becomes an error.
+Status run_job(const std::function<Status()>& job);
+
 // Jobs start in the order in which they came; with one thread each also ends before the next starts. The pixels that a
 // job holds and writes live in memory from push() to its end, so `depth` bounds that memory.
 class WorkQueue {
@@ -114,7 +117,7 @@ class ReadAhead {
       Slot& slot = slots_[index % slots_.size()];
       lock.unlock();
       const auto start = std::chrono::steady_clock::now();
-      Status status = read_(index, slot.item);
+      Status status = run_job([&] { return read_(index, slot.item); });
       const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
       lock.lock();
       busy_seconds_ += took.count();

@@ -72,6 +72,7 @@ Status SequenceHistories::put(std::size_t key, KeptHistory history) {
 
 Result<KeptHistory> SequenceHistories::take(std::size_t key) {
   auto node = kept_.extract(key);
+  if (node.empty()) return Status::invalid(fmt::format("no history is kept under the key {}", key));
   Kept& kept = node.mapped();
   if (!kept.file) {
     held_ -= std::accumulate(kept.sizes.begin(), kept.sizes.end(), std::uint64_t{0});

@@ -25,7 +25,7 @@ class SequenceHistories {
   // Keeps a history under a key that has none. Errors: kIoFailure, naming the folder of temporary files.
   Status put(std::size_t key, KeptHistory history);
 
-  // Gives back what was put under a key, byte by byte. Errors: as of put().
+  // Gives back what was put under a key, byte by byte, once. Errors: as of put(); kInvalidArgument where nothing was.
   Result<KeptHistory> take(std::size_t key);
 
  private:

@@ -123,16 +123,15 @@ Status SequenceOutput::prepare_folder(std::span<const std::int64_t> frames) cons
   // Without commit() no file stays; that of a run killed meanwhile is one of these frames', and so removed by the next.
   if (Status status = AtomicFile::create(path(frames.front())).status(); !status.ok()) return status;
   const std::string folder = folder_of(pattern.expand(0));
+  const auto is_of_this_run = [&](const std::string& target) {
+    const auto number = pattern.number_in(folder + target);
+    return number && std::binary_search(frames.begin(), frames.end(), *number);
+  };
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
        !error && entry != end; entry.increment(error)) {
-    const auto target = abandoned_target(entry->path());
-    if (!target) continue;
-    const auto number = pattern.number_in(folder + *target);
-    if (!number || !std::binary_search(frames.begin(), frames.end(), *number)) continue;
-    std::error_code ignored;
-    std::filesystem::remove(entry->path(), ignored);
-    spdlog::debug("removed '{}', which an earlier run left behind", entry->path().string());
+    if (remove_abandoned(entry->path(), is_of_this_run))
+      spdlog::debug("removed '{}', which an earlier run left behind", entry->path().string());
   }
   return {};
 }
