@@ -44,6 +44,39 @@ bool leaves_out(const ResolvePlan& plan, const std::string& what) {
                      [&](const auto& left) { return left.what == what; });
 }
 
+// By numbers alone: nothing of that size is allocated.
+TEST(ResolvePlan, SizesStayWhereKernelsCanCountTo) {
+  const auto status = [](Method method, TemporalPreset preset, Extent output, Extent target) {
+    ResolveSettings wanted = settings(method);
+    wanted.output_extent = output;
+    wanted.target_extent = target;
+    wanted.temporal.preset = preset;
+    return plan_for({}, wanted).status();
+  };
+  constexpr Extent kMost = {32768, 16384}, kMore = {32768, 16385}, kMostRecords = {16384, 16384};
+  using enum TemporalPreset;
+  EXPECT_TRUE(status(Method::kBilinear, kBalanced, kMost, kMost).ok());
+  EXPECT_EQ(status(Method::kBilinear, kBalanced, kMore, kMost).message(),
+            "settings.output_extent is 32768x16385; it must have at most 536870912 pixels, as many as "
+            "32768x16384");
+  EXPECT_EQ(status(Method::kBilinear, kBalanced, kMost, kMore).message(),
+            "settings.target_extent is 32768x16385; it must have at most 536870912 pixels, as many as "
+            "32768x16384");
+  EXPECT_EQ(status(Method::kBilinear, kBalanced, {32769, 1}, kMost).message(),
+            "settings.output_extent is 32769x1; both sides must lie in [1, 32768]");
+  // Records of samples are counted in 28 bits.
+  EXPECT_TRUE(status(Method::kTemporal, kBalanced, kMost, kMostRecords).ok());
+  EXPECT_TRUE(status(Method::kTemporal, kFast, kMost, kMost).ok());
+  EXPECT_EQ(
+      status(Method::kTemporal, kBalanced, kMost, {16384, 16385}).message(),
+      "settings.target_extent is 16384x16385; with two layers of history it must have at most 268435456 "
+      "samples, as many as 16384x16384; settings.temporal.preset fast has one layer");
+  ResolveSettings focused = settings(Method::kTemporal);
+  focused.focus.extent = {64, 64};
+  focused.focus.target_extent = {16384, 16385};
+  EXPECT_EQ(plan_for({}, focused).status().code(), StatusCode::kInvalidArgument);
+}
+
 TEST(ResolvePlan, MovingObjectsNeedAVelocityTarget) {
   const ResolvePlan p = plan({.moving_objects = true}, settings(Method::kQuincunx));
   EXPECT_EQ(p.velocity, VelocitySource::kTarget);

@@ -49,6 +49,35 @@ TEST_F(Validate, AGoodFramePasses) {
   EXPECT_TRUE(check().ok());
 }
 
+// Kernels count the channels of texels in 32 bits, from the start of the buffer.
+TEST_F(Validate, AnImageEndsWhereKernelsCanCountTo) {
+  constexpr std::size_t kTwoGiB = std::size_t{1} << 31;
+  const auto refused = [&](const char* field) {
+    const std::string message = check().message();
+    return message.starts_with(std::string(field) + ".offset is ") &&
+           message.find("must end within the first") != std::string::npos;
+  };
+  inputs_.reactive.offset = kTwoGiB - 1280 * 720;
+  EXPECT_TRUE(check().ok()) << check().message();
+  inputs_.reactive.offset += 16;
+  EXPECT_TRUE(refused("reactive")) << check().message();
+  inputs_.reactive.offset = 0;
+  inputs_.colour.offset = 2 * kTwoGiB - 1280 * 720 * 8;
+  EXPECT_TRUE(check().ok()) << "halves take two bytes: " << check().message();
+  inputs_.colour.offset += 16;
+  EXPECT_TRUE(refused("colour")) << check().message();
+  inputs_.colour.offset = std::numeric_limits<std::size_t>::max() - 15;
+  EXPECT_TRUE(refused("colour")) << check().message();
+  inputs_.colour.offset = 0;
+  inputs_.colour.pitch = std::size_t{1} << 40;
+  EXPECT_TRUE(refused("colour")) << check().message();
+  inputs_.colour.pitch = std::numeric_limits<std::size_t>::max() - 7;
+  EXPECT_TRUE(refused("colour")) << check().message();
+  inputs_.colour.pitch = 0;
+  outputs_.linear.offset = 4 * kTwoGiB;
+  EXPECT_TRUE(refused("linear")) << check().message();
+}
+
 TEST_F(Validate, ACheckerboardHasAShadedPixel) {
   inputs_.parity = 2;
   EXPECT_TRUE(check().ok()) << "all pixels are shaded";

@@ -1,49 +1,47 @@
 // SPDX-License-Identifier: MIT
 #include "quincunx/image.h"
 
+#include <array>
 #include <utility>
 
 namespace quincunx {
 
+namespace {
+
+struct FormatFacts {
+  const char* name;
+  std::size_t bytes;
+  int channels;
+};
+
+// In the order of the enumerators.
+constexpr std::array<FormatFacts, 8> kFormats = {{{"none", 0, 0},
+                                                  {"R8", 1, 1},
+                                                  {"R32F", 4, 1},
+                                                  {"RG16F", 4, 2},
+                                                  {"RG32F", 8, 2},
+                                                  {"RGBA8", 4, 4},
+                                                  {"RGBA16F", 8, 4},
+                                                  {"RGBA32F", 16, 4}}};
+
+const FormatFacts& facts_of(PixelFormat format) {
+  static constexpr FormatFacts kUnknown = {"unknown", 0, 0};
+  const auto at = static_cast<std::size_t>(format);
+  return at < kFormats.size() ? kFormats[at] : kUnknown;
+}
+
+}  // namespace
+
 std::size_t bytes_per_pixel(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kNone:
-      return 0;
-    case PixelFormat::kR8:
-      return 1;
-    case PixelFormat::kR32F:
-    case PixelFormat::kRG16F:
-    case PixelFormat::kRGBA8:
-      return 4;
-    case PixelFormat::kRG32F:
-    case PixelFormat::kRGBA16F:
-      return 8;
-    case PixelFormat::kRGBA32F:
-      return 16;
-  }
-  return 0;
+  return facts_of(format).bytes;
+}
+
+int channels_of(PixelFormat format) {
+  return facts_of(format).channels;
 }
 
 const char* name_of(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kNone:
-      return "none";
-    case PixelFormat::kR8:
-      return "R8";
-    case PixelFormat::kR32F:
-      return "R32F";
-    case PixelFormat::kRG16F:
-      return "RG16F";
-    case PixelFormat::kRG32F:
-      return "RG32F";
-    case PixelFormat::kRGBA8:
-      return "RGBA8";
-    case PixelFormat::kRGBA16F:
-      return "RGBA16F";
-    case PixelFormat::kRGBA32F:
-      return "RGBA32F";
-  }
-  return "unknown";
+  return facts_of(format).name;
 }
 
 Image::~Image() {
@@ -53,7 +51,8 @@ Image::~Image() {
 Image::Image(Image&& other) noexcept : view_(std::exchange(other.view_, {})) {}
 
 Image& Image::operator=(Image&& other) noexcept {
-  std::swap(view_, other.view_);
+  Image incoming(std::move(other));
+  std::swap(view_, incoming.view_);  // what this one held ends as `incoming`
   return *this;
 }
 

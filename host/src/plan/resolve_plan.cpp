@@ -13,10 +13,18 @@ namespace quincunx {
 namespace {
 
 constexpr int kLargestSide = 32768;
+// Kernels count the channels of an image's texels, four at most, in `int`.
+constexpr std::int64_t kMostTexels = std::int64_t{1} << 29;
+// The keys of records (kernels/include/layers/records.h) count samples in 28 bits.
+constexpr std::int64_t kMostRecords = std::int64_t{1} << 28;
 
-bool usable(Extent extent) {
+bool has_usable_sides(Extent extent) {
   return extent.width >= 1 && extent.height >= 1 && extent.width <= kLargestSide &&
          extent.height <= kLargestSide;
+}
+
+bool usable(Extent extent) {
+  return has_usable_sides(extent) && extent.area() <= kMostTexels;
 }
 
 // Collects complaints so that one message names every bad field.
@@ -40,6 +48,11 @@ class Complaints {
 
 void check_extent(Complaints& complaints, const char* field, Extent extent) {
   if (usable(extent)) return;
+  if (has_usable_sides(extent)) {
+    complaints.add(fmt::format("settings.{} is {}x{}; it must have at most {} pixels, as many as 32768x16384",
+                               field, extent.width, extent.height, kMostTexels));
+    return;
+  }
   complaints.add(fmt::format("settings.{} is {}x{}; both sides must lie in [1, {}]", field, extent.width,
                              extent.height, kLargestSide));
 }
@@ -155,6 +168,19 @@ Status check(const ResolveSettings& settings) {
   return complaints.status();
 }
 
+Status check_records(const PlanFacts& facts) {
+  if (!facts.has_layers()) return {};
+  for (const auto& [field, extent] : {std::pair{"target_extent", facts.settings.target_extent},
+                                      {"focus.target_extent", facts.settings.focus.target_extent}}) {
+    if (extent.area() <= kMostRecords) continue;
+    return Status::invalid(fmt::format(
+        "settings.{} is {}x{}; with two layers of history it must have at most {} samples, as many as "
+        "16384x16384; settings.temporal.preset fast has one layer",
+        field, extent.width, extent.height, kMostRecords));
+  }
+  return {};
+}
+
 Scaling scaling_of(Area area, const PlanFacts& facts) {
   switch (area) {
     case Area::kViewport:
@@ -203,6 +229,7 @@ Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& set
         "quality where something moves and nothing is transparent",
         name_of(settings.temporal.view)));
   }
+  if (Status status = check_records(facts); !status.ok()) return status;
   if (const auto kept = facts.is_dual() ? unresized(list_passes(facts).passes) : std::nullopt) {
     return Status::unsupported(
         fmt::format("{} is read, but no pass resizes it where the output is dynamic", name_of(*kept)));

@@ -15,7 +15,8 @@
 namespace quincunx {
 namespace {
 
-constexpr std::size_t kLargestPitch = std::size_t{1} << 30;
+// Kernels count the channels of an image's texels from the start of its buffer, in `int`.
+constexpr std::size_t kMostChannels = std::size_t{1} << 31;
 
 const char* name(Storage storage) {
   return storage == Storage::kImage ? "image" : "buffer";
@@ -106,8 +107,17 @@ void FrameCheck::layout(const char* field, const ImageView& image) {
   if (image.offset % 16 != 0) {
     complain(fmt::format("{}.offset is {}; it must be a multiple of 16", field, image.offset));
   }
-  if (image.pitch > kLargestPitch) {
-    complain(fmt::format("{}.pitch is {}; it must be at most {}", field, image.pitch, kLargestPitch));
+  if (texel == 0 || image.extent.width < 1 || image.extent.height < 1) return;
+  // In this order no step overflows.
+  const std::size_t most = kMostChannels / static_cast<std::size_t>(channels_of(image.format)) * texel;
+  const std::size_t rows = static_cast<std::size_t>(image.extent.height) - 1;
+  if (image.offset > most || row > most - image.offset ||
+      (rows != 0 && image.row_pitch() > (most - image.offset - row) / rows)) {
+    complain(
+        fmt::format("{0}.offset is {1}, {0}.pitch {2} and {0}.extent {3}x{4}; the image must end within the "
+                    "first {5} bytes of "
+                    "its buffer, as kernels count texels in 32 bits",
+                    field, image.offset, image.row_pitch(), image.extent.width, image.extent.height, most));
   }
 }
 
