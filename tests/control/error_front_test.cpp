@@ -81,6 +81,16 @@ TEST(ErrorFront, JsonKeepsEverything) {
   EXPECT_FALSE(read->is_built_in());
 }
 
+// Drivers name themselves as they like.
+TEST(ErrorFront, JsonTakesNamesThatAreNoText) {
+  FrontSource source = kSource;
+  source.driver = "Vendor\xae 1.2";
+  const ErrorFront front = ErrorFront::create(source, points()).value();
+  const auto read = ErrorFront::from_json(front.to_json());
+  ASSERT_TRUE(read.ok()) << read.status().message();
+  EXPECT_EQ(read->source().driver, "Vendor\xef\xbf\xbd 1.2");
+}
+
 TEST(ErrorFront, HasEachMethodOnceByEffort) {
   const ErrorFront front = make();
   ASSERT_EQ(front.methods().size(), 2u);

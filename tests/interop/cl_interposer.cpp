@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -56,6 +57,7 @@ struct State {
   PretendSharing::Flaw flaw = PretendSharing::Flaw::kNone;
   bool images_on_buffers = false;
   bool separate_memory = false;
+  std::optional<PretendBrokenDriver::Flaw> broken;
   std::map<cl_mem, ImageOnBuffer> on_buffers;
   std::map<cl_mem, SharedTexture> textures;
   std::map<cl_context, std::vector<cl_context_properties>> properties;
@@ -171,7 +173,8 @@ cl_int write_image(cl_command_queue queue, cl_mem image, const SharedTexture& sh
 
 cl_int to_opencl(cl_command_queue queue, cl_mem image, const SharedTexture& shared) {
   std::vector<std::uint8_t> texels(bytes_of(shared));
-  const TransferScope restore;
+  const PackScope packs;
+  const UnpackScope unpacks;
   glGetTextureImage(shared.texture, 0, shared.format, shared.type, static_cast<GLsizei>(texels.size()),
                     texels.data());
   if (state().flaw == PretendSharing::Flaw::kWrongBytes) texels.back() ^= 1;
@@ -187,7 +190,8 @@ cl_int to_opengl(cl_command_queue queue, cl_mem image, const SharedTexture& shar
       queue, image, CL_TRUE, origin.data(), region.data(), 0, 0, texels.data(), 0, nullptr, nullptr);
   if (code != CL_SUCCESS) return code;
   if (shared.writable) {
-    const TransferScope restore;
+    const PackScope packs;
+    const UnpackScope unpacks;
     glTextureSubImage2D(shared.texture, 0, 0, 0, shared.width, shared.height, shared.format, shared.type,
                         texels.data());
   }
@@ -264,6 +268,14 @@ PretendSeparateMemory::~PretendSeparateMemory() {
   state().separate_memory = false;
 }
 
+PretendBrokenDriver::PretendBrokenDriver(Flaw flaw) {
+  state().broken = flaw;
+}
+
+PretendBrokenDriver::~PretendBrokenDriver() {
+  state().broken.reset();
+}
+
 int acquired_textures() {
   return static_cast<int>(std::count_if(state().textures.begin(), state().textures.end(),
                                         [](const auto& entry) { return entry.second.acquired; }));
@@ -273,11 +285,56 @@ int acquired_textures() {
 
 using namespace quincunx::gl::testing;
 
+// Names of what the broken driver has. No call about them may reach the loader, which would look into them.
+static int g_broken_place = 0;
+static const auto kBrokenPlatform = reinterpret_cast<cl_platform_id>(&g_broken_place);
+static const auto kBrokenDevice = reinterpret_cast<cl_device_id>(&g_broken_place);
+
 extern "C" {
+
+cl_int CL_API_CALL clGetPlatformIDs(cl_uint room, cl_platform_id* to, cl_uint* count) {
+  const auto real = next<decltype(clGetPlatformIDs)>("clGetPlatformIDs");
+  if (!state().broken) return real(room, to, count);
+  if (*state().broken == PretendBrokenDriver::Flaw::kNoPlatforms) return CL_OUT_OF_HOST_MEMORY;
+  if (to != nullptr) *to++ = kBrokenPlatform;
+  const cl_int code = real(to != nullptr ? room - 1 : 0, to, count);
+  if (count != nullptr) ++*count;
+  return code;
+}
+
+cl_int CL_API_CALL clGetPlatformInfo(cl_platform_id platform, cl_platform_info name, std::size_t room,
+                                     void* value, std::size_t* bytes_ret) {
+  if (platform == kBrokenPlatform) return CL_OUT_OF_HOST_MEMORY;
+  return next<decltype(clGetPlatformInfo)>("clGetPlatformInfo")(platform, name, room, value, bytes_ret);
+}
+
+cl_int CL_API_CALL clGetDeviceIDs(cl_platform_id platform, cl_device_type type, cl_uint room,
+                                  cl_device_id* to, cl_uint* count) {
+  if (platform != kBrokenPlatform)
+    return next<decltype(clGetDeviceIDs)>("clGetDeviceIDs")(platform, type, room, to, count);
+  if (*state().broken == PretendBrokenDriver::Flaw::kNoDevices) return CL_OUT_OF_HOST_MEMORY;
+  if (to != nullptr) *to = kBrokenDevice;
+  if (count != nullptr) *count = 1;
+  return CL_SUCCESS;
+}
+
+cl_int CL_API_CALL clRetainDevice(cl_device_id device) {
+  return device == kBrokenDevice ? CL_SUCCESS : next<decltype(clRetainDevice)>("clRetainDevice")(device);
+}
+
+cl_int CL_API_CALL clReleaseDevice(cl_device_id device) {
+  return device == kBrokenDevice ? CL_SUCCESS : next<decltype(clReleaseDevice)>("clReleaseDevice")(device);
+}
 
 cl_int CL_API_CALL clGetDeviceInfo(cl_device_id device, cl_device_info name, std::size_t room, void* value,
                                    std::size_t* bytes_ret) {
   const auto real = next<decltype(clGetDeviceInfo)>("clGetDeviceInfo");
+  if (device == kBrokenDevice) {
+    const bool tells = state().broken == PretendBrokenDriver::Flaw::kMuteButForItsKind;
+    if (!tells || name != CL_DEVICE_TYPE) return CL_OUT_OF_HOST_MEMORY;
+    const cl_device_type kind = CL_DEVICE_TYPE_GPU;
+    return copy_out(&kind, sizeof(kind), room, value, bytes_ret);
+  }
   if (name == CL_DEVICE_HOST_UNIFIED_MEMORY && state().separate_memory) {
     const cl_bool unified = CL_FALSE;
     return copy_out(&unified, sizeof(unified), room, value, bytes_ret);

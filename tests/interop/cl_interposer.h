@@ -52,6 +52,16 @@ class PretendSeparateMemory {
   PretendSeparateMemory& operator=(const PretendSeparateMemory&) = delete;
 };
 
+// While it lives, a broken driver stands before the others: one platform more, the first, with one device.
+class PretendBrokenDriver {
+ public:
+  enum class Flaw { kNoPlatforms, kNoDevices, kMuteDevice, kMuteButForItsKind };
+  explicit PretendBrokenDriver(Flaw flaw);
+  ~PretendBrokenDriver();
+  PretendBrokenDriver(const PretendBrokenDriver&) = delete;
+  PretendBrokenDriver& operator=(const PretendBrokenDriver&) = delete;
+};
+
 constexpr int kImagePitchTexels = 16;
 
 int acquired_textures();  // how many OpenCL holds now

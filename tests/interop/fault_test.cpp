@@ -13,9 +13,12 @@
 #include <vector>
 
 #include "cl_faults.h"
+#include "cl_interposer.h"
 #include "host_copy.h"
 #include "interop_fixture.h"
 #include "quincunx/advanced/extent.h"
+#include "quincunx/advanced/log.h"
+#include "quincunx/quincunx.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
 
@@ -62,6 +65,44 @@ class DeviceFault : public ::testing::Test {
   std::filesystem::path folder_;
   std::optional<std::string> before_;
 };
+
+// A broken driver beside good ones: they are found as ever, and no call throws.
+TEST_F(DeviceFault, ABrokenDriverLeavesTheOthers) {
+  using Flaw = PretendBrokenDriver::Flaw;
+  const std::vector<DeviceInfo> sound = Device::list();
+  for (const Flaw flaw : {Flaw::kNoDevices, Flaw::kMuteDevice, Flaw::kMuteButForItsKind}) {
+    std::vector<std::string> lines;
+    set_log([&](LogLevel level, const std::string& line) {
+      if (level == LogLevel::kWarning) lines.push_back(line);
+    });
+    const PretendBrokenDriver driver(flaw);
+    const std::vector<DeviceInfo> found = Device::list();
+    ASSERT_EQ(found.size(), sound.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].index, static_cast<int>(i));
+      EXPECT_EQ(found[i].name, sound[i].name);
+    }
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_NE(lines.front().find("is left out"), std::string::npos) << lines.front();
+    EXPECT_NE(lines.front().find("CL_OUT_OF_HOST_MEMORY"), std::string::npos) << lines.front();
+    const auto opened = Device::open();
+    ASSERT_TRUE(opened.ok()) << opened.status().message();
+    EXPECT_EQ(opened->info().name, sound.front().name);
+    quincunx_device* device = nullptr;
+    EXPECT_EQ(quincunx_device_open(nullptr, &device), QUINCUNX_OK) << quincunx_last_error();
+    quincunx_device_destroy(device);
+    EXPECT_FALSE(Device::open("no such device").ok());
+    set_log({});
+  }
+}
+
+TEST_F(DeviceFault, ALoaderThatFailsMeansNoDevice) {
+  set_log([](LogLevel, const std::string&) {});
+  const PretendBrokenDriver driver(PretendBrokenDriver::Flaw::kNoPlatforms);
+  EXPECT_TRUE(Device::list().empty());
+  EXPECT_EQ(Device::open().status().code(), StatusCode::kUnsupported);
+  set_log({});
+}
 
 // The copying bridge, in both of its forms.
 class FaultyBridge : public InteropTest {};

@@ -8,10 +8,13 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <optional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "../tools/own_cache.h"
+#include "device/device_impl.h"
 #include "device/device_profile_file.h"
 #include "device/program_cache.h"
 #include "passes/pass.h"
@@ -36,6 +39,35 @@ TEST(Device, ListsAndOpens) {
     ASSERT_TRUE(device.ok()) << selector << ": " << device.status().message();
     EXPECT_EQ(device->info().name, devices[0].name);
   }
+}
+
+// A number is an index where there is such a device, and a part of a name elsewhere.
+TEST(Device, NumbersAreIndicesOrPartsOfNames) {
+  std::vector<DeviceInfo> infos(3);
+  infos[0] = {.kind = DeviceKind::kGpu, .platform = "NVIDIA CUDA", .name = "NVIDIA GeForce RTX 4090"};
+  infos[1] = {.kind = DeviceKind::kGpu, .platform = "AMD", .name = "AMD Radeon RX 7900 XTX"};
+  infos[2] = {.kind = DeviceKind::kCpu, .platform = "Portable Computing Language", .name = "pthread-Ryzen 9"};
+  const std::vector<std::pair<std::string, std::optional<std::size_t>>> cases = {
+      {"", 0},
+      {"0", 0},
+      {"2", 2},
+      {"002", 2},
+      {"4090", 0},
+      {"7900", 1},
+      {"9", 0},
+      {"cpu", 2},
+      {"GPU", 0},
+      {"radeon", 1},
+      {"3", {}},
+      {"770", {}},
+      {"2x", {}},
+      {"-1", {}},
+      {"RTX 40", 0},
+      {"language pthread", 2},
+      {"18446744073709551616", {}}};
+  for (const auto& [selector, at] : cases)
+    EXPECT_EQ(choose_device(selector, infos), at) << selector;
+  EXPECT_EQ(choose_device("", {}), std::nullopt);
 }
 
 TEST(Device, AnUnknownSelectorListsWhatThereIs) {
@@ -63,6 +95,20 @@ TEST(Device, BorrowsACallersQueue) {
     EXPECT_NE(refused.status().message().find("out-of-order"), std::string::npos);
     clReleaseCommandQueue(unordered);
   }
+}
+
+// An assignment lets go what the image held, as its destructor does.
+TEST(Image, AssignmentReleasesAtOnce) {
+  auto device = Device::open();
+  ASSERT_TRUE(device.ok());
+  Image kept = device->allocate({4, 4}, PixelFormat::kR8).value();
+  Image next = device->allocate({4, 4}, PixelFormat::kR8).value();
+  const Image second = Image::borrow(kept.view());
+  kept = std::move(next);
+  cl_uint count = 0;
+  ASSERT_EQ(clGetMemObjectInfo(second.view().memory, CL_MEM_REFERENCE_COUNT, sizeof(count), &count, nullptr),
+            CL_SUCCESS);
+  EXPECT_EQ(count, 1u);
 }
 
 class Transfer : public ::testing::TestWithParam<std::tuple<PixelFormat, Storage>> {};

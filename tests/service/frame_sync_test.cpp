@@ -59,6 +59,32 @@ TEST(FrameSync, AFrameWaitsForTheEventsAndTellsItsEnd) {
   EXPECT_EQ(clReleaseEvent(done), CL_SUCCESS);
 }
 
+// The device writes into the service's memory until its last frame is done.
+TEST(FrameSync, AssignmentWaitsAsTheDestructorDoes) {
+  ServiceRig rig({}, Method::kPoint, kSize, kSize);
+  ResolveService other = ResolveService::create(rig.device(), rig.service().plan()).value();
+  const FrameInputs inputs = rig.upload(frame_of(1));
+  cl_int code = CL_SUCCESS;
+  const cl_event gate = clCreateUserEvent(rig.device().context(), &code);
+  ASSERT_EQ(code, CL_SUCCESS);
+  cl_event done = nullptr;
+  ASSERT_TRUE(dispatch(rig, inputs, {.wait_for = {&gate, 1}, .done = &done}).ok());
+  std::thread later([gate] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    clSetUserEventStatus(gate, CL_COMPLETE);
+  });
+  rig.service() = std::move(other);
+  EXPECT_EQ(state_of(done), CL_COMPLETE);
+  later.join();
+  ASSERT_EQ(clWaitForEvents(1, &done), CL_SUCCESS);
+  EXPECT_TRUE(dispatch(rig, inputs, {}).ok());
+  ResolveService& same = rig.service();
+  rig.service() = std::move(same);
+  EXPECT_TRUE(dispatch(rig, inputs, {}).ok()) << "assigned to itself";
+  EXPECT_EQ(clReleaseEvent(gate), CL_SUCCESS);
+  EXPECT_EQ(clReleaseEvent(done), CL_SUCCESS);
+}
+
 // Inputs that another queue writes and outputs that it reads, ordered by events alone.
 TEST(FrameSync, AnotherQueueFeedsAndReadsFrames) {
   ServiceRig rig({}, Method::kPoint, kSize, kSize);

@@ -115,7 +115,8 @@ std::string ErrorFront::to_json() const {
       {"columns", kColumns}};
   std::string text = "{\n";
   for (const auto& [key, value] : head.items())
-    text += fmt::format("\"{}\": {},\n", key, value.dump());
+    text += fmt::format("\"{}\": {},\n", key,
+                        value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   text += "\"points\": [";
   const char* separator = "\n";
   for (const FrontPoint& point : points_) {

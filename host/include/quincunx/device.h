@@ -46,14 +46,15 @@ QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& sce
 
 class QUINCUNX_API Device {
  public:
-  // All devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Empty when there are
-  // none.
+  // Lists all devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Devices that do not answer are
+  // left out and named in the log.
   static std::vector<DeviceInfo> list();
 
-  // Opens a device. `selector`: "" for the first of list(); "cpu" or "gpu"; a number for an index of list();
-  // else a part of "platform name", case-insensitive. `properties`: further context properties for GL
-  // sharing, ended by zero, or null. Errors: kInvalidArgument when nothing matches (the message lists what
-  // there is), kDeviceFailure when the context cannot be made.
+  // Opens a device. `selector` is "" for the first of list(), "cpu" or "gpu" for the first of that kind, an index of
+  // list(), or a part of "platform name", case-insensitive. A number beyond the last index is a part of a name: "4090".
+  // Of several devices whose names have the part the first is opened, and the log names the others. `properties` holds
+  // further context properties for GL sharing, ended by zero, or is null. Errors: kInvalidArgument when nothing matches
+  // (the message lists what there is), kDeviceFailure when the context cannot be made.
   static Result<Device> open(const std::string& selector = {},
                              const cl_context_properties* properties = nullptr);
 

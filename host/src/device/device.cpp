@@ -13,6 +13,8 @@
 #include "device/device_profile_file.h"
 #include "device/timer_validation.h"
 #include "quincunx/control/front_file.h"
+#include "plan/validate.h"
+#include "quincunx/advanced/log.h"
 
 namespace quincunx {
 namespace {
@@ -87,27 +89,51 @@ void learn(Device::Impl& impl) {
   impl.profile = find_profile(impl);
 }
 
-std::vector<cl::Device> all_devices() {
+constexpr cl_int kNoPlatform = -1001;  // CL_PLATFORM_NOT_FOUND_KHR: there is no driver at all
+
+struct FoundDevice {
+  cl::Device device;
+  DeviceInfo info;
+};
+
+// A broken driver beside good ones must not take those along: it is named in the log, and left out.
+void leave_out(const std::string& what) {
+  log_line(LogLevel::kWarning, fmt::format("{} is left out: {}", what, caught("asking", "OpenCL").message()));
+}
+
+void add_devices(const cl::Platform& platform, std::vector<FoundDevice>& found) {
+  std::vector<cl::Device> devices;
+  try {
+    platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+  } catch (const cl::Error& error) {
+    if (error.err() != CL_DEVICE_NOT_FOUND) leave_out("an OpenCL platform");
+    return;
+  }
+  for (const cl::Device& device : devices) {
+    try {
+      found.push_back({device, info_of(device)});
+    } catch (const cl::Error&) {
+      leave_out("an OpenCL device");
+    }
+  }
+}
+
+// Returns all devices that answer, with their places in the list.
+std::vector<FoundDevice> all_devices() {
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
-  } catch (const cl::Error&) {
-    return {};  // the loader reports "no platform" as an error
+  } catch (const cl::Error& error) {
+    if (error.err() != kNoPlatform) leave_out("OpenCL");
   }
-  std::vector<cl::Device> devices;
-  for (const cl::Platform& platform : platforms) {
-    std::vector<cl::Device> found;
-    try {
-      platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
-    } catch (const cl::Error&) {
-      continue;  // a platform without devices
-    }
-    devices.insert(devices.end(), found.begin(), found.end());
-  }
-  std::stable_partition(devices.begin(), devices.end(), [](const cl::Device& device) {
-    return (device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU) != 0;
-  });
-  return devices;
+  std::vector<FoundDevice> found;
+  for (const cl::Platform& platform : platforms)
+    add_devices(platform, found);
+  std::stable_partition(found.begin(), found.end(),
+                        [](const FoundDevice& one) { return one.info.kind == DeviceKind::kGpu; });
+  for (std::size_t i = 0; i < found.size(); ++i)
+    found[i].info.index = static_cast<int>(i);
+  return found;
 }
 
 std::string lower(std::string text) {
@@ -116,15 +142,8 @@ std::string lower(std::string text) {
   return text;
 }
 
-bool matches(const std::string& selector, const DeviceInfo& info) {
-  if (selector.empty()) return true;
-  const std::string wanted = lower(selector);
-  if (wanted == "cpu") return info.kind == DeviceKind::kCpu;
-  if (wanted == "gpu") return info.kind == DeviceKind::kGpu;
-  int index = 0;
-  const auto parsed = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-  if (parsed.ec == std::errc() && parsed.ptr == wanted.data() + wanted.size()) return index == info.index;
-  return lower(info.platform + " " + info.name).find(wanted) != std::string::npos;
+std::string searched_name(const DeviceInfo& info) {
+  return lower(info.platform + " " + info.name);
 }
 
 Status no_match(const std::string& selector, const std::vector<DeviceInfo>& infos) {
@@ -137,30 +156,18 @@ Status no_match(const std::string& selector, const std::vector<DeviceInfo>& info
   for (const DeviceInfo& info : infos) {
     known += fmt::format("{}{} '{}'", known.empty() ? "" : ", ", info.index, info.name);
   }
-  return Status::invalid(fmt::format("no OpenCL device matches '{}'; there are: {}", selector, known));
+  return Status::invalid(fmt::format(
+      "no OpenCL device matches '{}' as an index, as cpu or gpu, or as a part of a name; there are: {}",
+      selector, known));
 }
 
 cl::ImageFormat channel_format(PixelFormat format, bool two_channel_images) {
-  const cl_channel_order two = two_channel_images ? CL_RG : CL_RGBA;
-  switch (format) {
-    case PixelFormat::kR8:
-      return {CL_R, CL_UNORM_INT8};
-    case PixelFormat::kR32F:
-      return {CL_R, CL_FLOAT};
-    case PixelFormat::kRG16F:
-      return {two, CL_HALF_FLOAT};
-    case PixelFormat::kRG32F:
-      return {two, CL_FLOAT};
-    case PixelFormat::kRGBA8:
-      return {CL_RGBA, CL_UNORM_INT8};
-    case PixelFormat::kRGBA16F:
-      return {CL_RGBA, CL_HALF_FLOAT};
-    case PixelFormat::kRGBA32F:
-      return {CL_RGBA, CL_FLOAT};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
+  const int channels = channels_of(format);
+  const std::size_t bytes = channels == 0 ? 0 : bytes_per_pixel(format) / static_cast<std::size_t>(channels);
+  const cl_channel_order order = channels == 1 ? CL_R : channels == 2 && two_channel_images ? CL_RG : CL_RGBA;
+  return {order, static_cast<cl_channel_type>(bytes == 1   ? CL_UNORM_INT8
+                                              : bytes == 2 ? CL_HALF_FLOAT
+                                                           : CL_FLOAT)};
 }
 
 Status check_copy(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes) {
@@ -249,33 +256,63 @@ FrontKey front_key(const DeviceInfo& device, const std::string& scene) {
   return {.device = device.platform + " " + device.name, .driver = device.driver, .scene = scene};
 }
 
+std::optional<std::size_t> choose_device(const std::string& selector, const std::vector<DeviceInfo>& infos) {
+  const std::string wanted = lower(selector);
+  std::size_t index = 0;
+  const char* const end = wanted.data() + wanted.size();
+  const auto parsed = std::from_chars(wanted.data(), end, index);
+  const bool is_index = parsed.ec == std::errc() && parsed.ptr == end && index < infos.size();
+  if (is_index) return index;
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    const bool fits = wanted == "cpu"   ? infos[i].kind == DeviceKind::kCpu
+                      : wanted == "gpu" ? infos[i].kind == DeviceKind::kGpu
+                                        : searched_name(infos[i]).find(wanted) != std::string::npos;
+    if (fits) return i;
+  }
+  return std::nullopt;
+}
+
+namespace {
+
+// Says which device is taken where a part of a name, or a number, could mean another one as well.
+void tell_choice(const std::string& selector, const std::vector<DeviceInfo>& infos,
+                 const DeviceInfo& chosen) {
+  const std::string wanted = lower(selector);
+  if (wanted.empty() || wanted == "cpu" || wanted == "gpu") return;
+  for (const DeviceInfo& other : infos) {
+    if (other.index == chosen.index || searched_name(other).find(wanted) == std::string::npos) continue;
+    log_line(LogLevel::kInfo, fmt::format("'{}' could also mean device {} '{}'; {} '{}' is taken", selector,
+                                          other.index, other.name, chosen.index, chosen.name));
+  }
+}
+
+}  // namespace
+
 std::vector<DeviceInfo> Device::list() {
   std::vector<DeviceInfo> infos;
-  for (const cl::Device& device : all_devices()) {
-    infos.push_back(info_of(device));
-    infos.back().index = static_cast<int>(infos.size()) - 1;
-  }
+  for (FoundDevice& found : all_devices())
+    infos.push_back(std::move(found.info));
   return infos;
 }
 
 Result<Device> Device::open(const std::string& selector, const cl_context_properties* properties) {
-  const std::vector<cl::Device> devices = all_devices();
-  std::vector<DeviceInfo> infos;
-  std::optional<std::size_t> chosen;
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    infos.push_back(info_of(devices[i]));
-    infos.back().index = static_cast<int>(i);
-    if (!chosen && matches(selector, infos.back())) chosen = i;
-  }
-  if (!chosen) return no_match(selector, infos);
-
+  std::string name = "the device '" + selector + "'";
   try {
+    const std::vector<FoundDevice> found = all_devices();
+    std::vector<DeviceInfo> infos;
+    for (const FoundDevice& one : found)
+      infos.push_back(one.info);
+    const std::optional<std::size_t> at = choose_device(selector, infos);
+    if (!at) return no_match(selector, infos);
+    const FoundDevice& chosen = found[*at];
+    name = chosen.info.name;
+    tell_choice(selector, infos, chosen.info);
     auto impl = std::make_shared<Impl>();
-    impl->info = infos[*chosen];
-    impl->device = devices[*chosen];
+    impl->info = chosen.info;
+    impl->device = chosen.device;
     std::vector<cl_context_properties> all = {
-        CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(
-                                 cl::Platform(devices[*chosen].getInfo<CL_DEVICE_PLATFORM>())())};
+        CL_CONTEXT_PLATFORM,
+        reinterpret_cast<cl_context_properties>(cl::Platform(chosen.device.getInfo<CL_DEVICE_PLATFORM>())())};
     for (const cl_context_properties* p = properties; p != nullptr && *p != 0; p += 2) {
       all.insert(all.end(), {p[0], p[1]});
     }
@@ -284,8 +321,8 @@ Result<Device> Device::open(const std::string& selector, const cl_context_proper
     impl->queue = cl::CommandQueue(impl->context, impl->device, CL_QUEUE_PROFILING_ENABLE);
     learn(*impl);
     return Device(std::move(impl));
-  } catch (const cl::Error& error) {
-    return describe(error, "Device::open", infos[*chosen].name);
+  } catch (...) {
+    return caught("Device::open", name);
   }
 }
 
@@ -304,8 +341,8 @@ Result<Device> Device::borrow(cl_context context, cl_device_id device, cl_comman
     impl->info = info_of(impl->device);
     learn(*impl);
     return Device(std::move(impl));
-  } catch (const cl::Error& error) {
-    return describe(error, "Device::borrow", "a borrowed device");
+  } catch (...) {
+    return caught("Device::borrow", "a borrowed device");
   }
 }
 
@@ -362,9 +399,8 @@ Result<Image> Device::allocate(Extent extent, PixelFormat format, Storage storag
     cl::Buffer buffer(impl_->context, CL_MEM_READ_WRITE, view.pitch * extent.height);
     view.memory = buffer();
     return Image::borrow(view);
-  } catch (const cl::Error& error) {
-    return describe(error, fmt::format("{}x{} {}", extent.width, extent.height, name_of(format)),
-                    impl_->info.name);
+  } catch (...) {
+    return caught(fmt::format("{}x{} {}", extent.width, extent.height, name_of(format)), impl_->info.name);
   }
 }
 
@@ -384,8 +420,8 @@ Status Device::upload(const ImageView& image, Extent extent, const void* texels,
       copy_blocking(impl_->queue, Direction::kUpload, image, extent, staged.data(), extent.width * wide);
     }
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "upload", impl_->info.name);
+  } catch (...) {
+    return caught("upload", impl_->info.name);
   }
 }
 
@@ -404,8 +440,8 @@ Status Device::download(const ImageView& image, Extent extent, void* texels, std
              extent);
     }
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "download", impl_->info.name);
+  } catch (...) {
+    return caught("download", impl_->info.name);
   }
 }
 
@@ -415,8 +451,8 @@ Status Device::finish() const {
     impl_->queue.enqueueMarkerWithWaitList();
     impl_->queue.finish();
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "finish", impl_->info.name);
+  } catch (...) {
+    return caught("finish", impl_->info.name);
   }
 }
 

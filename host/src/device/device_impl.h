@@ -3,8 +3,10 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "device/opencl.h"
 #include "quincunx/advanced/device_profile.h"
@@ -31,5 +33,9 @@ struct Device::Impl {
   bool keeps_programs = false;
   std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();
 };
+
+// Returns the position of the device that a selector of Device::open() names: an index where there is such a device, and
+// so a number beyond the last index is a part of a name, as any other text.
+std::optional<std::size_t> choose_device(const std::string& selector, const std::vector<DeviceInfo>& infos);
 
 }  // namespace quincunx

@@ -187,7 +187,7 @@ std::string profile_text(const ProfileFile& file) {
                {"passes", Json::object()}};
   for (const auto& [kernel, shape] : file.profile.passes)
     root["passes"][kernel] = json_of(shape);
-  return root.dump(1) + "\n";
+  return root.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 const WorkShape& DeviceProfile::shape_of(std::string_view kernel) const {

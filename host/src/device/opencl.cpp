@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <exception>
+#include <new>
+
 namespace quincunx {
 
 const char* error_name(cl_int code) {
@@ -64,9 +67,21 @@ const char* error_name(cl_int code) {
   }
 }
 
-Status describe(const cl::Error& error, const std::string& subject, const std::string& device_name) {
-  return Status::device(fmt::format("{}({}) on '{}' failed: {} ({})", error.what(), subject, device_name,
-                                    error_name(error.err()), error.err()));
+Status caught(const std::string& subject, const std::string& device_name) {
+  try {
+    throw;
+  } catch (const cl::Error& error) {
+    return Status::device(fmt::format("{}({}) on '{}' failed: {} ({})", error.what(), subject, device_name,
+                                      error_name(error.err()), error.err()));
+  } catch (const AllocationError& error) {
+    return error.status();
+  } catch (const std::bad_alloc&) {
+    return Status::device("out of memory");  // short enough to need none
+  } catch (const std::exception& error) {
+    return Status::device(fmt::format("{} on '{}' failed: {}", subject, device_name, error.what()));
+  } catch (...) {
+    return Status::device(fmt::format("{} on '{}' failed: an unknown error", subject, device_name));
+  }
 }
 
 }  // namespace quincunx

@@ -6,8 +6,11 @@
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
+#include <cstddef>
 #include <list>
 #include <mutex>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -27,17 +30,33 @@ Wrapper borrow(typename Wrapper::cl_type handle) {
 
 const char* error_name(cl_int code);  // "CL_OUT_OF_RESOURCES"
 
-// "clEnqueueNDRangeKernel(resolve_quincunx) on 'pthread-...' failed: CL_OUT_OF_RESOURCES (-5)"
-Status describe(const cl::Error& error, const std::string& subject, const std::string& device_name);
+// Memory that the device would not give.
+class AllocationError : public std::runtime_error {
+ public:
+  explicit AllocationError(const Status& status) : std::runtime_error(status.message()), status_(status) {}
+  const Status& status() const { return status_; }
+
+ private:
+  Status status_;
+};
+
+// Returns the exception that is being handled as a Status: "clEnqueueNDRangeKernel(resolve_quincunx) on 'pthread-...'
+// failed: CL_OUT_OF_RESOURCES (-5)". Every public call ends with it; called within a catch block only.
+Status caught(const std::string& subject, const std::string& device_name);
 
 // Keeps memory that a device may still read or write, because it does not even answer whether it is done: whole and
 // where it is, until the process ends. Thread-safe.
 template <typename Owner>
-void never_free(Owner owner) {
+void never_free(Owner owner) noexcept {
   static std::mutex mutex;
-  static auto* const kept = new std::list<Owner>;  // never destroyed: the device may outlive static objects
   const std::lock_guard lock(mutex);
-  kept->push_back(std::move(owner));
+  try {
+    static auto* const kept = new std::list<Owner>;  // never destroyed: the device may outlive static objects
+    kept->push_back(std::move(owner));
+  } catch (const std::bad_alloc&) {
+    alignas(Owner) std::byte place[sizeof(Owner)];
+    new (place) Owner(std::move(owner));  // never destroyed either
+  }
 }
 
 }  // namespace quincunx

@@ -22,16 +22,6 @@ namespace quincunx {
 // Sets the views of the caller's inputs from frame.inputs and frame.previous.
 void bind_inputs(PassFrame& frame);
 
-// Memory that the device would not give.
-class AllocationError : public std::runtime_error {
- public:
-  explicit AllocationError(const Status& status) : std::runtime_error(status.message()), status_(status) {}
-  const Status& status() const { return status_; }
-
- private:
-  Status status_;
-};
-
 // Throws AllocationError.
 Image allocate_image(const Device& device, Extent extent, PixelFormat format,
                      Storage storage = Storage::kBuffer);

@@ -171,10 +171,10 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
   FrameReport refused;
   refused.frame_index = inputs.frame_index;
   refused.render_extent = inputs.render_extent;
-  refused.status = check(inputs, focus, outputs);
-  if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
-  if (!refused.ok()) return refused;
   try {
+    refused.status = check(inputs, focus, outputs);
+    if (refused.ok()) refused.status = check_events(sync.wait_for, device.context());
+    if (!refused.ok()) return refused;
     wait_in_queue(device.impl()->queue, sync.wait_for);
     if (observer && !observer(inputs, focus)) observer = nullptr;
     FrameRing::Slot& slot = ring.begin();
@@ -187,14 +187,14 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     slot.report.used_previous =
         picture.has_history(inputs) && picture.plan().reads_history(inputs.render_extent, output);
     enqueue(inputs, focus, outputs, slot);
+    advice.look_at(picture.plan(), inputs);
     ring.commit();
     picture.keep(inputs);
-    advice.look_at(picture.plan(), inputs);
-    if (sync.done != nullptr) *sync.done = retained(slot.done);
+    if (sync.done != nullptr) *sync.done = retained(slot.done);  // last, so that no event is left of a failed frame
     return slot.report;
-  } catch (const cl::Error& error) {
+  } catch (...) {
     forget();  // part of the frame may be queued; what it left behind is not to be trusted as history
-    refused.status = describe(error, "dispatch", device.info().name);
+    refused.status = caught("dispatch", device.info().name);
     return refused;
   }
 }
@@ -209,7 +209,11 @@ ClearRegionPass* ResolveService::Impl::clear_pass(const ImageView& image) const 
 
 ResolveService::ResolveService(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ResolveService::ResolveService(ResolveService&&) noexcept = default;
-ResolveService& ResolveService::operator=(ResolveService&&) noexcept = default;
+ResolveService& ResolveService::operator=(ResolveService&& other) noexcept {
+  ResolveService incoming(std::move(other));
+  impl_.swap(incoming.impl_);  // what this one was ends as `incoming`, which waits
+  return *this;
+}
 
 ResolveService::~ResolveService() {
   if (!impl_) return;
@@ -229,8 +233,8 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
     return Status::unsupported(
         fmt::format("'{}' has no images; plan with buffer storage", device.info().name));
   }
-  if (Status status = check_unedited(plan); !status.ok()) return status;
   try {
+    if (Status status = check_unedited(plan); !status.ok()) return status;
     auto impl = std::make_unique<Impl>(device, plan, two_way);
     if (two_way && plan.blurs()) {
       const Extent target = plan.settings.target_extent;
@@ -239,12 +243,8 @@ Result<ResolveService> ResolveService::create(const Device& device, const Resolv
     }
     impl->warm_up();
     return ResolveService(std::move(impl));
-  } catch (const cl::Error& error) {
-    return describe(error, "creating the resolve service", device.info().name);
-  } catch (const BuildError& error) {
-    return Status::device(fmt::format("on '{}' {}", device.info().name, error.what()));
-  } catch (const AllocationError& error) {
-    return error.status();
+  } catch (...) {
+    return caught("creating the resolve service", device.info().name);
   }
 }
 
@@ -293,8 +293,8 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
     pass->clear(frame, image, render, value, nullptr);
     frame.queue.flush();
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, pass->spec().kernel, impl_->device.info().name);
+  } catch (...) {
+    return caught(pass->spec().kernel, impl_->device.info().name);
   }
 }
 
@@ -327,8 +327,8 @@ Result<TileKinds> ResolveService::tile_kinds() const {
     std::transform(blurs.begin(), blurs.end(), found.kinds.begin(),
                    [](const TileBlur& blur) { return static_cast<std::uint8_t>(blur.kind); });
     return found;
-  } catch (const cl::Error& error) {
-    return describe(error, "reading the tiles of the motion blur", impl_->device.info().name);
+  } catch (...) {
+    return caught("reading the tiles of the motion blur", impl_->device.info().name);
   }
 }
 

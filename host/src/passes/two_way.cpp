@@ -28,8 +28,8 @@ Status ResolveService::Impl::write(const KeptHistory& kept, Resource texels, Res
     write_bytes(device.impl()->queue, picture.chain().newest(texels), kept.texels);
     write_bytes(device.impl()->queue, picture.chain().newest(alpha), kept.alpha);
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "writing a history", device.info().name);
+  } catch (...) {
+    return caught("writing a history", device.info().name);
   }
 }
 
@@ -43,8 +43,8 @@ Status ResolveService::Impl::read_merged(KeptHistory& kept) {
     read_bytes(device.impl()->queue, chain.newest(Resource::kMergedAlpha), pixels * alpha_bytes(settings),
                kept.alpha);
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "reading a history", device.info().name);
+  } catch (...) {
+    return caught("reading a history", device.info().name);
   }
 }
 
@@ -72,8 +72,8 @@ FrameReport ResolveService::Impl::show(const FrameInputs& inputs, const FrameOut
     queue.flush();
     ring.commit();
     return slot.report;
-  } catch (const cl::Error& error) {
-    refused.status = describe(error, "showing a history", device.info().name);
+  } catch (...) {
+    refused.status = caught("showing a history", device.info().name);
     return refused;
   }
 }
@@ -123,8 +123,8 @@ Status TwoWay::turn(ResolveService& backward, const ResolveService& forward) {
           memory, borrow<cl::Buffer>(to.newest(kept).memory), 0, 0, memory.getInfo<CL_MEM_SIZE>());
     }
     return {};
-  } catch (const cl::Error& error) {
-    return describe(error, "turning round", backward.device().info().name);
+  } catch (...) {
+    return caught("turning round", backward.device().info().name);
   }
 }
 

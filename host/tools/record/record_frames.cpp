@@ -63,7 +63,8 @@ Recording::Recording(std::shared_ptr<State> state) : state_(std::move(state)) {}
 Recording::Recording(Recording&& other) noexcept = default;
 
 Recording& Recording::operator=(Recording&& other) noexcept {
-  std::swap(state_, other.state_);
+  Recording incoming(std::move(other));
+  state_.swap(incoming.state_);  // what this one recorded ends as `incoming`
   return *this;
 }
 
