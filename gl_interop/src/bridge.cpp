@@ -170,11 +170,28 @@ Status Bridge::check_owner(const char* call, bool imports) const {
   return Status::invalid(fmt::format("{}: this bridge {}", call, reason));
 }
 
-Status Bridge::check_present(bool begun, GLuint into) const {
+Bridge::Bridge(const BridgeSettings& settings, std::string reason)
+    : settings_(settings), reason_(std::move(reason)), textures_(std::make_unique<CallerTextures>()) {}
+
+Bridge::~Bridge() = default;
+
+void Bridge::textures_changed() {
+  textures_->forget();
+}
+
+bool Bridge::has_depth_format(GLuint depth) {
+  return !settings_.imports || textures_->facts(PlaneKind::kDepth, depth).depth_bits > 0;
+}
+
+Before Bridge::before() const {
+  return settings_.restores_state ? Before::kAsked : Before::kDefault;
+}
+
+Status Bridge::check_present(bool begun, GLuint into) {
   if (!begun) {
     return Status::invalid("present: no picture was begun; call begin_present() and dispatch into it first");
   }
-  return into == 0 ? Status() : check_picture_texture(into, settings_.picture, settings_.output_extent);
+  return into == 0 ? Status() : textures_->check_picture(into, settings_.picture, settings_.output_extent);
 }
 
 Result<SharedFrame> Bridge::import(const FrameTextures& textures, Extent render) {
@@ -187,7 +204,6 @@ Result<SharedFrame> Bridge::import(const FrameTextures& textures, Extent render)
 Result<std::unique_ptr<Bridge>> Bridge::create(const Context& context, const Device& device,
                                                const BridgeSettings& settings) {
   if (Status status = check(context, settings); !status.ok()) return status;
-  const TransferScope restore;
   std::string reason = "copying was asked for";
   const bool placed = settings.targets == Targets::kPlaced;
   if (placed && settings.interop == Interop::kGl) {

@@ -6,91 +6,53 @@
 #include <array>
 
 #include "quincunx_gl/capabilities.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
 
-// Level 0 of a texture: its size, and for each of its channels the bits and the type. Not the name of its format, for
-// those without a size (GL_RGBA) keep theirs.
-struct Level {
-  Extent extent = {};
-  std::array<GLint, 4> bits = {};  // red, green, blue, alpha
-  GLint type = GL_NONE;            // of red
-  GLint depth_bits = 0;
-};
-
-// Binds a texture to one of the targets on the active unit, and puts back what was bound.
-class BoundTo {
- public:
-  BoundTo(GLenum target, GLenum query, GLuint texture) : target_(target) {
-    glGetIntegerv(query, &before_);
-    glBindTexture(target_, texture);
-  }
-  ~BoundTo() { glBindTexture(target_, static_cast<GLuint>(before_)); }
-  BoundTo(const BoundTo&) = delete;
-  BoundTo& operator=(const BoundTo&) = delete;
-
- private:
-  GLenum target_;
-  GLint before_ = 0;
-};
-
 // Returns the target that a texture was made for. OpenGL ES has no call for that, and Mesa's refuses in compatibility
-// profiles: a wrong target is then an error, which is taken back.
+// profiles: a wrong target is then an error.
 GLenum target_of(GLuint texture) {
+  const ErrorScope callers;
   if (capabilities().api == Api::kGl45) {
     GLint target = GL_NONE;
     glGetTextureParameteriv(texture, GL_TEXTURE_TARGET, &target);
     if (target != GL_NONE) return static_cast<GLenum>(target);
   }
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  ErrorScope::take();
   for (const auto& [target, query] : {std::pair{GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D},
                                       {GL_TEXTURE_2D_MULTISAMPLE, GL_TEXTURE_BINDING_2D_MULTISAMPLE}}) {
-    const BoundTo bound(static_cast<GLenum>(target), static_cast<GLenum>(query), texture);
-    if (glGetError() == GL_NO_ERROR) return static_cast<GLenum>(target);
+    const BindingScope bound(BindingScope::bind_texture, static_cast<GLenum>(target),
+                             static_cast<GLenum>(query), texture);
+    if (ErrorScope::take() == GL_NO_ERROR) return static_cast<GLenum>(target);
   }
   return GL_NONE;
 }
 
-Level level_of(GLuint texture) {
-  const BoundTo bound(GL_TEXTURE_2D, GL_TEXTURE_BINDING_2D, texture);
-  const auto get = [](GLenum name, GLint* value) { glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, name, value); };
-  Level level;
-  get(GL_TEXTURE_WIDTH, &level.extent.width);
-  get(GL_TEXTURE_HEIGHT, &level.extent.height);
-  get(GL_TEXTURE_RED_SIZE, &level.bits[0]);
-  get(GL_TEXTURE_GREEN_SIZE, &level.bits[1]);
-  get(GL_TEXTURE_BLUE_SIZE, &level.bits[2]);
-  get(GL_TEXTURE_ALPHA_SIZE, &level.bits[3]);
-  get(GL_TEXTURE_RED_TYPE, &level.type);
-  get(GL_TEXTURE_DEPTH_SIZE, &level.depth_bits);
-  return level;
+// The channels, not the name of the format: those without a size (GL_RGBA) keep theirs.
+TextureFacts facts_of(GLuint texture) {
+  TextureFacts facts;
+  facts.exists = glIsTexture(texture) != GL_FALSE;
+  if (facts.exists) facts.target = target_of(texture);
+  if (facts.target != GL_TEXTURE_2D) return facts;
+  const BindingScope bound = BindingScope::texture(texture);
+  const auto of_level = [](GLenum name, GLint* to) { glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, name, to); };
+  of_level(GL_TEXTURE_WIDTH, &facts.extent.width);
+  of_level(GL_TEXTURE_HEIGHT, &facts.extent.height);
+  of_level(GL_TEXTURE_RED_SIZE, &facts.bits[0]);
+  of_level(GL_TEXTURE_GREEN_SIZE, &facts.bits[1]);
+  of_level(GL_TEXTURE_BLUE_SIZE, &facts.bits[2]);
+  of_level(GL_TEXTURE_ALPHA_SIZE, &facts.bits[3]);
+  of_level(GL_TEXTURE_RED_TYPE, &facts.type);
+  of_level(GL_TEXTURE_DEPTH_SIZE, &facts.depth_bits);
+  GLint immutable = GL_FALSE;
+  glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_IMMUTABLE_FORMAT, &immutable);
+  if (immutable == GL_FALSE) glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, &facts.largest_level);
+  return facts;
 }
 
-Level level_for(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kR8:
-      return {.bits = {8, 0, 0, 0}, .type = GL_UNSIGNED_NORMALIZED};
-    case PixelFormat::kR32F:
-      return {.bits = {32, 0, 0, 0}, .type = GL_FLOAT};
-    case PixelFormat::kRG16F:
-      return {.bits = {16, 16, 0, 0}, .type = GL_FLOAT};
-    case PixelFormat::kRG32F:
-      return {.bits = {32, 32, 0, 0}, .type = GL_FLOAT};
-    case PixelFormat::kRGBA8:
-      return {.bits = {8, 8, 8, 8}, .type = GL_UNSIGNED_NORMALIZED};
-    case PixelFormat::kRGBA16F:
-      return {.bits = {16, 16, 16, 16}, .type = GL_FLOAT};
-    case PixelFormat::kRGBA32F:
-      return {.bits = {32, 32, 32, 32}, .type = GL_FLOAT};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
-}
-
-std::string describe(const Level& level) {
+std::string describe(const TextureFacts& level) {
   std::string text;
   for (std::size_t i = 0; i < level.bits.size(); ++i) {
     if (level.bits[i] > 0) text += fmt::format("{}{}", "RGBA"[i], level.bits[i]);
@@ -101,28 +63,43 @@ std::string describe(const Level& level) {
   return text.empty() ? "nothing yet" : text;
 }
 
-// Returns what is wrong with a texture, "" where nothing is. `depth`: a depth format will do as well.
-std::string fault_of(const std::string& field, GLuint texture, PixelFormat format, bool depth, Extent least,
-                     const char* whose) {
-  const std::string wanted = fmt::format("{}{}", name_of(format), depth ? " or a depth format" : "");
-  if (texture == 0) return fmt::format("{} is 0 and must be a texture of {}", field, wanted);
-  if (glIsTexture(texture) == GL_FALSE)
-    return fmt::format("{} is {}, which is no texture of this context", field, texture);
-  const GLenum target = target_of(texture);
-  if (target == GL_TEXTURE_2D_MULTISAMPLE) {
+// What a texture must be.
+struct Wanted {
+  PixelFormat format;
+  bool or_depth;  // a depth format will do as well
+  Extent least;
+  const char* whose;
+};
+
+// Returns what is wrong with a texture, "" where nothing is.
+std::string fault_in(const TextureFacts& facts, const std::string& field, GLuint texture,
+                     const Wanted& wanted) {
+  if (!facts.exists) return fmt::format("{} is {}, which is no texture of this context", field, texture);
+  if (facts.target == GL_TEXTURE_2D_MULTISAMPLE)
     return fmt::format("{} is multisampled; blit it into a plain GL_TEXTURE_2D first", field);
+  if (facts.target != GL_TEXTURE_2D) return fmt::format("{} is no GL_TEXTURE_2D", field);
+  const FormatNames& right = names_of(wanted.format);
+  const bool fits = facts.depth_bits == 0 && facts.bits == right.bits && facts.type == right.type;
+  if (!fits && !(wanted.or_depth && facts.depth_bits > 0)) {
+    return fmt::format("{} holds {} and must hold {}{}", field, describe(facts), name_of(wanted.format),
+                       wanted.or_depth ? " or a depth format" : "");
   }
-  if (target != GL_TEXTURE_2D) return fmt::format("{} is no GL_TEXTURE_2D", field);
-  const Level level = level_of(texture);
-  const Level right = level_for(format);
-  const bool fits = level.depth_bits == 0 && level.bits == right.bits && level.type == right.type;
-  if (!fits && !(depth && level.depth_bits > 0))
-    return fmt::format("{} holds {} and must hold {}", field, describe(level), wanted);
-  if (level.extent.width < least.width || level.extent.height < least.height) {
-    return fmt::format("{} has {}x{} texels, fewer than {} {}x{}", field, level.extent.width,
-                       level.extent.height, whose, least.width, least.height);
+  if (facts.extent.width < wanted.least.width || facts.extent.height < wanted.least.height) {
+    return fmt::format("{} has {}x{} texels, fewer than {} {}x{}", field, facts.extent.width,
+                       facts.extent.height, wanted.whose, wanted.least.width, wanted.least.height);
   }
   return {};
+}
+
+// The same of facts that may be old.
+std::string fault_of(TextureFacts& facts, const std::string& field, GLuint texture, const Wanted& wanted) {
+  if (texture == 0) {
+    return fmt::format("{} is 0 and must be a texture of {}{}", field, name_of(wanted.format),
+                       wanted.or_depth ? " or a depth format" : "");
+  }
+  if (fault_in(facts, field, texture, wanted).empty()) return {};
+  facts = facts_of(texture);
+  return fault_in(facts, field, texture, wanted);
 }
 
 const char* name_of(PlaneKind kind) {
@@ -162,23 +139,27 @@ GLuint texture_of(const FrameTextures& textures, PlaneKind kind) {
   return textures.colour;
 }
 
-bool has_depth_format(GLuint texture) {
-  return level_of(texture).depth_bits > 0;
-}
-
-Status check_textures(const std::vector<Plane>& planes, const FrameTextures& textures, Extent render) {
+Status CallerTextures::check(const std::vector<Plane>& planes, const FrameTextures& textures, Extent render) {
   std::string faults;
   for (const Plane& plane : planes) {
-    const std::string fault = fault_of(name_of(plane.kind), texture_of(textures, plane.kind), plane.format,
-                                       plane.kind == PlaneKind::kDepth, render, "the viewport's");
+    const GLuint texture = texture_of(textures, plane.kind);
+    const std::string fault =
+        fault_of(known_[{plane.kind, texture}], name_of(plane.kind), texture,
+                 {plane.format, plane.kind == PlaneKind::kDepth, render, "the viewport's"});
     if (!fault.empty()) faults += (faults.empty() ? "FrameTextures: " : "; ") + fault;
   }
   return faults.empty() ? Status() : Status::invalid(faults);
 }
 
-Status check_picture_texture(GLuint texture, PixelFormat format, Extent output) {
-  const std::string fault = fault_of("the texture", texture, format, false, output, "the picture's");
+Status CallerTextures::check_picture(GLuint texture, PixelFormat format, Extent output) {
+  const std::string fault =
+      fault_of(pictures_[texture], "the texture", texture, {format, false, output, "the picture's"});
   return fault.empty() ? Status() : Status::invalid("present: " + fault);
+}
+
+void CallerTextures::forget() {
+  known_.clear();
+  pictures_.clear();
 }
 
 }  // namespace quincunx::gl

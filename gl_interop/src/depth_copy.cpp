@@ -8,7 +8,6 @@
 
 #include "cl_handle.h"
 #include "quincunx_gl/gl_calls.h"
-#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
@@ -59,8 +58,8 @@ DepthCopy DepthCopy::create() {
   return made;
 }
 
-void DepthCopy::copy(GLuint depth, GLuint to, Extent render) const {
-  const ComputeScope restore;
+void DepthCopy::copy(GLuint depth, GLuint to, Extent render, Before before) const {
+  const ComputeScope restore(before);
   glUseProgram(program_.get());
   glUniform2i(0, render.width, render.height);
   glBindTexture(GL_TEXTURE_2D, depth);
@@ -78,9 +77,10 @@ DepthReader::DepthReader(Extent target)
     throw std::runtime_error("the driver draws into no R32F texture, through which depth is read");
 }
 
-void DepthReader::read(GLuint depth, Extent render, void* pixels) const {
-  to_copy_.copy(depth, copy_.get(), render);
-  read_attachment(framebuffer_.get(), GL_COLOR_ATTACHMENT0, render, GL_RED, GL_FLOAT, pixels);
+void DepthReader::read(GLuint depth, Extent render, void* pixels, Before before) const {
+  to_copy_.copy(depth, copy_.get(), render, before);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
+  glReadPixels(0, 0, render.width, render.height, GL_RED, GL_FLOAT, pixels);
 }
 
 }  // namespace quincunx::gl

@@ -6,6 +6,7 @@
 
 #include "quincunx/advanced/extent.h"
 #include "quincunx_gl/handle.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 
@@ -21,7 +22,7 @@ class DepthCopy {
   static DepthCopy create();  // throws InteropError where the driver refuses the shader
 
   // Copies the top left `render` of `depth`, of any depth format, to an immutable R32F texture. Puts back the state.
-  void copy(GLuint depth, GLuint to, Extent render) const;
+  void copy(GLuint depth, GLuint to, Extent render, Before before) const;
 
  private:
   Program program_;
@@ -35,8 +36,8 @@ class DepthReader {
   // For viewports of at most this extent. Throws std::runtime_error where the driver refuses what it needs.
   explicit DepthReader(Extent target);
 
-  // Reads the top left `render` of the depth texture as floats, with the pack state and pixel buffer that are set.
-  void read(GLuint depth, Extent render, void* pixels) const;
+  // Reads the top left `render` of the depth texture as floats, within a PackScope of the caller's.
+  void read(GLuint depth, Extent render, void* pixels, Before before) const;
 
  private:
   Texture copy_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "frame_layout.h"
 
+#include <algorithm>
+
 namespace quincunx::gl {
 namespace {
 
@@ -15,48 +17,36 @@ std::size_t round_up(std::size_t value, std::size_t step) {
 
 }  // namespace
 
-GlFormat gl_format(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kR8:
-      return {GL_R8, GL_RED, GL_UNSIGNED_BYTE};
-    case PixelFormat::kR32F:
-      return {GL_R32F, GL_RED, GL_FLOAT};
-    case PixelFormat::kRG16F:
-      return {GL_RG16F, GL_RG, GL_HALF_FLOAT};
-    case PixelFormat::kRG32F:
-      return {GL_RG32F, GL_RG, GL_FLOAT};
-    case PixelFormat::kRGBA8:
-      return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
-    case PixelFormat::kRGBA16F:
-      return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT};
-    case PixelFormat::kRGBA32F:
-      return {GL_RGBA32F, GL_RGBA, GL_FLOAT};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
-}
-
-cl_image_format cl_format(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kR8:
-      return {CL_R, CL_UNORM_INT8};
-    case PixelFormat::kR32F:
-      return {CL_R, CL_FLOAT};
-    case PixelFormat::kRG16F:
-      return {CL_RG, CL_HALF_FLOAT};
-    case PixelFormat::kRG32F:
-      return {CL_RG, CL_FLOAT};
-    case PixelFormat::kRGBA8:
-      return {CL_RGBA, CL_UNORM_INT8};
-    case PixelFormat::kRGBA16F:
-      return {CL_RGBA, CL_HALF_FLOAT};
-    case PixelFormat::kRGBA32F:
-      return {CL_RGBA, CL_FLOAT};
-    case PixelFormat::kNone:
-      break;
-  }
-  return {};
+const FormatNames& names_of(PixelFormat format) {
+  constexpr GLint kCodes = GL_UNSIGNED_NORMALIZED, kFloats = GL_FLOAT;
+  static constexpr std::array<FormatNames, 8> kNames = {{
+      {PixelFormat::kNone, {}, {}, {}, GL_NONE},
+      {PixelFormat::kR8, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, {CL_R, CL_UNORM_INT8}, {8, 0, 0, 0}, kCodes},
+      {PixelFormat::kR32F, {GL_R32F, GL_RED, GL_FLOAT}, {CL_R, CL_FLOAT}, {32, 0, 0, 0}, kFloats},
+      {PixelFormat::kRG16F,
+       {GL_RG16F, GL_RG, GL_HALF_FLOAT},
+       {CL_RG, CL_HALF_FLOAT},
+       {16, 16, 0, 0},
+       kFloats},
+      {PixelFormat::kRG32F, {GL_RG32F, GL_RG, GL_FLOAT}, {CL_RG, CL_FLOAT}, {32, 32, 0, 0}, kFloats},
+      {PixelFormat::kRGBA8,
+       {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE},
+       {CL_RGBA, CL_UNORM_INT8},
+       {8, 8, 8, 8},
+       kCodes},
+      {PixelFormat::kRGBA16F,
+       {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT},
+       {CL_RGBA, CL_HALF_FLOAT},
+       {16, 16, 16, 16},
+       kFloats},
+      {PixelFormat::kRGBA32F,
+       {GL_RGBA32F, GL_RGBA, GL_FLOAT},
+       {CL_RGBA, CL_FLOAT},
+       {32, 32, 32, 32},
+       kFloats},
+  }};
+  return *std::find_if(kNames.begin(), kNames.end() - 1,
+                       [&](const FormatNames& row) { return row.format == format; });
 }
 
 std::vector<Plane> planes_of(const BridgeSettings& settings) {

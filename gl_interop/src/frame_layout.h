@@ -5,6 +5,7 @@
 
 #include <epoxy/gl.h>
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -19,10 +20,22 @@ struct GlFormat {
   GLenum type = GL_NONE;
 };
 
-GlFormat gl_format(PixelFormat format);  // for the formats that the bridge uses
+// What OpenGL and OpenCL call a format.
+struct FormatNames {
+  PixelFormat format = PixelFormat::kNone;
+  GlFormat gl;
+  cl_image_format cl;
+  std::array<GLint, 4> bits;  // of red, green, blue and alpha, as OpenGL counts them
+  GLint type;                 // of red: GL_UNSIGNED_NORMALIZED or GL_FLOAT
+};
+const FormatNames& names_of(PixelFormat format);
 
-// Returns the channels of an OpenCL image of a format.
-cl_image_format cl_format(PixelFormat format);
+inline GlFormat gl_format(PixelFormat format) {
+  return names_of(format).gl;
+}
+inline cl_image_format cl_format(PixelFormat format) {
+  return names_of(format).cl;
+}
 
 enum class PlaneKind { kColour, kDepth, kVelocity, kReactive };
 

@@ -14,11 +14,12 @@
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "quincunx_gl/handle.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
 
-constexpr double kLeastMs = 1e-6;  // a frame without work may come back as 0, which no controller takes
+constexpr double kLeastMs = 1e-6;  // work of none may come back as 0, which no controller takes
 
 constexpr const char* kCoveringSource = R"(#version 310 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); })";
@@ -52,24 +53,8 @@ class KnownLoad {
   KnownLoad() : program_(covering_program()) {
     texture_storage(texture_.get(), 1, GL_RGBA16F, {kSide, kSide});
     attach(framebuffer_.get(), GL_COLOR_ATTACHMENT0, texture_.get());
-    glGetIntegerv(GL_VIEWPORT, viewport_before_.data());
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffer_.get());
-    glUseProgram(program_.get());
-    glBindVertexArray(vertex_array_.get());
-    glViewport(0, 0, kSide, kSide);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
+    state_.emplace(framebuffer_.get(), program_.get(), vertex_array_.get(), kSide);
   }
-  ~KnownLoad() {
-    glDisable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ZERO);
-    glViewport(viewport_before_[0], viewport_before_[1], viewport_before_[2], viewport_before_[3]);
-    glBindVertexArray(0);
-    glUseProgram(0);
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  }
-  KnownLoad(const KnownLoad&) = delete;
-  KnownLoad& operator=(const KnownLoad&) = delete;
 
   void draw(int layers) const {
     for (int layer = 0; layer < layers; ++layer)
@@ -82,7 +67,7 @@ class KnownLoad {
   Texture texture_ = Texture::create();
   Framebuffer framebuffer_ = Framebuffer::create();
   VertexArray vertex_array_ = VertexArray::create();
-  std::array<GLint, 4> viewport_before_ = {};
+  std::optional<DrawScope> state_;  // ends first
 };
 
 double query_ms(GLuint query) {
@@ -136,6 +121,7 @@ bool grow_alike(const LoadTimes& light, const LoadTimes& heavy) {
 
 // Returns whether queries do so each time: where other programs run, wrong ones agree now and then by chance.
 bool queries_agree() {
+  const ErrorScope callers;
   constexpr double kEnoughMs = 8;  // least load, beside which submission and waking up are small
   constexpr int kMostLayers = 1 << 16;
   constexpr int kTimes = 4;
@@ -150,6 +136,22 @@ bool queries_agree() {
     if (!grow_alike(time_load(load, query.get(), layers / 4), heavy)) return false;
   }
   return true;
+}
+
+// Returns why queries are not to be used, "" where they are.
+const char* fault_of_queries() {
+  if (!capabilities().time_queries) return "the OpenGL ES context has no GL_EXT_disjoint_timer_query";
+  GLint active = 0;
+  glGetQueryiv(GL_TIME_ELAPSED, GL_CURRENT_QUERY, &active);
+  if (active != 0) return "a query of the caller's is active, so that none could be tried";
+  return queries_agree() ? "" : "GL_TIME_ELAPSED does not agree with them on a known load";
+}
+
+// A name becomes a query when it is first used, so it may be one of any kind.
+TimeQuery stamp_query() {
+  GLuint name = 0;
+  glGenQueries(1, &name);
+  return TimeQuery::adopt(name);
 }
 
 }  // namespace
@@ -186,14 +188,10 @@ FrameTimer& FrameTimer::operator=(FrameTimer&&) noexcept = default;
 Result<FrameTimer> FrameTimer::create(std::optional<TimerMethod> method) try {
   auto impl = std::make_unique<Impl>();
   if (!method) {
-    const bool has_queries = capabilities().time_queries;
-    method = has_queries && queries_agree() ? TimerMethod::kQuery : TimerMethod::kFence;
-    log_line(
-        LogLevel::kInfo,
-        fmt::format("frame timer: {}",
-                    *method == TimerMethod::kQuery ? "GL_TIME_ELAPSED"
-                    : has_queries ? "fences (GL_TIME_ELAPSED does not agree with them on a known load)"
-                                  : "fences (the OpenGL ES context has no GL_EXT_disjoint_timer_query)"));
+    const char* fault = fault_of_queries();
+    method = *fault == '\0' ? TimerMethod::kQuery : TimerMethod::kFence;
+    log_line(LogLevel::kInfo, *fault == '\0' ? "frame timer: GL_TIME_ELAPSED"
+                                             : fmt::format("frame timer: fences ({})", fault));
   }
   impl->method = *method;
   for (Impl::Slot& slot : impl->slots) {
@@ -252,6 +250,88 @@ std::optional<TimedFrame> FrameTimer::poll() try {
   return lost ? poll() : result;
 } catch (const std::exception&) {
   return std::nullopt;
+}
+
+struct PartTimer::Impl {
+  struct Slot {
+    TimedFrame part;
+    TimeQuery begun, done;
+  };
+
+  TimerMethod method = TimerMethod::kFence;
+  int every = 1;
+  std::uint64_t parts = 0;  // begun so far, timed or not
+  std::array<Slot, kRing> slots;
+  std::size_t first = 0;  // the oldest under way
+  std::size_t count = 0;
+  bool open = false;
+  std::optional<Stopwatch> watch;
+
+  Slot& next() { return slots[(first + count) % slots.size()]; }
+};
+
+PartTimer::PartTimer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+PartTimer::~PartTimer() = default;
+PartTimer::PartTimer(PartTimer&&) noexcept = default;
+PartTimer& PartTimer::operator=(PartTimer&&) noexcept = default;
+
+Result<PartTimer> PartTimer::create(TimerMethod method, int every) try {
+  if (every < 1) return Status::invalid(fmt::format("every is {}; it must be at least 1", every));
+  auto impl = std::make_unique<Impl>();
+  impl->method = method;
+  impl->every = method == TimerMethod::kFence ? every : 1;
+  for (Impl::Slot& slot : impl->slots) {
+    if (method != TimerMethod::kQuery) break;
+    slot.begun = stamp_query();
+    slot.done = stamp_query();
+    if (!slot.begun || !slot.done) return Status::device("OpenGL made no query for a time stamp");
+  }
+  return PartTimer(std::move(impl));
+} catch (const std::exception& error) {
+  return Status::device(error.what());
+}
+
+void PartTimer::begin(std::uint64_t frame, Extent extent) {
+  const bool timed = impl_->parts++ % static_cast<std::uint64_t>(impl_->every) == 0;
+  if (!timed || impl_->open || impl_->count == impl_->slots.size()) return;
+  Impl::Slot& slot = impl_->next();
+  slot.part = {.frame = frame, .render_extent = extent, .gpu_ms = 0};
+  impl_->open = true;
+  if (impl_->method == TimerMethod::kQuery) {
+    glQueryCounter(slot.begun.get(), GL_TIMESTAMP);
+    return;
+  }
+  glFinish();
+  impl_->watch.emplace();
+}
+
+void PartTimer::end() {
+  if (!impl_->open) return;
+  Impl::Slot& slot = impl_->next();
+  if (impl_->method == TimerMethod::kQuery) {
+    glQueryCounter(slot.done.get(), GL_TIMESTAMP);
+  } else {
+    glFinish();
+    slot.part.gpu_ms = impl_->watch->milliseconds();
+  }
+  impl_->open = false;
+  ++impl_->count;
+}
+
+std::optional<TimedFrame> PartTimer::poll() {
+  if (impl_->count == 0) return std::nullopt;
+  Impl::Slot& slot = impl_->slots[impl_->first];
+  if (impl_->method == TimerMethod::kQuery) {
+    GLuint available = GL_FALSE;
+    glGetQueryObjectuiv(slot.done.get(), GL_QUERY_RESULT_AVAILABLE, &available);
+    if (available == GL_FALSE) return std::nullopt;
+    slot.part.gpu_ms = query_ms(slot.done.get()) - query_ms(slot.begun.get());
+  }
+  impl_->first = (impl_->first + 1) % impl_->slots.size();
+  --impl_->count;
+  TimedFrame result = slot.part;
+  result.gpu_ms = std::max(result.gpu_ms, kLeastMs);
+  return result;
 }
 
 }  // namespace quincunx::gl

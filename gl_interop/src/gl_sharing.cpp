@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <string>
 
@@ -51,7 +52,7 @@ bool has_cl_extension(cl_device_id device, const char* name) {
 }
 
 void check_gl(const char* what) {
-  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+  if (const GLenum error = ErrorScope::take(); error != GL_NO_ERROR) {
     throw InteropError(fmt::format("{} failed with OpenGL error 0x{:04x}", what, error));
   }
 }
@@ -92,8 +93,9 @@ void probe(const Device& device, PixelFormat format) {
 // Moves a 16x16 texture of `format` both ways and compares byte for byte. Empty when that worked, else one
 // clause that says what did not.
 std::string probe_sharing(const Device& device, PixelFormat format) {
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  const ErrorScope callers;
+  const PackScope packs;
+  const UnpackScope unpacks;
   try {
     probe(device, format);
   } catch (const std::exception& error) {
@@ -102,28 +104,14 @@ std::string probe_sharing(const Device& device, PixelFormat format) {
   return {};
 }
 
-// A texture of a caller's, whose filter may ask for levels that it has not: it cannot be copied while it is incomplete.
-class OneLevel {
- public:
-  explicit OneLevel(GLuint texture) : texture_(texture) {
-    glGetTextureParameteriv(texture_, GL_TEXTURE_MAX_LEVEL, &before_);
-    glTextureParameteri(texture_, GL_TEXTURE_MAX_LEVEL, 0);
-  }
-  ~OneLevel() { glTextureParameteri(texture_, GL_TEXTURE_MAX_LEVEL, before_); }
-  OneLevel(const OneLevel&) = delete;
-  OneLevel& operator=(const OneLevel&) = delete;
-
- private:
-  GLuint texture_;
-  GLint before_ = 0;
-};
-
-// Copies the top left `extent` bit for bit.
-void copy_texels(GLuint from, GLuint to, Extent extent) {
-  const OneLevel complete_from(from);
-  const OneLevel complete_to(to);
+// Copies the top left `extent` bit for bit. `callers`: the one of the two that is the caller's, whose filter may ask for
+// levels that it has not; a texture cannot be copied while it is incomplete.
+void copy_texels(GLuint from, GLuint to, Extent extent, GLuint callers, const TextureFacts& facts) {
+  const bool incomplete = facts.largest_level > 0;
+  if (incomplete) glTextureParameteri(callers, GL_TEXTURE_MAX_LEVEL, 0);
   glCopyImageSubData(from, GL_TEXTURE_2D, 0, 0, 0, 0, to, GL_TEXTURE_2D, 0, 0, 0, 0, extent.width,
                      extent.height, 1);
+  if (incomplete) glTextureParameteri(callers, GL_TEXTURE_MAX_LEVEL, facts.largest_level);
 }
 
 // Returns what clCreateContext was told: zero where `name` is not among it.
@@ -145,6 +133,11 @@ cl_context_properties context_property(cl_context context, cl_context_properties
 std::string find_obstacle(const Context& context, const Device& device, const BridgeSettings& settings) {
   if (context.info().api != Api::kGl45) return "sharing is made for desktop OpenGL, and this is OpenGL ES";
   const std::string& name = device.info().name;
+  const auto picture =
+      static_cast<std::uint64_t>(settings.output_extent.area()) * bytes_per_pixel(settings.picture);
+  if (picture > std::numeric_limits<GLsizei>::max())
+    return fmt::format("the picture has {} bytes, and OpenGL hands out {} at most", picture,
+                       std::numeric_limits<GLsizei>::max());
   if (!device.info().gl_sharing) return fmt::format("'{}' does not offer cl_khr_gl_sharing", name);
   const auto wanted = reinterpret_cast<cl_context_properties>(context.context());
   if (context_property(device.context(), CL_GL_CONTEXT_KHR) != wanted) {
@@ -289,7 +282,11 @@ bool GlSharing::is_copied(const Plane& plane) const {
 GlSharing::Slot GlSharing::make_slot() {
   Slot slot = {.targets = {}, .own = {}, .shared = SharedTextures(device_), .views = {}};
   FrameTextures targets;
-  if (!settings_.imports) targets = textures_of(slot.targets.emplace(target_needs(settings_)));
+  if (!settings_.imports) {
+    auto made = RenderTargets::create(target_needs(settings_));
+    if (!made.ok()) throw InteropError(made.error());
+    targets = textures_of(slot.targets.emplace(std::move(made).value()));
+  }
   for (const Plane& plane : planes_) {
     Texture& own = slot.own.emplace_back();
     if (is_copied(plane)) {
@@ -342,14 +339,15 @@ Status GlSharing::take_back(const char* call, int slot) {
   }
 }
 
-void GlSharing::copy_planes(const Slot& slot, const FrameTextures& from, Extent render) const {
+void GlSharing::copy_planes(const Slot& slot, const FrameTextures& from, Extent render) {
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     if (!is_copied(planes_[i])) continue;
-    const GLuint texture = texture_of(from, planes_[i].kind);
-    if (planes_[i].kind == PlaneKind::kDepth && has_depth_format(texture)) {
-      depth_copy_.copy(texture, slot.own[i].get(), render);
+    const PlaneKind kind = planes_[i].kind;
+    const GLuint texture = texture_of(from, kind);
+    if (kind == PlaneKind::kDepth && has_depth_format(texture)) {
+      depth_copy_.copy(texture, slot.own[i].get(), render, before());
     } else {
-      copy_texels(texture, slot.own[i].get(), render);
+      copy_texels(texture, slot.own[i].get(), render, texture, textures_->facts(kind, texture));
     }
   }
   glFlush();
@@ -363,7 +361,7 @@ Status GlSharing::submit(int slot) {
 
 Status GlSharing::submit(int slot, const FrameTextures& textures, Extent render) {
   if (Status status = check_owner("submit", true); !status.ok()) return status;
-  if (Status status = check_textures(planes_, textures, render); !status.ok()) return status;
+  if (Status status = textures_->check(planes_, textures, render); !status.ok()) return status;
   if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
   if (Status status = take_back("submit", slot); !status.ok()) return status;
   copy_planes(slot_at(slot), textures, render);
@@ -414,7 +412,8 @@ Status GlSharing::present(GLuint into) {
     if (linear_) copy_linear();
     output_.release();
     output_.wait_for_release();
-    if (into != 0) copy_texels(presented_.get(), into, settings_.output_extent);
+    if (into != 0)
+      copy_texels(presented_.get(), into, settings_.output_extent, into, textures_->picture_facts(into));
   } catch (const std::exception& error) {
     return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
   }
@@ -427,7 +426,7 @@ Status GlSharing::present(GLuint into) {
 
 const std::uint8_t* GlSharing::presented_pixels() {
   if (!pixels_are_current_ && !presenting_) {
-    const TransferScope restore;
+    const PackScope restore(before());
     const GlFormat names = gl_format(settings_.picture);
     glGetTextureImage(presented_.get(), 0, names.format, names.type, static_cast<GLsizei>(pixels_.size()),
                       pixels_.data());

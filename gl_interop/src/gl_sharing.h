@@ -89,7 +89,7 @@ class GlSharing final : public Bridge {
   Slot make_slot();
   Status take_back(const char* call, int slot);
   void copy_linear() const;
-  void copy_planes(const Slot& slot, const FrameTextures& from, Extent render) const;
+  void copy_planes(const Slot& slot, const FrameTextures& from, Extent render);
 
   Device device_;
   std::vector<Plane> planes_;

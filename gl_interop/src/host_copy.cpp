@@ -36,7 +36,9 @@ const RenderTargets& TargetPool::at(Extent extent) {
     make_room(extent);
     TargetNeeds needs = needs_;
     needs.target_extent = extent;
-    kept_.push_back(std::make_unique<RenderTargets>(needs));
+    auto made = RenderTargets::create(needs);
+    if (!made.ok()) throw InteropError(made.error());
+    kept_.push_back(std::make_unique<RenderTargets>(std::move(made).value()));
   }
   return *kept_.back();
 }
@@ -142,12 +144,11 @@ HostCopy::HostCopy(const Device& device, const BridgeSettings& settings, std::st
   if (settings.imports) return;
   targets_ = &pool_.at(settings.targets == Targets::kPlaced ? Extent{1, 1} : settings.target_extent);
   // One hand-over in advance finds what the driver refuses, and leaves nothing to be made in the first frame.
-  while (glGetError() != GL_NO_ERROR) {
-  }
+  const ErrorScope callers;
   targets_->clear({1, 1});
   read_back(slots_.front(), textures_of(*targets_), {1, 1});
   slots_.front().read_back.wait();
-  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
+  if (const GLenum error = ErrorScope::take(); error != GL_NO_ERROR) {
     throw InteropError(fmt::format(
         "reading the render targets into a pixel buffer failed with OpenGL error 0x{:04x}", error));
   }
@@ -158,7 +159,7 @@ HostCopy::~HostCopy() {
 }
 
 void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
-  const TransferScope restore;
+  const PackScope restore(before());
   SharedFrame regions = slot.images.regions();
   glBindFramebuffer(GL_READ_FRAMEBUFFER, reader_.get());
   glBindBuffer(GL_PIXEL_PACK_BUFFER, slot.pixels.gl_buffer());
@@ -170,7 +171,8 @@ void HostCopy::read_back(Slot& slot, const FrameTextures& from, Extent render) {
     void* const start = slot.pixels.gl_pointer(view.offset);
     glPixelStorei(GL_PACK_ROW_LENGTH, static_cast<GLint>(view.pitch / bytes_per_pixel(plane.format)));
     if (is_depth && !capabilities().reads_depth) {
-      depth_reader_.read(texture, render, start);
+      depth_reader_.read(texture, render, start, before());
+      glBindFramebuffer(GL_READ_FRAMEBUFFER, reader_.get());
       continue;
     }
     const GLenum attachment = is_depth ? GL_DEPTH_ATTACHMENT : GL_COLOR_ATTACHMENT0;
@@ -199,7 +201,6 @@ void HostCopy::resize(Slot& slot, Extent render) {
   if (settings_.targets == Targets::kViewport) return;
   const bool same = targets_->extent() == render && slot.images.extent() == render;
   const Stopwatch watch;
-  const TransferScope restore;
   targets_ = &pool_.at(render);
   slot.images.resize(render);
   if (!same) traffic_.resize_us = 1000 * watch.milliseconds();
@@ -239,7 +240,7 @@ Status HostCopy::submit(int slot) {
 
 Status HostCopy::submit(int slot, const FrameTextures& textures, Extent render) {
   if (Status status = check_owner("submit", true); !status.ok()) return status;
-  if (Status status = check_textures(planes_, textures, render); !status.ok()) return status;
+  if (Status status = textures_->check(planes_, textures, render); !status.ok()) return status;
   if (Status status = ring_.begin_draw(slot, render); !status.ok()) return status;
   if (Status status = take_back("submit", slot); !status.ok()) return status;
   read_back(slot_at(slot), textures, render);
@@ -295,7 +296,7 @@ Status HostCopy::present(GLuint into) {
   } catch (const std::exception& error) {
     return Status::device(fmt::format("present() on '{}': {}", device_.info().name, error.what()));
   }
-  const TransferScope restore;
+  const UnpackScope restore(before());
   const GlFormat names = gl_format(settings_.picture);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, output_.gl_buffer());
   texture_write(into != 0 ? into : presented_.get(), 0, settings_.output_extent, names.format, names.type,

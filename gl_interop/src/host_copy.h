@@ -34,7 +34,7 @@ class TargetPool {
   // `largest.target_extent` is the largest size that at() will be asked for. Makes nothing yet.
   explicit TargetPool(const TargetNeeds& largest);
 
-  // Targets of this size, valid until the next call. Throws std::runtime_error where they cannot be made.
+  // Targets of this size, valid until the next call. Throws InteropError where they cannot be made.
   const RenderTargets& at(Extent extent);
 
   std::uint64_t bytes() const;  // sum over all that are kept

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <mutex>
+#include <new>
+#include <utility>
 
 #include "quincunx_gl/capabilities.h"
+#include "state_scope.h"
 
 namespace quincunx::gl {
 namespace {
@@ -48,6 +52,16 @@ ClMem PixelMemory::sub_buffer(std::size_t offset, std::size_t bytes) const {
   return part;
 }
 
+// A list without allocations, as little else may work when this is called.
+void PixelMemory::never_free(const std::shared_ptr<PixelMemory>& memory) noexcept {
+  static std::mutex mutex;
+  alignas(std::shared_ptr<PixelMemory>) static std::byte place[sizeof(std::shared_ptr<PixelMemory>)];
+  static auto* const newest = new (place) std::shared_ptr<PixelMemory>;  // never destroyed
+  const std::lock_guard lock(mutex);
+  if (std::exchange(memory->is_kept_, true)) return;
+  memory->kept_before_ = std::exchange(*newest, memory);
+}
+
 PixelBuffer::PixelBuffer(const Device& device, std::size_t bytes, Transfer transfer)
     : PixelBuffer(device, std::make_shared<PixelMemory>(device, bytes, transfer), 0,
                   PixelMemory::whole_pages(bytes)) {}
@@ -73,12 +87,11 @@ std::uint8_t* PixelMemory::map_buffer() {
       GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
   const auto allocated = static_cast<GLsizeiptr>(size_ + kPageBytes);
   buffer_ = Buffer::create();
-  glBindBuffer(GL_COPY_WRITE_BUFFER, buffer_.get());
+  const BindingScope bound = BindingScope::buffer(buffer_.get());
   glBufferStorage(GL_COPY_WRITE_BUFFER, allocated, nullptr, kAccess | GL_CLIENT_STORAGE_BIT);
   void* const mapped = glMapBufferRange(GL_COPY_WRITE_BUFFER, 0, allocated, kAccess);
   if (mapped == nullptr) {
-    throw InteropError(fmt::format("OpenGL could not map a pixel buffer of {} bytes (error 0x{:04x})",
-                                   allocated, glGetError()));
+    throw InteropError(fmt::format("OpenGL could not map a pixel buffer of {} bytes", allocated));
   }
   return static_cast<std::uint8_t*>(mapped);
 }
@@ -102,9 +115,7 @@ void PixelBuffer::settle() noexcept {
   code = clFinish(device_.queue());
   if (code == CL_SUCCESS) return;
   log_release_failure(code);
-  // A device that does not answer may still be at work: the memory stays until the process ends.
-  static auto* const kept = new std::vector<std::shared_ptr<PixelMemory>>;
-  kept->push_back(memory_);
+  PixelMemory::never_free(memory_);  // a device that does not answer may still be at work
 }
 
 void PixelBuffer::take_back(Access access) {

@@ -29,6 +29,8 @@ class PixelMemory {
   PixelMemory& operator=(const PixelMemory&) = delete;
 
   static std::size_t whole_pages(std::size_t bytes);
+  // Keeps memory until the process ends. Thread-safe.
+  static void never_free(const std::shared_ptr<PixelMemory>& memory) noexcept;
 
   GLuint gl_buffer() const { return buffer_.get(); }  // 0: client memory
   void* gl_pointer(std::size_t offset) const {
@@ -53,6 +55,8 @@ class PixelMemory {
   std::intptr_t gl_start_ = 0;        // byte 0: its offset in the buffer, or its address
   std::uint8_t* bytes_ = nullptr;
   ClMem memory_;
+  bool is_kept_ = false;  // by never_free()
+  std::shared_ptr<PixelMemory> kept_before_;
 };
 
 class PixelBuffer {

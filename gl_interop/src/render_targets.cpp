@@ -5,13 +5,13 @@
 
 #include <array>
 #include <cstdint>
-#include <stdexcept>
+#include <exception>
+#include <utility>
 #include <vector>
 
 #include "depth_copy.h"
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
-#include "quincunx_gl/target_readback.h"
 #include "state_scope.h"
 
 namespace quincunx::gl {
@@ -28,13 +28,12 @@ Texture make_texture(GLenum format, Extent extent) {
   return texture;
 }
 
-void check_extent(Extent extent) {
+Status check_extent(Extent extent) {
   GLint limit = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
-  if (extent.width < 1 || extent.height < 1 || extent.width > limit || extent.height > limit) {
-    throw std::runtime_error(fmt::format("the target extent is {}x{}; it must lie within 1x1 and {}x{}",
-                                         extent.width, extent.height, limit, limit));
-  }
+  if (extent.width >= 1 && extent.height >= 1 && extent.width <= limit && extent.height <= limit) return {};
+  return Status::invalid(fmt::format("the target extent is {}x{}; it must lie within 1x1 and {}x{}",
+                                     extent.width, extent.height, limit, limit));
 }
 
 // Depth of infinity, and the pattern as stencil.
@@ -66,7 +65,7 @@ std::vector<float> read_depth(const RenderTargets& targets, Extent render) {
     read_attachment(targets.framebuffer(), GL_COLOR_ATTACHMENT0, render, GL_DEPTH_COMPONENT, GL_FLOAT,
                     pixels.data());
   } else {
-    DepthReader(targets.extent()).read(targets.depth(), render, pixels.data());
+    DepthReader(targets.extent()).read(targets.depth(), render, pixels.data(), Before::kAsked);
   }
   return pixels;
 }
@@ -75,13 +74,12 @@ std::vector<float> read_depth(const RenderTargets& targets, Extent render) {
 
 RenderTargets::RenderTargets(const TargetNeeds& needs)
     : extent_(needs.target_extent), colour_format_(needs.colour), has_checkerboard_(needs.checkerboard) {
-  check_extent(extent_);
   framebuffer_ = Framebuffer::create();
   const bool encoded = colour_format_ == PixelFormat::kRGBA8;
   colour_ = make_texture(encoded ? GL_SRGB8_ALPHA8 : GL_RGBA16F, extent_);
   depth_ = make_texture(has_checkerboard_ ? GL_DEPTH32F_STENCIL8 : GL_DEPTH_COMPONENT32F, extent_);
   if (has_checkerboard_) {
-    const TransferScope restore;
+    const UnpackScope restore;
     write_checkerboard(depth_, extent_);
   }
   if (needs.velocity) velocity_ = make_texture(GL_RG16F, extent_);
@@ -95,13 +93,19 @@ RenderTargets::RenderTargets(const TargetNeeds& needs)
   const GLenum second = velocity_ ? GL_COLOR_ATTACHMENT1 : GL_NONE;
   const GLenum third = reactive_ ? GL_COLOR_ATTACHMENT2 : GL_NONE;
   draw_buffers(name, {GL_COLOR_ATTACHMENT0, second, third});
-  const GLenum complete = framebuffer_status(name);
-  if (complete != GL_FRAMEBUFFER_COMPLETE) {
-    throw std::runtime_error(
-        fmt::format("a {}x{} framebuffer of {}, depth 32F{}{}{} is not complete (0x{:04x})", extent_.width,
-                    extent_.height, name_of(colour_format_), has_checkerboard_ ? " with stencil" : "",
-                    velocity_ ? ", RG16F" : "", reactive_ ? ", R8" : "", complete));
-  }
+}
+
+Result<RenderTargets> RenderTargets::create(const TargetNeeds& needs) try {
+  if (Status status = check_extent(needs.target_extent); !status.ok()) return status;
+  RenderTargets made(needs);
+  const GLenum complete = framebuffer_status(made.framebuffer());
+  if (complete == GL_FRAMEBUFFER_COMPLETE) return made;
+  return Status::unsupported(
+      fmt::format("a {}x{} framebuffer of {}, depth 32F{}{}{} is not complete (0x{:04x})", made.extent_.width,
+                  made.extent_.height, name_of(needs.colour), needs.checkerboard ? " with stencil" : "",
+                  needs.velocity ? ", RG16F" : "", needs.reactive ? ", R8" : "", complete));
+} catch (const std::exception& error) {
+  return Status::device(error.what());
 }
 
 std::uint64_t RenderTargets::bytes() const {
@@ -122,8 +126,13 @@ void RenderTargets::clear(Extent render) const {
   if (reactive_) gl::clear(framebuffer_.get(), GL_COLOR, 2, kZero.data());
 }
 
-TargetPixels read_targets(const RenderTargets& targets, Extent render) {
-  const TransferScope restore;
+Result<TargetPixels> read_targets(const RenderTargets& targets, Extent render) try {
+  const Extent whole = targets.extent();
+  if (render.width < 1 || render.height < 1 || render.width > whole.width || render.height > whole.height) {
+    return Status::invalid(fmt::format("read_targets: render is {}x{}; it must lie within 1x1 and {}x{}",
+                                       render.width, render.height, whole.width, whole.height));
+  }
+  const PackScope restore;
   TargetPixels pixels;
   pixels.render_extent = render;
   if (targets.colour_format() == PixelFormat::kRGBA8) {
@@ -143,6 +152,8 @@ TargetPixels read_targets(const RenderTargets& targets, Extent render) {
         read_plane<std::uint8_t>(targets, GL_COLOR_ATTACHMENT2, render, GL_RED, GL_UNSIGNED_BYTE, 1);
   }
   return pixels;
+} catch (const std::exception& error) {
+  return Status::unsupported(error.what());
 }
 
 }  // namespace quincunx::gl

@@ -245,7 +245,9 @@ Status FrameSource::begin(std::int64_t index, const FrameView& view, bool keep) 
     const Status status = renderer().draw(*targets_of(Feed::Kind::kFocus), frame.region->view);
     if (!status.ok()) return status;
   }
-  if (keep) keep_targets(frame);
+  if (keep) {
+    if (Status status = keep_targets(frame); !status.ok()) return status;
+  }
   drawn_.push_back(std::move(frame));
   return {};
 }
@@ -259,20 +261,23 @@ Result<gl::TargetPixels> FrameSource::draw_relative_to(double seconds) {
   auto targets = feed.bridge->begin_draw(feed.slot(frame), view.render);
   if (!targets.ok()) return targets.status();
   if (Status status = renderer().draw(*targets.value(), view); !status.ok()) return status;
-  gl::TargetPixels pixels = gl::read_targets(*targets.value(), view.render);
+  auto pixels = gl::read_targets(*targets.value(), view.render);
   if (Status status = feed.bridge->submit(feed.slot(frame)); !status.ok()) return status;
   return pixels;
 }
 
-void FrameSource::keep_targets(DrawnFrame& frame) const {
+Status FrameSource::keep_targets(DrawnFrame& frame) const {
   for (const Feed& feed : feeds_) {
     if (feed.targets == nullptr) continue;
     gl::TargetPixels& kept = feed.kind == Feed::Kind::kPicture     ? frame.targets
                              : feed.kind == Feed::Kind::kParticles ? frame.particles
                                                                    : frame.focus;
-    kept = gl::read_targets(*feed.targets, feed.viewport(frame));
+    auto read = gl::read_targets(*feed.targets, feed.viewport(frame));
+    if (!read.ok()) return read.status();
+    kept = std::move(read).value();
   }
   if (frame.view.parity) blank_unshaded(frame.targets, *frame.view.parity);
+  return {};
 }
 
 Status FrameSource::submit() {

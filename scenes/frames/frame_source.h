@@ -18,7 +18,6 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx_gl/bridge.h"
 #include "quincunx_gl/context.h"
-#include "quincunx_gl/target_readback.h"
 #include "render/renderer.h"
 #include "scene.h"
 
@@ -148,7 +147,7 @@ class FrameSource {
   Status open_focus_feed(const gl::BridgeSettings& bridging, const std::vector<ResolvePlan>& plans);
   Extent particle_target() const;
   const gl::RenderTargets* targets_of(Feed::Kind kind) const;  // null: it has none in the frame begun last
-  void keep_targets(DrawnFrame& frame) const;
+  Status keep_targets(DrawnFrame& frame) const;
   void bind(Feed::Kind kind, const gl::SharedFrame& shared, FrameInputs& inputs);
 
   FrameSourceSettings settings_;

@@ -181,7 +181,7 @@ void add_machine_options(tools::CommandLine& app, PictureOptions& options) {
                                                                  {"surfaceless", gl::Platform::kSurfaceless},
                                                                  {"device", gl::Platform::kDevice}};
   app.add_option("--device", options.device,
-                 "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
+                 "OpenCL device: cpu, gpu, an index of --list-devices or part of a name");
   tools::add_choice(app, "--interop", options.interop, kInterops,
                     "How frames pass from OpenGL to OpenCL: auto, gl or copy");
   tools::add_choice(app, "--egl-platform", options.platform, kPlatforms, "auto, surfaceless or device");

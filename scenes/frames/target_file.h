@@ -11,7 +11,7 @@
 #include "quincunx/device.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
-#include "quincunx_gl/target_readback.h"
+#include "quincunx_gl/render_targets.h"
 
 namespace quincunx::scenes {
 

@@ -14,7 +14,7 @@
 #include "quincunx/advanced/method.h"
 #include "quincunx/frame.h"
 #include "quincunx/status.h"
-#include "quincunx_gl/part_timer.h"
+#include "quincunx_gl/frame_timer.h"
 #include "quincunx_gl/render_targets.h"
 #include "render/view_math.h"
 #include "scene.h"

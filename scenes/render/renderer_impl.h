@@ -47,7 +47,7 @@ class TruthTargets {
   std::vector<float> read() const;  // RGBA, top row first; waits for the GPU
 
  private:
-  explicit TruthTargets(Extent output);
+  explicit TruthTargets(gl::RenderTargets frame);
 
   gl::RenderTargets frame_;
   gl::Texture sum_;

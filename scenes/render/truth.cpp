@@ -16,18 +16,20 @@
 
 namespace quincunx::scenes {
 
-TruthTargets::TruthTargets(Extent output)
-    : frame_({output, false, false}),
+TruthTargets::TruthTargets(gl::RenderTargets frame)
+    : frame_(std::move(frame)),
       sum_(gl::Texture::create()),
       sum_framebuffer_(gl::Framebuffer::create()),
       nothing_(gl::VertexArray::create()) {
-  gl::texture_storage(sum_.get(), 1, GL_RGBA32F, output);
+  gl::texture_storage(sum_.get(), 1, GL_RGBA32F, frame_.extent());
   gl::attach(sum_framebuffer_.get(), GL_COLOR_ATTACHMENT0, sum_.get());
 }
 
 Result<TruthTargets> TruthTargets::create(Extent output) {
   try {
-    TruthTargets targets(output);
+    auto frame = gl::RenderTargets::create({output, false, false});
+    if (!frame.ok()) return frame.status();
+    TruthTargets targets(std::move(frame).value());
     if (gl::framebuffer_status(targets.sum_framebuffer_.get()) != GL_FRAMEBUFFER_COMPLETE) {
       return Status::device(
           "the driver refuses a framebuffer with an RGBA32F texture, which truth is summed up in");

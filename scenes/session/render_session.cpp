@@ -44,9 +44,12 @@ Result<std::vector<Vec2>> FrameScores::motion_of(Renderer& renderer, FrameView v
   view.render = options_.output;
   view.jitter = {};
   view.parity.reset();
-  const gl::RenderTargets targets({.target_extent = options_.output, .reactive = false});
-  if (Status status = renderer.draw(targets, view); !status.ok()) return status;
-  return velocity_of(gl::read_targets(targets, options_.output));
+  const auto targets = gl::RenderTargets::create({.target_extent = options_.output, .reactive = false});
+  if (!targets.ok()) return targets.status();
+  if (Status status = renderer.draw(*targets, view); !status.ok()) return status;
+  const auto pixels = gl::read_targets(*targets, options_.output);
+  if (!pixels.ok()) return pixels.status();
+  return velocity_of(*pixels);
 }
 
 Result<std::vector<float>> FrameScores::truth_at(FrameSource& source, double seconds) const {

@@ -13,7 +13,7 @@
 
 #include "bench/speed_error/bench_quality.h"
 #include "frames/frame_source.h"
-#include "quincunx_gl/target_readback.h"
+#include "quincunx_gl/render_targets.h"
 
 namespace quincunx::bench {
 namespace {
@@ -166,13 +166,15 @@ TEST(Geometry, TheSkyMovesAsTheCameraTurnsWhateverTheSceneSays) {
   honest.sky.has_velocity = true;
   auto renderer = scenes::Renderer::create(honest);
   ASSERT_TRUE(renderer.ok()) << renderer.status().message();
-  const gl::RenderTargets targets({.target_extent = kOutput, .velocity = true, .reactive = false});
+  const gl::RenderTargets targets =
+      gl::RenderTargets::create({.target_extent = kOutput, .velocity = true, .reactive = false}).value();
   const auto drawn = geometry_at(stage->renderer(), targets, 1.0 / 60, 0);
   scenes::FrameView view;
   view.render = kOutput;
   view.seconds = 1.0 / 60;
   ASSERT_TRUE(renderer->draw(targets, view).ok());
-  const gl::TargetPixels pixels = gl::read_targets(targets, kOutput);  // what the honest sky has written
+  const gl::TargetPixels pixels =
+      gl::read_targets(targets, kOutput).value();  // what the honest sky has written
   ASSERT_TRUE(drawn.ok()) << drawn.status().message();
   ASSERT_EQ(drawn->velocity.size(), pixels.depth.size());
   constexpr float kHalfRounding = 4e-6f;  // a step of velocities below 1/128: drivers may cut off

@@ -5,8 +5,10 @@
 #include <cstring>
 
 #include "cl_interposer.h"
+#include "gl_call_counter.h"
 #include "interop_fixture.h"
 #include "quincunx/resolve_service.h"
+#include "state_scope.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -181,6 +183,7 @@ TEST_P(ImportTest, EveryFormatOfDepthArrives) {
       Case{GL_DEPTH24_STENCIL8, GL_DEPTH_STENCIL, GL_UNSIGNED_INT_24_8, packed.data(), 0x1p-24f}};
   for (const Case& c : cases) {
     const Texture depth = make_texture(c.internal, c.format, c.type, kSize, c.texels);
+    bridge->textures_changed();  // the name may be that of the texture before
     const auto frame = bridge->import({.colour = colour.get(), .depth = depth.get()}, kSize);
     ASSERT_TRUE(frame.ok()) << frame.status().message();
     const Bytes bytes = bytes_in(frame->depth, kSize);
@@ -189,6 +192,109 @@ TEST_P(ImportTest, EveryFormatOfDepthArrives) {
     for (std::size_t i = 0; i < seen.size(); ++i)
       ASSERT_NEAR(seen[i], expected[i], c.tolerance) << i << " of format 0x" << std::hex << c.internal;
   }
+}
+
+// Counts the calls that ask OpenGL, those about textures apart.
+class Questions {
+ public:
+  Questions() = default;
+  int about_textures() const {
+    return levels_.count() + parameters_.count() + direct_.count() + names_.count() + errors_.count();
+  }
+  int about_state() const {
+    return integers_.count() + indexed_.count() + booleans_.count() + enabled_.count();
+  }
+
+  // libepoxy fills its pointers in at the first call.
+  static void warm_up(bool desktop) {
+    GLint value = 0;
+    GLboolean flag = GL_FALSE;
+    const Texture texture = Texture::create();
+    const BindingScope bound = BindingScope::texture(texture.get());
+    glGetTexLevelParameteriv(GL_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &value);
+    glGetTexParameteriv(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, &value);
+    if (desktop) glGetTextureParameteriv(texture.get(), GL_TEXTURE_MIN_FILTER, &value);
+    glIsTexture(texture.get());
+    glGetIntegeri_v(GL_IMAGE_BINDING_NAME, 0, &value);
+    glGetBooleani_v(GL_IMAGE_BINDING_LAYERED, 0, &flag);
+    glIsEnabled(GL_BLEND);
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+  }
+
+ private:
+  CallCounter<&epoxy_glGetTexLevelParameteriv> levels_;
+  CallCounter<&epoxy_glGetTexParameteriv> parameters_;
+  CallCounter<&epoxy_glGetTextureParameteriv> direct_;
+  CallCounter<&epoxy_glIsTexture> names_;
+  CallCounter<&epoxy_glGetError> errors_;
+  CallCounter<&epoxy_glGetIntegerv> integers_;
+  CallCounter<&epoxy_glGetIntegeri_v> indexed_;
+  CallCounter<&epoxy_glGetBooleani_v> booleans_;
+  CallCounter<&epoxy_glIsEnabled> enabled_;
+};
+
+TEST_P(ImportTest, ASteadyFrameAsksNothingAboutTextures) {
+  for (const bool restores : {true, false}) {
+    BridgeSettings settings = all_planes(kTarget, kOutput);
+    settings.restores_state = restores;
+    const auto bridge = make(settings);
+    ASSERT_NE(bridge, nullptr);
+    const Textures textures(settings, kTarget, 1);
+    const Texture result = make_texture(PixelFormat::kRGBA8, kOutput, 2);
+    const auto carry = [&] {
+      EXPECT_TRUE(bridge->import(textures.names(), kTarget).ok());
+      EXPECT_TRUE(bridge->begin_present().ok());
+      EXPECT_TRUE(bridge->present(result.get()).ok());
+    };
+    carry();
+    Questions::warm_up(api() == Api::kGl45);
+    int about_textures = 0, about_state = 0;
+    {
+      const Questions asked;
+      for (int frame = 0; frame < 4; ++frame)
+        carry();
+      about_textures = asked.about_textures();
+      about_state = asked.about_state();
+    }
+    EXPECT_EQ(about_textures, 0);
+    if (GetParam() == Way::kCopy) {
+      EXPECT_EQ(about_state, restores ? 4 * 14 : 0) << "5 of the pixel store and 3 more, 5 and 1 more";
+    } else if (GetParam() == Way::kEs) {
+      EXPECT_LE(about_state, restores ? 4 * 24 : 4);
+    }
+    bridge->textures_changed();
+    const Questions again;
+    EXPECT_TRUE(bridge->import(textures.names(), kTarget).ok());
+    EXPECT_GT(again.about_textures(), 0);
+  }
+}
+
+// A texture that has grown is noticed, as it seems too small; another format has to be told.
+TEST_P(ImportTest, ATextureThatChangedIsAskedAboutAnew) {
+  BridgeSettings settings = {.target_extent = kTarget, .output_extent = kOutput, .depth = true};
+  const auto bridge = make(settings);
+  ASSERT_NE(bridge, nullptr);
+  const auto respecify = [](const Texture& texture, GLenum internal, GLenum format, Extent extent,
+                            const void* texels) {
+    const BindingScope bound = BindingScope::texture(texture.get());
+    glTexImage2D(GL_TEXTURE_2D, 0, static_cast<GLint>(internal), extent.width, extent.height, 0, format,
+                 GL_FLOAT, texels);
+  };
+  constexpr Extent kSmall = {20, 10};
+  const Texture colour = make_texture(PixelFormat::kRGBA16F, kTarget, 1);
+  const Texture depth = make_texture(GL_R32F, GL_RED, GL_FLOAT, kSmall, depths(kSmall, 3).data());
+  const FrameTextures textures = {.colour = colour.get(), .depth = depth.get()};
+  ASSERT_TRUE(bridge->import(textures, kSmall).ok());
+  EXPECT_FALSE(bridge->import(textures, kTarget).ok());
+  respecify(depth, GL_R32F, GL_RED, kTarget, depths(kTarget, 4).data());
+  auto frame = bridge->import(textures, kTarget);
+  ASSERT_TRUE(frame.ok()) << frame.status().message();
+  EXPECT_TRUE(bytes_in(frame->depth, kTarget) == crop_of_depth(kTarget, kTarget, 4));
+  respecify(depth, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, kTarget, depths(kTarget, 5).data());
+  bridge->textures_changed();
+  frame = bridge->import(textures, kTarget);
+  ASSERT_TRUE(frame.ok()) << frame.status().message();
+  EXPECT_TRUE(bytes_in(frame->depth, kTarget) == crop_of_depth(kTarget, kTarget, 5));
 }
 
 TEST_P(ImportTest, WhatCannotBeTakenIsNamed) {

@@ -19,7 +19,7 @@ GLint internal_format(GLuint texture) {
 }
 
 TEST_F(RenderTargetsTest, HaveTheFormatsAndSizeOfTheContract) {
-  const RenderTargets targets({.target_extent = kTarget});
+  const RenderTargets targets = RenderTargets::create({.target_extent = kTarget}).value();
   EXPECT_EQ(targets.extent(), kTarget);
   EXPECT_EQ(internal_format(targets.colour()), GL_RGBA16F);
   EXPECT_EQ(internal_format(targets.depth()), GL_DEPTH_COMPONENT32F);
@@ -36,7 +36,8 @@ TEST_F(RenderTargetsTest, HaveTheFormatsAndSizeOfTheContract) {
 }
 
 TEST_F(RenderTargetsTest, WhatIsNotNeededIsNotMade) {
-  const RenderTargets targets({.target_extent = kTarget, .velocity = false, .reactive = true});
+  const RenderTargets targets =
+      RenderTargets::create({.target_extent = kTarget, .velocity = false, .reactive = true}).value();
   EXPECT_EQ(targets.velocity(), 0u);
   ASSERT_NE(targets.reactive(), 0u);
   GLint second = -1;
@@ -50,15 +51,15 @@ TEST_F(RenderTargetsTest, WhatIsNotNeededIsNotMade) {
 }
 
 TEST_F(RenderTargetsTest, ImpossibleSizesAreRefused) {
-  EXPECT_THROW(RenderTargets({.target_extent = {0, 4}}), std::runtime_error);
-  EXPECT_THROW(RenderTargets({.target_extent = {4, -1}}), std::runtime_error);
-  EXPECT_THROW(RenderTargets({.target_extent = {1 << 24, 4}}), std::runtime_error);
+  EXPECT_EQ(RenderTargets::create({.target_extent = {0, 4}}).status().code(), StatusCode::kInvalidArgument);
+  EXPECT_FALSE(RenderTargets::create({.target_extent = {4, -1}}).ok());
+  EXPECT_FALSE(RenderTargets::create({.target_extent = {1 << 24, 4}}).ok());
 }
 
 // Scissor and write masks of whoever drew before must not keep the clear from doing its work. Finite values:
 // a partial clear on llvmpipe rewrites whole 4x4 blocks and makes signalling NaN beside the rectangle quiet.
 TEST_F(RenderTargetsTest, ClearTouchesTheViewportOnlyAndDepthWhole) {
-  const RenderTargets targets({.target_extent = kTarget});
+  const RenderTargets targets = RenderTargets::create({.target_extent = kTarget}).value();
   const std::vector<Plane> planes = planes_of(all_planes(kTarget, kTarget));
   constexpr std::array<GLint, 4> kBox = {3, 4, 5, 6};
   for (const Extent render : {Extent{1, 1}, Extent{7, 5}, Extent{36, 23}, kTarget}) {

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The bridge's calls put OpenGL's state back as it was, however unusual, and work whatever it is.
+// Each public call puts OpenGL's state back as it was, however unusual, works whatever it is, and leaves errors of the
+// caller's to the caller.
 #include <fmt/format.h>
 
 #include <functional>
 #include <map>
+#include <optional>
 
 #include "cl_interposer.h"
 #include "interop_fixture.h"
+#include "quincunx_gl/frame_timer.h"
+#include "skip.h"
 
 namespace quincunx::gl::testing {
 namespace {
@@ -41,15 +45,37 @@ class StateTest : public InteropTest, public ::testing::WithParamInterface<Way> 
   State state() const;
   void make_unusual();
 
-  // Runs a call and compares.
+  // Runs a call while an error of the caller's waits, and compares.
   void keeps(const char* call, const std::function<void()>& run) {
     const State before = state();
+    const GLenum error = raise_an_error();
     run();
+    EXPECT_EQ(glGetError(), error) << call;
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR}) << call;
     const State after = state();
     for (const auto& [name, value] : before)
       EXPECT_EQ(after.at(name), value) << call << " changed " << name;
   }
 
+  // Raises errors of each kind in turns, and returns which.
+  GLenum raise_an_error() {
+    switch (errors_++ % 4) {
+      case 0:
+        glEnable(GL_NONE);
+        return GL_INVALID_ENUM;
+      case 1:
+        glViewport(0, 0, -1, -1);
+        return GL_INVALID_VALUE;
+      case 2:
+        glUseProgram(unlinked_.get());
+        return GL_INVALID_OPERATION;
+      default:
+        return GL_NO_ERROR;
+    }
+  }
+
+  int errors_ = 0;
+  Program unlinked_;
   std::vector<Texture> textures_;
   std::vector<Buffer> buffers_;
   std::vector<Framebuffer> framebuffers_;
@@ -103,8 +129,11 @@ constexpr std::array kQueries = {GL_ARRAY_BUFFER_BINDING,
                                  GL_DEPTH_CLEAR_VALUE,
                                  GL_STENCIL_CLEAR_VALUE,
                                  GL_BLEND_SRC_RGB,
+                                 GL_BLEND_DST_RGB,
+                                 GL_BLEND_SRC_ALPHA,
                                  GL_BLEND_DST_ALPHA,
                                  GL_BLEND_EQUATION_RGB,
+                                 GL_BLEND_EQUATION_ALPHA,
                                  GL_BLEND_COLOR,
                                  GL_CULL_FACE_MODE,
                                  GL_FRONT_FACE,
@@ -179,6 +208,7 @@ Texture made_texture(GLenum format, Extent extent) {
 }
 
 void StateTest::make_unusual() {
+  unlinked_ = Program::create();
   for (int i = 0; i < 4; ++i) {
     textures_.push_back(made_texture(GL_RGBA8, {8, 8}));
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(i));
@@ -311,11 +341,75 @@ TEST_P(StateTest, EveryCallPutsItBackAndFramesArrive) {
   bridge.reset();
 }
 
+// The calls that no bridge makes.
+class CallStateTest : public StateTest {};
+
+TEST_P(CallStateTest, TargetsTimersAndCallsByNamePutItBack) {
+  make_unusual();
+  ASSERT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+  std::optional<RenderTargets> targets;
+  keeps("RenderTargets::create",
+        [&] { targets = RenderTargets::create({.target_extent = kTarget, .checkerboard = true}).value(); });
+  keeps("clear", [&] { targets->clear(kRender); });
+  keeps("read_targets", [&] { EXPECT_EQ(read_targets(*targets, kRender)->depth.front(), 0); });
+
+  const Texture texture = Texture::create();
+  const std::array<std::uint8_t, 16> texels = {9};
+  keeps("texture_storage", [&] { texture_storage(texture.get(), 2, GL_RGBA8, {2, 2}); });
+  keeps("texture_parameter",
+        [&] { texture_parameter(texture.get(), GL_TEXTURE_MIN_FILTER, GLint{GL_NEAREST}); });
+  keeps("texture_parameter", [&] { texture_parameter(texture.get(), GL_TEXTURE_MIN_LOD, 0.5f); });
+  keeps("texture_border", [&] { texture_border(texture.get(), std::array<GLfloat, 4>{}.data()); });
+  keeps("texture_mipmaps", [&] { texture_mipmaps(texture.get()); });
+  const Buffer buffer = Buffer::create();
+  keeps("buffer_storage", [&] { buffer_storage(buffer.get(), 16); });
+  keeps("buffer_write", [&] { buffer_write(buffer.get(), 0, 16, texels.data()); });
+  const Framebuffer framebuffer = Framebuffer::create();
+  keeps("attach", [&] { attach(framebuffer.get(), GL_COLOR_ATTACHMENT0, texture.get()); });
+  keeps("draw_buffers", [&] { draw_buffers(framebuffer.get(), {GL_COLOR_ATTACHMENT0}); });
+  keeps("framebuffer_status", [&] { EXPECT_NE(framebuffer_status(framebuffer.get()), GLenum{0}); });
+  keeps("clear", [&] { clear(framebuffer.get(), GL_COLOR, 0, std::array<GLfloat, 4>{}.data()); });
+
+  std::optional<FrameTimer> frames;
+  keeps("FrameTimer::create", [&] { frames = FrameTimer::create().value(); });
+  keeps("FrameTimer", [&] {
+    frames->begin(1, kRender);
+    frames->end();
+    glFinish();
+    EXPECT_TRUE(frames->poll().has_value());
+  });
+  for (const TimerMethod method : {TimerMethod::kQuery, TimerMethod::kFence}) {
+    if (method == TimerMethod::kQuery && !capabilities().time_queries) continue;
+    keeps("PartTimer", [&] {
+      PartTimer parts = PartTimer::create(method).value();
+      parts.begin(1, kRender);
+      parts.end();
+      glFinish();
+      EXPECT_TRUE(parts.poll().has_value());
+    });
+  }
+  keeps("Context::create", [&] { EXPECT_TRUE(Context::create(Platform::kCurrent).ok()); });
+}
+
+// While a query of the caller's is active none can be tried, and none may be ended.
+TEST_P(CallStateTest, AnActiveQueryStaysActive) {
+  if (!capabilities().time_queries) QUINCUNX_SKIP("a context without queries of time");
+  const TimeQuery query = TimeQuery::create();
+  glBeginQuery(GL_TIME_ELAPSED, query.get());
+  EXPECT_EQ(FrameTimer::create().value().method(), TimerMethod::kFence);
+  GLint active = 0;
+  glGetQueryiv(GL_TIME_ELAPSED, GL_CURRENT_QUERY, &active);
+  EXPECT_EQ(static_cast<GLuint>(active), query.get());
+  glEndQuery(GL_TIME_ELAPSED);
+}
+
 std::string name_of_case(const ::testing::TestParamInfo<Way>& entry) {
   return entry.param.name;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, StateTest, ::testing::ValuesIn(kWays), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Each, CallStateTest, ::testing::Values(Way{"Gl"}, Way{"Es", Api::kEs3}),
+                         name_of_case);
 
 }  // namespace
 }  // namespace quincunx::gl::testing

@@ -2,7 +2,6 @@
 #include "interop_fixture.h"
 #include "quincunx_gl/frame_timer.h"
 #include "quincunx_gl/handle.h"
-#include "quincunx_gl/part_timer.h"
 #include "skip.h"
 
 namespace quincunx::gl::testing {

@@ -109,7 +109,7 @@ TEST_F(BackgroundTest, AFaultStaysWithinTheViewport) {
   Scene scene = open_scene("faults").value();
   scene.faults = {{.seconds = 0, .place = {0.95f, 0.9f}, .side = 0.5f, .value = 50}};
   Renderer renderer = renderer_of(scene);
-  const gl::RenderTargets targets({kSize, true, true});
+  const gl::RenderTargets targets = gl::RenderTargets::create({kSize, true, true}).value();
   fill_with(targets, 0.25f);
   const Extent render{100, 60};
   ASSERT_TRUE(renderer.draw(targets, view_of_size(render, {}, 0, -kFrame)).ok());

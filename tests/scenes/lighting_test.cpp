@@ -367,7 +367,7 @@ TEST_F(ShadowScaleTest, BeyondTheMapThereIsLightAtEachScale) {
 
 TEST_F(ShadowScaleTest, AScaleOutOfItsRangeIsRefused) {
   Renderer renderer = renderer_of(slats_scene(false));
-  const gl::RenderTargets targets({.target_extent = kShadowSize});
+  const gl::RenderTargets targets = gl::RenderTargets::create({.target_extent = kShadowSize}).value();
   for (const float scale : {0.0f, 0.06f, 1.01f, -1.0f, std::nanf("")}) {
     const Status status = renderer.draw(targets, view_at(scale));
     ASSERT_FALSE(status.ok()) << scale;

@@ -38,8 +38,10 @@ struct Frame {
 
 // Draws with particles of their own where `own` is not empty. All targets hold `before` first.
 Frame draw_apart(Renderer& renderer, FrameView view, Extent own, float before = 0) {
-  const gl::RenderTargets targets({.target_extent = kFrame, .checkerboard = view.parity.has_value()});
-  const gl::RenderTargets layer({.target_extent = kFrame, .velocity = false});
+  const gl::RenderTargets targets =
+      gl::RenderTargets::create({.target_extent = kFrame, .checkerboard = view.parity.has_value()}).value();
+  const gl::RenderTargets layer =
+      gl::RenderTargets::create({.target_extent = kFrame, .velocity = false}).value();
   fill_with(layer, before);
   view.particles = own;
   const Status status = renderer.draw(targets, view, {.particles = own == Extent() ? nullptr : &layer});
@@ -135,8 +137,8 @@ TEST_F(ParticleLayerTest, TheFrameItselfHasNone) {
 
 TEST_F(ParticleLayerTest, AViewportThatDoesNotFitIsRefused) {
   Renderer renderer = renderer_of(particle_scene());
-  const gl::RenderTargets targets({.target_extent = kFrame}),
-      layer({.target_extent = {40, 40}, .velocity = false});
+  const auto targets = gl::RenderTargets::create({.target_extent = kFrame}).value();
+  const auto layer = gl::RenderTargets::create({.target_extent = {40, 40}, .velocity = false}).value();
   FrameView view = view_of_size(kFrame);
   for (const Extent own : {Extent{0, 4}, {41, 4}, {4, 54}, {-1, 4}}) {
     view.particles = own;

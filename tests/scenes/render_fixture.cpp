@@ -68,7 +68,7 @@ Renderer renderer_of(const Scene& scene) {
 }
 
 Picture draw(Renderer& renderer, const FrameView& view, Extent target, bool velocity, bool reactive) {
-  const gl::RenderTargets targets({target, velocity, reactive});
+  const gl::RenderTargets targets = gl::RenderTargets::create({target, velocity, reactive}).value();
   const Status status = renderer.draw(targets, view);
   if (!status.ok()) throw std::runtime_error(status.message());
   return read_back(targets);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "quincunx_gl/target_readback.h"
+#include "quincunx_gl/render_targets.h"
 #include "render_fixture.h"
 #include "tools/image/display_light.h"
 
@@ -64,8 +64,9 @@ TEST_F(RenderTest, EncodedTargetsHoldTheLightOfTheScreen) {
   scene.instances.erase(scene.instances.begin() + 1);
   scene.particles = nullptr;
   Renderer renderer = renderer_of(scene);
-  const gl::RenderTargets linear({.target_extent = kSize});
-  const gl::RenderTargets encoded({.target_extent = kSize, .colour = PixelFormat::kRGBA8});
+  const gl::RenderTargets linear = gl::RenderTargets::create({.target_extent = kSize}).value();
+  const gl::RenderTargets encoded =
+      gl::RenderTargets::create({.target_extent = kSize, .colour = PixelFormat::kRGBA8}).value();
   FrameView view = view_of_size(kSize);
   view.display.exposure = 1.5f;
   for (const ToneMap tone_map : {ToneMap::kClamp, ToneMap::kReinhard, ToneMap::kAces}) {
@@ -74,7 +75,7 @@ TEST_F(RenderTest, EncodedTargetsHoldTheLightOfTheScreen) {
     ASSERT_TRUE(renderer.draw(encoded, view).ok());
     const std::vector<float> shown =
         tools::display_light(read_back(linear).colour, tone_map, view.display.exposure);
-    const gl::TargetPixels pixels = gl::read_targets(encoded, kSize);
+    const gl::TargetPixels pixels = gl::read_targets(encoded, kSize).value();
     ASSERT_EQ(pixels.codes.size(), shown.size());
     int differ = 0;
     for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -95,7 +96,8 @@ TEST_F(RenderTest, ACheckerboardDrawsHalfOfThePixels) {
   Renderer renderer = renderer_of(rich_scene());
   FrameView view = view_of_size(kSize, {0.25f, 0.25f}, 0.4, 0.3);
   const Picture whole = draw(renderer, view, kSize);
-  const gl::RenderTargets targets({.target_extent = kSize, .checkerboard = true});
+  const gl::RenderTargets targets =
+      gl::RenderTargets::create({.target_extent = kSize, .checkerboard = true}).value();
   for (const int parity : {0, 1}) {
     targets.clear(kSize);
     view.parity = parity;
@@ -115,7 +117,7 @@ TEST_F(RenderTest, ACheckerboardDrawsHalfOfThePixels) {
   view.parity = 2;
   EXPECT_EQ(renderer.draw(targets, view).message(), "FrameView::parity is 2; it must be 0 or 1");
   view.parity = 0;
-  const gl::RenderTargets plain({.target_extent = kSize});
+  const gl::RenderTargets plain = gl::RenderTargets::create({.target_extent = kSize}).value();
   EXPECT_EQ(renderer.draw(plain, view).message(),
             "FrameView::parity is given, but the targets have no checkerboard");
 }
@@ -126,7 +128,7 @@ TEST_F(RenderTest, ViewportLeavesTheRestOfTheTargetAlone) {
   Renderer renderer = renderer_of(rich_scene());
   const FrameView view = view_of_size(kSize, {0.25f, 0.25f}, 0.4, 0.3);
   const Picture exact = draw(renderer, view, kSize);
-  const gl::RenderTargets targets({kTarget, true, true});
+  const gl::RenderTargets targets = gl::RenderTargets::create({kTarget, true, true}).value();
   fill_with(targets, kPoison);
   ASSERT_TRUE(renderer.draw(targets, view).ok());
   const Picture larger = read_back(targets);
@@ -196,7 +198,7 @@ TEST_F(RenderTest, MovingShadowsStayAsLongAsTheyMay) {
 TEST_F(RenderTest, NothingOfTheFrameBeforeShinesThrough) {
   Renderer renderer = renderer_of(rich_scene());
   const FrameView view = view_of_size(kSize, {}, 0.4, 0.3);
-  const gl::RenderTargets targets({kSize, true, true});
+  const gl::RenderTargets targets = gl::RenderTargets::create({kSize, true, true}).value();
   fill_with(targets, 500);
   ASSERT_TRUE(renderer.draw(targets, view).ok());
   const Picture over_poison = read_back(targets);
@@ -413,7 +415,7 @@ TEST_F(RenderTest, SmallestViewportWorks) {
 
 TEST_F(RenderTest, BadViewsAreRefusedByName) {
   Renderer renderer = renderer_of(rich_scene());
-  const gl::RenderTargets targets({kSize, true, true});
+  const gl::RenderTargets targets = gl::RenderTargets::create({kSize, true, true}).value();
   const Status too_large = renderer.draw(targets, view_of_size({kSize.width + 1, kSize.height}));
   EXPECT_EQ(too_large.code(), StatusCode::kInvalidArgument);
   EXPECT_NE(too_large.message().find("97 x 54"), std::string::npos) << too_large.message();

@@ -98,7 +98,8 @@ TEST_F(WindowView, TheCamerasMotionHoldsTheRegionsOwn) {
 
 TEST_F(WindowView, AnEmptyWindowIsRefused) {
   Renderer renderer = testing::renderer_of(plate_scene());
-  const gl::RenderTargets targets({.target_extent = kWhole, .velocity = true, .reactive = true});
+  const gl::RenderTargets targets =
+      gl::RenderTargets::create({.target_extent = kWhole, .velocity = true, .reactive = true}).value();
   FrameView view = testing::view_of_size(kWhole);
   view.window.size.x = 0;
   const Status status = renderer.draw(targets, view);

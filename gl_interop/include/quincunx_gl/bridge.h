@@ -27,6 +27,9 @@
 
 namespace quincunx::gl {
 
+class CallerTextures;
+enum class Before;
+
 enum class Interop { kAuto, kGl, kCopy };
 
 QUINCUNX_API const char* name_of(Interop interop);  // "gl", "copy", "auto"
@@ -40,6 +43,9 @@ struct BridgeSettings {
   bool reactive = false;             // draw and hand over reactive values
   bool checkerboard = false;         // targets have the stencil of TargetNeeds::checkerboard
   bool imports = false;              // frames come from textures of the caller's; the bridge makes no targets
+  // Calls put back the state that they change, which they ask OpenGL for: some fifteen values a frame. false: they ask
+  // nothing, and leave that state as a new context has it, for a caller who sets what he needs anew.
+  bool restores_state = true;
   PixelFormat colour = PixelFormat::kRGBA16F;         // or RGBA8: see RenderTargets; imported also RGBA32F
   PixelFormat velocity_format = PixelFormat::kRG16F;  // imported also RG32F
   PixelFormat picture =
@@ -78,7 +84,7 @@ class QUINCUNX_API Bridge {
  public:
   static Result<std::unique_ptr<Bridge>> create(const Context& context, const Device& device,
                                                 const BridgeSettings& settings);
-  virtual ~Bridge() = default;
+  virtual ~Bridge();
   Bridge(const Bridge&) = delete;
   Bridge& operator=(const Bridge&) = delete;
 
@@ -106,6 +112,11 @@ class QUINCUNX_API Bridge {
 
   // The same and acquire(), slot after slot: all that a renderer needs that does not draw ahead.
   Result<SharedFrame> import(const FrameTextures& textures, Extent render);
+
+  // Has OpenGL asked again about textures of the caller's. The bridge asks once about each name in each place, so that
+  // a steady frame asks nothing, and again where a texture seems too small or wrong. Call it when a texture got another
+  // format, other levels or filters, or when a name that was deleted is in use again.
+  void textures_changed();
 
   // Output extent, BridgeSettings::picture: the target of FrameOutputs::presented, or of the linear picture. The same
   // view until the bridge is destroyed.
@@ -139,16 +150,18 @@ class QUINCUNX_API Bridge {
   const Traffic& traffic() const { return traffic_; }
 
  protected:
-  Bridge(const BridgeSettings& settings, std::string reason)
-      : settings_(settings), reason_(std::move(reason)) {}
+  Bridge(const BridgeSettings& settings, std::string reason);
 
   // Refuse a call that is not for this bridge's kind of targets, or not in its turn.
   Status check_owner(const char* call, bool imports) const;
-  Status check_present(bool begun, GLuint into) const;
+  Status check_present(bool begun, GLuint into);
+  bool has_depth_format(GLuint depth);  // else it is R32F
+  Before before() const;
 
   BridgeSettings settings_;
   std::string reason_;
   Traffic traffic_;
+  std::unique_ptr<CallerTextures> textures_;
 
  private:
   int next_slot_ = 0;  // of import()

@@ -5,9 +5,11 @@
 #include <epoxy/gl.h>
 
 #include <cstdint>
+#include <vector>
 
 #include "quincunx/advanced/export.h"
 #include "quincunx/image.h"
+#include "quincunx/status.h"
 #include "quincunx_gl/handle.h"
 
 namespace quincunx::gl {
@@ -27,8 +29,9 @@ struct TargetNeeds {
 // what was not asked for are GL_NONE. Draw into RGBA8 with GL_FRAMEBUFFER_SRGB enabled.
 class QUINCUNX_API RenderTargets {
  public:
-  // Throws std::runtime_error when the framebuffer is incomplete.
-  explicit RenderTargets(const TargetNeeds& needs);
+  // Errors: kInvalidArgument for an extent that OpenGL has no textures of; kUnsupported where the driver takes no such
+  // framebuffer.
+  static Result<RenderTargets> create(const TargetNeeds& needs);
 
   Extent extent() const { return extent_; }
   std::uint64_t bytes() const;  // sum over all textures
@@ -45,6 +48,8 @@ class QUINCUNX_API RenderTargets {
   void clear(Extent render) const;
 
  private:
+  explicit RenderTargets(const TargetNeeds& needs);
+
   Extent extent_ = {};
   PixelFormat colour_format_;
   bool has_checkerboard_ = false;
@@ -54,5 +59,19 @@ class QUINCUNX_API RenderTargets {
   Texture velocity_;
   Texture reactive_;
 };
+
+// The top left `render_extent` of each target, tightly packed, top row first; empty for targets that do not exist.
+struct TargetPixels {
+  Extent render_extent;
+  std::vector<std::uint16_t> colour;    // RGBA, half; empty where the targets encode it
+  std::vector<std::uint8_t> codes;      // RGBA8, sRGB encoded; empty where they do not
+  std::vector<float> depth;             // reversed infinite
+  std::vector<std::uint16_t> velocity;  // RG, half, uv
+  std::vector<std::uint8_t> reactive;
+};
+
+// Reads targets into host memory, for files and tests: waits for GL. Errors: kInvalidArgument where `render` leaves the
+// targets; kUnsupported where an OpenGL ES driver has no way to read depth.
+QUINCUNX_API Result<TargetPixels> read_targets(const RenderTargets& targets, Extent render);
 
 }  // namespace quincunx::gl

@@ -241,7 +241,7 @@ void add_run_options(CommandLine& app, ResolveOptions& options) {
                  "Threads that read and write files (default: as many as there are processors)")
       .in_range(1, 256);
   app.add_option("--device", options.device,
-                 "OpenCL device: cpu, gpu, a number of --list-devices or part of a name");
+                 "OpenCL device: cpu, gpu, an index of --list-devices or part of a name");
   app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices");
   app.add_option(
          "--report", options.report,

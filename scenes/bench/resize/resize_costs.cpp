@@ -178,7 +178,8 @@ class AnewWay {
   Way way() {
     return {.resize_us =
                 [this](Extent size) {
-                  return timed_us([&] { targets_.emplace(gl::TargetNeeds{.target_extent = size}); });
+                  return timed_us(
+                      [&] { targets_.emplace(gl::RenderTargets::create({.target_extent = size}).value()); });
                 },
             .clear = [this](Extent size) { targets_->clear(size); }};
   }

@@ -9,7 +9,7 @@
 
 #include "bench/speed_error/bench_plan.h"
 #include "frames/focus_path.h"
-#include "quincunx_gl/target_readback.h"
+#include "quincunx_gl/render_targets.h"
 
 namespace quincunx::bench {
 namespace {
@@ -151,7 +151,9 @@ Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets
   view.seconds = seconds;
   view.previous_seconds = previous_seconds;
   if (Status status = renderer.draw(targets, view); !status.ok()) return status;
-  gl::TargetPixels pixels = gl::read_targets(targets, view.render);
+  auto read = gl::read_targets(targets, view.render);
+  if (!read.ok()) return read.status();
+  gl::TargetPixels& pixels = *read;
   const CameraMotion camera = renderer.camera_motion(view);
   Geometry geometry{.extent = view.render, .depth = std::move(pixels.depth), .velocity = {}};
   geometry.velocity.reserve(geometry.depth.size());
@@ -176,9 +178,10 @@ Result<std::vector<float>> nearest_depth_at(scenes::Renderer& renderer, const gl
     view.jitter = {kStep * static_cast<float>(sample % 3 - 1), kStep * static_cast<float>(sample / 3 - 1)};
     view.seconds = view.previous_seconds = seconds;
     if (Status status = renderer.draw(targets, view); !status.ok()) return status;
-    const gl::TargetPixels pixels = gl::read_targets(targets, view.render);
+    const auto pixels = gl::read_targets(targets, view.render);
+    if (!pixels.ok()) return pixels.status();
     for (std::size_t i = 0; i < nearest.size(); ++i)
-      nearest[i] = std::max(nearest[i], pixels.depth[i]);
+      nearest[i] = std::max(nearest[i], pixels->depth[i]);
   }
   return nearest;
 }
@@ -266,7 +269,10 @@ std::vector<Region> regions_of(const Geometry& geometry, std::span<const float> 
 Result<std::vector<FrameMasks>> masks_of_frames(scenes::Renderer& renderer, const scenes::Scene& scene,
                                                 const Conditions& conditions) {
   constexpr int kBack = 2;
-  const gl::RenderTargets targets({.target_extent = conditions.output, .velocity = true, .reactive = false});
+  const auto made =
+      gl::RenderTargets::create({.target_extent = conditions.output, .velocity = true, .reactive = false});
+  if (!made.ok()) return made.status();
+  const gl::RenderTargets& targets = *made;
   const auto focus = focus_of(scene, conditions);
   if (!focus.ok()) return focus.status();
   std::vector<FrameMasks> masks;
