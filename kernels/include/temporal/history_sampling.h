@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reading a layer of history between its texels.
 //
-// Option: TAPS  16 (default): cubic | 4: bilinear | 36: temporal/six_taps.h where resolve_temporal resamples, cubic
+// Option: TAPS  16 (default): cubic | 4: bilinear | 36: temporal/fetch_history.h where resolve_temporal resamples, cubic
 //               elsewhere
 #pragma once
 
