@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// motion_blur: what a shutter would have seen that was open until now: each output pixel is the mean of what lay under
-// it at moments spread over that time.
+// motion_blur: simulates a shutter that closes at the time of this frame: each output pixel is the mean of the colours
+// that lay under it at moments spread over the time that it was open.
 //   params    in   extents, layouts, scale from velocity to streaks
 //   axes      in   AxisTap of each output column, then of each output row: the sample that a pixel sees
 //   blurs     in   TileBlur of motion_neighbours

@@ -104,8 +104,8 @@ std::string probe_sharing(const Device& device, PixelFormat format) {
   return {};
 }
 
-// Copies the top left `extent` bit for bit. `callers`: the one of the two that is the caller's, whose filter may ask for
-// levels that it has not; a texture cannot be copied while it is incomplete.
+// Copies the top left `extent` bit for bit. `callers`: the one of the two that is the caller's, whose filter may ask
+// for levels that it has not; a texture cannot be copied while it is incomplete.
 void copy_texels(GLuint from, GLuint to, Extent extent, GLuint callers, const TextureFacts& facts) {
   const bool incomplete = facts.largest_level > 0;
   if (incomplete) glTextureParameteri(callers, GL_TEXTURE_MAX_LEVEL, 0);

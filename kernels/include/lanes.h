@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What a work-item makes at once: eight pixels of a row on a CPU, one elsewhere.
+// The pixels that a work-item makes at once: eight of a row on a CPU, one elsewhere.
+//
+// Kernels hold eight pixels of a row in the lanes of vectors. A CPU keeps the eight pixels in vector registers, if the
+// code is unrolled over lanes and cases. Elsewhere a work-item has one pixel at a time, in the first lane, and the
+// compiler drops the others, as nothing reads them. A GPU's work-item has registers for a fifth of the values of eight
+// pixels, and a compiler that makes code of its own for every lane needs minutes.
 #pragma once
 
-// Kernels that make eight pixels of a row at once have them in the lanes of vectors. A CPU has such vectors, and keeps
-// them in registers where code is written out for each lane and each case. Elsewhere a work-item has one pixel at a
-// time, in the first lane. The compiler leaves the others out, as nothing comes of them: the values of eight pixels are
-// five times as many as a GPU's work-item has registers, and a compiler that makes code of its own for every lane needs
-// minutes.
 #if defined(__x86_64__) || defined(__aarch64__)
 #define ON_CPU 1
 enum { kLanes = 8 };                                              // those that count

@@ -25,7 +25,7 @@ struct KeyBinding {
 
 std::span<const KeyBinding> key_bindings();
 
-// Does what the key stands for; nothing for one that is not bound.
+// Runs the action bound to a key; ignores unbound keys.
 void act_on(const KeyPress& press, WindowSettings& settings);
 
 // "m", "shift+m". Nothing where no key is called so.

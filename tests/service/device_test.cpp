@@ -15,7 +15,6 @@
 
 #include "../tools/own_cache.h"
 #include "device/device_impl.h"
-#include "device/device_profile_file.h"
 #include "device/program_cache.h"
 #include "passes/pass.h"
 #include "quincunx/advanced/device_profile.h"

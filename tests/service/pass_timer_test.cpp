@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "device/timer_validation.h"
+#include "device/device_impl.h"
 #include "quincunx/advanced/pass_timer.h"
 #include "service_fixture.h"
 

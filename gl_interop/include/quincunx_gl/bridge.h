@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Bridge: how a frame that GL drew reaches OpenCL, and how the picture that OpenCL made returns to GL.
+// Bridge: carries frames that GL drew to OpenCL, and the picture that OpenCL made back to GL.
 //
-// Two backends stand behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing),
-// after a probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads the
-// viewport's rectangle, and nothing else, into persistently mapped pixel buffers that OpenCL uses as host
-// memory. A ring of slots lets frame n + 1 be drawn while n is resolved and n - 1 is still read as history.
+// Two backends stand behind one interface. GlSharing hands the textures themselves over (cl_khr_gl_sharing), after a
+// probe has moved a 16x16 texture of every format both ways byte for byte. HostCopy reads just the viewport's rectangle
+// into persistently mapped pixel buffers that OpenCL uses as host memory. A ring of slots lets frame n + 1 be drawn
+// while n is resolved and n - 1 is still read as history.
 //
 // The life of a frame in slot s:
 //   begin_draw(s, render), draw, submit(s)
@@ -12,7 +12,8 @@
 //   present(), then presented_pixels() or presented_texture()
 // Of a renderer with textures of its own (BridgeSettings::imports):
 //   draw, import(textures, render), service.dispatch(...), present(texture)
-// All calls come from the thread where the GL context is current. Each puts back the state of GL that it changes.
+// All calls come from the thread where the GL context is current. Each puts back the state of GL that it changes, and
+// leaves GL's errors of before to the caller.
 #pragma once
 
 #include <cstdint>
@@ -58,7 +59,7 @@ struct BridgeSettings {
 QUINCUNX_API BridgeSettings bridge_settings(const ResolvePlan& plan);
 
 // Textures of the caller's: GL_TEXTURE_2D, not multisampled, at least as large as the viewport, which is their part
-// from texel (0, 0): rows are carried as they lie (Origin). Planes that the settings do not ask for are not looked at.
+// from texel (0, 0). Rows are carried as they lie (Origin). Only the planes that the settings ask for are read.
 struct FrameTextures {
   GLuint colour = 0;    // of the settings' format; for RGBA8 also SRGB8_ALPHA8, whose codes are taken
   GLuint depth = 0;     // any depth format, or R32F
@@ -66,9 +67,9 @@ struct FrameTextures {
   GLuint reactive = 0;  // R8
 };
 
-// The inputs of one slot as OpenCL sees them; the views are valid until the bridge is destroyed, and with placed
-// targets until the slot is drawn again. Empty where not handed over. All have the target extent and, where they are
-// buffers, its pitch; placed ones have the viewport's.
+// The inputs of one slot as OpenCL sees them. The views are valid until the bridge is destroyed, and with placed
+// targets until the slot is drawn again. Planes that are not handed over are empty. All have the target extent and,
+// where they are buffers, its pitch; placed ones have the viewport's.
 struct SharedFrame {
   ImageView colour;
   ImageView depth;
@@ -76,8 +77,8 @@ struct SharedFrame {
   ImageView reactive;
 };
 
-// Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and there is
-// one, else the one `selector` names (see Device::open).
+// Opens the OpenCL device that suits the context: one that shares with it where `interop` allows and one exists, else
+// the one that `selector` names (see Device::open).
 QUINCUNX_API Result<Device> open_device(const Context& context, const std::string& selector, Interop interop);
 
 class QUINCUNX_API Bridge {
@@ -93,24 +94,24 @@ class QUINCUNX_API Bridge {
   virtual Storage storage() const = 0;                   // storage of the inputs
   int slots() const { return settings_.slots; }
 
-  // The framebuffer of a slot, for a frame of the viewport `render`: its top left part, or with placed targets the
-  // whole of it; those stay until the next begin_draw(). Takes the slot back from OpenCL: waits until the work that
-  // reads it is done.
+  // Takes a slot back from OpenCL, for which it waits until the work that reads it is done, and returns its framebuffer
+  // for a frame of the viewport `render`: its top left part, or with placed targets the whole of it; those stay until
+  // the next begin_draw().
   virtual Result<const RenderTargets*> begin_draw(int slot, Extent render) = 0;
 
-  // After drawing: starts handing the viewport over. Does not wait.
+  // Starts handing the drawn viewport over. Does not wait.
   virtual Status submit(int slot) = 0;
 
-  // Makes the slot readable by OpenCL: waits for GL where it must. Commands enqueued on the device's queue
-  // after this see the frame.
+  // Makes the slot readable by OpenCL, and waits for GL where it must. Commands that are enqueued on the device's queue
+  // afterwards see the frame.
   virtual Result<SharedFrame> acquire(int slot) = 0;
 
   // Takes a frame from textures of the caller's, in place of begin_draw() and submit(). They are copied in OpenGL's
-  // order: what is drawn into them next does not reach this frame. Errors: kInvalidArgument, which names each texture
+  // order, so that later drawing does not reach this frame. Errors: kInvalidArgument, which names each texture
   // that is wrong; the slot then stays as it was.
   virtual Status submit(int slot, const FrameTextures& textures, Extent render) = 0;
 
-  // The same and acquire(), slot after slot: all that a renderer needs that does not draw ahead.
+  // Does that and acquire(), slot after slot: enough for a renderer that does not draw ahead.
   Result<SharedFrame> import(const FrameTextures& textures, Extent render);
 
   // Has OpenGL asked again about textures of the caller's. The bridge asks once about each name in each place, so that
@@ -118,33 +119,32 @@ class QUINCUNX_API Bridge {
   // format, other levels or filters, or when a name that was deleted is in use again.
   void textures_changed();
 
-  // Output extent, BridgeSettings::picture: the target of FrameOutputs::presented, or of the linear picture. The same
-  // view until the bridge is destroyed.
+  // Returns the target of FrameOutputs::presented, or of the linear picture: output extent, BridgeSettings::picture.
+  // The view stays the same until the bridge is destroyed.
   virtual Result<ImageView> begin_present() = 0;
 
-  // After the dispatch that writes it was enqueued: waits for that work and brings the picture to GL and the
-  // caller. `into`: a texture of the caller's that gets it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and
-  // at least its size; 0: presented_texture(). Errors: kInvalidArgument where that texture is wrong.
+  // Waits for the dispatch that writes it, which was enqueued before, and brings the picture to GL and the caller.
+  // `into`: a texture of the caller's that gets it, of the picture's format (for RGBA8 also SRGB8_ALPHA8) and at least
+  // its size; 0: presented_texture(). Errors: kInvalidArgument where that texture is wrong.
   virtual Status present(GLuint into = 0) = 0;
   virtual GLuint presented_texture() const = 0;        // row 0 on top, or as Origin says
   virtual const std::uint8_t* presented_pixels() = 0;  // tightly packed; valid until begin_present()
 
-  // Returns what is allocated now for the frames, without the presented picture.
+  // Returns the memory of the frames, without the presented picture.
   struct Memory {
     std::uint64_t gl_bytes = 0;      // render targets
-    std::uint64_t opencl_bytes = 0;  // what OpenCL reads, where that is not the render targets themselves
+    std::uint64_t opencl_bytes = 0;  // inputs of OpenCL's own; 0 where it reads the render targets themselves
   };
   virtual Memory memory() const = 0;
 
-  // Bytes moved between GL and OpenCL by the last submit() + acquire(), and by the last present(); and the
-  // time in ms that acquire() waited and present() took on the host.
+  // Bytes that the last submit() + acquire(), and the last present(), moved between GL and OpenCL, and the host's time
+  // for the wait in acquire() and for present().
   struct Traffic {
     std::uint64_t bytes_in = 0;
     std::uint64_t bytes_out = 0;
     double acquire_ms = 0;
     double present_ms = 0;
-    // Host time that the last begin_draw() spent on images of another size than the frame before's; 0: they have
-    // the same size.
+    // Host time that the last begin_draw() spent on images of another size; 0: the size of the frame before.
     double resize_us = 0;
   };
   const Traffic& traffic() const { return traffic_; }

@@ -24,13 +24,13 @@ struct Capabilities {
   bool reads_depth = false;     // glReadPixels takes depth; else it is drawn into R32F first
   bool encodes_on_demand = false;  // GL_FRAMEBUFFER_SRGB is a switch; else encoded targets are always encoded
   bool time_queries = false;
-  std::string missing;  // what the renderer needs and the context lacks; empty: nothing
+  std::string missing;  // needs of the renderer that the context lacks; empty: none
 };
 
-// Returns those of the context that is current on this thread; found once for each context.
+// Returns the abilities of the context that is current on this thread; found once for each context.
 QUINCUNX_API const Capabilities& capabilities();
 
-// Finds them anew. Context does, whose context may lie where one that is gone has lain.
+// Finds them anew, for a new context, which may have the address of one that is gone.
 QUINCUNX_API const Capabilities& renewed_capabilities();
 
 }  // namespace quincunx::gl

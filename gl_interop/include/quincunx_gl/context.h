@@ -19,7 +19,7 @@ enum class Platform {
   kCurrent,  // no new context: the one that is current on this thread, for example a window's
 };
 
-enum class WindowSystem { kEgl, kGlx };  // that a context was made with
+enum class WindowSystem { kEgl, kGlx };  // maker of a context
 
 QUINCUNX_API const char* name_of(Platform platform);  // "surfaceless"
 
@@ -39,8 +39,8 @@ struct ContextInfo {
 // objects. Debug output of the driver (errors, not chatter) of its own context goes to the log.
 class QUINCUNX_API Context {
  public:
-  // `api`: for kCurrent that of the context that is current, whatever is given. Errors: kUnsupported with what was
-  // tried and what each said; for kCurrent also where no context is current.
+  // Makes a context, or takes the current one, whose API then counts. Errors: kUnsupported with each attempt and its
+  // failure; for kCurrent also where no context is current.
   static Result<Context> create(Platform platform = Platform::kAuto, Api api = Api::kGl45);
 
   ~Context();

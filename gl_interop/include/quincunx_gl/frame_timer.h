@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// FrameTimer: how long OpenGL worked on each frame, for a resolution controller, without ever waiting for it.
+// FrameTimer, PartTimer: measure how long OpenGL worked on each frame, or on a part of it, for a resolution controller.
 //
-// GL_TIME_ELAPSED queries are trusted only if they agree with fences on a known load when the timer is made;
-// software renderers count something else. The fall-back sees by a fence that a frame is done. Its time runs
-// from begin(), or from when the frame before it was seen done, to the poll() that sees it. So it is an upper
-// bound that is as exact as polls are frequent. All calls come from the thread where the GL context is
-// current.
+// FrameTimer never waits for a frame. It uses GL_TIME_ELAPSED queries only if they agree with fences on a known load
+// when the timer is made, as software renderers count something else. The fall-back sees by a fence that a frame is
+// done. Its time runs from begin(), or from when the frame before it was seen done, to the poll() that sees it: an
+// upper bound that is as exact as polls are frequent. All calls come from the thread where the GL context is current,
+// and put GL's state back as it was.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +30,10 @@ class QUINCUNX_API FrameTimer {
  public:
   static constexpr int kRing = 8;  // frames that may be under way
 
-  // Without a method the queries are validated, which draws for some milliseconds, and the fall-back is taken
-  // where they fail; the choice is logged once. Errors: kDeviceFailure where GL makes no objects.
+  // Creates a timer. Without a method it validates the queries, which draws for some milliseconds, and falls back to
+  // fences where they fail; the log says which. Not between the beginning and end of transform feedback, of conditional
+  // rendering, or of a query other than GL_TIME_ELAPSED, which would count those draws. Errors: kDeviceFailure where GL
+  // makes no objects.
   static Result<FrameTimer> create(std::optional<TimerMethod> method = std::nullopt);
 
   ~FrameTimer();
@@ -40,14 +42,13 @@ class QUINCUNX_API FrameTimer {
 
   TimerMethod method() const;
 
-  // Around the GL calls of a frame; never nested. begin() returns false, and the frame stays untimed, while
+  // Enclose the GL calls of a frame; never nested. begin() returns false, and the frame stays untimed, while
   // kRing frames are under way; end() then does nothing.
   bool begin(std::uint64_t frame, Extent render);
   void end();
 
-  // The oldest frame that has come back, once each; nothing while there is none. Call until it says nothing. Frames
-  // whose time the driver calls worthless stay untimed.
-  // Throws nothing: a lost context looks like frames that never come back.
+  // Returns the oldest frame that has come back, once each; nothing while there is none. Call until it returns nothing.
+  // Frames whose time the driver calls worthless stay untimed. Frames of a lost context never come back.
   std::optional<TimedFrame> poll();
 
  private:
@@ -65,21 +66,20 @@ class QUINCUNX_API PartTimer {
  public:
   static constexpr int kRing = 8;  // parts that may be under way
 
-  // `method`: as FrameTimer::method() of this context says. `every`: with kFence one of so many parts is timed; at
-  // least 1. Errors: kInvalidArgument; kDeviceFailure where GL makes no objects.
+  // Creates a timer. `method`: FrameTimer::method() of this context. `every`: with kFence one of so many parts is
+  // timed; at least 1. Errors: kInvalidArgument; kDeviceFailure where GL makes no objects.
   static Result<PartTimer> create(TimerMethod method, int every = 1);
 
   ~PartTimer();
   PartTimer(PartTimer&&) noexcept;
   PartTimer& operator=(PartTimer&&) noexcept;
 
-  // Around the GL calls of the part, at most once a frame. One that is not timed costs nothing and never comes back:
-  // with kFence between those that are, else while kRing are under way.
+  // Enclose the GL calls of the part, at most once a frame. A part that is not timed costs nothing and never comes
+  // back: with kFence those between the timed ones, else those while kRing are under way.
   void begin(std::uint64_t frame, Extent extent);
   void end();
 
-  // The oldest part that has come back, once each; nothing while there is none. `render` is the part's extent. Throws
-  // nothing: a lost context looks like parts that never come back.
+  // Returns the oldest part that has come back, once each; nothing while there is none. `render_extent` is the part's.
   std::optional<TimedFrame> poll();
 
  private:

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Calls on an object by its name, which OpenGL 4.5 has and OpenGL ES has not: made by binding it, which both know. Each
-// leaves texture and framebuffer bindings as they were; buffers are bound to GL_COPY_WRITE_BUFFER, which nobody else
-// uses.
+// Calls on an object by its name, which OpenGL ES does not have. Each puts bindings back as they were.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -21,7 +19,7 @@ QUINCUNX_API void texture_border(GLuint texture, const GLfloat colour[4]);
 QUINCUNX_API void texture_write(GLuint texture, GLint level, Extent extent, GLenum format, GLenum type,
                                 const void* texels);
 QUINCUNX_API void texture_mipmaps(GLuint texture);
-// Stays bound. Leaves unit 0 active.
+// Binds a texture, which stays bound, and makes unit 0 active.
 QUINCUNX_API void bind_texture(GLuint unit, GLuint texture);
 
 QUINCUNX_API void buffer_storage(GLuint buffer, GLsizeiptr bytes);  // for buffer_write()
@@ -31,7 +29,7 @@ QUINCUNX_API void attach(GLuint framebuffer, GLenum attachment, GLuint texture);
 QUINCUNX_API void draw_buffers(GLuint framebuffer, std::initializer_list<GLenum> buffers);
 QUINCUNX_API GLenum framebuffer_status(GLuint framebuffer);
 QUINCUNX_API void clear(GLuint framebuffer, GLenum buffer, GLint index, const GLfloat* value);
-// The top left `extent` of a colour attachment, with the pack state that is set.
+// Reads the top left `extent` of a colour attachment, with the pack state that is set.
 QUINCUNX_API void read_attachment(GLuint framebuffer, GLenum attachment, Extent extent, GLenum format,
                                   GLenum type, void* pixels);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// RenderTargets: what a renderer draws into.
+// RenderTargets: the textures that a renderer draws into.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -44,7 +44,7 @@ class QUINCUNX_API RenderTargets {
   bool has_checkerboard() const { return has_checkerboard_; }
 
   // Clears the viewport's part of colour, velocity and reactive (scissored, to 0), and depth whole (to 0:
-  // infinity). Leaves the stencil and all state as they were.
+  // infinity). Keeps the stencil and all state.
   void clear(Extent render) const;
 
  private:
@@ -60,7 +60,7 @@ class QUINCUNX_API RenderTargets {
   Texture reactive_;
 };
 
-// The top left `render_extent` of each target, tightly packed, top row first; empty for targets that do not exist.
+// The top left `render_extent` of each target, tightly packed, top row first; empty for missing targets.
 struct TargetPixels {
   Extent render_extent;
   std::vector<std::uint16_t> colour;    // RGBA, half; empty where the targets encode it

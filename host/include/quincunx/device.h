@@ -46,8 +46,8 @@ QUINCUNX_API FrontKey front_key(const DeviceInfo& device, const std::string& sce
 
 class QUINCUNX_API Device {
  public:
-  // Lists all devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Devices that do not answer are
-  // left out and named in the log.
+  // Lists all devices of all platforms, GPUs before CPUs, otherwise in the loader's order. Devices that do not answer
+  // are left out and named in the log.
   static std::vector<DeviceInfo> list();
 
   // Opens a device. `selector` is "" for the first of list(), "cpu" or "gpu" for the first of that kind, an index of
@@ -58,11 +58,11 @@ class QUINCUNX_API Device {
   static Result<Device> open(const std::string& selector = {},
                              const cl_context_properties* properties = nullptr);
 
-  // Uses the caller's context and queue; both are retained. The queue must be in-order. Pass times are
+  // Takes the caller's context and queue, and retains both. The queue must be in-order. Pass times are
   // reported only where it was made with CL_QUEUE_PROFILING_ENABLE.
   static Result<Device> borrow(cl_context context, cl_device_id device, cl_command_queue queue);
 
-  // The same device, context and queue; services made on it cut their work by this profile.
+  // Returns the same device, context and queue; services made on it cut their work by this profile.
   Device with_profile(const DeviceProfile& profile) const;
 
   const DeviceInfo& info() const;
@@ -77,8 +77,8 @@ class QUINCUNX_API Device {
   Result<Image> allocate(Extent extent, PixelFormat format, Storage storage = Storage::kBuffer,
                          std::size_t pitch = 0) const;
 
-  // Blocking copies between host memory (rows of `row_bytes`, 0: tightly packed) and the top left `extent` of
-  // an image, for tools and tests; never used inside a frame. Host texels have the view's format.
+  // Copy between host memory (rows of `row_bytes`, 0: tightly packed) and the top left `extent` of an image, and wait.
+  // For tools and tests: no frame uses them. Host texels have the view's format.
   Status upload(const ImageView& image, Extent extent, const void* texels, std::size_t row_bytes = 0) const;
   Status download(const ImageView& image, Extent extent, void* texels, std::size_t row_bytes = 0) const;
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// FrameInputs, FrameOutputs, FrameReport: what goes into one dispatch of the service and what comes out.
+// FrameInputs, FrameOutputs, FrameReport: one dispatch of the service.
 //
-// Plain structs; a zero means the sensible default written beside the field. docs/inputs.md states the
-// conventions at length.
+// Plain structs; a zero means the default written beside the field. docs/inputs.md has the conventions.
 #pragma once
 
 #include <array>
@@ -19,21 +18,18 @@
 
 namespace quincunx {
 
-// Where the camera was: for velocity from depth, and to know surfaces again. Column-major: (ndc.x, ndc.y, depth, 1)
-// of this frame, jitter excluded, becomes homogeneous clip coordinates of the previous frame, jitter excluded;
-// ndc.x = 2u - 1, ndc.y = 1 - 2v with uv from the top left corner of the viewport. Depth is what the depth
-// target holds. All as InputConventions::clip_space has it. The identity: the camera stands still, or nobody knows.
+// The camera's motion, for velocity from depth and to know surfaces again. The matrix is column-major and takes
+// (ndc.x, ndc.y, depth, 1) of this frame to homogeneous clip coordinates of the previous frame, both without jitter, in
+// InputConventions::clip_space. Depth is the depth target's. The identity: the camera stands still, or nobody knows.
 struct CameraMotion {
   std::array<float, 16> clip_to_previous_clip = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 };
 
-// Returns the jitter of a frame for Method::kTemporal, in render pixels, +x right, +y down, within half a pixel: one of
-// jitter_phases() places, in turns (Halton in bases 2 and 3, about the mean of the places). A frame is drawn with it
-// where clip coordinates, +y up, are shifted by (-2 x / render.width, 2 y / render.height) times w, and is told it by
-// FrameInputs::jitter. Where images begin with the lowest row (Origin::kBottom) the jitter's y counts upwards, so the
-// shift is (-2 x / render.width, -2 y / render.height) times w. Without jitter, or with the same in all frames, several
-// frames see no more than one: a still picture stays coarse, and its edges crawl when it moves. Pure; {0, 0} where an
-// extent is empty.
+// Returns the jitter of a frame for Method::kTemporal, in render pixels, within half a pixel: one of jitter_phases()
+// places, in turns (Halton in bases 2 and 3, about the mean of the places). Draw the frame with clip coordinates that
+// are shifted by it (docs/inputs.md#jitter), and give it as FrameInputs::jitter. Without jitter, or with the same in
+// all frames, several frames see no more than one: a still picture stays coarse, and its edges crawl when it moves.
+// Pure; {0, 0} where an extent is empty.
 [[nodiscard]] QUINCUNX_API Vec2 jitter(std::uint64_t frame_index, Extent render, Extent output);
 // Returns ceil(8 output.area() / render.area()), at most 512: each output pixel then gets eight samples.
 [[nodiscard]] QUINCUNX_API int jitter_phases(Extent render, Extent output);
@@ -42,16 +38,15 @@ struct CameraMotion {
 [[nodiscard]] QUINCUNX_API float texture_lod_bias(Extent render, Extent output);
 
 // One rendered frame. The images belong to the caller and stay unchanged until the work of this dispatch is
-// done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done:
-// the service reads the previous frame where the caller left it and copies nothing. So give frames n and n - 1
-// different memory; a ring of three lets the renderer run ahead.
+// done and, where ResolvePlan::keeps_previous_frame() is true, until the work of the *next* dispatch is done: the
+// service reads the previous frame in place. So give frames n and n - 1 different memory; a ring of three lets the
+// renderer run ahead.
 struct FrameInputs {
   // RGBA16F or RGBA32F: linear, premultiplied. RGBA8: exposed, tone mapped and sRGB encoded by the renderer.
   ImageView colour = {};
   // The other images are read only where the plan says so.
-  ImageView depth = {};  // R32F, as InputConventions says: reversed infinite depth
-  ImageView velocity =
-      {};  // RG16F or RG32F, as InputConventions says: this position - previous position, in uv
+  ImageView depth = {};       // R32F, by InputConventions
+  ImageView velocity = {};    // RG16F or RG32F, by InputConventions
   ImageView reactive = {};    // R8, 0: trust history, 1: ignore it
   Extent render_extent = {};  // the viewport, within the images' (placed: just that); any size from 1x1
   // The picture's size in this frame, from settings.output.min_extent to output_extent; {0, 0}: the latter. History of
@@ -59,7 +54,7 @@ struct FrameInputs {
   Extent output_extent = {};
   // Render pixels: the sample of a pixel lies at its centre + jitter; each within [-1, 1].
   Vec2 jitter = {};
-  Vec2 velocity_scale = {};  // multiplies velocity to give what InputConventions says; {0, 0}: {1, 1}
+  Vec2 velocity_scale = {};  // factor from velocity to InputConventions::velocity_unit; {0, 0}: {1, 1}
   // Distances of depth's planes, where InputConventions::depth needs them: 0 < near_plane < far_plane.
   float near_plane = 0;
   float far_plane = 0;
@@ -71,8 +66,8 @@ struct FrameInputs {
   ImageView particle_reactive = {};    // R8
   Extent particle_render_extent = {};  // the particles' viewport; any size from 1x1
   float exposure = 0;  // multiplies linear colour in the present pass; 0: 1; not read with RGBA8
-  // R32F, 1x1, a buffer or an image: another factor of the exposure, which is made on the device and need never be
-  // read on the host. One that is not positive and finite counts as 1.
+  // R32F, 1x1, a buffer or an image: another factor of the exposure, made on the device. A value that is not positive
+  // and finite counts as 1.
   ImageView exposure_image = {};
   bool reset = false;  // a cut: nothing of the previous frame may be used
   // Shading::kCheckerboard: pixels (x, y) with (x + y) % 2 == parity are shaded, the others are not read; 0 or 1.
@@ -85,7 +80,7 @@ struct FrameInputs {
   float fade_weight = 1;
 };
 
-// Where the finished picture goes, in settings.output_extent. At least one is needed.
+// The images that get the finished picture, in settings.output_extent. At least one is needed.
 struct FrameOutputs {
   ImageView linear = {};     // RGBA32F or RGBA16F, as settings.output.linear says: linear light, in a buffer
   ImageView presented = {};  // RGBA8: exposed, tone mapped, sRGB encoded
@@ -98,7 +93,7 @@ struct PassReport {
   bool in_focus = false;    // a pass of the focus's region, which has passes of its own
 };
 
-// "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
+// Returns "resolve_quincunx", of the focus's region "focus: resolve_quincunx".
 QUINCUNX_API std::string name_of(const PassReport& pass);
 
 // The passes of a frame in the order in which they ran. A value that allocates nothing.
@@ -106,7 +101,7 @@ class PassReports {
  public:
   static constexpr std::size_t max_size() { return kRoom; }
 
-  // Leaves out what exceeds max_size().
+  // Adds a pass; ignores it where there are max_size().
   void push_back(const PassReport& pass) {
     if (size_ < max_size()) passes_[size_++] = pass;
   }
@@ -138,10 +133,11 @@ struct [[nodiscard]] FrameReport {
   bool focused = false;  // a focus was laid over the picture
   // Output pixels that met NaN or Inf in their footprint, and such pixels of the focus; -1: not known yet.
   std::int64_t non_finite_pixels = -1;
-  // With settings.control.measures_content, what the frame shows but for cuts, which the caller knows; nothing: not
-  // known yet. Light that moves without reactive values is seen by kTemporal alone.
+  // Statistics of the picture's content, with settings.control.measures_content; empty until measured. Cuts are not
+  // detected: the caller reports them. Light that moves without reactive values is seen by kTemporal alone.
   std::optional<ContentStatistics> content = {};
-  MotionCheck motion = {};  // with settings.checks_motion, what the frames up to this one say of velocity
+  MotionCheck motion =
+      {};  // with settings.checks_motion, the verdict on velocity of the frames up to this one
 
   bool ok() const { return status.ok(); }
 };

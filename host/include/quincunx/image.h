@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Images: what a pass reads and writes.
+// Images, which passes read and write.
 //
 // A view names a rectangle of texels inside an OpenCL allocation: (allocation, byte offset, pitch, extent,
-// format). The same kernels serve a viewport inside a larger target and a tightly packed image; only the
-// numbers differ. Rows run top-down, x to the right; texel (x, y) has its centre at (x + .5, y + .5).
+// format). The same kernels serve a viewport inside a larger target and a tightly packed image, by other
+// numbers. Rows run top-down, x to the right; texel (x, y) has its centre at (x + .5, y + .5).
 #pragma once
 
 #include <CL/cl.h>
@@ -30,6 +30,7 @@ enum class PixelFormat : std::uint8_t {
 };
 
 QUINCUNX_API std::size_t bytes_per_pixel(PixelFormat format);  // 0 for kNone
+QUINCUNX_API int channels_of(PixelFormat format);              // 0 for kNone
 QUINCUNX_API const char* name_of(PixelFormat format);          // "RGBA16F"
 
 enum class Storage : std::uint8_t {
@@ -37,9 +38,10 @@ enum class Storage : std::uint8_t {
   kImage,   // cl_mem is an image2d_t; offset and pitch are zero
 };
 
-// Does not own `memory`. `extent` is what is allocated (the *target* extent), of which a frame uses the top
-// left part (the *render* extent, in FrameInputs). A device without two-channel images holds RG formats of
-// image storage in four channels; the format still says RG.
+// A view of memory that belongs to someone else. `extent` is the allocated size (the *target* extent), of which a frame
+// uses the top left part (the *render* extent, in FrameInputs). A device without two-channel images holds RG formats of
+// image storage in four channels; the format still says RG. A buffer's image must end within the first 2^31 channels of
+// its buffer (8 GiB of RGBA32F), as kernels count those in 32 bits.
 struct ImageView {
   cl_mem memory = nullptr;
   Storage storage = Storage::kBuffer;
@@ -52,9 +54,8 @@ struct ImageView {
   std::size_t row_pitch() const { return pitch != 0 ? pitch : extent.width * bytes_per_pixel(format); }
 };
 
-// Owns one OpenCL memory object and the view of the whole of it. Move-only. Releasing it while a kernel that
-// uses it is queued is safe: OpenCL keeps the memory until the kernel has run. Not safe to share between
-// threads without a lock.
+// Owns one OpenCL memory object and the view of the whole of it. Move-only. It may be released while a kernel that
+// uses it is queued: OpenCL keeps the memory until the kernel has run. Threads that share one need a lock.
 class QUINCUNX_API Image {
  public:
   Image() = default;
@@ -64,8 +65,8 @@ class QUINCUNX_API Image {
   Image(const Image&) = delete;
   Image& operator=(const Image&) = delete;
 
-  static Image adopt(const ImageView& view);   // takes over the caller's reference; we release
-  static Image borrow(const ImageView& view);  // retains; the caller keeps its own reference
+  static Image adopt(const ImageView& view);   // takes over the caller's reference
+  static Image borrow(const ImageView& view);  // adds a reference of its own
 
   const ImageView& view() const { return view_; }
   explicit operator bool() const { return view_.memory != nullptr; }

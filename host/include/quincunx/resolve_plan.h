@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // ResolvePlan: the passes, buffers and bytes that follow from what a scene needs.
 //
-// Planning is pure: no device, no allocation on one. Parts that a plan leaves out are neither allocated nor
-// dispatched nor compiled, and explain() says why. A value; any thread may use its own copy.
+// Planning is pure and needs no device. Only the parts of a plan are allocated, compiled and dispatched; explain() says
+// why the others are left out. A value; any thread may use its own copy.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace quincunx {
 
 struct FrameInputs;
 
-// Everything that the scene will ever do while this plan is used.
+// The scene's abilities: everything that it will ever do while this plan is used.
 struct SceneNeeds {
   bool moving_objects = true;  // anything but the camera moves
   bool camera_motion = true;
@@ -45,15 +45,14 @@ struct TemporalSettings {
   TemporalPreset preset = TemporalPreset::kBalanced;
   TemporalView view = TemporalView::kPicture;
   PixelFormat history = PixelFormat::kRGBA16F;  // RGBA16F or RGBA32F
-  float noise =
-      0;  // variance of a sample by chance, in parts of its square, in [0, 1]: of a path tracer about 1 /
-          // samples a pixel. Above 0 the picture is shown denoised
+  // Variance of a sample by chance, in parts of its square, in [0, 1]: of a path tracer about 1 / samples a pixel.
+  // Above 0 the picture is shown denoised.
+  float noise = 0;
 
   friend bool operator==(const TemporalSettings&, const TemporalSettings&) = default;
 };
 
-// Motion blur of the resolved picture along velocity, as a shutter gives that was open until the frame's
-// moment.
+// Motion blur of the resolved picture along velocity: simulates a shutter that closes at the time of the frame.
 struct MotionBlurSettings {
   float shutter = 0;  // part of a frame's time that the shutter is open, in [0, 2]; 0: no blur
   int samples = 8;    // at most, of a pixel: 4, 8, 16, 32 or 64; slow motion takes fewer
@@ -84,7 +83,7 @@ enum class Targets : std::uint8_t {
 
 QUINCUNX_API const char* name_of(Targets targets);  // "placed"
 
-// A frame's images, and what is drawn into them.
+// A frame's images and their content.
 struct TargetSettings {
   Storage storage = Storage::kBuffer;      // the inputs'; see ResolvePlan::presented_storage()
   Targets placement = Targets::kViewport;  // the inputs' and the service's own images'
@@ -110,7 +109,7 @@ struct PictureSettings {
   friend bool operator==(const PictureSettings&, const PictureSettings&) = default;
 };
 
-// The methods that see one frame alone.
+// Settings of the methods that see one frame alone.
 struct FilterSettings {
   // Filters that ring (SeparableFilter::rings) stay in the range of the 2x2 samples next to the centre.
   bool clamp_ringing = true;
@@ -120,7 +119,7 @@ struct FilterSettings {
   friend bool operator==(const FilterSettings&, const FilterSettings&) = default;
 };
 
-// Services to a QualityController.
+// Settings for a QualityController.
 struct ControlSettings {
   bool measures_content = false;  // FrameReport::content is wanted
   bool fades = false;             // FrameInputs::fading_from may be given
@@ -157,9 +156,9 @@ QUINCUNX_API MethodVariant variant_of(const ResolveSettings& settings);
 // Sets the method and the fields that count for it; leaves all others as they are.
 QUINCUNX_API void apply(const MethodVariant& variant, ResolveSettings& settings);
 
-// Where the resolve finds velocity.
+// The source of velocity.
 enum class VelocitySource {
-  kNone,    // nothing moves, or the method does not ask
+  kNone,    // nothing moves, or the method reads none
   kTarget,  // a velocity target
   kCamera,  // a target that the service makes from depth and the camera's motion: only the camera moves
 };
@@ -175,7 +174,7 @@ struct PlannedPass {
   friend bool operator==(const PlannedPass&, const PlannedPass&) = default;
 };
 
-// How the part of a buffer that is in use follows the resolution.
+// The part of a buffer that is in use.
 enum class Scaling : std::uint8_t {
   kScales,   // this frame's viewport, within `extent`
   kOwn,      // a viewport of their own, within `extent`, which may be another in each frame
@@ -233,16 +232,17 @@ struct QUINCUNX_API ResolvePlan {
   std::optional<ResolvePlan> focus_plan() const;
   // Returns the bytes of the caller's images for one frame, at the largest viewport; the same for both kinds of target.
   std::uint64_t frame_bytes() const;
-  // Whether a frame of this viewport reads earlier frames where there are any: kTemporal does not where samples are so
-  // dense, from 1.56 a pixel on, that a frame alone is the better picture.
-  // `output`: the frame's; {0, 0}: settings.output_extent.
+  // Returns whether a frame of this viewport reads earlier frames where there are any. kTemporal leaves them out where
+  // samples are so dense, from 1.56 a pixel on, that a frame alone is the better picture. `output`: the frame's; {0,
+  // 0}: settings.output_extent.
   bool reads_history(Extent render, Extent output = {}) const;
   std::string explain() const;  // a page of plain text
 
   friend bool operator==(const ResolvePlan&, const ResolvePlan&) = default;
 };
 
-// Errors: kInvalidArgument; the message names every bad field.
+// Plans for a scene. Errors: kInvalidArgument; the message names every bad field. Extents have sides up to 32768 and up
+// to 2^29 pixels, and with two layers of history up to 2^28 samples.
 QUINCUNX_API Result<ResolvePlan> plan_for(const SceneNeeds& needs, const ResolveSettings& settings);
 
 }  // namespace quincunx

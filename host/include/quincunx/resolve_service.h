@@ -6,10 +6,9 @@
 //   auto service = quincunx::ResolveService::create(device.value(), plan.value());
 //   FrameReport report = service.value().dispatch({.colour = ..., .render_extent = ...}, {.presented = ...});
 //
-// create() compiles (or loads from the program cache), allocates and warms up; after it a frame allocates
-// nothing, compiles nothing and does not wait for the device; only a caller who runs more than six frames
-// ahead of it is held. Calls on one service come from one thread at a time; several services may share a
-// device only from one thread.
+// create() compiles (or loads from the program cache), allocates and warms up. After it a frame allocates nothing,
+// compiles nothing and does not wait for the device (but: docs/pipeline.md#time). Calls on one service come from one
+// thread at a time, and so do all calls on services of one device.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +42,7 @@ struct TileKinds {
   std::vector<std::uint8_t> kinds;  // row by row
 };
 
-// What a frame's work has to do with that of other queues of the device's context.
+// The order of a frame's work among that of other queues of the device's context.
 struct FrameSync {
   std::span<const cl_event> wait_for = {};  // the frame's work begins when all of these are complete
   // Where not null, gets an event that is complete when the frame's work is, which the caller releases; null where the
@@ -51,9 +50,9 @@ struct FrameSync {
   cl_event* done = nullptr;
 };
 
-// Sees a frame that dispatch() has accepted, before its work is enqueued: when all that is on the device's queue is
-// done, the images hold what the passes will read. `focus` is null where there is none. Returns whether it wants to see
-// the next one, too. It must not dispatch.
+// Sees a frame that dispatch() has accepted, before its work is enqueued. The images are complete when all that is on
+// the device's queue is done. `focus` is null where there is none. Returns whether it wants to see the next one, too.
+// It must not dispatch.
 using FrameObserver = std::function<bool(const FrameInputs& inputs, const FocusInputs* focus)>;
 
 // Pictures on the way to the finished one.
@@ -64,36 +63,34 @@ enum class PictureStage : std::uint8_t {
 
 class QUINCUNX_API ResolveService {
  public:
-  // Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with the build's options
-  // and log when a kernel does not compile.
+  // Creates the service of a plan. Errors: kUnsupported when the device lacks what the plan needs, kDeviceFailure with
+  // the build's options and log when a kernel does not compile.
   static Result<ResolveService> create(const Device& device, const ResolvePlan& plan);
 
+  // The destructor and the assignment wait for the frames that are under way.
   ~ResolveService();
   ResolveService(ResolveService&&) noexcept;
   ResolveService& operator=(ResolveService&&) noexcept;
 
   // Enqueues the frame's passes on the device's queue and flushes it. A bad frame is refused whole: the
-  // report's status says why, nothing is enqueued, and the history is as it was. The report's times are not
-  // known yet.
+  // report's status says why, nothing is enqueued, and the history stays. next_completed() will know the times.
   FrameReport dispatch(const FrameInputs& inputs, const FrameOutputs& outputs, const FrameSync& sync = {});
 
-  // The same with a focus laid over the finished picture. Nothing outside of its rectangles changes by one bit. A frame
-  // without a focus ends the focus's history.
+  // Enqueues the same with a focus laid over the finished picture. Nothing outside of its rectangles changes by one
+  // bit. A frame without a focus ends the focus's history.
   FrameReport dispatch(const FrameInputs& inputs, const FocusInputs& focus, const FrameOutputs& outputs,
                        const FrameSync& sync = {});
 
-  // The oldest finished frame whose report was not yet taken, with its times and counts; nothing when none
-  // has finished. Never waits. Reports are kept for the last 64 frames; older ones are dropped.
+  // Returns the oldest finished frame's report that was not yet taken, with its times and counts; nothing while there
+  // is none. Never waits. Reports are kept for the last 64 frames.
   std::optional<FrameReport> next_completed();
 
-  // Where the device's events are not believed (PassTimer::kHostClock), passes have no times unless this allows
-  // dispatch() to wait for the end of each pass, which the host's clock then times. Off at first. On other devices
-  // nothing changes and nothing waits.
+  // Allows dispatch() to wait for the end of each pass, so that the host's clock times it. Off at first. It counts only
+  // on devices whose events have wrong times (PassTimer::kHostClock), where passes have no times otherwise.
   void allow_timing_waits(bool allow);
 
   // Fills the top left `render` of an image with one value (unused channels ignored; of RGBA8 the encoded one):
-  // the partial clear.
-  // Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
+  // the partial clear. Enqueued like a frame. Errors: kInvalidArgument when the rectangle is empty or leaves the image.
   Status clear(const ImageView& image, Extent render, const float value[4]);
 
   // Returns the last frame's picture at a stage, for inspection: as FrameOutputs::linear, in the top left part that is
@@ -105,15 +102,15 @@ class QUINCUNX_API ResolveService {
   // plan does not blur.
   Result<TileKinds> tile_kinds() const;
 
-  // The history that kTemporal's next frame finds, for inspection: R, G, B, linear, and as alpha the confidence, the
-  // weights of all samples in it. The last frame's output extent, as
-  // settings.temporal.history. Empty where there is none: before the
-  // first frame, and after one whose samples are so dense that it keeps none. The service owns the memory; the next
-  // dispatch but one overwrites it. Errors: kInvalidArgument where the plan does not accumulate.
+  // Returns the history that kTemporal's next frame finds, for inspection: R, G, B, linear, and as alpha the
+  // confidence, which is the weight of all samples in it. It has the last frame's output extent and the format
+  // settings.temporal.history. Empty where there is none: before the first frame, and after one whose samples are so
+  // dense that it keeps none. The service owns the memory; the next dispatch but one overwrites it. Errors:
+  // kInvalidArgument where the plan does not accumulate.
   Result<ImageView> history() const;
 
   // Shows every frame from the next one on to `observer`, in place of the one before; an empty one ends that. The next
-  // frame begins without history, so that the pictures follow from what is seen and from the plan alone.
+  // frame begins without history, so that the pictures follow from the plan and the frames seen alone.
   void observe(FrameObserver observer);
 
   Status finish();  // waits until every dispatched frame is done

@@ -10,11 +10,8 @@
 #include <optional>
 
 #include "device/device_impl.h"
-#include "device/device_profile_file.h"
-#include "device/timer_validation.h"
-#include "quincunx/control/front_file.h"
-#include "plan/validate.h"
 #include "quincunx/advanced/log.h"
+#include "quincunx/control/front_file.h"
 
 namespace quincunx {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
+// The inside of a Device, its profile and its clock.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,8 +36,60 @@ struct Device::Impl {
   std::shared_ptr<BuiltPrograms> built = std::make_shared<BuiltPrograms>();
 };
 
-// Returns the position of the device that a selector of Device::open() names: an index where there is such a device, and
-// so a number beyond the last index is a part of a name, as any other text.
+// Returns the position of the device that a selector of Device::open() names. A number is an index where there is such
+// a device, and elsewhere a part of a name.
 std::optional<std::size_t> choose_device(const std::string& selector, const std::vector<DeviceInfo>& infos);
+
+// ---- Device profiles as JSON: the tuned ones of cache_folder(), the shipped ones of host/profiles.
+
+// The device and driver that a profile belongs to.
+struct ProfileOwner {
+  std::string platform;
+  std::string device;
+  std::string kind;  // "cpu"
+  std::string driver;
+};
+ProfileOwner owner_of(const DeviceInfo& info);
+
+struct ProfileFile {
+  ProfileOwner owner;
+  DeviceProfile profile;  // its source is left to the reader
+};
+
+// Reads a file's text. Errors: kInvalidArgument, one sentence without the file's name: what is wrong and what would be
+// right. Pure.
+Result<ProfileFile> parse_profile(const std::string& text);
+
+std::string profile_text(const ProfileFile& file);
+
+// Finds the tuned, shipped or default profile. A tuned file that is damaged, of another version or of another device or
+// driver is warned of in one sentence, and passed over.
+DeviceProfile find_profile(const Device::Impl& device);
+
+// ---- The choice of the clock that times the passes of a device (timer_validation.cpp); see advanced/pass_timer.h.
+
+// Returns the clock from the cache, or from a known load on a queue of its own, which takes some tens of milliseconds,
+// and is logged. Where the load cannot run at all, the host's clock is the answer, and none is kept. Thread-safe. May
+// throw cl::Error, of the device's queue.
+PassTimer validated_timer(const Device::Impl& device);
+
+// CL_PROFILING_COMMAND_SUBMIT, _START and _END of one event: nanoseconds of the device's own clock.
+struct EventStamps {
+  std::uint64_t submitted = 0;
+  std::uint64_t started = 0;
+  std::uint64_t ended = 0;
+};
+
+// One run of a known kernel. `host_ms`: from before it was enqueued until it was known to be done.
+struct TimedLoad {
+  EventStamps stamps;
+  double host_ms = 0;
+};
+
+inline constexpr int kHeavyLoad = 8;  // times the work of the light one
+
+// Returns why the stamps of a light and a heavy run are not believed, as a clause ("they last 0 ms"); empty where they
+// are. Host times may be too long, as on a busy machine, so a doubt is certain only when it comes again. Pure.
+std::string doubt_about(const TimedLoad& light, const TimedLoad& heavy);
 
 }  // namespace quincunx

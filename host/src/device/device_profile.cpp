@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "device/device_profile_file.h"
+#include "device/device_impl.h"
 #include "device/program_cache.h"
 #include "quincunx/advanced/log.h"
 #include "shipped_profile_files.h"

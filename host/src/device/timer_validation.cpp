@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "device/timer_validation.h"
+#include "device/device_impl.h"
 
 #include <fmt/format.h>
 

@@ -204,7 +204,7 @@ void PassChain::take_resampled(PassFrame& frame) {
   }
 }
 
-// Makes nothing of what the accumulating passes find of the previous frame. The service's own targets of a viewport are
+// Clears the history that accumulating passes will read. The service's own targets of a viewport are
 // images where the caller's are.
 void PassChain::forget(const PassFrame& frame) {
   for (const ResourceUse& use : resources_) {

@@ -30,8 +30,8 @@ class QUINCUNX_API TwoWay {
   // the passes add() runs those as far as merge_histories, and show() the rest. Pure.
   static ResolvePlan planned(const ResolvePlan& plan);
 
-  // Adds a frame to the service's history, as dispatch() does. `kept`, if not null, becomes that history, or where it
-  // merges what that and the history in `kept`, of the same frame, come to together.
+  // Adds a frame to the service's history, as dispatch() does. `kept`, if not null, receives that history; with
+  // `merges`, the combination of that history and the one already in `kept`, of the same frame.
   static FrameReport add(ResolveService& service, const FrameInputs& inputs, bool merges, KeptHistory* kept);
 
   // Turns round: gives `backward` the history of `forward` in place of its own. Both have added the same frame last,

@@ -14,8 +14,6 @@
 
 namespace quincunx {
 
-int channels_of(PixelFormat format);  // 0 for kNone; in image.cpp
-
 // Parts of validate(): a frame without outputs; a focus, where `region` is the plan's focus_plan(), null where it has
 // none.
 Status validate_inputs(const ResolvePlan& plan, const FrameInputs& inputs);

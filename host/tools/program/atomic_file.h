@@ -36,9 +36,9 @@ class AtomicFile {
   int lock_;  // descriptor that holds the temporary file's lock, which ends with the process; -1: none
 };
 
-// Removes a temporary file that was meant to get a name which `wanted` accepts, if the process that left it behind is no
-// longer there: it had the file locked. Sees other machines' processes where locks are shared. Returns whether the file
-// was removed.
+// Removes a temporary file that was meant to get a name which `wanted` accepts, if the process that left it behind is
+// no longer there: it had the file locked. Sees other machines' processes where locks are shared. Returns whether the
+// file was removed.
 bool remove_abandoned(const std::filesystem::path& file,
                       const std::function<bool(const std::string&)>& wanted);
 

@@ -287,7 +287,7 @@ static inline KnownLayers sample_lanes(const PastLayers* past, DEPTH_TEXELS dept
     const LayerRun run = find_run(from, left);
     replace_lanes(&found, sample_layers(past, depth, wishes, from, run), LANES_OF(run.lanes));
     left &= ~run.lanes;
-    if (!ON_CPU) break;  // it was the only one, which compilers do not see
+    if (!ON_CPU) break;  // one lane means one run; compilers cannot prove it
   }
   const LayerColours c = found.colours;
 #if ON_CPU

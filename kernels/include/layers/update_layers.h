@@ -160,7 +160,8 @@ typedef struct BothLayers {
   FetchedLayers far, near;  // far or only ones; the near ones only where a pixel has two
 } BothLayers;
 
-// Fetches the layers of the pixels from (x, y) on. Unrolled, as rounds would hand lanes on that do not count.
+// Fetches the layers of the pixels from (x, y) on. Unrolled: a real loop would carry all eight
+// lanes as live values from one round to the next.
 static inline BothLayers fetch_both(const LayeredPixels* pixels, const PastLayers* past, DEPTH_TEXELS depth1,
                                     TileReprojection tile, LayerTile layer, const EightReprojections* motion, int x,
                                     int y) {

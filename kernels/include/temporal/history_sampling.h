@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Reading a layer of history between its texels.
 //
-// Option: TAPS  16 (default): cubic | 4: bilinear | 36: temporal/fetch_history.h where resolve_temporal resamples, cubic
-//               elsewhere
+// Option: TAPS  16 (default): cubic | 4: bilinear | 36: six taps (temporal/fetch_history.h) where resolve_temporal
+//               resamples, cubic elsewhere
 #pragma once
 
 #include "arithmetic.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// InputConventions: what the depth, velocity, rows and camera of an engine's frames mean.
+// InputConventions: the meaning of depth, velocity, rows and camera in an engine's frames.
 //
 // Stated once, in ResolveSettings. docs/inputs.md has a table of engines.
 #pragma once
@@ -20,7 +20,7 @@ enum class DepthConvention : std::uint8_t {
   kLinear,            // d; infinity, 0 and less: nothing is there
 };
 
-// Whether a frame needs FrameInputs::near_plane, and far_plane.
+// Return whether a frame needs FrameInputs::far_plane, and near_plane.
 constexpr bool needs_far_plane(DepthConvention depth) {
   return depth == DepthConvention::kReversed || depth == DepthConvention::kForward;
 }
@@ -47,15 +47,15 @@ enum class Origin : std::uint8_t { kTop, kBottom };
 // Source of the motion of samples that are infinitely far away and have a velocity of exactly 0, as many renderers
 // write it for the sky whatever the camera does.
 enum class SkyMotion : std::uint8_t {
-  kAsDrawn,  // nothing: they stand still in the picture
+  kAsDrawn,  // none: they stand still in the picture
   kCamera,   // the camera's rotation, from FrameInputs::camera
-  kEvidence,  // what the drawn motion of all else tells of the camera's, where the colour of the far samples agrees
+  kEvidence,  // the camera's motion, found in the drawn motion of all else, where the colour of the far samples agrees
 };
 
-// Whose velocity a drawn sample has.
+// The owner of the velocity that a drawn sample has.
 enum class DrawnVelocity : std::uint8_t {
-  kOwn,      // that of the surface that it shows
-  kDilated,  // that of the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
+  kOwn,      // the surface that it shows
+  kDilated,  // the nearest of its 3x3 samples, as many renderers write it: each gets its own back first
 };
 
 // The defaults are the library's own, which cost nothing. Other depth than kReversedInfinite, velocity with jitter in
@@ -67,7 +67,7 @@ struct InputConventions {
   VelocityUnit velocity_unit = VelocityUnit::kUv;
   bool velocity_backward = false;  // previous position - this one
   bool velocity_up = false;        // +y up
-  // Both positions are those in the jittered pictures. A velocity of exactly (0, 0) is none that was drawn, and stays.
+  // Both positions are those in the jittered pictures. A velocity of exactly (0, 0) was not drawn, and stays.
   bool velocity_jittered = false;
   // kBottom: all images of a frame, inputs and outputs, begin with the lowest row, from which viewports and the parts
   // of smaller outputs reach upwards; and what counts rows or pixels counts from there: jitter.y, parity, and a

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// DeviceProfile: how the work of each pass is cut for a device. No result depends on it, only speed does.
+// DeviceProfile: how the work of each pass is cut for a device. Only speed depends on it.
 //
-// Device::open() takes the first that there is of
-//   tuned     what quincunx-bench --tune has measured on this device with this driver, kept in cache_folder()
+// Device::open() takes the first one that exists of
+//   tuned     measured by quincunx-bench --tune on this device with this driver, kept in cache_folder()
 //   shipped   of host/profiles, for the device's platform and kind
 //   default   the same shape for every pass, by the device's kind
 // The search is modelled on CLBlast's (Nugteren, "CLBlast: A Tuned OpenCL BLAS Library", 2018).
@@ -21,12 +21,12 @@ namespace quincunx {
 
 class Device;
 
-// How the rows of a pass are cut into work-items, and those into groups.
+// The cut of a pass's rows into work-items, and of those into groups.
 struct WorkShape {
   static constexpr int kMostOfGroup = 1024;  // on either axis
   static constexpr int kMostPixels = 1 << 16;
 
-  // A group, in work-items. A group that is larger than a kernel can have on the device is halved until it is not.
+  // A group, in work-items. It is halved until the kernel can have it on the device.
   int group_width = 1;
   int group_height = 4;
   // Pixels of a row that one work-item makes, rounded up to a kernel's block; 0: the whole row.
@@ -46,20 +46,20 @@ struct QUINCUNX_API DeviceProfile {
 
   const WorkShape& shape_of(std::string_view kernel) const;
 
-  // "tuned 2026-11-22 21:05 UTC", "shipped (measured 2026-11-22 21:05 UTC, driver 3.1)" or "default"
+  // Returns "tuned 2026-11-22 21:05 UTC", "shipped (measured 2026-11-22 21:05 UTC, driver 3.1)" or "default"
   std::string describe() const;
 
   friend bool operator==(const DeviceProfile&, const DeviceProfile&) = default;
 };
 
-// Returns the profile of a device of which nothing was measured. Pure.
+// Returns the profile of a device without measurements. Pure.
 QUINCUNX_API DeviceProfile default_profile(const Device& device);
 
-// The file of a tuned profile: JSON, of this device with this driver. It need not exist. Nothing where there is no
-// cache_folder().
+// Returns the path of this device's tuned profile for this driver, a JSON file that may not exist yet; nothing without
+// a cache_folder().
 QUINCUNX_API std::optional<std::filesystem::path> profile_path(const Device& device);
 
-// Writes that file, whole or not at all; whoever opens the device from now on uses it. `date` is in the profile.
+// Writes that file, whole or not at all; Device::open() uses it from now on.
 // Errors: kUnsupported where there is no cache folder, kIoFailure where the file cannot be written.
 QUINCUNX_API Status keep_profile(const Device& device, const DeviceProfile& profile);
 

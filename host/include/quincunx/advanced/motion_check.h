@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 // MotionCheck: whether velocity points where samples come from, or would with another sign. Values; pure.
 //
-// Each frame is compared with the one before where velocity says that its samples come from, and where it would say so
-// with another sign of x, of y, and of both. A verdict on an axis is what eight frames say in which something moves
-// along it and in each of which one sign is better. Units, jitter and the rest: quincunx-resolve --diagnose, on
-// recorded frames.
+// Each frame is compared with the one before, at the places that its samples come from by their velocity, and by the
+// velocity with another sign of x, of y, and of both. A verdict on an axis needs eight frames in which something moves
+// along it and one sign is better. quincunx-resolve --diagnose checks units, jitter and the rest on recorded frames.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +15,11 @@ namespace quincunx {
 
 enum class MotionVerdict : std::uint8_t {
   kUnknown,  // nothing moves enough, or no sign is clearly better
-  kRightX,   // of y nothing is known
-  kRightY,   // of x nothing is known
+  kRightX,   // x is right, y unknown
+  kRightY,   // y is right, x unknown
   kRight,
-  kSignOfX,    // that of x alone is wrong, or nothing is known of y
-  kSignOfY,    // the same of y
+  kSignOfX,    // the sign of x is wrong; y is right or unknown
+  kSignOfY,    // the sign of y is wrong; x is right or unknown
   kDirection,  // both signs are wrong
 };
 
@@ -28,7 +27,7 @@ QUINCUNX_API const char* name_of(MotionVerdict verdict);  // "sign of y"
 
 struct MotionCheck {
   MotionVerdict verdict = MotionVerdict::kUnknown;
-  double margin_db = 0;  // by how much its sign foretells better than the opposite; of two, the lesser
+  double margin_db = 0;  // advantage of its sign over the opposite; of two axes, the lesser
 };
 
 // Returns a verdict as a sentence without its margin, "velocity.y seems to point the other way"; nothing: nullptr.

@@ -23,29 +23,30 @@ class QUINCUNX_API CostTable {
   static constexpr double kMaxArea = 4;    // scale 2 on both axes
   static constexpr int kBinsPerArea = 64;  // resolutions of one 64th of the output's area count as the same
 
-  // An entry's confidence halves in half_life_frames. Errors: kInvalidArgument for one outside [1, 1e9].
+  // Creates an empty table. An entry's confidence halves in half_life_frames. Errors: kInvalidArgument for one outside
+  // [1, 1e9].
   static Result<CostTable> create(double half_life_frames = 3600);
 
-  // One frame of this area fraction (in (0, 4]) took `gpu_ms` (in (0, 60000]). Frame numbers may repeat but
-  // not fall. Errors: kInvalidArgument; nothing has changed then.
+  // Records that a frame of this area fraction (in (0, 4]) took `gpu_ms` (in (0, 60000]). Frame numbers may repeat but
+  // not fall. Errors: kInvalidArgument, which leaves the table as it was.
   Status record(std::uint64_t frame, double area_fraction, double gpu_ms);
 
-  // In [0, 1]: 1 right after a resolution was recorded, 0 where it never was.
+  // Returns the confidence in [0, 1]: 1 right after a resolution was recorded, 0 where it never was.
   double confidence(double area_fraction) const;
 
-  // The expected time in ms. As far as the confidence of what was recorded there goes, it is that; the rest is
-  // what the other entries, by their own confidence, extrapolate to if fixed_part of the cost does not scale.
-  // Nothing while the table is empty or for an area fraction outside (0, 4].
+  // Predicts the time in ms: a mean of the time that was recorded there, weighted by its confidence, and of the times
+  // that the other entries extrapolate to, by their own confidence, if fixed_part of the cost does not scale. Nothing
+  // while the table is empty or for an area fraction outside (0, 4].
   std::optional<double> predict(double area_fraction, double fixed_part = 0.25) const;
 
-  // The part of the cost at the output resolution that does not scale, within [0, 0.9]: that of the straight
-  // line through the entries. Nothing while they do not span a quarter of the output's area.
+  // Returns the part of the cost at the output resolution that does not scale, within [0, 0.9], from a straight line
+  // through the entries; nothing until they span a quarter of the output's area.
   std::optional<double> fixed_part() const;
 
   bool empty() const { return entries_.empty(); }
 
-  // JSON text and back. Ages are kept, so an old table is trusted less. Errors of from_json():
-  // kInvalidArgument for text that to_json() would not write; the message says what is wrong.
+  // Convert to JSON text and back. Ages are kept, so an old table counts less. Errors of from_json(): kInvalidArgument
+  // for text that to_json() does not write; the message says what is wrong.
   std::string to_json() const;
   static Result<CostTable> from_json(const std::string& text);
 

@@ -25,14 +25,14 @@ struct DetailSettings {
 
 class QUINCUNX_API DetailFollower {
  public:
-  // Errors: kInvalidArgument for a field outside its range.
+  // Creates a follower. Errors: kInvalidArgument for a field outside its range.
   static Result<DetailFollower> create(const DetailSettings& settings = {});
 
-  // Called once per frame with the area fraction it is drawn at. Goes at most one level further per call, and
-  // nowhere for a fraction that is not a positive finite number. Returns level().
+  // Follows one frame, of the area fraction that it is drawn at: at most one level a call, and none for a fraction that
+  // is not a positive finite number. Returns level().
   int observe(double area_fraction);
   int level() const { return level_; }
-  // The level as a share: 1 full detail, 0 the least. Multiply sample counts or distances by a range of it.
+  // Returns the level as a share: 1 full detail, 0 the least. Multiply sample counts or distances by a range of it.
   double share() const { return 1 - static_cast<double>(level_) / (settings_.levels - 1); }
 
  private:
@@ -44,7 +44,7 @@ class QUINCUNX_API DetailFollower {
   int since_;
 };
 
-// The output extent that goes with a render extent: the smallest rung of `outputs` whose area the render
+// Returns the output extent for a render extent: the smallest rung of `outputs` whose area the render
 // extent fills to at most `max_filled` (in (0, 1]); where all are filled more, the highest rung. With 0.64,
 // passes after upscaling run at the lowest output until the render extent reaches .8 of it on each axis, and
 // at larger ones from there on. Errors: kInvalidArgument for an empty render extent or a max_filled outside

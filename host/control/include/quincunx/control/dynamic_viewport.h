@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// DynamicViewport: from a wanted scale to the integer viewport that is drawn, and back to the true ratio.
+// DynamicViewport: turns a wanted scale into the integer viewport that is drawn, and that into the true ratio.
 //
 // Pure arithmetic: no device, no clock. A value; any thread may use its own copy. After Binks, "Dynamic
 // Resolution Rendering", 2012: the ratio that shaders and kernels use is recomputed from the integer
@@ -14,10 +14,11 @@ namespace quincunx {
 
 class QUINCUNX_API DynamicViewport {
  public:
-  // Target extent = ceil(output * max_scale). Viewports of set_scale() are the output extent plus a multiple
-  // of `step` pixels on each axis, so that scale 1 is exactly the output, whatever its parity; no side falls
-  // below `min_extent` (or the output where that is smaller) nor exceeds the target. Errors: kInvalidArgument for
-  // an empty output, a max_scale outside [1, 2] or not finite, a step below 1, a min_extent below 1.
+  // Creates a viewport of scale 1. Target extent = ceil(output * max_scale). Viewports of set_scale() are the output
+  // extent plus a multiple of `step` pixels on each axis, so that scale 1 is exactly the output, whatever its parity;
+  // no side falls below `min_extent` (or the output where that is smaller) nor exceeds the target. Errors:
+  // kInvalidArgument for an empty output, a max_scale outside [1, 2] or not finite, a step below 1, a min_extent below
+  // 1.
   static Result<DynamicViewport> create(Extent output, float max_scale = 1.0f, int step = 2,
                                         Extent min_extent = {8, 8});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// ErrorFront: how wrong each method's picture is at each scale, and what the resolve costs, as measured.
+// ErrorFront: the measured error of each method's picture at each scale, and the measured cost of the resolve.
 //
 // A point is one class of scenes, one method and one scale. quincunx-bench --front and quincunx-render --calibrate
 // measure points; a table that is built in serves until then. It is what a controller needs that chooses a method as
@@ -79,39 +79,38 @@ class QUINCUNX_API ErrorFront {
  public:
   static constexpr int kFormat = 1;  // version of the JSON; a reader refuses others
 
-  // In any order. Each method needs at least one point in every class, and one at most at a scale of a class. Errors:
-  // kInvalidArgument, naming the point.
+  // Creates a front of points in any order. Each method needs at least one point in every class, and one at most at a
+  // scale of a class. Errors: kInvalidArgument, naming the point.
   static Result<ErrorFront> create(FrontSource source, std::vector<FrontPoint> points);
 
-  // The table that was measured on PoCL and is compiled in. Its errors hold for any device, its times for none: they
-  // say which method costs more than which.
+  // Returns the table that was measured on PoCL and is compiled in. Its errors hold for any device. Its times only
+  // order the methods by cost.
   static const ErrorFront& built_in();
 
-  // JSON text, a line a point, its figures to six significant digits, and back. Errors of from_json():
-  // kInvalidArgument for text that to_json() would not write; the message is one sentence that begins with
-  // "error front: ".
+  // Convert to JSON text, a line a point, its figures to six significant digits, and back. Errors of from_json():
+  // kInvalidArgument for text that to_json() does not write; the message is one sentence that begins with "error front:
+  // ".
   std::string to_json() const;
   static Result<ErrorFront> from_json(const std::string& text);
 
   bool is_built_in() const { return built_in_; }
   const FrontSource& source() const { return source_; }
-  std::string summary() const;  // one clause: where its figures come from, and when
+  std::string summary() const;  // one clause: the source of its figures and their date
 
   std::span<const FrontPoint> points() const { return points_; }  // by class, method and scale
-  // Each once, in the order of growing effort.
+  // Returns each method once, in the order of growing effort.
   std::span<const MethodVariant> methods() const { return methods_; }
 
-  // The points of a class that no other of it dominates: none has at most its scale (so at most its cost of drawing),
-  // its milliseconds and its FLIP, and less of one of them.
+  // Returns the points of a class that no other of it dominates. A point dominates another if its scale (so its cost of
+  // drawing), its milliseconds and its FLIP are at most the other's, and one of them is less.
   std::vector<FrontPoint> front(SceneClass scene_class) const;
 
-  // The expected mean FLIP of such a picture. Between measured scales it is interpolated linearly; below the lowest
-  // and above the highest it is that of the nearest. Nothing for a method without points, an invalid mix, or a scale
-  // that is not above 0.
+  // Returns the expected mean FLIP of such a picture, linear between measured scales and constant beyond them; nothing
+  // for a method without points, an invalid mix, or a scale that is not above 0.
   std::optional<double> flip(const SceneMix& mix, const MethodVariant& method, double scale) const;
 
-  // The same of the resolve passes' milliseconds, the mean over the classes, for an output of so many megapixels
-  // (10^6 pixels, above 0).
+  // Returns the same of the resolve passes' milliseconds, the mean over the classes, for an output of so many
+  // megapixels (10^6 pixels, above 0).
   std::optional<double> resolve_ms(const MethodVariant& method, double scale, double output_megapixels) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Front files: where measured ErrorFronts lie, by device, driver and scene, and which one serves.
+// Front files: the files of measured ErrorFronts, by device, driver and scene, and the choice among them.
 //
 // They lie in cache_folder(), beside the compiled kernels, as JSON text: front-KEY.json. All functions may be called
 // from any thread.
@@ -21,16 +21,16 @@ struct FrontKey {
   std::string scene;  // empty: any
 };
 
-// Returns where the front of a key lies; nothing where there is no cache folder. The file may not exist yet.
+// Returns the file's path, which may not exist yet; nothing without a cache folder.
 QUINCUNX_API std::optional<std::filesystem::path> front_path(const FrontKey& key);
 
 struct FoundFront {
   ErrorFront front;
-  std::string explanation;  // one clause: which it is, where it lies, and why one that is there was not taken
+  std::string explanation;  // one clause: its kind, its path, and why another file was not taken
 };
 
-// The device's front for this scene; else the device's for any scene; else the one that is built in. A file that
-// cannot be read, or is of something else than its name says, is passed over.
+// Returns the device's front for this scene; else the device's for any scene; else the built-in one. A file that cannot
+// be read, or belongs to something else than its name says, is passed over.
 QUINCUNX_API FoundFront find_front(const FrontKey& key);
 
 }  // namespace quincunx

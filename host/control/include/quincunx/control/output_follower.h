@@ -25,11 +25,11 @@ struct OutputSettings {
 
 class QUINCUNX_API OutputFollower {
  public:
-  // Errors: kInvalidArgument for a field outside its range.
+  // Creates a follower. Errors: kInvalidArgument for a field outside its range.
   static Result<OutputFollower> create(const OutputSettings& settings);
 
-  // Called once per frame with the extent it is drawn at. The first one is followed at once. An empty extent changes
-  // nothing. Returns output().
+  // Follows one frame, of the extent that it is drawn at; the first one at once. An empty extent changes nothing.
+  // Returns output().
   Extent observe(Extent render);
 
   Extent output() const { return output_; }          // the display's before the first frame

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The default resolution controller: it predicts the next frame's time and spends what the display's queue
-// allows.
+// The default resolution controller: predicts the next frame's time and uses the time that the display's queue allows.
 //
-// Its model of the world has three parts:
+// Its model has three parts:
 //   a level: the time that a frame would take at the output resolution;
-//   how much of that does not scale with the pixels;
-//   the backlog: how far the device is behind the display, from 0 (it waits for a free buffer) to the slack
+//   the part of that which does not scale with the pixels;
+//   the backlog: the device's distance behind the display, from 0 (it waits for a free buffer) to the slack
 //   that the buffers give (beyond it a refresh is missed).
 // It aims just below the target while the backlog is small, lower in proportion to the backlog, and never so
-// high that one more frame like the worst one seen would use up the slack. Single slow frames are ridden out
-// while there is slack; two in a row are a step and answered at once. docs/control.md has the whole algorithm
+// high that one more frame like the worst one seen would use up the slack. A single slow frame changes nothing
+// while there is slack; two in a row count as a step and are answered at once. docs/control.md has the whole algorithm
 // and its measured table.
 //
-// It makes use of the following, if told: interval_ms or queued (else the backlog is only computed), next_frame
+// It uses the following, if known: interval_ms or queued (else the backlog is only computed), next_frame
 // (timers that come back late), missed_vsyncs (surprises make it careful until the queue is seen full again),
 // cpu_ms, blur_px.
 #pragma once
@@ -46,13 +45,13 @@ struct PredictiveSettings {
   // Buffers of the swap chain, the one on the screen and the one drawn included; in [2, 8]. With 2 there is no slack:
   // every frame has to fit, and recurring slow frames lower the resolution.
   int buffers = 3;
-  double fixed_part = 0.25;                             // first guess of what does not scale, in [0, 0.9]
+  double fixed_part = 0.25;  // first guess of the part that does not scale, in [0, 0.9]
   std::optional<CostTable> calibration = std::nullopt;  // replaces that guess, if it spans enough resolutions
   CpuBound cpu_bound = CpuBound::kHold;
   BlurAware blur_aware = {};
 };
 
-// Errors: kInvalidArgument for a field outside its range.
+// Makes the controller. Errors: kInvalidArgument for a field outside its range.
 QUINCUNX_API Result<std::unique_ptr<ResolutionController>> make_predictive_controller(
     const PredictiveSettings& settings);
 

@@ -32,8 +32,7 @@
 namespace quincunx {
 
 struct QualitySettings {
-  PredictiveSettings pacing =
-      {};  // ladder, target, buffers, and what the predictive controller takes besides
+  PredictiveSettings pacing = {};  // ladder, target, buffers and all else of the predictive controller
   ErrorFront front = ErrorFront::built_in();
   std::vector<MethodVariant> methods =
       {};                    // to choose from, each with points in `front`; empty: all of the front
@@ -49,7 +48,7 @@ struct QualityFrame {
   std::optional<ContentStatistics> content = {};  // nothing: as the frame before
 };
 
-// How to draw and resolve the next frame.
+// The extent and method of the next frame.
 struct QualityChoice {
   Extent render_extent;  // as ResolutionController::next()
   MethodVariant method;
@@ -58,7 +57,7 @@ struct QualityChoice {
   double weight = 1;  // in (0, 1]; 1 unless fading
 };
 
-// A method at a scale, and what is expected of it.
+// A method at a scale, and its expected error and cost.
 struct QualityPair {
   MethodVariant method;
   double scale = 1;  // per axis, the root of the area fraction
@@ -66,10 +65,10 @@ struct QualityPair {
   double ms = 0;  // the whole frame's
 };
 
-// Why the last choice was made.
+// The reasons of the last choice.
 struct QualityReasons {
-  SceneMix mix;                          // what the picture shows, smoothed
-  double budget_ms = 0;                  // that a frame may take while the display's queue is at rest
+  SceneMix mix;                          // the picture's content, smoothed
+  double budget_ms = 0;                  // for a frame while the display's queue is at rest
   QualityPair chosen;                    // the present method at the resolution that the budget allows
   std::vector<QualityPair> others = {};  // every other method at its own resolution, by rising error
   std::optional<QualityPair> next_better =
@@ -79,10 +78,10 @@ struct QualityReasons {
 
 class QUINCUNX_API QualityController : public ResolutionController {
  public:
-  using ResolutionController::observe;  // takes a frame whose resolve_ms and content are not known
+  using ResolutionController::observe;  // takes a frame of unknown resolve_ms and content
 
-  // As the base's. Errors, besides: kInvalidArgument for a resolve_ms that is negative or not below gpu_ms, or content
-  // outside its ranges; nothing has changed then.
+  // Learns from one frame, as the base's. Further errors: kInvalidArgument for a resolve_ms that is negative or not
+  // below gpu_ms, or content outside its ranges, which leave the controller as it was.
   virtual Status observe(const QualityFrame& frame) = 0;
 
   virtual QualityChoice choice() const = 0;
@@ -92,12 +91,12 @@ class QUINCUNX_API QualityController : public ResolutionController {
   using ResolutionController::ResolutionController;
 };
 
-// Before the first frame the choice is the highest resolution with the method that errs least there. Errors:
-// kInvalidArgument for a field outside its range, and for a method that the front does not have.
+// Makes the controller. Before the first frame it chooses the highest resolution with the method that errs least there.
+// Errors: kInvalidArgument for a field outside its range, and for a method that the front does not have.
 QUINCUNX_API Result<std::unique_ptr<QualityController>> make_quality_controller(
     const QualitySettings& settings);
 
-// The reasons in three or four lines of plain text.
+// Returns the reasons in three or four lines of plain text.
 QUINCUNX_API std::string explain(const QualityReasons& reasons);
 
 }  // namespace quincunx

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// ResolutionController: from the times of past frames to the render extent of the next one.
+// ResolutionController: chooses the render extent of the next frame from the times of past ones.
 //
-// Common to all controllers are the ladder they choose from, the target, and the checks of what they are told.
+// All controllers have the ladder that they choose from, the target, and the checks of their input in common.
 // A controller is pure: it has no clock, no device and no random numbers, so that the same calls in the same
 // order give the same extents on every machine. Not thread safe: one thread at a time calls an object.
 //
@@ -22,7 +22,7 @@
 
 namespace quincunx {
 
-// Times of one past frame. Zero, or kUnknownQueue, means not known unless a comment says otherwise.
+// Times of one past frame. Zero, or kUnknownQueue, means unknown unless a comment says otherwise.
 struct FrameTiming {
   static constexpr int kUnknownQueue = -1;
 
@@ -46,17 +46,16 @@ class QUINCUNX_API ResolutionController {
 
   virtual const char* name() const = 0;  // "predictive"
 
-  // Learns from one frame and chooses next(). Errors: kInvalidArgument for a frame number that is not above
-  // the last accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kMaxMs], or
-  // another field that is negative (queued: below -1), too long or not finite. After an error nothing has
-  // changed, so a caller may ignore it.
+  // Learns from one frame and chooses next(). Errors: kInvalidArgument for a frame number that is not above the last
+  // accepted one (late or duplicate), an empty render extent, a gpu_ms outside (0, kMaxMs], or another field that is
+  // negative (queued: below -1), too long or not finite. An error changes nothing, so a caller may ignore it.
   Status observe(const FrameTiming& timing);
 
-  // The extent to draw the next frame at: a rung of the ladder. Before the first observe() the highest one.
+  // Returns the extent to draw the next frame at: a rung of the ladder. Before the first observe() the highest one.
   Extent next() const { return ladder_[rung_]; }
   int rung() const { return rung_; }
 
-  // The time that a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
+  // Sets the time that a frame may take: the display's refresh interval, a multiple of it, or any other. Errors:
   // kInvalidArgument for one outside (0, kMaxMs]; the old target then stays.
   Status set_target_ms(double target_ms);
   double target_ms() const { return target_ms_; }
@@ -64,14 +63,14 @@ class QUINCUNX_API ResolutionController {
   const ResolutionLadder& ladder() const { return ladder_; }
 
  protected:
-  // Both must have been checked: see check_target().
+  // Takes values that were checked: see check_target().
   ResolutionController(ResolutionLadder ladder, double target_ms);
   ResolutionController(const ResolutionController&) = default;
   ResolutionController& operator=(const ResolutionController&) = default;
 
   static Status check_target(double target_ms);
 
-  // Called with a valid timing. Returns the next rung; one outside the ladder is clamped.
+  // Returns the next rung, which is clamped to the ladder, after a valid timing.
   virtual int choose(const FrameTiming& timing) = 0;
 
  private:

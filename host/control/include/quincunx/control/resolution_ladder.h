@@ -34,8 +34,8 @@ struct LadderSettings {
 
 class QUINCUNX_API ResolutionLadder {
  public:
-  // The output is a rung whenever [min_scale, max_scale] holds 1; a range narrower than a step holds one rung
-  // on that axis. Errors: kInvalidArgument for a field outside the bounds above or min_scale > max_scale.
+  // Creates a ladder. The output is a rung whenever [min_scale, max_scale] holds 1; a range narrower than a step holds
+  // one rung on that axis. Errors: kInvalidArgument for a field outside the bounds above or min_scale > max_scale.
   static Result<ResolutionLadder> create(const LadderSettings& settings);
 
   int size() const { return static_cast<int>(rungs_.size()); }  // at least 1
@@ -43,13 +43,13 @@ class QUINCUNX_API ResolutionLadder {
   Extent operator[](int rung) const { return rungs_[static_cast<std::size_t>(rung)]; }
   Extent output() const { return output_; }
 
-  // Pixels of an extent over pixels of the output.
+  // Returns the pixels of an extent over those of the output.
   double area_fraction(Extent extent) const;
   double area_fraction(int rung) const { return area_fraction((*this)[rung]); }
 
-  // The largest rung of at most this area fraction; the lowest one where all are larger or it is NaN.
+  // Returns the largest rung of at most this area fraction; the lowest one where all are larger or it is NaN.
   int max_rung_within(double area_fraction) const;
-  // The same for a scale of both axes: area fraction = scale squared.
+  // Returns the same for a scale of both axes: area fraction = scale squared.
   int max_rung_within_scale(double scale) const { return max_rung_within(scale * scale); }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// record_frames(): writes what an engine gives to a service into a folder, from which quincunx-resolve makes the same
-// pictures again, bit for bit: a bug report, a test case.
+// record_frames(): writes an engine's frames into a folder, from which quincunx-resolve makes the same pictures again,
+// bit for bit: a bug report, a test case.
 //
 //   auto recording = quincunx::record_frames(service, "seen", {.frames = 60});
 //   ... service.dispatch(...) as ever, until recording->done() ...
@@ -33,9 +33,9 @@ class QUINCUNX_API Recording {
   Recording(Recording&& other) noexcept;
   Recording& operator=(Recording&& other) noexcept;
 
-  int frames() const;            // that are in the folder, whole
-  bool done() const;             // nothing more will be written
-  const Status& status() const;  // why it ended early; the files of the frames before are whole
+  int frames() const;            // whole frames in the folder
+  bool done() const;             // the last frame is written
+  const Status& status() const;  // the error that ended it early; the files of the frames before are whole
 
  private:
   friend QUINCUNX_API Result<Recording> record_frames(ResolveService& service, const std::string& folder,
@@ -45,10 +45,10 @@ class QUINCUNX_API Recording {
   std::shared_ptr<State> state_;
 };
 
-// Records the frames of dispatch() from the next one on, which begins without history, as after a cut; in place of what
-// else observes the service. Each dispatch() then waits for its inputs, reads those back that the plan reads, and
-// writes them; its pictures stay the same. So no event that it waits for (FrameSync) may depend on what its thread does
-// afterwards. Errors: kInvalidArgument, kIoFailure where the folder cannot be written.
+// Records the frames of dispatch() from the next one on, which begins without history, as after a cut; replaces another
+// observer of the service. Each dispatch() then waits for its inputs, reads those back that the plan reads, and
+// writes them; its pictures stay the same. So the events that it waits for (FrameSync) must come without further calls
+// of its thread. Errors: kInvalidArgument, kIoFailure where the folder cannot be written.
 QUINCUNX_API Result<Recording> record_frames(ResolveService& service, const std::string& folder,
                                              const RecordOptions& options = {});
 
