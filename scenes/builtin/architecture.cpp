@@ -13,21 +13,6 @@ namespace {
 
 constexpr int kArchPieces = 20;
 
-// Adds parts at an offset from where the pen stands, and puts the pen back.
-class PenOffset {
- public:
-  PenOffset(MeshBuilder& builder, glm::vec3 offset) : builder_(builder), before_(builder.pen.placement) {
-    builder.pen.placement = glm::translate(before_, offset);
-  }
-  ~PenOffset() { builder_.pen.placement = before_; }
-  PenOffset(const PenOffset&) = delete;
-  PenOffset& operator=(const PenOffset&) = delete;
-
- private:
-  MeshBuilder& builder_;
-  glm::mat4 before_;
-};
-
 // One upright quad of the front face and its twin on the back.
 void both_faces(MeshBuilder& wall, float x0, float x1, float y0, float y1, float thickness) {
   wall.patch({x0, y0, 0}, {x1 - x0, 0, 0}, {0, y1 - y0, 0});
@@ -248,7 +233,7 @@ void add_balustrade(MeshBuilder& stone, float length, float height) {
   const int count = static_cast<int>(length / kSpacing);
   for (int i = 0; i < count; ++i) {
     const float x = (static_cast<float>(i) + 0.5f) * length / static_cast<float>(count);
-    const PenOffset offset(stone, {x, 0, 0});
+    const PenScope offset(stone, glm::translate(stone.pen.placement, glm::vec3(x, 0, 0)));
     stone.lathe(profile, 8);
   }
 }
@@ -263,7 +248,7 @@ void add_railing(MeshBuilder& iron, const Railing& shape) {
     const float x = shape.length * static_cast<float>(i) / static_cast<float>(count);
     const std::array<glm::vec3, 2> bar{{{x, 0, 0}, {x, shape.height - 0.05f, 0}}};
     iron.tube(bar, shape.bar_radius, 6);
-    const PenOffset offset(iron, {x, shape.height - 0.09f, 0});
+    const PenScope offset(iron, glm::translate(iron.pen.placement, glm::vec3(x, shape.height - 0.09f, 0)));
     const std::array<glm::vec2, 4> spear{
         {{shape.bar_radius, 0}, {2.4f * shape.bar_radius, 0.03f}, {0.004f, 0.1f}, {0, 0.11f}}};
     iron.lathe(spear, 6);

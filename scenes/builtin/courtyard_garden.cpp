@@ -158,7 +158,7 @@ constexpr float kTreeOffset = 3.7f;  // from the centre to the four corners, on 
 
 void add_fountain(SceneAssembly& assembly, const CourtyardMaterials& m) {
   MeshBuilder& stone = assembly.still(m.limestone, kFountainPart);
-  stone.pen.placement = moved_to(kFountain);
+  const PenScope standing(stone, moved_to(kFountain));
   const std::array<glm::vec2, 15> basin{{{1.72f, 0},
                                          {1.72f, 0.12f},
                                          {1.60f, 0.16f},
@@ -181,7 +181,6 @@ void add_fountain(SceneAssembly& assembly, const CourtyardMaterials& m) {
                                          {0.50f, 1.36f}, {0.14f, 1.34f}, {0.10f, 1.50f}, {0.12f, 1.66f},
                                          {0.09f, 1.74f}, {0.16f, 1.84f}, {0.11f, 1.96f}, {0.0f, 2.02f}}};
   stone.lathe(shaft, 40);
-  stone.pen.placement = glm::mat4(1);
   MeshBuilder water(m.water);
   water.picture({-1.37f, 0, 1.37f}, {2.74f, 0, 0}, {0, 0, -2.74f});
   const int pool = assembly.add(water.take());
@@ -196,7 +195,7 @@ void add_fountain(SceneAssembly& assembly, const CourtyardMaterials& m) {
 // A square planter of limestone with a tree in it.
 void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot, int part) {
   MeshBuilder& stone = assembly.still(m.limestone, part);
-  stone.pen.placement = moved_to(foot);
+  const PenScope standing(stone, moved_to(foot));
   constexpr float kHalf = 0.62f;
   stone.box({-kHalf, 0, -kHalf}, {kHalf, 0.1f, kHalf});
   stone.box({-kHalf + 0.06f, 0.1f, -kHalf + 0.06f}, {kHalf - 0.06f, 0.46f, kHalf - 0.06f});
@@ -205,7 +204,6 @@ void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3
     stone.box({side > 0 ? inner : -kHalf, 0.46f, -kHalf}, {side > 0 ? kHalf : -inner, 0.56f, kHalf});
     stone.box({-inner, 0.46f, side > 0 ? inner : -kHalf}, {inner, 0.56f, side > 0 ? kHalf : -inner});
   }
-  stone.pen.placement = glm::mat4(1);
   MeshBuilder& soil = assembly.still(m.soil, part);
   soil.patch(foot + glm::vec3(-0.5f, 0.51f, 0.5f), {1, 0, 0}, {0, 0, -1});
 }
@@ -213,7 +211,7 @@ void add_planter(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3
 void add_pot(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foot, float size, int part,
              Random& random) {
   MeshBuilder& clay = assembly.still(m.terracotta, part);
-  clay.pen.placement = moved_to(foot);
+  const PenScope standing(clay, moved_to(foot));
   const std::array<glm::vec2, 9> profile{{{0.0f, 0.0f},
                                           {0.26f * size, 0.0f},
                                           {0.40f * size, 0.48f * size},
@@ -224,7 +222,6 @@ void add_pot(SceneAssembly& assembly, const CourtyardMaterials& m, glm::vec3 foo
                                           {0.40f * size, 0.68f * size},
                                           {0.0f, 0.66f * size}}};
   clay.lathe(profile, 28);
-  clay.pen.placement = glm::mat4(1);
   add_bush(assembly.still(m.plants.leaves, part), foot + glm::vec3(0, 0.66f * size, 0), 0.55f * size,
            0.75f * size, 90, random);
 }
@@ -332,7 +329,7 @@ void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   MeshBuilder& wood = assembly.still(m.planks, kProps);
   constexpr float kWidth = 0.87f;
   constexpr float kHeight = 1.16f;
-  wood.pen.placement = board;
+  const PenScope standing(wood, board);
   wood.box({-kWidth / 2 - 0.06f, -0.06f, -0.06f}, {kWidth / 2 + 0.06f, 0, 0.02f});
   wood.box({-kWidth / 2 - 0.06f, kHeight, -0.06f}, {kWidth / 2 + 0.06f, kHeight + 0.06f, 0.02f});
   for (const float side : {-1.0f, 1.0f}) {
@@ -342,7 +339,6 @@ void add_courtyard_props(SceneAssembly& assembly, const CourtyardMaterials& m) {
   }
   wood.rod({0, kHeight + 0.1f, -0.1f}, {0, -0.55f, -0.62f}, 0.026f, 8);
   wood.box({-kWidth / 2, 0, -0.05f}, {kWidth / 2, kHeight, -0.02f});
-  wood.pen.placement = glm::mat4(1);
   MeshBuilder& sheet = assembly.still(m.poster_title, kProps);
   sheet.pen.placement = board;
   sheet.picture({-kWidth / 2, 0, -0.015f}, {kWidth, 0, 0}, {0, kHeight, 0});

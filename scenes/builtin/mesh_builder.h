@@ -84,6 +84,26 @@ std::array<glm::vec3, 2> frame_around(glm::vec3 axis);
 // Points of a wire that hangs between two points; `sag` is how far its middle lies below the chord.
 std::vector<glm::vec3> hanging_wire(glm::vec3 from, glm::vec3 to, float sag, int pieces);
 
+// Sets a builder's pen and puts it back: what is added while it lives stands at a place.
+class PenScope {
+ public:
+  PenScope(MeshBuilder& builder, const Pen& pen) : builder_(builder), before_(builder.pen) {
+    builder.pen = pen;
+  }
+  PenScope(MeshBuilder& builder, const glm::mat4& placement) : builder_(builder), before_(builder.pen) {
+    builder.pen.placement = placement;
+  }
+  ~PenScope() { builder_.pen = before_; }
+  PenScope(const PenScope&) = delete;
+  PenScope& operator=(const PenScope&) = delete;
+  MeshBuilder* operator->() const { return &builder_; }
+  MeshBuilder& operator*() const { return builder_; }
+
+ private:
+  MeshBuilder& builder_;
+  Pen before_;
+};
+
 struct OcclusionSettings {
   float cell = 0.16f;     // metres: size of the cubes that the scene is measured in
   float reach = 2.6f;     // metres: what is further away does not darken
