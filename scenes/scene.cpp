@@ -130,28 +130,14 @@ std::optional<double> next_cut(const Scene& scene, double seconds) {
   return next != scene.cuts.end() ? round + *next : round + scene.duration + scene.cuts.front();
 }
 
-Bounds bounds_of(const Scene& scene) {
-  std::vector<Bounds> boxes(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    const std::vector<Vertex>& vertices = scene.meshes[m].vertices;
-    if (vertices.empty()) continue;
-    boxes[m] = {vertices[0].position, vertices[0].position};
-    for (const Vertex& vertex : vertices) {
-      boxes[m].low = glm::min(boxes[m].low, vertex.position);
-      boxes[m].high = glm::max(boxes[m].high, vertex.position);
-    }
+Bounds bounds_of(const Mesh& mesh) {
+  if (mesh.vertices.empty()) return {};
+  Bounds box{mesh.vertices[0].position, mesh.vertices[0].position};
+  for (const Vertex& vertex : mesh.vertices) {
+    box.low = glm::min(box.low, vertex.position);
+    box.high = glm::max(box.high, vertex.position);
   }
-  Bounds bounds;
-  bool first = true;
-  for (const Instance& instance : scene.instances) {
-    const auto mesh = static_cast<std::size_t>(instance.mesh);
-    if (scene.meshes[mesh].vertices.empty()) continue;
-    const Bounds box = transformed(boxes[mesh], instance.motion ? instance.motion(0) : instance.transform);
-    bounds.low = first ? box.low : glm::min(bounds.low, box.low);
-    bounds.high = first ? box.high : glm::max(bounds.high, box.high);
-    first = false;
-  }
-  return bounds;
+  return box;
 }
 
 Bounds transformed(const Bounds& box, const glm::mat4& transform) {

@@ -172,10 +172,10 @@ bool shows(const Scene& scene, const Fault& fault, double previous_seconds, doub
 // The first cut at or after `seconds`; nothing where the scene has none.
 std::optional<double> next_cut(const Scene& scene, double seconds);
 
-// World bounds of all instances at time 0.
-Bounds bounds_of(const Scene& scene);
+// Returns the box around a mesh's vertices; zeros where it has none.
+Bounds bounds_of(const Mesh& mesh);
 
-// The axis-aligned box around a transformed box.
+// Returns the axis-aligned box around a transformed box.
 Bounds transformed(const Bounds& box, const glm::mat4& transform);
 
 // Checks whether a scene holds together: indices, sizes, counts, finite positions. Errors: kInvalidArgument; the

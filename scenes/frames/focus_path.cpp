@@ -93,15 +93,6 @@ void add_box(ScreenBounds& bounds, const Bounds& box, const glm::dmat4& clip_fro
   }
 }
 
-Bounds box_of(const Mesh& mesh) {
-  Bounds box{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
-  for (const Vertex& vertex : mesh.vertices) {
-    box.low = glm::min(box.low, vertex.position);
-    box.high = glm::max(box.high, vertex.position);
-  }
-  return box;
-}
-
 }  // namespace
 
 Result<FocusTarget> FocusTarget::parse(const std::string& text, Extent output) {
@@ -140,7 +131,8 @@ Status FocusPath::find_object() {
     const Instance& instance = scene_->instances[i];
     if (!instance.name.empty()) names.insert(instance.name);
     if (instance.name != target_.object) continue;
-    parts_.push_back({static_cast<int>(i), box_of(scene_->meshes[static_cast<std::size_t>(instance.mesh)])});
+    parts_.push_back(
+        {static_cast<int>(i), bounds_of(scene_->meshes[static_cast<std::size_t>(instance.mesh)])});
   }
   if (!parts_.empty()) return {};
   return Status::invalid(

@@ -152,15 +152,6 @@ constexpr float kMaxCoordinate = 1e9f;
 // Moments of the animation that the orbit camera is made to fit.
 constexpr int kBoundsMoments = 16;
 
-Bounds bounds_of_mesh(const Mesh& mesh) {
-  Bounds box{mesh.vertices[0].position, mesh.vertices[0].position};
-  for (const Vertex& vertex : mesh.vertices) {
-    box.low = glm::min(box.low, vertex.position);
-    box.high = glm::max(box.high, vertex.position);
-  }
-  return box;
-}
-
 bool is_sane(const glm::mat4& matrix) {
   for (int c = 0; c < 4; ++c) {
     for (int r = 0; r < 4; ++r) {
@@ -236,7 +227,7 @@ class SceneReader {
             "the meshes have more than {} vertices and indices in all, which is the limit", kMaxVertices));
       }
       place->second.push_back(static_cast<int>(scene_.meshes.size()));
-      mesh_bounds_.push_back(bounds_of_mesh(*read));
+      mesh_bounds_.push_back(bounds_of(*read));
       check_extent(mesh_bounds_.back(),
                    described("mesh", mesh, model_.meshes[static_cast<std::size_t>(mesh)].name));
       scene_.meshes.push_back(std::move(*read));
