@@ -18,6 +18,7 @@ run_packages=(
   fonts-dejavu-core                      # captions of the contact sheet
 )
 test_packages=(libgtest-dev clang clang-format python3 python3-numpy python3-cffi chromium
+  help2man                               # manual pages
   libopenimageio-dev                     # a peer of the kernel benchmark
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window

@@ -37,7 +37,7 @@ make_packages() {
   local name=${DEBFULLNAME:-$(git log -1 --format=%an)} email=${DEBEMAIL:-$(git log -1 --format=%ae)}
   make_system "$suite" "build-$suite" "$fresh"
   enter_system
-  stage "what the build needs" "apt-get update -q=2; $install lintian file ${build_packages[*]} >/dev/null"
+  stage "what the build needs" "apt-get update -q=2; $install lintian file help2man ${build_packages[*]} >/dev/null"
   rm -rf "$root/tmp/quincunx" "$packages"
   git clone -q --no-local . "$root/tmp/quincunx"
   stage "build" "cd /tmp/quincunx; cmake --preset package >/dev/null; cmake --build --preset package"

@@ -12,7 +12,6 @@
 #include "tools/page/report_page.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 #include "tools/sequence/resolve_advice.h"
 #include "tools/sequence/resolve_report.h"
 

@@ -44,8 +44,10 @@ struct BenchOptions : scenes::PictureOptions {
   std::string command_line;
 };
 
-// Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
-// instead.
+// Returns the table of options; they write into `options`, which must outlive the parsing.
+tools::CommandLine command_line(BenchOptions& options);
+
+// Reads a command line. On --help, --version or an error it prints and gives the exit code instead.
 std::optional<int> parse_command_line(int argc, char** argv, BenchOptions& options);
 
 }  // namespace quincunx::bench

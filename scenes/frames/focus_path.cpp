@@ -11,6 +11,7 @@
 
 #include "quincunx/advanced/focus.h"
 #include "render/view_math.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -136,8 +137,9 @@ Status FocusPath::find_object() {
   }
   if (!parts_.empty()) return {};
   return Status::invalid(
-      fmt::format("--focus: the scene '{}' has no object '{}'; it has {}", scene_->name, target_.object,
-                  names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", "))));
+      fmt::format("--focus: the scene '{}' has no object '{}'; it has {}{}", scene_->name, target_.object,
+                  names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", ")),
+                  tools::did_you_mean(target_.object, {names.begin(), names.end()})));
 }
 
 // One size for all frames, so that the region keeps its memory and its history.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "random.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -88,8 +89,9 @@ Result<ScalePath> ScalePath::parse(const std::string& text, std::uint64_t seed) 
     path.kind_ = Kind::kRandom;
     scales = {0.5f, 1.0f};
   } else {
-    return Status::invalid(fmt::format(
-        "scale path '{}' is not known; there are sweep[:A,B,C], ramp[:A,B] and random[:A,B]", text));
+    return Status::invalid(
+        fmt::format("scale path '{}' is not known; there are sweep[:A,B,C], ramp[:A,B] and random[:A,B]{}",
+                    text, tools::did_you_mean(name, {"sweep", "ramp", "random"})));
   }
   const std::size_t wanted = scales.size();
   if (colon != std::string::npos) scales = numbers(std::string_view(text).substr(colon + 1));

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "catalog/scene_catalog.h"
 #include "tools/program/command_line.h"
@@ -19,44 +20,33 @@ constexpr const char* kAutomatic = "auto";
 constexpr double kDefaultBudget = 0.1;  // share of a frame's time
 constexpr double kLongestBudget = 1000;
 
-// The names of both options of a part.
-struct PartNames {
-  std::string scale;
-  std::string budget;
-  std::string what;
-};
-
-void read_scale(const std::string& option, const std::string& text, PartOption& part) {
+std::string read_scale(const std::string& text, PartOption& part) {
   part.automatic = text == kAutomatic;
-  if (part.automatic) return;
+  if (part.automatic) return {};
   const auto scale = tools::number_in(text);
   if (!scale || !(*scale >= kLeastPartScale && *scale <= 1)) {
-    throw tools::UsageError{
-        option, fmt::format("'{}' is no scale of a part; give a number from {} to 1, or auto", text,
-                            kLeastPartScale)};
+    return fmt::format("'{}' is no scale of a part; give a number from {} to 1, or auto", text,
+                       kLeastPartScale);
   }
   part.scale = static_cast<float>(*scale);
+  return {};
 }
 
-// part(): where the option is, made by the first of the two that is given.
+// Both options of a part. part(): where they go, made by the first of the two that is given.
 template <typename Part>
-void add_part(tools::CommandLine& app, const PartNames& names, Part part) {
-  const auto scale =
-      app.add_option_function<std::string>(
-             names.scale,
-             [part, option = names.scale](const std::string& text) { read_scale(option, text, part()); },
-             names.what)
-          .type_name("S|auto");
-  app.add_option_function<float>(
-         names.budget, [part](const float& budget) { part().budget_ms = static_cast<double>(budget); },
-         "With auto: milliseconds of OpenGL's work a frame (default: a tenth of a frame of --fps)")
-      .in_range(0.001, kLongestBudget)
-      .needs(scale)
-      .type_name("MS");
-  app.when_read([&app, part, names] {
-    if (app.has(names.budget) && !part().automatic)
-      throw tools::UsageError{names.budget, "nothing holds it; give " + names.scale + " auto"};
-  });
+void add_part(tools::CommandLine& line, const std::string& name, const std::string& help, Part part) {
+  const std::string scale = "--" + name + "-scale";
+  line.add(scale, tools::text("S|auto", [part](const std::string& text) { return read_scale(text, part()); }),
+           help + "; auto: a controller holds it");
+  line.add("--" + name + "-budget",
+           tools::text(
+               "MS",
+               [part](const std::string& text) {
+                 return tools::number(part().budget_ms, {.least = 0.001, .most = kLongestBudget}).take(text);
+               }),
+           "Milliseconds of OpenGL's work a frame (default: a tenth of a frame of --fps)")
+      .needs({scale})
+      .counts_if([part] { return part().automatic; }, scale + " auto; nothing holds it else");
 }
 
 PartSettings settings_for(const PartOption& part, double fps) {
@@ -82,21 +72,6 @@ Result<ScalePath> scale_path_for(const PictureOptions& options) {
   return ScalePath::fixed(scale);
 }
 
-void add_part_options(tools::CommandLine& app, PartOptions& options) {
-  add_part(app,
-           {"--shadow-scale", "--shadow-budget",
-            "Side of the shadow map's part in use, of the whole (default: 1); auto: held by a controller"},
-           [&options]() -> PartOption& { return options.shadow; });
-  add_part(app,
-           {"--particle-scale", "--particle-budget",
-            "Particles in a viewport of their own: its scale, of the frame's (default: drawn with everything "
-            "else); auto: held by a controller"},
-           [&options]() -> PartOption& {
-             if (!options.particles) options.particles.emplace();
-             return *options.particles;
-           });
-}
-
 }  // namespace
 
 std::string text_of(const PartOption& part) {
@@ -114,84 +89,89 @@ PartsSettings parts_for(const PartOptions& options, double fps) {
   return settings;
 }
 
-void add_picture_options(tools::CommandLine& app, PictureOptions& options) {
-  static const std::map<std::string, Jitter> kJitters = {{"none", Jitter::kNone},
-                                                         {"quincunx", Jitter::kQuincunx},
-                                                         {"quincunx-half", Jitter::kQuincunxHalf},
-                                                         {"halton", Jitter::kHalton}};
-
-  app.add_option("--scene", options.scene,
-                 "Built-in scene, or a .gltf or .glb file (default: the first of the list)");
-  app.add_option("--seed", options.seed,
-                 "Of what is random in a scene or a scale path; same seed, same pixels")
-      .show_default();
-  app.add_option_function<std::string>(
-         "--output",
-         [&options](const std::string& text) {
-           const std::string error = tools::parse_extent(text, options.output);
-           if (!error.empty()) throw tools::UsageError{"--output", error};
-         },
-         "Size of the picture (default: 1280x720)")
-      .type_name("WxH");
-  const auto scale =
-      app.add_option("--scale", options.scale, "Render scale of both axes or of each").type_name("S|SX,SY");
-  app.add_option("--scale-path", options.scale_path,
-                 "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
-      .type_name("PATH")
-      .excludes(scale);
-  app.add_option(
-         "--dual", options.dual,
-         "The output's resolution is dynamic, too: auto (follows the viewport's), a fixed scale, or random")
-      .type_name("auto|S|random");
-  tools::add_resolve_options(app, options.resolve);
-  tools::add_choice(app, "--targets", options.resolve.targets.placement, tools::choices<Targets>(),
-                    "viewport (default): a part of large targets; placed: targets of just that size");
-  tools::add_choice(app, "--jitter", options.jitter, kJitters,
-                    "none, quincunx, quincunx-half or halton (default: halton for temporal, quincunx for "
-                    "quincunx, else none)");
+void add_picture_options(tools::CommandLine& line, PictureOptions& options,
+                         const tools::MethodOptions& about_method) {
   static const std::map<std::string, PixelFormat> kColours = {{"rgba16f", PixelFormat::kRGBA16F},
                                                               {"rgba8", PixelFormat::kRGBA8}};
-  tools::add_choice(app, "--colour", options.resolve.colour, kColours,
-                    "Of the colour target: rgba16f (linear light) or rgba8 (exposed, tone mapped and sRGB "
-                    "encoded as it is drawn; default: rgba16f)");
-  tools::add_choice(app, "--shading", options.resolve.targets.shading, tools::choices<Shading>(),
-                    "Pixels that a frame shades: full or checkerboard, every other one (default: full)");
-  add_part_options(app, options.parts);
-  app.add_option(
-         "--focus", options.focus,
-         "Draw a part again at --focus-scale and lay it over: an object of the scene, a rectangle of the "
-         "picture or, in the window, pointer")
-      .type_name("OBJECT|X,Y,W,H");
-  app.add_option("--focus-scale", options.focus_scale, "Render scale of that part")
-      .in_range(0.02, 2.0)
-      .show_default();
-  app.add_option("--exposure", options.exposure, "Multiplies linear colour (default: the scene's)")
-      .positive();
-  app.add_option("--frames", options.frames, "Number of frames").positive().show_default();
-  app.add_option("--fps", options.fps, "Frames a second of scene time (with --target-fps: that rate)")
-      .positive()
-      .show_default();
-  app.add_option("--start", options.start, "Scene time of the first frame, seconds").show_default();
+  line.group("Scene");
+  line.add("--scene", tools::text(options.scene, "NAME|FILE"),
+           "Built-in scene, or a .gltf or .glb file (default: the first of --list-scenes)")
+      .common();
+  line.add("--list-scenes", tools::flag(options.list_scenes),
+           "List the built-in scenes and why they are there")
+      .common()
+      .tells();
+  line.add("--frames", tools::number(options.frames, {.least = 1, .most = 1e15}), "Number of frames")
+      .common();
+  line.add("--fps", tools::number(options.fps, {.least = 0, .most = 1e6, .beyond = true}),
+           "Frames a second of scene time (with --target-fps: that rate)");
+  line.add("--start", tools::number(options.start, {.least = -1e6, .most = 1e6}, "SECONDS"),
+           "Scene time of the first frame");
+  line.add("--seed", tools::number(options.seed),
+           "Seed of a scene's or a scale path's chance; same seed, same pixels");
+  line.add("--exposure", tools::number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
+           "Multiplies linear colour (default: the scene's)");
+  line.group("Picture");
+  line.add("--output", tools::extent(options.output), "Size of the picture").common();
+  line.add("--scale", tools::text(options.scale, "S|SX,SY"),
+           "Render scale of both axes or of each (default: 1)")
+      .common();
+  line.add("--scale-path", tools::text(options.scale_path, "PATH"),
+           "Scale by frame: sweep[:A,B,C], ramp[:A,B], random[:A,B]")
+      .excludes({"--scale"});
+  line.add("--dual", tools::text(options.dual, "auto|S|random"),
+           "The output's resolution is dynamic, too: it follows the viewport's (auto), is fixed, or random");
+  line.add("--targets", tools::choice(options.resolve.targets.placement),
+           "viewport (default): a part of large targets; placed: targets of just that size");
+  line.add("--colour", tools::choice(options.resolve.colour, kColours),
+           "Colour target: rgba16f (default; linear light) or rgba8 (exposed, tone mapped and sRGB encoded "
+           "as it is drawn)");
+  line.add("--shading", tools::choice(options.resolve.targets.shading),
+           "Pixels that a frame shades: full (default) or checkerboard, every other one");
+  add_part(line, "shadow", "Side of the shadow map's part in use, of the whole (default: 1)",
+           [&options]() -> PartOption& { return options.parts.shadow; });
+  add_part(line, "particle", "Scale of particles in a viewport of their own, of the frame's (default: none)",
+           [&options]() -> PartOption& {
+             if (!options.parts.particles) options.parts.particles.emplace();
+             return *options.parts.particles;
+           });
+  line.add("--focus", tools::text(options.focus, "OBJECT|X,Y,W,H"),
+           "Draw a part again at --focus-scale and lay it over: an object of the scene, a rectangle of the "
+           "picture or, in the window, pointer");
+  line.add("--focus-scale", tools::number(options.focus_scale, {.least = 0.02, .most = 2}, "S"),
+           "Render scale of that part")
+      .needs({"--focus"});
+  tools::add_resolve_options(line, options.resolve, about_method);
+  line.group("Method");
+  line.add("--jitter", tools::choice(options.jitter),
+           "none, quincunx, quincunx-half or halton (default: halton for temporal, quincunx for quincunx, "
+           "else none)");
+  line.check([&options](const tools::CommandLine& given) {
+    if (options.resolve.targets.placement == Targets::kPlaced && options.interop == gl::Interop::kGl)
+      given.refuse({"--targets"},
+                   "placed and --interop gl exclude each other: OpenCL cannot place OpenGL's textures; leave "
+                   "one of them out");
+    if (options.parts.particles && options.resolve.colour == PixelFormat::kRGBA8)
+      given.refuse({"--particle-scale"},
+                   "it and --colour rgba8 exclude each other: particles are laid over linear colour; leave "
+                   "one of them out");
+  });
 }
 
-void add_machine_options(tools::CommandLine& app, PictureOptions& options) {
+void add_machine_options(tools::CommandLine& line, PictureOptions& options) {
   static const std::map<std::string, gl::Interop> kInterops = {
       {"auto", gl::Interop::kAuto}, {"gl", gl::Interop::kGl}, {"copy", gl::Interop::kCopy}};
   static const std::map<std::string, gl::Platform> kPlatforms = {{"auto", gl::Platform::kAuto},
                                                                  {"surfaceless", gl::Platform::kSurfaceless},
                                                                  {"device", gl::Platform::kDevice}};
-  app.add_option("--device", options.device,
-                 "OpenCL device: cpu, gpu, an index of --list-devices or part of a name");
-  tools::add_choice(app, "--interop", options.interop, kInterops,
-                    "How frames pass from OpenGL to OpenCL: auto, gl or copy");
-  tools::add_choice(app, "--egl-platform", options.platform, kPlatforms, "auto, surfaceless or device");
   static const std::map<std::string, gl::Api> kApis = {{"4.5", gl::Api::kGl45}, {"es3", gl::Api::kEs3}};
-  tools::add_choice(app, "--gl", options.api, kApis,
-                    "What draws: OpenGL 4.5 or es3, which is OpenGL ES 3.1 or later (default: 4.5)");
-  app.add_flag("--list-scenes", options.list_scenes, "List the built-in scenes and why they are there");
-  app.add_flag("--list-devices", options.list_devices, "List the OpenCL devices and the OpenGL renderer");
-  app.add_flag("-q,--quiet", options.quiet, "Say nothing but errors");
-  app.add_flag("-v,--verbose", options.verbosity, "Say more; twice: everything");
+  tools::add_device_options(line, options.device, options.list_devices);
+  line.group("Device");
+  line.add("--interop", tools::choice(options.interop, kInterops), "How frames pass from OpenGL to OpenCL");
+  line.add("--gl", tools::choice(options.api, kApis),
+           "What draws: OpenGL 4.5 (default), or es3, OpenGL ES 3.1 or later");
+  line.add("--egl-platform", tools::choice(options.platform, kPlatforms), "Where OpenGL comes from");
+  tools::add_log_options(line, options.quiet, options.verbosity);
 }
 
 void print_scenes() {
@@ -231,18 +211,6 @@ Jitter jitter_for(const PictureOptions& options) {
 Result<FrameSourceSettings> source_settings_for(const PictureOptions& options) {
   auto path = scale_path_for(options);
   if (!path.ok()) return path.status();
-  if (options.resolve.targets.placement == Targets::kPlaced && options.interop == gl::Interop::kGl) {
-    return Status::invalid(
-        "--targets placed and --interop gl exclude each other: OpenGL's textures cannot be placed in memory "
-        "that OpenCL "
-        "reads; leave one of them out");
-  }
-  if (options.parts.particles && options.resolve.colour == PixelFormat::kRGBA8) {
-    return Status::invalid(
-        "--particle-scale and --colour rgba8 exclude each other: particles are laid over linear colour; "
-        "leave "
-        "one of them out");
-  }
   FrameSourceSettings source;
   source.scene = options.scene;
   source.seed = options.seed;

@@ -12,10 +12,7 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"
-
-namespace quincunx::tools {
-class CommandLine;
-}
+#include "tools/program/resolve_settings_options.h"
 
 namespace quincunx::scenes {
 
@@ -66,10 +63,11 @@ struct PictureOptions {
 };
 
 // Scene, size, scale, method, jitter, tone map, frames and their times.
-void add_picture_options(tools::CommandLine& app, PictureOptions& options);
+void add_picture_options(tools::CommandLine& line, PictureOptions& options,
+                         const tools::MethodOptions& about_method = {});
 
 // Devices, lists and how much is said.
-void add_machine_options(tools::CommandLine& app, PictureOptions& options);
+void add_machine_options(tools::CommandLine& line, PictureOptions& options);
 
 // Prints what --list-scenes or --list-devices ask for.
 void print_scenes();

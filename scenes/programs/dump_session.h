@@ -15,6 +15,7 @@
 #include "quincunx/status.h"
 #include "tools/image/image_io.h"
 #include "tools/image/text_painter.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 
@@ -41,8 +42,6 @@ enum class Stage : std::uint8_t {
 constexpr int kStageCount = 16;
 
 const char* name_of(Stage stage);  // "colour"
-std::optional<Stage> stage_named(const std::string& name);
-std::string stage_names();  // "colour, depth, ..."
 
 bool needs_truth(Stage stage);
 
@@ -75,6 +74,9 @@ struct DumpOptions : PictureOptions {
       false;  // in its files Z is the reversed device depth as it was drawn: nothing is rounded
   bool dilate_velocity = false;  // the same: dilate_velocity()
 };
+
+// Returns the table of options; they write into `options`, which must outlive the parsing.
+tools::CommandLine command_line(DumpOptions& options);
 
 // Draws every frame of the options and writes it with all its targets in the exchange format (docs/inputs.md), and
 // sequence.json with what is constant; truth, where it is asked for, beside it. Errors: of any part, as it words them.

@@ -57,20 +57,8 @@ Canvas tile_picture(const StagePlanes& planes) {
 }  // namespace
 
 const char* name_of(Stage stage) {
-  return kNames[static_cast<std::size_t>(stage)];
-}
-
-std::optional<Stage> stage_named(const std::string& name) {
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) return std::nullopt;
-  return static_cast<Stage>(found - kNames.begin());
-}
-
-std::string stage_names() {
-  std::string names;
-  for (const char* name : kNames)
-    names += (names.empty() ? "" : ", ") + std::string(name);
-  return names;
+  const auto index = static_cast<std::size_t>(stage);
+  return index < kNames.size() ? kNames[index] : "unknown";
 }
 
 bool needs_truth(Stage stage) {

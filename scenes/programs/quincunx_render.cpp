@@ -19,7 +19,6 @@
 #include "tools/page/report_page.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 #include "window/window_run.h"
 
 namespace quincunx::scenes {

@@ -11,7 +11,7 @@
 #include "tools/image/display_light.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/frame_pattern.h"
-#include "tools/program/progress.h"
+#include "tools/program/program.h"
 #include "tools/program/work_queue.h"
 
 namespace quincunx::scenes {

@@ -15,7 +15,6 @@
 #include "tools/page/scored_frames.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -135,9 +134,7 @@ void print(const CostTable& table, const std::vector<Extent>& points, const Reso
 }
 
 Status calibrate_costs(const RenderOptions& options) {
-  auto ladder_settings = ladder_for(options.pacing, options.output);
-  if (!ladder_settings.ok()) return ladder_settings.status();
-  auto ladder = ResolutionLadder::create(ladder_settings.value());
+  auto ladder = ResolutionLadder::create(ladder_for(options.pacing, options.output));
   if (!ladder.ok()) return ladder.status();
   auto calibration = CostRun::create(options, ladder.value());
   if (!calibration.ok()) return calibration.status();
@@ -184,12 +181,7 @@ Status calibrate_methods(const RenderOptions& options) {
 }  // namespace
 
 Status run_calibration(const RenderOptions& options) {
-  // Said before the work, not after it.
   if (Status status = tools::ScoredFrames::check(options.output, "--calibrate"); !status.ok()) return status;
-  {
-    const auto file = tools::AtomicFile::create(options.pacing.calibrate);
-    if (!file.ok()) return file.status();
-  }
   if (Status status = calibrate_costs(options); !status.ok()) return status;
   return calibrate_methods(options);
 }

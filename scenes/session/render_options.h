@@ -11,6 +11,7 @@
 #include "frames/picture_options.h"
 #include "session/frame_pacing.h"
 #include "session/paced_loop.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 
@@ -37,8 +38,7 @@ struct PacingOptions {
   bool has_ladder() const { return controls() || !calibrate.empty(); }  // else the scale is given
 };
 
-// Errors: kInvalidArgument, naming the option.
-Result<LadderSettings> ladder_for(const PacingOptions& options, Extent output);
+LadderSettings ladder_for(const PacingOptions& options, Extent output);
 
 // Returns one without a display where no rate is asked for. `front`: for a controller that chooses the method. Errors:
 // kInvalidArgument, naming the option; kIoFailure for a calibration file that cannot be read.
@@ -72,8 +72,10 @@ struct RenderOptions : PictureOptions {
   std::string command_line;  // as typed, for the report
 };
 
-// Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
-// instead.
+// Returns the table of options; they write into `options`, which must outlive the parsing.
+tools::CommandLine command_line(RenderOptions& options);
+
+// Reads a command line. On --help, --version or an error it prints and gives the exit code instead.
 std::optional<int> parse_command_line(int argc, char** argv, RenderOptions& options);
 
 }  // namespace quincunx::scenes

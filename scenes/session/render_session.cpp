@@ -14,7 +14,7 @@
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
 #include "tools/program/clock.h"
-#include "tools/program/progress.h"
+#include "tools/program/program.h"
 
 namespace quincunx::scenes {
 namespace {

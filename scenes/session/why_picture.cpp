@@ -19,10 +19,9 @@
 #include "tools/image/flip.h"
 #include "tools/image/image_metrics.h"
 #include "tools/page/scored_frames.h"
-#include "tools/program/atomic_file.h"
 #include "tools/program/clock.h"
 #include "tools/program/command_line.h"
-#include "tools/program/progress.h"
+#include "tools/program/program.h"
 
 namespace quincunx::scenes {
 namespace {
@@ -249,14 +248,9 @@ std::vector<Place> largest_parts(Extent picture, std::span<const float> values, 
 }
 
 Status draw_why(const RenderOptions& options) {
-  // Said before the work, not after it.
   if (Status status = tools::ScoredFrames::check(options.output, "--why"); !status.ok()) return status;
   const auto scale = tools::number_in(options.scale);
   if (!scale) return Status::invalid("--why takes one --scale for both axes, not '" + options.scale + "'");
-  {
-    const auto file = tools::AtomicFile::create(options.why);
-    if (!file.ok()) return file.status();
-  }
   auto settings = source_settings_for(options);
   if (!settings.ok()) return settings.status();
   auto stage = FrameSource::create(settings.value());

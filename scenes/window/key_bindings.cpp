@@ -7,13 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <vector>
 
 #include "catalog/scene_catalog.h"
 #include "frames/focus_path.h"
+#include "tools/program/atomic_file.h"
 #include "tools/program/program.h"
 
 namespace quincunx::scenes {
@@ -233,9 +232,9 @@ Result<Script> Script::parse(const std::string& text) {
 }
 
 Result<Script> Script::read(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) return Status(StatusCode::kIoFailure, fmt::format("script '{}' cannot be read", path));
-  auto script = parse({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
+  const auto text = tools::read_text(path);
+  if (!text.ok()) return Status::io("script " + text.error());
+  auto script = parse(text.value());
   if (!script.ok()) return Status::invalid(fmt::format("script '{}', {}", path, script.status().message()));
   return script;
 }

@@ -185,27 +185,27 @@ int run(const Options& options, const std::string& command) {
   return status.ok() ? tools::kDone : tools::fail(status);
 }
 
-void declare(tools::CommandLine& app, Options& options) {
-  app.add_option("--device", options.device, "part of a device's name, its number, cpu or gpu");
-  app.add_option_function<std::vector<std::string>>(
-         "--output",
-         [&options](const std::vector<std::string>& sizes) {
-           options.outputs.clear();
-           for (const std::string& size : sizes) {
-             Extent extent;
-             const std::string error = tools::parse_extent(size, extent);
-             if (!error.empty()) throw tools::UsageError{"--output", error};
-             options.outputs.push_back(extent);
-           }
-         },
-         "output sizes, one or more (default: 1280x720)")
-      .expected(1, 16);
-  app.add_option("--scales", options.scales, "render scales").in_range(.01, 4.0);
-  app.add_option("--rounds", options.rounds, "measured rounds").in_range(1, 100000);
-  app.add_option("--filter", options.filters, "only cases whose name contains one of these");
-  app.add_flag("!--no-peers", options.peers, "leave out C++, OpenImageIO and GL");
-  app.add_flag("--clears", options.clears, "instead of the passes: full against partial clears");
-  app.add_option("--json", options.json, "also write the figures to this file");
+tools::CommandLine command_line(Options& options) {
+  tools::CommandLine line(
+      "The time of each pass, and of the same work by other means, in units of a float4 copy",
+      "quincunx-kernel-bench", "", "");
+  tools::Setting sizes = tools::text("WxH,...", [&options, first = true](const std::string& size) mutable {
+    if (std::exchange(first, false)) options.outputs.clear();
+    return tools::parse_extent(size, options.outputs.emplace_back());
+  });
+  sizes.list = true;
+  line.group("Options");
+  line.add("--device", tools::text(options.device, "DEVICE"),
+           "part of a device's name, its number, cpu or gpu");
+  line.add("--output", sizes, "output sizes (default: 1280x720)");
+  line.add("--scales", tools::number(options.scales, {.least = .01, .most = 4}, "S,..."), "render scales");
+  line.add("--rounds", tools::number(options.rounds, {.least = 1, .most = 100000}), "measured rounds");
+  line.add("--filter", tools::text(options.filters, "TEXT,..."),
+           "only cases whose name contains one of these");
+  line.add("--no-peers", tools::flag(options.peers, false), "leave out C++, OpenImageIO and GL");
+  line.add("--clears", tools::flag(options.clears), "instead of the passes: full against partial clears");
+  line.add("--json", tools::text(options.json, "FILE"), "also write the figures to this file").writes();
+  return line;
 }
 
 }  // namespace
@@ -217,11 +217,7 @@ void declare(tools::CommandLine& app, Options& options) {
 
 int main(int argc, char** argv) {
   quincunx::bench::Options options;
-  quincunx::tools::CommandLine app(
-      "The time of each pass, and of the same work by other means, in units of a float4 copy",
-      "quincunx-kernel-bench", "", "");
-  quincunx::bench::declare(app, options);
-  if (const std::optional<int> code = app.parse(argc, argv)) return *code;
+  if (const std::optional<int> code = quincunx::bench::command_line(options).parse(argc, argv)) return *code;
   try {
     return quincunx::bench::run(options,
                                 quincunx::tools::command_line_text("quincunx-kernel-bench", argc, argv));

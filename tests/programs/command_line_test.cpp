@@ -30,7 +30,7 @@ class CommandLine : public ::testing::Test {
 };
 
 TEST_F(CommandLine, HelpHasExamples) {
-  const ProgramResult result = run("--help");
+  const ProgramResult result = run("--help-all");
   EXPECT_EQ(result.exit_code, 0);
   for (const char* part : {"Examples:", "--scene", "--scale-path", "--truth", "--explain", "--interop"}) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part;
@@ -84,8 +84,14 @@ TEST_F(CommandLine, ExplainPlansWithoutRendering) {
 
 TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--colour rgb8", 2, "--colour: 'rgb8' is none of rgba16f, rgba8");
-  expect_refused("--truth 2 --colour rgba8 --out x.png", 2, "--colour excludes --truth");
+  expect_refused("--truth 2 --colour rgba8 --out x.png", 2, "--colour: --truth excludes it");
   expect_refused("--no-such-option", 2, "--no-such-option");
+  expect_refused("--outpt 64x36", 2, "unknown option '--outpt'; did you mean '--output'?");
+  expect_refused("--method biliner", 2, "did you mean 'bilinear'?");
+  expect_refused("--scene weel", 2, "did you mean 'wheel'?");
+  expect_refused("--scale-path sweeep", 2, "did you mean 'sweep'?");
+  expect_refused("--grain 0.5", 2, "--grain: it does nothing here; it goes with --method noise");
+  expect_refused("--contact-sheet '{}/x.jpg'", 2, "must end in .png");
   expect_refused("--output 1280", 2, "WIDTHxHEIGHT");
   expect_refused("--output 0x720", 2, "WIDTHxHEIGHT");
   expect_refused("--scale abc --out '{}/a.png'", 2, "abc");
@@ -149,7 +155,8 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
   expect_refused("--target-fps 30 --compare-fixed 1,0", 2, "--compare-fixed");
   expect_refused("--compare-fixed 1", 2, "--target-fps");
   expect_refused("--target-fps 30 --calibrate '{}/c.json'", 2, "--calibrate");
-  expect_refused("--target-fps 30 --calibration /dev/null", 2, "/dev/null");
+  expect_refused("--target-fps 30 --calibration /dev/null", 1,
+                 "/dev/null' cannot be read: it is a pipe or a device");
   expect_refused("--target-fps 30 --calibration '{}/missing.json'", 1, "missing.json");
   expect_refused("--calibrate /proc/none/c.json", 1, "/proc/none");
   expect_refused("--calibrate '{}/c.json' --min-scale 0.9 --max-scale 0.5", 2, "--min-scale 0.9");
@@ -171,6 +178,20 @@ TEST_F(CommandLine, WrongPacingIsExitTwoAndOneSentence) {
 TEST_F(CommandLine, BadSceneFilesAreExitOneAndOneSentence) {
   expect_refused("--scene '{}/missing.gltf'", 1, "missing.gltf");
   expect_refused("--scene /dev/null.glb", 1, "/dev/null.glb");
+}
+
+TEST_F(CommandLine, PathsAreTriedBeforeTheWork) {
+  for (const char* option : {"--report", "--contact-sheet", "--out"})
+    expect_refused(std::string("--scene chart ") + option + " /proc/none/a.png", 1,
+                   std::string(option) + ": '/proc/none");
+  expect_refused("--target-fps 30 --calibration '{}/'", 1, "it is a folder");
+}
+
+TEST_F(CommandLine, StandardOutputThatIsFullIsAnError) {
+  const ProgramResult result =
+      testing::run_program(folder_, "-c '\"$0\" --list-scenes >/dev/full' " QUINCUNX_PROGRAM, "sh");
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err, "error: standard output cannot be written: No space left on device\n");
 }
 
 TEST_F(CommandLine, AFolderThatCannotBeWrittenIsAnError) {

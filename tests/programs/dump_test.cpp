@@ -282,7 +282,7 @@ TEST_F(Dump, MistakesAreAnswered) {
   expect_refused("-q --scene chart --particle-scale 0.5 --stages particles --out '{}/d'",
                  "the scene has none");
   expect_refused("-q --scene particles --particle-scale 0.5 --frames 2 --sequence '{}/f.%04d.exr'",
-                 "without --particle-scale");
+                 "--sequence excludes it");
   expect_refused("-q --scene chart --frames 2 --sequence '{}/f.%04d.png'", "must end in .exr");
   expect_refused("-q --scene chart --frames 2 --sequence '{}/f.exr'", "f.exr");
   expect_refused("-q --scene nowhere --out '{}/d'", "there is no scene 'nowhere'");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Errors of a sequence or a command line: one clear sentence, an exit code, nothing half-written.
+#include <sys/stat.h>
+
 #include <fstream>
 
 #include "sequence_fixture.h"
@@ -23,7 +25,7 @@ class Refusal : public testing::SequenceTest {
 };
 
 TEST_F(Refusal, HelpVersionAndDevices) {
-  const auto help = resolve("--help");
+  const auto help = resolve("--help-all");
   EXPECT_EQ(help.exit_code, 0);
   for (const char* part : {"Examples:",        "--out",      "--output",
                            "--method",         "--velocity", "--velocity-convention",
@@ -58,6 +60,13 @@ TEST_F(Refusal, WrongUsage) {
   expect_refused(kRun + "--velocity-scale 1", 2, "--velocity-scale");
   expect_refused(kRun + "--velocity-scale 1,a", 2, "'a' is no number");
   expect_refused(kRun + "--velocity-scale 1,1 --velocity-convention nuke", 2, "--velocity-");
+  expect_refused(kRun + "--velocity-scale 0,0", 2, "leaves no motion");
+  expect_refused(kRun + "--velocity none --velocity-convention nuke", 2, "it does nothing here");
+  expect_refused(kRun + "--depth none --near 1", 2, "it does nothing here");
+  expect_refused(kRun + "--near 1e38", 2, "--near: '1e38' is no number from");
+  expect_refused(kRun + "--noise auto --method bilinear", 2, "it goes with --method temporal");
+  expect_refused(kRun + "--cuts 900", 2, "--cuts: there is no frame 900; the frames are 1 to 2");
+  expect_refused(kRun + "--jitter haltom", 2, "did you mean 'halton'?");
   expect_refused(kRun + "--depth-kind z", 2, "'z' is none of device, device-reversed, linear");
   expect_refused(kRun + "--warm-up -1", 2, "--warm-up");
   expect_refused(kRun + "--threads 0", 2, "--threads");
@@ -90,6 +99,17 @@ TEST_F(Refusal, InputsAreNeverOverwritten) {
   expect_refused("'{}/f.%04d.exr' --out '{}/t.%04d.exr' --truth '{}/t.%04d.exr'", 2,
                  "would overwrite an input");
   EXPECT_EQ(testing::read_file(input(1)), before);
+}
+
+TEST_F(Refusal, PathsAreTriedBeforeTheWork) {
+  write_frames(1, 2);
+  expect_refused(kRun + "--report /proc/none/r", 1, "--report: '/proc/none/r.json' cannot be written");
+  expect_refused("'{}/f.%04d.exr' --out '{}/f.0001.exr/u.%04d.exr'", 1, "--out: '");
+}
+
+TEST_F(Refusal, APipeIsNoFrame) {
+  ASSERT_EQ(::mkfifo(input(1).c_str(), 0600), 0);
+  expect_refused(kRun, 1, "cannot be read: it is a pipe or a device; save it to a file first");
 }
 
 TEST_F(Refusal, MissingFrames) {

@@ -604,7 +604,7 @@ TEST_F(BothWays, WhatCannotBeIsRefusedInASentence) {
   const auto refused = [this](const std::string& arguments, int code, const std::string& part) {
     expect_refused("'{}/f.%04d.exr' --out '{}/o/u.%04d.exr' " + arguments, code, part);
   };
-  refused("--two-way 8 --method bilinear", 2, "--two-way merges the histories of method temporal");
+  refused("--two-way 8 --method bilinear", 2, "it goes with --method temporal");
   refused("--two-way 65", 2, "--two-way");
   for (const char* size : {"2", "GB", "-1GB", "2KB"})
     refused(std::string("--memory ") + size, 2,

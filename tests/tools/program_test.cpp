@@ -10,10 +10,11 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "temporary_folder.h"
 #include "tools/program/atomic_file.h"
-#include "tools/program/progress.h"
+#include "tools/program/program.h"
 #include "tools/program/work_queue.h"
 
 namespace quincunx::tools {
@@ -107,6 +108,29 @@ TEST(AtomicFile, NamesThePathAndTheReason) {
     EXPECT_NE(status.message().find(path), std::string::npos) << status.message();
   }
   EXPECT_NE(write_text(folder.file("plain/below.txt"), "y").message().find("folder"), std::string::npos);
+}
+
+TEST(AtomicFile, ANameMayBeAsLongAsTheSystemAllows) {
+  const testing::TemporaryFolder folder;
+  const std::string longest = folder.file(std::string(255, 'n'));
+  ASSERT_TRUE(write_text(longest, "x").ok());
+  EXPECT_EQ(content(longest), "x");
+  EXPECT_EQ(folder.entries(), 1);
+  EXPECT_NE(write_text(folder.file(std::string(256, 'n')), "x").message().find("more than 255 bytes"),
+            std::string::npos);
+}
+
+TEST(ReadText, NamesThePathAndTheReason) {
+  const testing::TemporaryFolder folder;
+  ASSERT_TRUE(write_text(folder.file("plain"), "x\n").ok());
+  EXPECT_EQ(read_text(folder.file("plain")).value(), "x\n");
+  ASSERT_EQ(::mkfifo(folder.file("fifo").c_str(), 0600), 0);
+  const std::pair<const char*, const char*> cases[] = {
+      {"none", "there is no such file"},
+      {".", "it is a folder"},
+      {"fifo", "it is a pipe or a device; save it to a file first"}};
+  for (const auto& [name, reason] : cases)
+    EXPECT_EQ(read_text(folder.file(name)).error(), "'" + folder.file(name) + "' cannot be read: " + reason);
 }
 
 TEST(WorkQueue, OneThreadKeepsTheOrder) {

@@ -16,7 +16,6 @@
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <tuple>
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "tools/image/image_attributes.h"
+#include "tools/program/atomic_file.h"
 
 namespace quincunx::tools {
 namespace {
@@ -357,9 +357,7 @@ ImageReader::ImageReader(ImageReader&&) noexcept = default;
 ImageReader& ImageReader::operator=(ImageReader&&) noexcept = default;
 
 Result<ImageReader> ImageReader::open(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return cannot_read(path, "there is no such file");
-  if (std::filesystem::is_directory(path, error)) return cannot_read(path, "it is a folder");
+  if (Status status = check_readable(path); !status.ok()) return status;
   try {
     if (!Imf::isOpenExrFile(path.c_str())) return cannot_read(path, "it is no EXR file");
     return ImageReader(std::make_unique<Impl>(path));

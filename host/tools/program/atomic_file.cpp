@@ -12,6 +12,8 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <fstream>
+#include <iterator>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -22,12 +24,15 @@ namespace quincunx::tools {
 
 namespace {
 
+constexpr std::size_t kLongestFileName = 255;  // bytes
+
 // Unique among processes (id) and threads (counter).
 std::string temporary_name(const std::filesystem::path& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string name =
-      fmt::format(".{}.{}-{}.part", path.filename().string(), ::getpid(), counter.fetch_add(1));
-  return (path.parent_path() / name).string();
+  const std::string end = fmt::format(".{}-{}.part", ::getpid(), counter.fetch_add(1));
+  // Where the whole name would be too long for a file system, its beginning stands for it.
+  const std::string name = path.filename().string().substr(0, kLongestFileName - 1 - end.size());
+  return (path.parent_path() / ("." + name + end)).string();
 }
 
 Status cannot_store(const std::string& path, const std::string& reason) {
@@ -69,6 +74,10 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
   std::error_code error;
   if (!target.has_filename()) return cannot_store(path, "the path names no file");
   if (std::filesystem::is_directory(target, error)) return cannot_store(path, "it is a folder");
+  if (std::filesystem::exists(target, error) && !std::filesystem::is_regular_file(target, error))
+    return cannot_store(path, "it is a device or a pipe; a file is written under another name and renamed");
+  if (target.filename().string().size() > kLongestFileName)
+    return cannot_store(path, fmt::format("its name has more than {} bytes", kLongestFileName));
   if (target.has_parent_path()) {
     std::filesystem::create_directories(target.parent_path(), error);
     if (error) {
@@ -137,6 +146,45 @@ bool remove_abandoned(const std::filesystem::path& file,
   const bool removed = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(file.c_str()) == 0;
   ::close(descriptor);
   return removed;
+}
+
+Status try_to_write(const std::filesystem::path& path) {
+  std::error_code error;
+  std::filesystem::path first_made;
+  for (auto folder = path.parent_path(); !folder.empty() && !std::filesystem::exists(folder, error);
+       folder = folder.parent_path()) {
+    first_made = folder;
+  }
+  const Status status = AtomicFile::create(path.string()).status();
+  if (first_made.empty()) return status;
+  for (auto folder = path.parent_path();; folder = folder.parent_path()) {
+    std::filesystem::remove(folder, error);  // only where it is empty
+    if (folder == first_made) return status;
+  }
+}
+
+Status check_readable(const std::string& path) {
+  const auto bad = [&path](const std::string& reason) {
+    return Status::io(fmt::format("'{}' cannot be read: {}", path, reason));
+  };
+  std::error_code error;
+  const auto file = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(file)) return bad("there is no such file");
+  if (std::filesystem::is_directory(file)) return bad("it is a folder");
+  if (!std::filesystem::is_regular_file(file))
+    return bad("it is a pipe or a device; save it to a file first");
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return bad(std::strerror(errno));
+  ::close(descriptor);
+  return {};
+}
+
+Result<std::string> read_text(const std::string& path) {
+  if (Status status = check_readable(path); !status.ok()) return status;
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) return Status::io(fmt::format("'{}' cannot be read: {}", path, std::strerror(errno)));
+  return text;
 }
 
 Status write_text(const std::string& path, std::string_view text) {

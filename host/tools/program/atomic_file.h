@@ -16,7 +16,7 @@ namespace quincunx::tools {
 // last commit stays.
 class AtomicFile {
  public:
-  // Errors: kIoFailure when the folder cannot be made or written, or `path` names a folder.
+  // Errors: kIoFailure when the folder cannot be made or written, or `path` is there and no file.
   static Result<AtomicFile> create(const std::string& path);
 
   ~AtomicFile();
@@ -41,6 +41,15 @@ class AtomicFile {
 // file was removed.
 bool remove_abandoned(const std::filesystem::path& file,
                       const std::function<bool(const std::string&)>& wanted);
+
+// Returns what AtomicFile::create() would say of the path, and leaves nothing behind.
+Status try_to_write(const std::filesystem::path& path);
+
+// Returns why a file cannot be read, in one sentence that names it: it is missing, a folder, a pipe or forbidden.
+Status check_readable(const std::string& path);
+
+// Returns the bytes of a file. Errors: as of check_readable().
+Result<std::string> read_text(const std::string& path);
 
 // Writes a text file whole or not at all. Errors: kIoFailure.
 Status write_text(const std::string& path, std::string_view text);

@@ -1,111 +1,214 @@
 // SPDX-License-Identifier: MIT
-// CommandLine: the options of a program. CLI11 does the work, behind this header, because every file that
-// includes CLI11 takes seconds to compile.
+// CommandLine: the options of a program, each of them one row of a table. Help, completions, checks and messages all
+// follow from the rows. CLI11 tells options from values, behind this header: including it takes seconds.
 #pragma once
 
 #include <algorithm>
-#include <cctype>
+#include <deque>
 #include <functional>
 #include <initializer_list>
+#include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "tools/program/manual.h"
-
-namespace CLI {
-class App;
-class Option;
-}  // namespace CLI
+#include "quincunx/advanced/extent.h"
 
 namespace quincunx::tools {
 
-// Thrown by a function that reads an option's text: what is wrong with it. `option` is its name.
+// Thrown by a check. `option` is the name of the one that is wrong, `reason` says why.
 struct UsageError {
   std::string option;
   std::string reason;
 };
 
-// A function that tells what is wrong with a text, in one sentence; empty when nothing is.
-using Complaint = std::function<std::string(const std::string& text)>;
+// How the text behind an option is read, and where it goes. The functions below make them.
+struct Setting {
+  std::string value = {};  // what help calls the text: "N", "FILE"; empty: a flag
+  // Takes one text, an empty one of a flag. Returns what is wrong with it in one sentence; empty when nothing is.
+  std::function<std::string(const std::string& text)> take = {};
+  std::string usual = {};               // the default; empty: the row's help has it, where there is one
+  std::vector<std::string> words = {};  // every text that is taken; empty: others are, too
+  bool list = false;                    // several texts with commas between, or several times
+};
 
-// A view of one option of a CommandLine, which must outlive it.
-class Option {
- public:
-  explicit Option(CLI::Option* option) : option_(option) {}
+struct Bounds {
+  double least = std::numeric_limits<double>::lowest();
+  double most = std::numeric_limits<double>::max();
+  bool beyond = false;  // `least` itself is out of bounds
+};
+inline constexpr Bounds kPositive = {.least = 0, .beyond = true};
+inline constexpr Bounds kFromZero = {.least = 0};
+inline constexpr Bounds kPartOfOne = {.least = 0, .most = 1};
 
-  Option check(Complaint complaint) const;
-  Option in_range(int lowest, int highest) const;
-  Option in_range(double lowest, double highest) const;
-  Option positive() const;
-  Option non_negative() const;
-  Option one_of(std::initializer_list<int> values) const;
+// An option. Each method adds to the row and returns it.
+struct Row {
+  // --help lists it, not only --help-all.
+  Row& common() { return is_common = true, *this; }
+  // It may be given more than once.
+  Row& repeats() { return may_repeat = true, *this; }
+  // Where it is given nothing is written.
+  Row& tells() { return only_tells = true, *this; }
+  // Its text is a path to write, which is tried before any work.
+  Row& writes() { return is_written = true, *this; }
+  // One of these must be given as well.
+  Row& needs(std::vector<std::string> others) { return needed = std::move(others), *this; }
+  // None of these options and groups may be given as well. `why` ends the sentence.
+  Row& excludes(std::vector<std::string> others, std::string why = "leave one of them out") {
+    return excluded.push_back({std::move(others), std::move(why)}), *this;
+  }
+  // It does nothing unless `condition`, asked when all options are read. `with` names what it goes with.
+  Row& counts_if(std::function<bool()> condition, std::string with) {
+    return counts = std::move(condition), counts_with = std::move(with), *this;
+  }
 
-  Option type_name(const std::string& name) const;  // what --help calls its value
-  Option show_default() const;                      // --help tells the target's present value
-  Option delimiter(char separator) const;           // between a list's values in one word
-  Option expected(int fewest, int most) const;      // how many values it takes
-
-  Option needs(const Option& other) const;
-  Option needs(const std::string& other) const;
-  Option excludes(const Option& other) const;
-  Option excludes(const std::string& other) const;
-
- private:
-  CLI::Option* option_;
+  struct Exclusion {
+    std::vector<std::string> others;
+    std::string why;
+  };
+  std::vector<std::string> names;  // {"-n", "--dry-run"}; of a positional one {"INPUT"}
+  Setting setting;
+  std::string help;
+  std::string group;
+  bool is_common = false, may_repeat = false, only_tells = false, is_written = false;
+  std::vector<std::string> needed = {};
+  std::vector<Exclusion> excluded = {};
+  std::function<bool()> counts = {};
+  std::string counts_with = {};
 };
 
 class CommandLine {
  public:
-  // `examples` end the help. An empty `version` leaves --version out, and --manual, which help does not list: it
-  // prints the manual page or a shell's completion.
-  CommandLine(const std::string& description, const std::string& program, const std::string& version,
-              const std::string& examples);
-  ~CommandLine();
-  CommandLine(const CommandLine&) = delete;
-  CommandLine& operator=(const CommandLine&) = delete;
+  // `examples` end the help. An empty `version` leaves --version out.
+  CommandLine(std::string description, std::string program, std::string version, std::string examples);
 
-  // Target: std::string, int, 64-bit integers, float, double, or a vector of these. It must outlive parse().
-  template <typename Target>
-  Option add_option(const std::string& names, Target& target, const std::string& description);
+  // Begins a group of the help, or goes on with it. "Help" is listed last, and has rows of its own.
+  void group(const std::string& name) { group_ = name; }
+  // Adds an option to that group. `names`: "-n,--dry-run"; of a positional one "INPUT". The row is good until the next.
+  Row& add(const std::string& names, Setting setting, std::string help);
+  // Called after the last option is read, in turn; may throw UsageError.
+  void check(std::function<void(const CommandLine& line)> check) { checks_.push_back(std::move(check)); }
 
-  // Value: std::string, int, float or a vector of strings. `set` may throw UsageError.
-  template <typename Value>
-  Option add_option_function(const std::string& names, std::function<void(const Value&)> set,
-                             const std::string& description);
+  bool has(const std::string& name) const;  // the user gave it
+  // Throws UsageError for the first of `names` that the user gave.
+  void refuse(std::initializer_list<const char*> names, const std::string& why) const;
 
-  // A name that begins with "!" sets the target to false.
-  Option add_flag(const std::string& names, bool& target, const std::string& description);
-  Option add_flag(const std::string& names, int& count, const std::string& description);
-  Option add_flag_callback(const std::string& names, std::function<void()> set,
-                           const std::string& description);
+  // On --help, --version, --completion or an error, prints and returns the program's exit code.
+  std::optional<int> parse(int argc, const char* const* argv);
 
-  // Words that shells offer for an option's value; `name` is its first long one.
-  void offer(const std::string& name, std::vector<std::string> words) { words_[name] = std::move(words); }
-
-  Option option(const std::string& name) const;  // that was added before
-  bool has(const std::string& name) const;       // the user gave it
-  void when_read(std::function<void()> check);   // after the last option, in turn; may throw UsageError
-
-  // On --help, --version or a usage error, prints and gives the program's exit code. `check` comes after all
-  // else and may throw UsageError.
-  std::optional<int> parse(int argc, const char* const* argv, const std::function<void()>& check = {});
-
-  ProgramText text() const;  // what --help lists
+  const std::deque<Row>& rows() const { return rows_; }
+  std::string help(
+      const std::string& group) const;  // "": the common options; "all"; or a group, in lower case
+  std::string completion(const std::string& shell) const;  // "bash", "zsh" or "fish"
 
  private:
-  void print_manual(const std::string& form) const;
+  std::vector<std::string> groups() const;
+  void read_words(int argc, const char* const* argv);
+  void refuse_unknown(const std::vector<std::string>& words) const;
+  bool answer() const;
+  void take_texts(const Row& row) const;
+  void check_beside_others(const Row& row) const;
+  void try_paths() const;
 
-  std::unique_ptr<CLI::App> app_;
-  std::vector<std::function<void()>> checks_;  // the checks of when_read()
-  std::string version_;
-  std::map<std::string, std::vector<std::string>> words_;
+  std::string description_, program_, version_, examples_;
+  std::deque<Row> rows_;
+  std::vector<std::function<void(const CommandLine&)>> checks_;
+  std::string group_;
+  std::map<const Row*, std::vector<std::string>> texts_;  // of the rows that were given
 };
 
-// The text as a number, as options read them; nothing where it is none.
+// Returns the text as a number; nothing where it is none.
 std::optional<double> number_in(const std::string& text);
+
+// Returns "; did you mean 'NAME'?" with the name that is most like `word`; empty where none is alike.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& names);
+
+// Returns "'WORD' is none of A, B", with the nearest name.
+std::string none_of(const std::string& word, const std::vector<std::string>& names);
+
+namespace detail {
+
+template <typename Type>
+struct Inner {
+  using Value = Type;
+};
+template <typename Type>
+struct Inner<std::optional<Type>> {
+  using Value = Type;
+};
+template <typename Type>
+struct Inner<std::vector<Type>> {
+  using Value = Type;
+};
+template <typename Target>
+constexpr bool kIsList = std::is_same_v<Target, std::vector<typename Inner<Target>::Value>>;
+
+std::string number_text(double number);
+std::string read_number(const std::string& text, const Bounds& bounds, bool whole, long double& number);
+
+// Returns a function that stores values: the first one of a list replaces the default.
+template <typename Target>
+auto store_in(Target& target) {
+  return [&target, first = true](typename Inner<Target>::Value value) mutable {
+    if constexpr (kIsList<Target>) {
+      if (std::exchange(first, false)) target.clear();
+      target.push_back(std::move(value));
+    } else {
+      target = std::move(value);
+    }
+  };
+}
+
+}  // namespace detail
+
+// The following make settings. A target must outlive the parsing and holds the default; an optional one has none, and
+// a vector takes a list.
+
+Setting flag(bool& target, bool to = true);
+Setting count(int& times);
+Setting call(std::function<void()> set);
+Setting extent(Extent& target);
+Setting extent(std::optional<Extent>& target);
+
+// `take` returns what is wrong with a text, in one sentence.
+inline Setting text(std::string value, std::function<std::string(const std::string&)> take) {
+  return {.value = std::move(value), .take = std::move(take)};
+}
+
+template <typename Target>
+Setting text(Target& target, std::string value) {
+  return {.value = std::move(value),
+          .take =
+              [store = detail::store_in(target)](const std::string& words) mutable {
+                store(words);
+                return std::string(words.empty() ? "the text is empty" : "");
+              },
+          .list = detail::kIsList<Target>};
+}
+
+template <typename Target>
+Setting number(Target& target, Bounds bounds = {}, std::string value = "N") {
+  using Number = typename detail::Inner<Target>::Value;
+  bounds.least = std::max(bounds.least, static_cast<double>(std::numeric_limits<Number>::lowest()));
+  bounds.most = std::min(bounds.most, static_cast<double>(std::numeric_limits<Number>::max()));
+  Setting setting = {.value = std::move(value), .list = detail::kIsList<Target>};
+  setting.take = [bounds, store = detail::store_in(target)](const std::string& words) mutable {
+    long double number = 0;
+    std::string wrong = detail::read_number(words, bounds, std::is_integral_v<Number>, number);
+    if (wrong.empty()) store(static_cast<Number>(number));
+    return wrong;
+  };
+  if constexpr (detail::kIsList<Target>) {
+    for (const Number each : target)
+      setting.usual += (setting.usual.empty() ? "" : ",") + detail::number_text(static_cast<double>(each));
+  } else if constexpr (std::is_same_v<Target, Number>) {
+    if (target > 0) setting.usual = detail::number_text(static_cast<double>(target));
+  }
+  return setting;
+}
 
 // The values of an enum by their names. They count from 0, and name_of() says "unknown" of the first number beyond.
 template <typename Enum>
@@ -119,35 +222,31 @@ const std::map<std::string, Enum>& choices() {
   return by_name;
 }
 
-// An option that takes one of a few names, whatever the case of its letters; set() gets the name's value.
-// `names` must outlive the parsing.
+std::string in_lower_case(std::string text);
+
+// One of a few names, whatever the case of its letters; set() gets the name's value.
 template <typename Value, typename Set>
-void add_choice(CommandLine& line, const std::string& option, const std::map<std::string, Value>& names,
-                const std::string& description, Set set) {
-  const auto choose = [option, set, &names](const std::string& name) {
-    std::string lower = name;
-    std::transform(lower.begin(), lower.end(), lower.begin(),
-                   [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-    const auto found = names.find(lower);
-    if (found == names.end()) {
-      std::string choices;
-      for (const auto& [choice, value] : names)
-        choices += (choices.empty() ? "" : ", ") + choice;
-      throw UsageError{option, "'" + name + "' is none of " + choices};
-    }
+Setting choice(const std::map<std::string, Value>& names, Set set) {
+  Setting setting = {.value = "NAME"};
+  for (const auto& [name, value] : names)
+    setting.words.push_back(name);
+  setting.take = [set, names, words = setting.words](const std::string& text) {
+    const auto found = names.find(in_lower_case(text));
+    if (found == names.end()) return none_of(text, words);
     set(found->second);
+    return std::string();
   };
-  line.add_option_function<std::string>(option, choose, description).type_name("NAME");
-  std::vector<std::string> words;
-  for (const auto& [choice, value] : names)
-    words.push_back(choice);
-  line.offer(option, std::move(words));
+  return setting;
 }
 
-template <typename Target, typename Value>
-void add_choice(CommandLine& line, const std::string& option, Target& target,
-                const std::map<std::string, Value>& names, const std::string& description) {
-  add_choice(line, option, names, description, [&target](const Value& value) { target = value; });
+template <typename Target>
+Setting choice(Target& target, const std::map<std::string, typename detail::Inner<Target>::Value>& names =
+                                   choices<typename detail::Inner<Target>::Value>()) {
+  Setting setting = choice(names, [&target](auto value) { target = value; });
+  for (const auto& [name, value] : names) {
+    if (value == target) setting.usual = name;
+  }
+  return setting;
 }
 
 }  // namespace quincunx::tools

@@ -113,27 +113,32 @@ Result<FramePattern> FramePattern::parse(const std::string& pattern, const std::
 }
 
 Status FramePattern::parse_fields() {
-  std::string literal;  // since the start or the number
-  for (std::size_t at = 0; at < pattern_.size();) {
+  // Folders are literal; `literal` is what stands since the start or the number.
+  std::size_t at = pattern_.rfind('/') + 1;  // 0 where there is none
+  std::string literal = pattern_.substr(0, at);
+  while (at < pattern_.size()) {
     const std::string_view rest = std::string_view(pattern_).substr(at);
     Field field;
     if (is_mark(rest[0])) {
       field = field_of_marks(rest);
-    } else if (rest.substr(0, 2) == "%%") {
-      literal += '%';
+    } else if (rest.size() > 1 && rest[0] == '%' && (rest[1] == '%' || is_mark(rest[1]))) {
+      literal += rest[1];
       at += 2;
       continue;
     } else if (rest[0] == '%') {
       field = field_of_printf(rest);
       if (field.length == 0) {
-        return bad("has a '%' that starts no frame number; write %04d, or %% for a percent sign");
+        return bad(
+            "has a '%' that starts no frame number; write %04d, or %% for a percent sign (%# and %@ "
+            "likewise)");
       }
     } else {
       literal += rest[0];
       ++at;
       continue;
     }
-    if (has_number_) return bad("has two frame numbers; only one can be filled in");
+    if (has_number_)
+      return bad("has two frame numbers; only one can be filled in (%# and %@ stand for # and @ themselves)");
     if (field.digits > kMaxDigits) return bad(fmt::format("asks for more than {} digits", kMaxDigits));
     has_number_ = true;
     digits_ = field.digits;
@@ -165,9 +170,8 @@ std::optional<std::int64_t> FramePattern::number_in(std::string_view path) const
 }
 
 Result<std::vector<std::int64_t>> FramePattern::frames_on_disk() const {
-  const std::string any = expand(0);
-  const std::string folder = any.substr(0, any.rfind('/') + 1);
-  if (!has_number_ || prefix_.size() < folder.size()) {
+  const std::string folder = pattern_.substr(0, pattern_.rfind('/') + 1);
+  if (!has_number_) {
     return bad("has no frame number in the file's name; put %04d, # or @ there");
   }
   std::vector<std::int64_t> frames;

@@ -18,8 +18,9 @@ enum class FileFormat : std::uint8_t { kPng, kExr };
 
 // A path with at most one number in it: a single '#' stands for four digits as OpenImageIO has it, each of
 // several for one as Nuke and Blender have it ("####" is four digits, too); '@' stands for one, and runs add
-// up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too, and "%%" is a percent
-// sign. Numbers wider than the field are written whole. A value; thread-safe.
+// up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too. "%%", "%#" and "%@" stand for a percent
+// sign, # and @ themselves. All this holds in the file's name; folders are taken as they are. Numbers wider than the field
+// are written whole. A value; thread-safe.
 class FramePattern {
  public:
   // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two
@@ -36,8 +37,8 @@ class FramePattern {
   // The number that expand() makes this path of; nothing for any other path, negative numbers included.
   std::optional<std::int64_t> number_in(std::string_view path) const;
 
-  // The frames of which there are files, in ascending order; none where the folder cannot be read. The
-  // number must stand in the file's name: errors: kInvalidArgument where it stands in a folder's, or nowhere.
+  // Returns the frames of which there are files, in ascending order; none where the folder cannot be read. Errors:
+  // kInvalidArgument where the pattern has no number.
   Result<std::vector<std::int64_t>> frames_on_disk() const;
 
   // Errors: kInvalidArgument when there is no number but more than one frame: they would overwrite one

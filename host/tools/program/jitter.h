@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "quincunx/advanced/extent.h"
+#include "quincunx/frame.h"
 
 namespace quincunx::tools {
 
@@ -15,9 +16,33 @@ enum class Jitter : std::uint8_t {
   kHalton,        // jitter() of quincunx/frame.h
 };
 
-const char* name_of(Jitter jitter);
+inline const char* name_of(Jitter jitter) {
+  switch (jitter) {
+    case Jitter::kNone:
+      return "none";
+    case Jitter::kQuincunx:
+      return "quincunx";
+    case Jitter::kQuincunxHalf:
+      return "quincunx-half";
+    case Jitter::kHalton:
+      return "halton";
+  }
+  return "unknown";
+}
 
 // Jitter of a frame in render pixels; index >= 0. The extents decide the number of Halton's places.
-Vec2 jitter_of(Jitter jitter, std::int64_t index, Extent render, Extent output);
+inline Vec2 jitter_of(Jitter jitter, std::int64_t index, Extent render, Extent output) {
+  switch (jitter) {
+    case Jitter::kNone:
+      return {};
+    case Jitter::kQuincunx:
+      return index % 2 == 0 ? Vec2{-0.25f, -0.25f} : Vec2{0.25f, 0.25f};
+    case Jitter::kQuincunxHalf:
+      return index % 2 == 0 ? Vec2{} : Vec2{0.5f, 0.5f};
+    case Jitter::kHalton:
+      return quincunx::jitter(static_cast<std::uint64_t>(index), render, output);
+  }
+  return {};
+}
 
 }  // namespace quincunx::tools

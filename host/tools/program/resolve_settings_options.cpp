@@ -14,13 +14,6 @@
 namespace quincunx::tools {
 namespace {
 
-// Option::in_range() takes NaN for a number of any range.
-std::string complain_beyond_one(const std::string& text) {
-  const std::optional<double> part = number_in(text);
-  if (part && *part >= 0 && *part <= 1) return {};
-  return fmt::format("'{}' is no number from 0 to 1", text);
-}
-
 // Every name that parse_variant() knows.
 const std::map<std::string, MethodVariant>& variants_by_name() {
   static const auto by_name = [] {
@@ -50,52 +43,113 @@ std::string method_list() {
   return fmt::format("{} or {}", fmt::join(words, ", "), last);
 }
 
+// The field of this recorded name, as each_setting() lists them.
+Setting recorded(ResolveSettings& settings, const std::string& name, Bounds bounds = {},
+                 const char* value = "N") {
+  Setting found;
+  each_setting(settings, [&](const char* known, auto& field) {
+    using Field = std::remove_reference_t<decltype(field)>;
+    if (name != known) return;
+    if constexpr (std::is_same_v<Field, bool>) {
+      found = flag(field, !field);
+    } else if constexpr (std::is_arithmetic_v<Field>) {
+      found = number(field, bounds, value);
+    } else if constexpr (requires { name_of(field); }) {
+      found = choice(field);
+    }
+  });
+  return found;
+}
+
+std::string refuse_samples(int& samples, const std::string& text) {
+  const double number = number_in(text).value_or(0);
+  for (const int power : {4, 8, 16, 32, 64}) {
+    if (number != power) continue;
+    samples = power;
+    return {};
+  }
+  return fmt::format("'{}' is none of 4, 8, 16, 32, 64", text);
+}
+
+bool rings(Method method) {
+  return methods()[static_cast<std::size_t>(method)].filter.rings;
+}
+
 }  // namespace
 
-void add_resolve_options(CommandLine& app, ResolveSettings& settings, const std::string& default_method) {
-  add_choice(app, "--method", variants_by_name(),
-             fmt::format("{} (default: {})", method_list(), default_method),
-             [&settings](const MethodVariant& variant) { apply(variant, settings); });
-  app.add_option("--velocity-weight", settings.quincunx.velocity_weight,
-                 "K of quincunx:velocity and :point: how fast motion takes the previous frame away")
-      .non_negative()
-      .show_default()
-      .type_name("K");
-  app.add_option("--residual-weight", settings.quincunx.residual_weight,
-                 "K of quincunx:reprojected: how fast a change of motion does; 0 looks at none")
-      .non_negative()
-      .show_default()
-      .type_name("K");
-  add_choice(app, "--sky-motion", settings.conventions.sky_motion, choices<SkyMotion>(),
-             "What moves an infinitely far sample whose velocity is 0: as-drawn (nothing), camera or "
-             "evidence (default: as-drawn)");
-  add_choice(app, "--view", settings.temporal.view, choices<TemporalView>(),
-             "What temporal shows: picture, confidence, rejection, phase, layers, coverage, near or far "
-             "(default: picture)");
-  app.add_option("--blur", settings.blur.shutter,
-                 "Motion blur: part of a frame's time that the shutter is open, to 2")
-      .in_range(0.0, 2.0)
-      .type_name("SHUTTER");
-  app.add_option("--blur-samples", settings.blur.samples, "Samples a pixel at most: 4, 8, 16, 32 or 64")
-      .one_of({4, 8, 16, 32, 64})
-      .show_default()
-      .type_name("N");
-  app.add_option("--sharpen", settings.sharpness, "How far the resolved picture is sharpened: 0 (not) to 1")
-      .check(complain_beyond_one)
-      .show_default()
-      .type_name("AMOUNT");
-  app.add_flag("!--no-clamp-ringing", settings.filter.clamp_ringing,
-               "Let catmull-rom, mitchell and lanczos overshoot at edges");
-  app.add_option("--grain", settings.filter.grain, "Amplitude of noise's grain at scale 0; none at scale 1")
-      .check(complain_beyond_one)
-      .show_default()
-      .type_name("A");
-  app.add_flag("!--still-noise", settings.filter.noise_moves, "The same noise in every frame");
-  add_choice(app, "--tone-map", settings.output.tone_map, choices<ToneMap>(),
-             "clamp, reinhard or aces (default: aces)");
-  app.add_flag("--check-motion", settings.checks_motion,
-               "Say whether velocity points where samples come from, or would with another sign");
-  app.add_flag("!--no-dither", settings.output.dither, "Round to 8 bits without dither");
+void add_resolve_options(CommandLine& line, ResolveSettings& settings, const MethodOptions& about) {
+  const auto field = [&settings](const char* name, Bounds bounds = {}, const char* value = "N") {
+    return recorded(settings, name, bounds, value);
+  };
+  const auto where = [&settings, settled = about.settled](bool (*counts)(const ResolveSettings&)) {
+    return [&settings, settled, counts] { return !settled() || counts(settings); };
+  };
+  using Settings = const ResolveSettings&;
+  line.group("Method");
+  line.add("--method",
+           choice(variants_by_name(),
+                  [&settings, named = about.named](const MethodVariant& variant) {
+                    apply(variant, settings);
+                    if (named != nullptr) *named = true;
+                  }),
+           fmt::format("{} (default: {})", method_list(), about.usual))
+      .common();
+  line.add("--sharpen", field("sharpness", kPartOfOne, "AMOUNT"),
+           "Sharpen the resolved picture: 0 (not) to 1");
+  line.add("--blur", field("blur.shutter", {.least = 0, .most = 2}, "SHUTTER"),
+           "Motion blur: part of a frame's time that the shutter is open, to 2");
+  line.add("--blur-samples",
+           text("N",
+                [&settings](const std::string& text) { return refuse_samples(settings.blur.samples, text); }),
+           "Samples a pixel at most: 4, 8 (default), 16, 32 or 64")
+      .needs({"--blur"});
+  line.add("--sky-motion", field("conventions.sky_motion"),
+           "How an infinitely far sample of velocity 0 moves: as-drawn (default: not at all), camera or "
+           "evidence")
+      .counts_if(where([](Settings s) { return uses_earlier_frames(s.method) || s.blur.shutter > 0; }),
+                 "--method quincunx or temporal, or --blur");
+  line.add("--velocity-weight", field("quincunx.velocity_weight", {.least = 0, .most = 1e6}, "K"),
+           "quincunx:velocity and :point: how fast motion takes the previous frame away")
+      .counts_if(where([](Settings s) {
+                   return s.method == Method::kQuincunx && s.quincunx.form == TwoFrameForm::kVelocity;
+                 }),
+                 "--method quincunx or quincunx:point");
+  line.add("--residual-weight", field("quincunx.residual_weight", {.least = 0, .most = 1e6}, "K"),
+           "quincunx:reprojected: how fast a change of motion does; 0 looks at none")
+      .counts_if(where([](Settings s) {
+                   return s.method == Method::kQuincunx && s.quincunx.form == TwoFrameForm::kReprojected;
+                 }),
+                 "--method quincunx:reprojected");
+  line.add("--view", field("temporal.view"), "Show how temporal decides, or the picture")
+      .counts_if(where([](Settings s) { return s.method == Method::kTemporal; }), "--method temporal");
+  line.add("--no-clamp-ringing", field("filter.clamp_ringing"),
+           "Let catmull-rom, mitchell and lanczos overshoot at edges")
+      .counts_if(where([](Settings s) { return rings(s.method); }),
+                 "--method catmull-rom, mitchell or lanczos");
+  line.add("--grain", field("filter.grain", kPartOfOne, "A"),
+           "Amplitude of noise's grain at scale 0; none at scale 1")
+      .counts_if(where([](Settings s) { return s.method == Method::kNoise; }), "--method noise");
+  line.add("--still-noise", field("filter.noise_moves"), "The same noise in every frame")
+      .counts_if(
+          where([](Settings s) { return s.method == Method::kNoise || s.method == Method::kNoiseOffset; }),
+          "--method noise or noise-offset");
+  line.add("--check-motion", field("checks_motion"),
+           "Say whether velocity points where samples come from, or would with another sign");
+  line.group("Picture");
+  line.add("--tone-map", field("output.tone_map"), "How light becomes a picture of 8 bits");
+  line.add("--no-dither", field("output.dither"), "Round to 8 bits without dither");
+}
+
+void add_device_options(CommandLine& line, std::string& device, bool& lists) {
+  line.group("Device");
+  line.add("--device", text(device, "DEVICE"), "cpu, gpu, a number of --list-devices or part of a name");
+  line.add("--list-devices", flag(lists), "List the devices for OpenCL and OpenGL").tells();
+}
+
+void add_log_options(CommandLine& line, bool& quiet, int& verbosity) {
+  line.group("Help");
+  line.add("-q,--quiet", flag(quiet), "Say nothing but errors").excludes({"--verbose"});
+  line.add("-v,--verbose", count(verbosity), "Say more; twice: everything").repeats();
 }
 
 std::string resolve_settings_text(const ResolveSettings& settings) {
@@ -103,9 +157,7 @@ std::string resolve_settings_text(const ResolveSettings& settings) {
       settings.temporal.noise > 0 ? fmt::format(", denoised {}", settings.temporal.noise) : "";
   return fmt::format(
       "{}, view {}, sky motion {}, drawn velocity {}, velocity weight {}, ringing {}, grain {}, noise {}, "
-      "sharpness "
-      "{}, blur {} of {} "
-      "samples{}",
+      "sharpness {}, blur {} of {} samples{}",
       name_of(variant_of(settings)), name_of(settings.temporal.view),
       name_of(settings.conventions.sky_motion), name_of(settings.conventions.drawn_velocity),
       settings.quincunx.velocity_weight, settings.filter.clamp_ringing ? "clamped" : "free",

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "tools/program/resolve_settings_options.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -22,8 +24,7 @@ const char* name_of(Storage storage) {
   return storage == Storage::kBuffer ? "buffer" : storage == Storage::kImage ? "image" : "unknown";
 }
 
-// The tables: every field once, by its name in C++. A field that is added to one of these structs is missed by its
-// structured binding, which then does not compile.
+// As of each_setting().
 template <typename Visit, typename Needs>
 void each_need(Needs& of, Visit&& visit) {
   auto& [moving_objects, camera_motion, transparents, background] = of;
@@ -31,76 +32,6 @@ void each_need(Needs& of, Visit&& visit) {
   visit("camera_motion", camera_motion);
   visit("transparents", transparents);
   visit("background", background);
-}
-
-template <typename Visit, typename Settings>
-void each_convention(Settings& of, Visit&& visit) {
-  auto& [depth, clip_space, velocity_unit, velocity_backward, velocity_up, velocity_jittered, origin,
-         drawn_velocity, sky_motion] = of.conventions;
-  visit("conventions.depth", depth);
-  visit("conventions.clip_space", clip_space);
-  visit("conventions.velocity_unit", velocity_unit);
-  visit("conventions.velocity_backward", velocity_backward);
-  visit("conventions.velocity_up", velocity_up);
-  visit("conventions.velocity_jittered", velocity_jittered);
-  visit("conventions.origin", origin);
-  visit("conventions.drawn_velocity", drawn_velocity);
-  visit("conventions.sky_motion", sky_motion);
-}
-
-template <typename Visit, typename Settings>
-void each_part(Settings& of, Visit&& visit) {
-  auto& [storage, placement, shading, particle_extent, clear] = of.targets;
-  visit("targets.storage", storage);
-  visit("targets.placement", placement);
-  visit("targets.shading", shading);
-  visit("targets.particle_extent", particle_extent);
-  visit("targets.clear", clear);
-  auto& [min_extent, linear, present, tone_map, dither] = of.output;
-  visit("output.min_extent", min_extent);
-  visit("output.linear", linear);
-  visit("output.present", present);
-  visit("output.tone_map", tone_map);
-  visit("output.dither", dither);
-  auto& [clamp_ringing, grain, noise_moves] = of.filter;
-  visit("filter.clamp_ringing", clamp_ringing);
-  visit("filter.grain", grain);
-  visit("filter.noise_moves", noise_moves);
-  auto& [form, sampling, velocity_weight, residual_weight] = of.quincunx;
-  visit("quincunx.form", form);
-  visit("quincunx.sampling", sampling);
-  visit("quincunx.velocity_weight", velocity_weight);
-  visit("quincunx.residual_weight", residual_weight);
-  auto& [preset, view, history, noise] = of.temporal;
-  visit("temporal.preset", preset);
-  visit("temporal.view", view);
-  visit("temporal.history", history);
-  visit("temporal.noise", noise);
-  auto& [shutter, samples] = of.blur;
-  visit("blur.shutter", shutter);
-  visit("blur.samples", samples);
-  auto& [extent, target_extent, mask] = of.focus;
-  visit("focus.extent", extent);
-  visit("focus.target_extent", target_extent);
-  visit("focus.mask", mask);
-  auto& [measures_content, fades] = of.control;
-  visit("control.measures_content", measures_content);
-  visit("control.fades", fades);
-}
-
-template <typename Visit, typename Settings>
-void each_setting(Settings& of, Visit&& visit) {
-  auto& [method, output_extent, target_extent, colour, velocity, conventions, sharpness, targets, output,
-         filter, quincunx, temporal, blur, focus, control, checks_motion] = of;
-  visit("method", method);
-  visit("output_extent", output_extent);
-  visit("target_extent", target_extent);
-  visit("colour", colour);
-  visit("velocity", velocity);
-  visit("sharpness", sharpness);
-  visit("checks_motion", checks_motion);
-  each_convention(of, visit);
-  each_part(of, visit);
 }
 
 template <typename Value>

@@ -36,12 +36,21 @@ Result<FramePattern> parse_input(const std::string& text, const std::string& wha
   return pattern;
 }
 
-// A % of the folder's is no number.
 std::string recorded_pattern(const std::string& folder) {
-  std::string path = (std::filesystem::path(folder) / "frame").string();
-  for (std::size_t at = 0; (at = path.find('%', at)) != std::string::npos; at += 2)
-    path.insert(at, 1, '%');
-  return path + ".%04d.exr";
+  return (std::filesystem::path(folder) / "frame.%04d.exr").string();
+}
+
+// A cut where no frame is would do nothing.
+Status check_cuts(const std::vector<std::int64_t>& cuts, const FramePattern& input) {
+  if (cuts.empty()) return {};
+  const auto frames = input.frames_on_disk();
+  if (!frames.ok() || frames->empty()) return frames.status();
+  for (const std::int64_t cut : cuts) {
+    if (cut < frames->front() || cut > frames->back())
+      return Status::invalid(fmt::format("--cuts: there is no frame {}; the frames are {} to {}", cut,
+                                         frames->front(), frames->back()));
+  }
+  return {};
 }
 
 // The first frame that can be opened, or with bad frames the first at all, whose failure is the error.
@@ -245,6 +254,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
     task.truth = TruthFiles{std::move(truth).value(), options.truth_colour};
   }
   if (Status status = settle_frames(options, task); !status.ok()) return status;
+  if (Status status = check_cuts(options.sequence.cuts, task.input); !status.ok()) return status;
   const Status settled = recorded ? settle_recorded(options, task) : settle_sequence(options, task);
   if (!settled.ok()) return settled;
   const int history = recorded ? std::numeric_limits<int>::max() : history_of(task.plan);

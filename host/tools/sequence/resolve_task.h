@@ -10,6 +10,7 @@
 
 #include "quincunx/resolve_plan.h"
 #include "tools/image/image_io.h"
+#include "tools/program/command_line.h"
 #include "tools/record/recorded_settings.h"
 #include "tools/sequence/sequence_histories.h"
 #include "tools/sequence/sequence_input.h"
@@ -54,8 +55,10 @@ struct ResolveOptions {
   std::string command_line;  // as typed, for the report
 };
 
-// Reads a command line. On --help, --version or a usage error it prints and gives the exit code (0 or 2)
-// instead. `options` holds the defaults.
+// Returns the table of options; they write into `options`, which holds the defaults and must outlive the parsing.
+CommandLine command_line(ResolveOptions& options);
+
+// Reads a command line. On --help, --version or an error it prints and gives the exit code instead.
 std::optional<int> parse_command_line(int argc, char** argv, ResolveOptions& options);
 
 struct ResolveTask {

@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tools/program/command_line.h"
+
 namespace quincunx::tools {
 namespace {
 
@@ -62,8 +64,9 @@ Result<Table> parse_lines(const std::string& path, const std::string& text) {
 Result<Table> read_table(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    return Status::invalid(fmt::format(
-        "--jitter '{}' is neither attribute, none, quincunx, quincunx-half, halton nor a file", path));
+    return Status::invalid(
+        fmt::format("--jitter '{}' is neither attribute, none, quincunx, quincunx-half, halton nor a file{}",
+                    path, did_you_mean(path, {"attribute", "none", "quincunx", "quincunx-half", "halton"})));
   }
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

@@ -44,16 +44,6 @@ FrontSource source_of(const BenchResult& result) {
 
 }  // namespace
 
-void add_front_options(tools::CommandLine& app, FrontOptions& options) {
-  app.add_option("--front", options.file,
-                 "Instead: error and cost by class of scenes, method and scale; write them here and into the "
-                 "cache folder, for a controller that chooses the method")
-      .excludes("--scenes")
-      .excludes("--out")
-      .excludes("--compare")
-      .type_name("FILE");
-}
-
 void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options) {
   const auto unless_given = [&app](const char* option, auto& value, auto usual) {
     if (!app.has(option)) value = usual;
@@ -70,10 +60,6 @@ void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options) 
 }
 
 Result<ErrorFront> measure_front(const BenchOptions& options) {
-  {
-    const auto file = tools::AtomicFile::create(options.front.file);  // said before the work, not after it
-    if (!file.ok()) return file.status();
-  }
   BenchOptions view = options;
   view.scenes = measured_scenes();
   std::vector<BenchResult> results;

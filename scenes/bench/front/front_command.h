@@ -22,8 +22,6 @@ struct FrontOptions {
 };
 
 // --front. After --scenes, --out and --compare, which it excludes.
-void add_front_options(tools::CommandLine& app, FrontOptions& options);
-
 // Sets the defaults of --front where no option says otherwise: the methods that are on a front, scales and conditions.
 void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options);
 

@@ -11,9 +11,7 @@
 #include "bench/bench_options.h"
 #include "bench/parts/parts_rows.h"
 #include "bench/speed_error/bench_machine.h"
-#include "tools/program/command_line.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 
 namespace quincunx::bench {
 namespace {
@@ -137,16 +135,6 @@ std::string csv_of(const PartsResult& result) {
                         row.frame.processor_ms, row.psnr, row.flip);
   }
   return text;
-}
-
-void add_parts_options(tools::CommandLine& app, PartsOptions& options) {
-  const auto parts = app.add_flag(
-      "--parts", options.wanted,
-      "Instead: what the scale of the picture, of its shadow map and of its particles cost and show");
-  app.add_option("--base-scale", options.base_scale,
-                 "With --parts: the picture's scale where a part's is changed (default: 0.71)")
-      .in_range(0.02, 2.0)
-      .needs(parts);
 }
 
 Result<PartsResult> run_parts(const BenchOptions& options) {

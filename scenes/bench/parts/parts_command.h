@@ -9,10 +9,6 @@
 #include "bench/speed_error/bench_result.h"
 #include "quincunx/status.h"
 
-namespace quincunx::tools {
-class CommandLine;
-}
-
 namespace quincunx::bench {
 
 struct BenchOptions;
@@ -23,8 +19,6 @@ struct PartsOptions {
 };
 
 // --parts, and options that need it.
-void add_parts_options(tools::CommandLine& app, PartsOptions& options);
-
 // Median times of a frame: host clock, and this process's processor time of all threads.
 struct PartTimes {
   double ms = 0;

@@ -11,7 +11,6 @@
 #include "bench/resize/resize_costs.h"
 #include "bench/speed_error/bench_machine.h"
 #include "bench/speed_error/bench_plan.h"
-#include "tools/program/command_line.h"
 #include "tools/program/program.h"
 
 namespace quincunx::bench {
@@ -134,15 +133,6 @@ std::string csv_of(const ResizeResult& result) {
                     row.frame_ms.least, row.frame_ms.p95, row.processor_ms, row.gl_bytes, row.opencl_bytes);
   }
   return text;
-}
-
-void add_resize_options(tools::CommandLine& app, ResizeOptions& options) {
-  const auto resize = app.add_flag(
-      "--resize", options.wanted,
-      "Instead: what another resolution costs, and frames with viewport and with placed targets");
-  app.add_option("--resizes", options.resizes, "With --resize: resizes that are timed (default: 200)")
-      .in_range(1, 1000000)
-      .needs(resize);
 }
 
 Result<ResizeResult> run_resize(const BenchOptions& options) {

@@ -12,10 +12,6 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 
-namespace quincunx::tools {
-class CommandLine;
-}
-
 namespace quincunx::bench {
 
 struct BenchOptions;
@@ -26,8 +22,6 @@ struct ResizeOptions {
 };
 
 // --resize, and options that need it.
-void add_resize_options(tools::CommandLine& app, ResizeOptions& options);
-
 struct Quantiles {
   double least = 0;
   double median = 0;

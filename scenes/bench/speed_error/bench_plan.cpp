@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "catalog/scene_catalog.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::bench {
 
@@ -154,13 +155,12 @@ Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& 
     const auto found = std::find_if(methods.begin(), methods.end(),
                                     [&](const BenchMethod& method) { return method.name == longest; });
     if (found == methods.end()) {
-      std::string known;
+      std::vector<std::string> known;
       for (const BenchMethod& method : methods)
-        known += (known.empty() ? "" : ", ") + method.name;
-      return Status::invalid(
-          fmt::format("--methods: there is no method '{}'; there are {}, and each with {} behind it, or {}, "
-                      "{}, {}, {} or {}S/ before it",
-                      name, known, kEncoded, kCheckerboard, kFocus, kTwoWay, kDenoised, kDual));
+        known.push_back(method.name);
+      const std::string meant = tools::did_you_mean(plain, known);
+      return Status::invalid(fmt::format("--methods: there is no method '{}'{}", name,
+                                         meant.empty() ? "; --list-methods has all" : meant));
     }
     BenchMethod method = *found;
     if (encoded) method = in_eight_bits(std::move(method));

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "tools/program/atomic_file.h"
 
 namespace quincunx::bench {
 namespace {
@@ -448,10 +448,9 @@ Result<BenchResult> from_json(const std::string& text, const std::string& path) 
 }
 
 Result<BenchResult> read_result(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) return Status::io(fmt::format("'{}' cannot be read", path));
-  return from_json(text, path);
+  const auto text = tools::read_text(path);
+  if (!text.ok()) return text.status();
+  return from_json(text.value(), path);
 }
 
 std::string to_csv(const BenchResult& result) {

@@ -10,7 +10,6 @@
 #include "tools/program/clock.h"
 #include "tools/program/jitter.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 
 namespace quincunx::bench {
 namespace {

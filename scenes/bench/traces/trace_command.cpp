@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <utility>
 
 #include "embedded_bench_files.h"
 #include "tools/page/page_template.h"
 #include "tools/program/atomic_file.h"
-#include "tools/program/command_line.h"
 
 namespace quincunx::traces {
 namespace {
@@ -66,11 +63,9 @@ Json trace_json(const std::string& list, const LoadTrace& trace, const TraceSett
 }
 
 Result<LoadTrace> read_recorded(const std::string& path, const Recording& recording) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) return Status::io(path + " cannot be read");
-  return recorded_trace(path, text.str(), recording);
+  const auto text = tools::read_text(path);
+  if (!text.ok()) return text.status();
+  return recorded_trace(path, text.value(), recording);
 }
 
 std::vector<Display> displays_of(TraceOptions options) {
@@ -87,23 +82,6 @@ std::vector<Display> displays_of(TraceOptions options) {
     }
   }
   return displays;
-}
-
-void add_quality_options(tools::CommandLine& app, TraceOptions& options) {
-  const auto quality =
-      app.add_flag("--quality", options.quality,
-                   "With --traces: a scripted picture and the passes of each method besides; the "
-                   "quality controller, beside predictive with each method")
-          .needs("--traces")
-          .excludes("--recorded")
-          .excludes("--every-display");
-  app.add_option("--budgets", options.budgets,
-                 "With --quality: multiples of the time that frames are written for (default: 1)")
-      .in_range(0.1, 10.0)
-      .delimiter(',')
-      .needs(quality);
-  app.add_flag("--untimed", options.untimed, "With --quality: the time of the passes is not known apart")
-      .needs(quality);
 }
 
 }  // namespace
@@ -127,41 +105,6 @@ std::string page_of(const TraceRun& run, const std::string& command) {
                                     {"refresh_hz", settings.displays.front().refresh_hz},
                                     {"run", Json::parse(json_of(run))},
                                     {"traces", std::move(traces)}});
-}
-
-void add_trace_options(tools::CommandLine& app, TraceOptions& options) {
-  const auto traces = app.add_flag(
-      "--traces", options.wanted, "Instead: resolution controllers over load traces, on a simulated display");
-  app.add_option("--hz", options.refresh_hz, "With --traces: refresh rates (default: 60)")
-      .in_range(1.0, 1000.0)
-      .delimiter(',')
-      .needs(traces);
-  app.add_option("--buffers", options.buffers, "With --traces: buffers of the swap chain (default: 3)")
-      .in_range(2, 8)
-      .delimiter(',')
-      .needs(traces);
-  app.add_option("--latency", options.latencies,
-                 "With --traces: frames until a timer comes back (default: 1)")
-      .in_range(1, 8)
-      .delimiter(',')
-      .needs(traces);
-  app.add_flag("--every-display", options.every_display,
-               "With --traces: 30, 60, 120 Hz; 2 and 3 buffers; timers 1 to 4 frames late")
-      .needs(traces);
-  app.add_option("--seeds", options.seeds, "With --traces: seeds of the scripted loads (default: 1,2,3)")
-      .delimiter(',')
-      .needs(traces);
-  app.add_option("--recorded", options.recorded,
-                 "With --traces: also replay these CSV files (columns gpu_ms, area_fraction, cpu_ms)")
-      .needs(traces)
-      .type_name("FILE");
-  app.add_option("--recorded-target-ms", options.recording.target_ms,
-                 "With --traces: target that recorded times are measured in")
-      .needs(traces);
-  app.add_option("--recorded-fixed-part", options.recording.fixed_part,
-                 "With --traces: part of recorded costs that does not scale")
-      .needs(traces);
-  add_quality_options(app, options);
 }
 
 Result<TraceRun> run_traces(const TraceOptions& options) {

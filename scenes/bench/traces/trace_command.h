@@ -11,10 +11,6 @@
 #include "bench/traces/trace_run.h"
 #include "quincunx/status.h"
 
-namespace quincunx::tools {
-class CommandLine;
-}  // namespace quincunx::tools
-
 namespace quincunx::traces {
 
 struct TraceOptions {
@@ -32,8 +28,6 @@ struct TraceOptions {
 };
 
 // --traces, and options that need it.
-void add_trace_options(tools::CommandLine& app, TraceOptions& options);
-
 // Replays everything. Errors: of a recording that cannot be read.
 Result<TraceRun> run_traces(const TraceOptions& options);
 

@@ -13,9 +13,7 @@
 #include "bench/speed_error/bench_machine.h"
 #include "bench/tune/tune_choice.h"
 #include "bench/tune/tune_stand.h"
-#include "tools/program/command_line.h"
 #include "tools/program/program.h"
-#include "tools/program/progress.h"
 
 namespace quincunx::bench {
 namespace {
@@ -197,21 +195,6 @@ std::string csv_of(const TuneResult& result) {
                         pass.shape.group_height, pass.shape.pixels_per_item, pass.before, pass.after);
   }
   return text;
-}
-
-void add_tune_options(tools::CommandLine& app, TuneOptions& options) {
-  const auto tune = app.add_flag(
-      "--tune", options.wanted,
-      "Instead: find how each pass is best cut into work-items on this device, and use that from now on");
-  app.add_option("--tune-frames", options.frames, "With --tune: timed frames of each shape (default: 8)")
-      .in_range(1, 10000)
-      .needs(tune);
-  app.add_option("--tune-cases", options.cases,
-                 "With --tune: only point, bilinear, lanczos2, noise, noise-offset, quincunx, reprojected, "
-                 "camera, temporal or checkerboard; passes that none of them runs share one shape")
-      .delimiter(',')
-      .type_name("NAME,...")
-      .needs(tune);
 }
 
 Result<TuneResult> run_tune(const BenchOptions& options) {

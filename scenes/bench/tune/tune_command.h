@@ -8,10 +8,6 @@
 #include "bench/tune/tune_choice.h"
 #include "quincunx/status.h"
 
-namespace quincunx::tools {
-class CommandLine;
-}
-
 namespace quincunx::bench {
 
 struct BenchOptions;
@@ -23,8 +19,6 @@ struct TuneOptions {
 };
 
 // --tune, and options that need it.
-void add_tune_options(tools::CommandLine& app, TuneOptions& options);
-
 // Chooses a shape for each pass on the device that the options name, and keeps the profile for it; frames are those of
 // the first scene, by default the courtyard. Errors: of any part, as that part words them; then no profile is written.
 Result<TuneResult> run_tune(const BenchOptions& options);
