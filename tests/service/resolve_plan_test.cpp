@@ -75,6 +75,12 @@ TEST(ResolvePlan, SizesStayWhereKernelsCanCountTo) {
   focused.focus.extent = {64, 64};
   focused.focus.target_extent = {16384, 16385};
   EXPECT_EQ(plan_for({}, focused).status().code(), StatusCode::kInvalidArgument);
+  focused.output_extent = kMost;
+  focused.focus = {.extent = {16384, 16384}};
+  ASSERT_TRUE(plan_for({}, focused).ok());
+  EXPECT_TRUE(plan_for({}, focused)->focus_plan().has_value());
+  focused.focus.extent = {32768, 8193};
+  EXPECT_NE(plan_for({}, focused).error().find("settings.focus.extent is 32768x8193"), std::string::npos);
 }
 
 TEST(ResolvePlan, MovingObjectsNeedAVelocityTarget) {

@@ -93,9 +93,19 @@ struct FoundDevice {
   DeviceInfo info;
 };
 
-// A broken driver beside good ones must not take those along: it is named in the log, and left out.
-void leave_out(const std::string& what) {
-  log_line(LogLevel::kWarning, fmt::format("{} is left out: {}", what, caught("asking", "OpenCL").message()));
+std::string platform_name(const cl::Platform& platform) {
+  try {
+    return trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+  } catch (const cl::Error&) {
+    return "a platform without a name";
+  }
+}
+
+// A broken driver beside good ones must not take those along: it is named in the log, and left out. Called within a
+// catch block.
+void leave_out(const std::string& what, const std::string& platform) {
+  log_line(LogLevel::kWarning,
+           fmt::format("an OpenCL driver is broken and is left out: {}", caught(what, platform).message()));
 }
 
 void add_devices(const cl::Platform& platform, std::vector<FoundDevice>& found) {
@@ -103,14 +113,14 @@ void add_devices(const cl::Platform& platform, std::vector<FoundDevice>& found) 
   try {
     platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
   } catch (const cl::Error& error) {
-    if (error.err() != CL_DEVICE_NOT_FOUND) leave_out("an OpenCL platform");
+    if (error.err() != CL_DEVICE_NOT_FOUND) leave_out("list of devices", platform_name(platform));
     return;
   }
   for (const cl::Device& device : devices) {
     try {
       found.push_back({device, info_of(device)});
     } catch (const cl::Error&) {
-      leave_out("an OpenCL device");
+      leave_out("a device", platform_name(platform));
     }
   }
 }
@@ -121,7 +131,7 @@ std::vector<FoundDevice> all_devices() {
   try {
     cl::Platform::get(&platforms);
   } catch (const cl::Error& error) {
-    if (error.err() != kNoPlatform) leave_out("OpenCL");
+    if (error.err() != kNoPlatform) leave_out("list of platforms", "the OpenCL loader");
   }
   std::vector<FoundDevice> found;
   for (const cl::Platform& platform : platforms)

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "plan/pass_spec.h"
 #include "quincunx/frame.h"
@@ -168,15 +169,20 @@ Status check(const ResolveSettings& settings) {
   return complaints.status();
 }
 
+// Checks the samples of the picture and of the focus, whose plan has layers where this one has.
 Status check_records(const PlanFacts& facts) {
   if (!facts.has_layers()) return {};
+  const FocusSettings& focus = facts.settings.focus;
+  const bool sized = focus.target_extent != Extent{};
   for (const auto& [field, extent] : {std::pair{"target_extent", facts.settings.target_extent},
-                                      {"focus.target_extent", facts.settings.focus.target_extent}}) {
+                                      std::pair{sized ? "focus.target_extent" : "focus.extent",
+                                                sized ? focus.target_extent : focus.extent}}) {
     if (extent.area() <= kMostRecords) continue;
-    return Status::invalid(fmt::format(
-        "settings.{} is {}x{}; with two layers of history it must have at most {} samples, as many as "
-        "16384x16384; settings.temporal.preset fast has one layer",
-        field, extent.width, extent.height, kMostRecords));
+    return Status::invalid(
+        fmt::format("settings.{} is {}x{}; with two layers of history it must have at most {} samples, as "
+                    "many as 16384x16384; "
+                    "settings.temporal.preset fast has one layer",
+                    field, extent.width, extent.height, kMostRecords));
   }
   return {};
 }
