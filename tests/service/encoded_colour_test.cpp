@@ -51,7 +51,7 @@ const Case kCases[] = {
 
 class EncodedColour : public ::testing::TestWithParam<Case> {};
 
-// docs/testing.md derives both bounds: half a code at the bright end, where sRGB is steepest, times the sum of the
+// docs/lab/numerics.md derives both bounds: half a code at the bright end, where sRGB is steepest, times the sum of the
 // weights' magnitudes; and half a code of the picture where no weight is negative, so that rounding to whole codes
 // leaves one.
 TEST_P(EncodedColour, StaysWithinTheQuantisation) {
