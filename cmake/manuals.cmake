@@ -1,5 +1,5 @@
-# Manual pages, made by help2man from what --help-all says, and shell completions, which each program writes itself. Without
-# help2man there are completions only.
+# Manual pages, made by help2man from what --help-all says, and shell completions, which each program writes itself.
+# Without help2man there are completions only.
 #
 #   quincunx_manuals(TARGET...)    makes them with the programs, and installs them
 find_program(QUINCUNX_HELP2MAN help2man)

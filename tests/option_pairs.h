@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Properties of a program's table of options: each pair is accepted or refused in one sentence, and the help is readable.
+// Checks of a program's table of options: each pair is accepted or refused in one sentence; the help is readable.
 #pragma once
 
 #include <fmt/format.h>

@@ -30,9 +30,7 @@ void add_choice_options(CommandLine& line, BenchOptions& options) {
   line.add("--scenes", text(options.scenes, "NAME,..."),
            "Built-in scenes or .gltf and .glb files (default: all built in)")
       .common();
-  line.add("--scales", number(options.scales, {.least = 0, .most = 4, .beyond = true}, "S,..."),
-           "Render scales")
-      .common();
+  line.add("--scales", number(options.scales, {}, "S,..."), "Render scales").common();
   line.add("--methods", text(options.methods, "NAME,..."),
            "Methods (default: all of --list-methods); before or behind NAME: @rgba8 (8-bit colour), "
            "checkerboard/ (half of the pixels shaded), dual0.8/ (an output of 0.8 that is then scaled), "

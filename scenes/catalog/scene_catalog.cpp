@@ -2,7 +2,6 @@
 #include "catalog/scene_catalog.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,7 +10,6 @@
 
 #include "builtin/scenes.h"
 #include "gltf/loader.h"
-#include "tools/program/command_line.h"
 
 namespace quincunx::scenes {
 
@@ -72,6 +70,13 @@ bool is_gltf_path(std::string_view name) {
   return lower.ends_with(".gltf") || lower.ends_with(".glb");
 }
 
+std::string names_in_a_row() {
+  std::string names;
+  for (const BuiltIn& entry : kBuiltIns)
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  return names;
+}
+
 }  // namespace
 
 std::vector<SceneEntry> list_scenes() {
@@ -88,12 +93,9 @@ Result<Scene> open_scene(const std::string& name, std::uint64_t seed) {
     return name.empty() || name == candidate.name;
   });
   if (entry == kBuiltIns.end()) {
-    std::vector<std::string> names;
-    for (const BuiltIn& built_in : kBuiltIns)
-      names.emplace_back(built_in.name);
     return Status::invalid(
-        fmt::format("there is no scene '{}': the built-in ones are {}; a file must end in .gltf or .glb{}",
-                    name, fmt::join(names, ", "), tools::did_you_mean(name, names)));
+        fmt::format("there is no scene '{}': the built-in ones are {}; a file must end in .gltf or .glb",
+                    name, names_in_a_row()));
   }
   Scene scene = entry->make(seed);
   scene.name = entry->name;

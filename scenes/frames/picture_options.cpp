@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <map>
 #include <string>
@@ -72,6 +73,19 @@ Result<ScalePath> scale_path_for(const PictureOptions& options) {
   return ScalePath::fixed(scale);
 }
 
+std::string read_scene(const std::string& text, std::string& scene) {
+  std::vector<std::string> names;
+  for (const SceneEntry& entry : list_scenes())
+    names.emplace_back(entry.name);
+  const bool is_file = text.find('.') != std::string::npos;  // open_scene() says what is wrong with it
+  if (!is_file && std::find(names.begin(), names.end(), text) == names.end()) {
+    return fmt::format("there is no scene '{}'; --list-scenes has all, and a file ends in .gltf or .glb{}",
+                       text, tools::did_you_mean(text, names));
+  }
+  scene = text;
+  return {};
+}
+
 }  // namespace
 
 std::string text_of(const PartOption& part) {
@@ -94,7 +108,9 @@ void add_picture_options(tools::CommandLine& line, PictureOptions& options,
   static const std::map<std::string, PixelFormat> kColours = {{"rgba16f", PixelFormat::kRGBA16F},
                                                               {"rgba8", PixelFormat::kRGBA8}};
   line.group("Scene");
-  line.add("--scene", tools::text(options.scene, "NAME|FILE"),
+  line.add("--scene",
+           tools::text("NAME|FILE",
+                       [&options](const std::string& text) { return read_scene(text, options.scene); }),
            "Built-in scene, or a .gltf or .glb file (default: the first of --list-scenes)")
       .common();
   line.add("--list-scenes", tools::flag(options.list_scenes),

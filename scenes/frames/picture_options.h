@@ -12,6 +12,7 @@
 #include "quincunx/resolve_plan.h"
 #include "quincunx/status.h"
 #include "quincunx_gl/bridge.h"
+#include "tools/program/command_line.h"
 #include "tools/program/resolve_settings_options.h"
 
 namespace quincunx::scenes {

@@ -35,7 +35,7 @@ std::string description_of(const Row& row) {
   return text;
 }
 
-// Breaks words into lines of at most kHelpColumns, each but the first behind `indent` spaces. The first begins at `column`.
+// Breaks words into lines of at most kHelpColumns; the first begins at `column`, the others behind `indent` spaces.
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t column) {
   std::string lines;
   std::istringstream words(text);

@@ -47,22 +47,40 @@ inline constexpr Bounds kPartOfOne = {.least = 0, .most = 1};
 // An option. Each method adds to the row and returns it.
 struct Row {
   // --help lists it, not only --help-all.
-  Row& common() { return is_common = true, *this; }
+  Row& common() {
+    is_common = true;
+    return *this;
+  }
   // It may be given more than once.
-  Row& repeats() { return may_repeat = true, *this; }
+  Row& repeats() {
+    may_repeat = true;
+    return *this;
+  }
   // Where it is given nothing is written.
-  Row& tells() { return only_tells = true, *this; }
+  Row& tells() {
+    only_tells = true;
+    return *this;
+  }
   // Its text is a path to write, which is tried before any work.
-  Row& writes() { return is_written = true, *this; }
+  Row& writes() {
+    is_written = true;
+    return *this;
+  }
   // One of these must be given as well.
-  Row& needs(std::vector<std::string> others) { return needed = std::move(others), *this; }
+  Row& needs(std::vector<std::string> others) {
+    needed = std::move(others);
+    return *this;
+  }
   // None of these options and groups may be given as well. `why` ends the sentence.
   Row& excludes(std::vector<std::string> others, std::string why = "leave one of them out") {
-    return excluded.push_back({std::move(others), std::move(why)}), *this;
+    excluded.push_back({std::move(others), std::move(why)});
+    return *this;
   }
   // It does nothing unless `condition`, asked when all options are read. `with` names what it goes with.
   Row& counts_if(std::function<bool()> condition, std::string with) {
-    return counts = std::move(condition), counts_with = std::move(with), *this;
+    counts = std::move(condition);
+    counts_with = std::move(with);
+    return *this;
   }
 
   struct Exclusion {
@@ -82,7 +100,7 @@ struct Row {
 
 class CommandLine {
  public:
-  // `examples` end the help. An empty `version` leaves --version out.
+  // `examples` end the help.
   CommandLine(std::string description, std::string program, std::string version, std::string examples);
 
   // Begins a group of the help, or goes on with it. "Help" is listed last, and has rows of its own.

@@ -18,9 +18,9 @@ enum class FileFormat : std::uint8_t { kPng, kExr };
 
 // A path with at most one number in it: a single '#' stands for four digits as OpenImageIO has it, each of
 // several for one as Nuke and Blender have it ("####" is four digits, too); '@' stands for one, and runs add
-// up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too. "%%", "%#" and "%@" stand for a percent
-// sign, # and @ themselves. All this holds in the file's name; folders are taken as they are. Numbers wider than the field
-// are written whole. A value; thread-safe.
+// up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too. "%%", "%#" and "%@" stand for
+// a percent sign, # and @ themselves. All this holds in the file's name; folders are taken as they are. Numbers
+// wider than the field are written whole. A value; thread-safe.
 class FramePattern {
  public:
   // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two

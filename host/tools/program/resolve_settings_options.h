@@ -90,8 +90,8 @@ void each_part(Settings& of, Visit&& visit) {
 
 }  // namespace detail
 
-// Calls visit(name, field) for every field of ResolveSettings, by its name in C++ and in the file. The structured bindings
-// do not compile where a field is missing here.
+// Calls visit(name, field) for every field of ResolveSettings, by its name in C++ and in the file. The structured
+// bindings do not compile where a field is missing here.
 template <typename Visit, typename Settings>
 void each_setting(Settings& of, Visit&& visit) {
   auto& [method, output_extent, target_extent, colour, velocity, conventions, sharpness, targets, output,

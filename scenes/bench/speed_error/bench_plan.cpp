@@ -192,8 +192,8 @@ Result<std::vector<std::string>> chosen_scenes(const std::vector<std::string>& n
   for (const std::string& name : names) {
     if (is_file(name) || std::find(known.begin(), known.end(), name) != known.end()) continue;
     return Status::invalid(fmt::format(
-        "--scenes: there is no scene '{}'; the built-in ones are {}; a file must end in .gltf or .glb", name,
-        fmt::join(known, ", ")));
+        "--scenes: there is no scene '{}'; the built-in ones are {}; a file must end in .gltf or .glb{}",
+        name, fmt::join(known, ", "), tools::did_you_mean(name, known)));
   }
   return names;
 }
