@@ -38,7 +38,7 @@ ROOMS = (
     ("scenes", "scenes", "core"),
     ("scenes/builtin", "scenes/builtin", "scenes"),
     ("scenes/gltf", "scenes/gltf", "scenes"),
-    ("scenes/catalog", "scenes/catalog", "scenes/builtin scenes/gltf tools/program"),
+    ("scenes/catalog", "scenes/catalog", "scenes/builtin scenes/gltf"),
     ("scenes/render", "scenes/render", "scenes gl"),
     ("renderer/frames", "scenes/frames", "scenes/catalog scenes/render record"),
     ("renderer/session", "scenes/session", "renderer/frames tools/page"),
