@@ -5,11 +5,11 @@
 build_packages=(
   g++ cmake ninja-build pkg-config
   libspdlog-dev libfmt-dev libcli11-dev nlohmann-json3-dev libglm-dev libxxhash-dev
-  libopenexr-dev libimath-dev libpng-dev libfreetype-dev
+  libopenimageio-dev libopenexr-dev libimath-dev libpng-dev
   libtinygltf-dev libstb-dev
   libepoxy-dev libegl-dev libgl-dev
   ocl-icd-opencl-dev opencl-clhpp-headers
-  libglfw3-dev libimgui-dev               # the window; without them, all but the window is built
+  libglfw3-dev libimgui-dev libfreetype-dev   # the window; without them, all but the window is built
 )
 run_packages=(
   pocl-opencl-icd                        # an OpenCL device on every CPU
@@ -19,7 +19,6 @@ run_packages=(
 )
 test_packages=(libgtest-dev clang clang-format python3 python3-numpy python3-cffi chromium
   help2man                               # manual pages
-  libopenimageio-dev                     # a peer of the kernel benchmark
   mesa-opencl-icd                        # rusticl, a second OpenCL for the processor
   xvfb xdotool openbox                   # a display, a keyboard and a window manager for the window
 )

@@ -73,6 +73,10 @@ void say_first(const ResolveOptions& options, const ResolveTask& task) {
     spdlog::warn("{} frames are there, but made otherwise; they are made again: {}", task.stale.size(),
                  frame_numbers_text(task.stale));
   }
+  if (!task.format.converted_from.empty()) {
+    spdlog::info("colour is {}; it is made linear Rec. 709 (--input-colour takes another)",
+                 task.format.converted_from);
+  }
   if (!task.method_reason.empty())
     spdlog::info("method {}: {} (--method takes another)", name_of(variant_of(task.plan.settings)),
                  task.method_reason);
@@ -158,7 +162,7 @@ int run(int argc, char** argv) {
     if (Status status = take_recorded(options); !status.ok()) return fail(status);
     if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
   }
-  set_exr_threads(options.threads > 1 ? options.threads : 0);
+  set_image_threads(options.threads);
   if (options.list_devices) {
     print_opencl_devices();
     return kDone;

@@ -141,17 +141,6 @@ Status write_targets(const std::string& path, const TargetFile& file) {
   return tools::write_exr(path, file.frame.targets.render_extent, channels, attributes_of(file));
 }
 
-Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba) {
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < 4; ++i) {
-    channels.push_back({.name = tools::kColourChannels[i],
-                        .type = ChannelType::kFloat,
-                        .data = rgba.data() + i,
-                        .pixel_stride = 4 * sizeof(float)});
-  }
-  return tools::write_exr(path, extent, channels);
-}
-
 Result<std::vector<float>> download_rgba(Device device, const ImageView& image, Extent extent) {
   std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
   if (Status status = device.download(image, extent, rgba.data()); !status.ok()) return status;

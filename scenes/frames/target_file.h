@@ -38,9 +38,6 @@ void dilate_velocity(gl::TargetPixels& pixels);
 // R G B A and reactive.mask half, Z, backward.u/.v and forward.u/.v float, render extent. Errors: kIoFailure.
 Status write_targets(const std::string& path, const TargetFile& file);
 
-// A resolved or true picture: linear RGBA floats, tightly packed, stored as half. Errors: kIoFailure.
-Status write_rgba(const std::string& path, Extent extent, const std::vector<float>& rgba);
-
 // Returns an image of RGBA floats, tightly packed; waits for what writes it.
 Result<std::vector<float>> download_rgba(Device device, const ImageView& image, Extent extent);
 

@@ -81,7 +81,7 @@ Status write_canvas(const std::string& path, const tools::Canvas& canvas) {
   rgba.reserve(canvas.rgb.size() / 3 * 4);
   for (std::size_t i = 0; i < canvas.rgb.size(); i += 3)
     rgba.insert(rgba.end(), {canvas.rgb[i], canvas.rgb[i + 1], canvas.rgb[i + 2], 255});
-  return tools::write_png(path, canvas.extent, rgba.data());
+  return tools::write_picture(path, canvas.extent, rgba.data());
 }
 
 }  // namespace
@@ -350,7 +350,7 @@ Status DumpSession::write_pictures() {
     files_.push_back(path_of(std::string(name_of(stage)) + ".png"));
     Status status;
     if (stage == Stage::kPresented) {
-      status = tools::write_png(files_.back(), planes.extent, presented_.data());
+      status = tools::write_picture(files_.back(), planes.extent, presented_.data());
     } else if (is_colour(stage)) {
       const bool shown = is_display_referred();
       auto presenter = PicturePresenter::create(source_->device(), planes.extent,
@@ -359,7 +359,7 @@ Status DumpSession::write_pictures() {
       if (!presenter.ok()) return presenter.status();
       auto codes = presenter->present(interleaved(planes));
       if (!codes.ok()) return codes.status();
-      status = tools::write_png(files_.back(), planes.extent, codes.value().data());
+      status = tools::write_picture(files_.back(), planes.extent, codes.value().data());
     } else {
       status = write_canvas(files_.back(), false_colour_of(stage, planes));
     }

@@ -13,8 +13,8 @@
 #include "frames/picture_options.h"
 #include "quincunx/resolve_service.h"
 #include "quincunx/status.h"
+#include "tools/image/false_colour.h"
 #include "tools/image/image_io.h"
-#include "tools/image/text_painter.h"
 #include "tools/program/command_line.h"
 
 namespace quincunx::scenes {

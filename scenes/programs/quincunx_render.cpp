@@ -25,18 +25,19 @@ namespace quincunx::scenes {
 namespace {
 
 Status write_truth(PicturePresenter& presenter, const tools::FramePattern& pattern, std::int64_t index,
-                   Extent extent, const std::vector<float>& rgba) {
+                   Extent extent, const std::vector<float>& rgba, const tools::Display& display) {
   const std::string path = pattern.expand(index);
-  if (pattern.format() == tools::FileFormat::kExr) return write_rgba(path, extent, rgba);
+  if (!tools::has_8_bits(format_of(pattern)))
+    return tools::write_light(path, extent, rgba, tools::ChannelType::kHalf, display);
   auto pixels = presenter.present(rgba);
   if (!pixels.ok()) return pixels.status();
-  return tools::write_png(path, extent, pixels.value().data());
+  return tools::write_picture(path, extent, pixels.value().data());
 }
 
-// --truth: renders and writes supersampled frames instead of resolved ones: .exr linear, .png through the present pass.
+// --truth: renders and writes supersampled frames instead of resolved ones; .png and .jpg through the present pass.
 Status run_truth(const RenderOptions& options) {
   if (options.out.empty()) return Status::invalid("--truth needs --out: the pattern of the files to write");
-  auto pattern = tools::FramePattern::parse(options.out);
+  auto pattern = tools::output_pattern(options.out);
   if (!pattern.ok()) return pattern.status();
   if (Status status = pattern->check_count(options.frames); !status.ok()) return status;
   auto settings = source_settings_for(options);
@@ -44,8 +45,9 @@ Status run_truth(const RenderOptions& options) {
   auto opened = FrameSource::create(settings.value());
   if (!opened.ok()) return opened.status();
   FrameSource& source = *opened.value();
-  auto presenter = PicturePresenter::create(source.device(), options.output, options.resolve.output.tone_map,
-                                            options.resolve.output.dither, source.exposure());
+  const tools::Display display = {options.resolve.output.tone_map, source.exposure()};
+  auto presenter = PicturePresenter::create(source.device(), options.output, display.tone_map,
+                                            options.resolve.output.dither, display.exposure);
   if (!presenter.ok()) return presenter.status();
 
   const TruthSettings truth = {options.output, options.truth, options.shutter / options.fps};
@@ -54,7 +56,8 @@ Status run_truth(const RenderOptions& options) {
   for (std::int64_t index = 0; index < options.frames; ++index) {
     auto rgba = render_truth(source.renderer(), truth, source.sequence().at(index).seconds);
     if (!rgba.ok()) return rgba.status();
-    if (Status status = write_truth(presenter.value(), pattern.value(), index, options.output, rgba.value());
+    if (Status status =
+            write_truth(presenter.value(), pattern.value(), index, options.output, rgba.value(), display);
         !status.ok()) {
       return status;
     }

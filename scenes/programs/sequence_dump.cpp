@@ -9,6 +9,7 @@
 #include "programs/dump_session.h"
 #include "render/truth.h"
 #include "tools/image/display_light.h"
+#include "tools/image/image_io.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
@@ -73,7 +74,7 @@ Status write_truth_at(double seconds, FrameSource& source, std::int64_t index, c
   if (options.resolve.colour == PixelFormat::kRGBA8)
     rgba = tools::display_light(rgba.value(), options.resolve.output.tone_map, source.exposure());
   return writer.push([path = pattern->expand(index), output, pixels = std::move(rgba).value()] {
-    return write_rgba(path, output, pixels);
+    return tools::write_light(path, output, pixels);
   });
 }
 
@@ -82,7 +83,7 @@ Status write_truth_at(double seconds, FrameSource& source, std::int64_t index, c
 Status dump_sequence(const DumpOptions& options) {
   auto pattern = tools::FramePattern::parse(options.sequence);
   if (!pattern.ok()) return pattern.status();
-  if (pattern->format() != tools::FileFormat::kExr) {
+  if (format_of(*pattern) != tools::FileFormat::kExr) {
     return Status::invalid("--sequence '" + options.sequence +
                            "' must end in .exr: only EXR holds depth and motion");
   }

@@ -133,10 +133,13 @@ void add_run_options(tools::CommandLine& line, RenderOptions& options) {
   constexpr tools::Bounds kSamples = {.least = 1, .most = 64};
   line.group("Output");
   line.add("--out", tools::text(options.out, "PATTERN"),
-           "Frames to write: .png (presented) or .exr (linear); #, @ or %04d in the name is the number")
+           "Frames to write: .png, .jpg, .dpx (as displayed), .exr, .tif, .hdr (linear); #, @ or %04d in the "
+           "name "
+           "is the number")
       .common()
       .writes();
-  line.add("--contact-sheet", tools::text(options.contact_sheet, "FILE"), "One PNG that shows the whole run")
+  line.add("--contact-sheet", tools::text(options.contact_sheet, "FILE"),
+           "One picture that shows the whole run")
       .writes();
   line.add("--report", tools::text(options.report, "BASE"),
            "Write BASE.html, .txt and .json: passes, bytes, viewports, devices, scores")
@@ -166,7 +169,8 @@ void add_run_options(tools::CommandLine& line, RenderOptions& options) {
   line.add("--no-overlap", tools::flag(options.overlap, false),
            "Finish each frame before the next: cleaner pass times");
   line.add("--why", tools::text(options.why, "FILE"),
-           "One PNG instead: three places of the scene by bilinear, quincunx and temporal, at half the size "
+           "One picture instead: three places of the scene by bilinear, quincunx and temporal, at half the "
+           "size "
            "or --scale, "
            "beside truth")
       .writes()
@@ -176,8 +180,8 @@ void add_run_options(tools::CommandLine& line, RenderOptions& options) {
   line.check([&options](const tools::CommandLine&) {
     for (const auto& [name, path] :
          {std::pair{"--contact-sheet", &options.contact_sheet}, {"--why", &options.why}}) {
-      if (!path->empty() && !tools::in_lower_case(*path).ends_with(".png"))
-        throw tools::UsageError{name, fmt::format("'{}' must end in .png", *path)};
+      if (const std::string problem = path->empty() ? "" : tools::no_picture(*path); !problem.empty())
+        throw tools::UsageError{name, problem};
     }
   });
 }

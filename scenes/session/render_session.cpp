@@ -167,7 +167,7 @@ Status RenderSession::open_pacing() {
 // Before anything is drawn, so that a long run does not end in a wrong name.
 Status RenderSession::check_outputs() {
   if (!options_.out.empty()) {
-    auto pattern = tools::FramePattern::parse(options_.out);
+    auto pattern = tools::output_pattern(options_.out);
     if (!pattern.ok()) return pattern.status();
     if (Status status = pattern->check_count(options_.frames); !status.ok()) return status;
     pattern_ = pattern.value();
@@ -200,7 +200,7 @@ Status RenderSession::open_resolves() {
 }
 
 bool RenderSession::wants_resolved() const {
-  return options_.exr_frame >= 0 || scores_ || (pattern_ && pattern_->format() == tools::FileFormat::kExr);
+  return options_.exr_frame >= 0 || scores_ || (pattern_ && !tools::has_8_bits(format_of(*pattern_)));
 }
 
 // The view as a controller wants it, where there is one.
@@ -301,15 +301,20 @@ Status RenderSession::write_frame(std::int64_t index) {
   const std::string path = pattern_->expand(index);
   if (index == 0 || index + 1 == options_.frames) files_.push_back(path);
   const Extent output = options_.output;
-  if (pattern_->format() == tools::FileFormat::kPng) {
+  if (tools::has_8_bits(format_of(*pattern_))) {
     std::vector<std::uint8_t> copy(pixels, pixels + output.area() * 4);
     return writer_.push(
-        [path, output, copy = std::move(copy)] { return tools::write_png(path, output, copy.data()); });
+        [path, output, copy = std::move(copy)] { return tools::write_picture(path, output, copy.data()); });
   }
   auto resolved = download_resolved();
   if (!resolved.ok()) return resolved.status();
-  return writer_.push(
-      [path, output, rgba = std::move(resolved).value()] { return write_rgba(path, output, rgba); });
+  // Colour of 8 bits is the screen's light already.
+  const bool shown = options_.resolve.colour == PixelFormat::kRGBA8;
+  const tools::Display display = {shown ? ToneMap::kClamp : options_.resolve.output.tone_map,
+                                  shown ? 1 : source_->exposure()};
+  return writer_.push([path, output, display, rgba = std::move(resolved).value()] {
+    return tools::write_light(path, output, rgba, tools::ChannelType::kHalf, display);
+  });
 }
 
 Status RenderSession::write_exr_frame(std::int64_t index) {
@@ -325,7 +330,7 @@ Status RenderSession::write_exr_frame(std::int64_t index) {
   if (!resolved.ok()) return resolved.status();
   files_.push_back(targets_path);
   files_.push_back(resolved_path);
-  return write_rgba(resolved_path, options_.output, resolved.value());
+  return tools::write_light(resolved_path, options_.output, resolved.value());
 }
 
 Result<std::vector<float>> RenderSession::download_resolved() const {

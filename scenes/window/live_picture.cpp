@@ -5,6 +5,7 @@
 
 #include "quincunx_gl/gl_calls.h"
 #include "render/truth.h"
+#include "tools/image/image_io.h"
 #include "tools/program/clock.h"
 
 namespace quincunx::scenes {
@@ -273,7 +274,7 @@ Status LivePicture::write(const std::string& base) const {
                            .fps = options_.fps};
   if (Status status = write_targets(base + "_targets.exr", file); !status.ok()) return status;
   const auto rgba = download_rgba(source_->device(), resolved_.view(), size);
-  return rgba.ok() ? write_rgba(base + "_resolved.exr", size, rgba.value()) : rgba.status();
+  return rgba.ok() ? tools::write_light(base + "_resolved.exr", size, rgba.value()) : rgba.status();
 }
 
 }  // namespace quincunx::scenes

@@ -15,7 +15,7 @@
 #include "quincunx_gl/capabilities.h"
 #include "quincunx_gl/gl_calls.h"
 #include "render/gl_program.h"
-#include "tools/image/text_painter.h"
+#include "tools/image/false_colour.h"
 
 namespace quincunx::scenes {
 namespace {

@@ -304,7 +304,7 @@ Status WindowSession::write_files() {
   if (std::exchange(settings_.screenshot, false)) {
     const std::string path = unused_name(folder / fmt::format("screenshot.{:04}", frame_), ".png") + ".png";
     const Extent window = window_->framebuffer();
-    if (Status status = tools::write_png(path, window, Screen::read(window).data()); !status.ok())
+    if (Status status = tools::write_picture(path, window, Screen::read(window).data()); !status.ok())
       return status;
     say("wrote " + path);
   }

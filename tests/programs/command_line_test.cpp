@@ -91,7 +91,7 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--scene weel", 2, "did you mean 'wheel'?");
   expect_refused("--scale-path sweeep", 2, "did you mean 'sweep'?");
   expect_refused("--grain 0.5", 2, "--grain: it does nothing here; it goes with --method noise");
-  expect_refused("--contact-sheet '{}/x.jpg'", 2, "must end in .png");
+  expect_refused("--contact-sheet '{}/x.exr'", 2, "must end in .tif, .png, .jpg or .dpx");
   expect_refused("--output 1280", 2, "WIDTHxHEIGHT");
   expect_refused("--output 0x720", 2, "WIDTHxHEIGHT");
   expect_refused("--scale abc --out '{}/a.png'", 2, "abc");

@@ -78,10 +78,10 @@ TEST_F(Refusal, WrongUsage) {
 TEST_F(Refusal, PatternsThatCannotWork) {
   write_frames(1, 2);
   expect_refused("'{}/f.exr' --out '{}/u.%04d.exr'", 2, "has no frame number");
-  expect_refused("'{}/f.%04d.png' --out '{}/u.%04d.exr'", 2, "must end in .exr");
+  expect_refused("'{}/f.%04d.png' --out '{}/u.%04d.exr'", 1, "no file is named");
   expect_refused("'{}/f.%s.exr' --out '{}/u.%04d.exr'", 2, "input pattern");
   expect_refused("'{}/f.%04d.exr' --out '{}/u.exr'", 2, "has no frame number");
-  expect_refused("'{}/f.%04d.exr' --out '{}/u.%04d.jpg'", 2, "'.jpg'");
+  expect_refused("'{}/f.%04d.exr' --out '{}/u.%04d.gif'", 2, "'.gif'; it must end in .exr");
   expect_refused(kRun + "--truth '{}/t.exr'", 2, "truth pattern");
 }
 

@@ -31,24 +31,13 @@ TEST(FramePattern, FillsInTheNumber) {
   EXPECT_EQ(expanded("50%%.png", 9), "50%.png");
 }
 
-TEST(FramePattern, ExtensionDecidesTheFormat) {
-  EXPECT_EQ(FramePattern::parse("a.png")->format(), FileFormat::kPng);
-  EXPECT_EQ(FramePattern::parse("a.#.Exr")->format(), FileFormat::kExr);
-}
-
 TEST(FramePattern, RefusesWhatItCannotDo) {
   const struct {
     const char* pattern;
     const char* says;
   } cases[] = {
-      {"", "empty"},
-      {"a.jpg", "'.jpg'"},
-      {"a.####", "must end in .png or .exr"},
-      {"frames", "no extension"},
-      {"a.#.#.png", "two frame numbers"},
-      {"a.%s.png", "'%'"},
-      {"a%", "'%'"},
-      {"a.%99999999999999999999d.png", "digits"},
+      {"", "empty"}, {"a.#.#.png", "two frame numbers"},         {"a.%s.png", "'%'"},
+      {"a%", "'%'"}, {"a.%99999999999999999999d.png", "digits"},
   };
   for (const auto& one : cases) {
     const Result<FramePattern> parsed = FramePattern::parse(one.pattern);

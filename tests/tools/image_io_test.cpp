@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/image_io.h"
 
+#include <chrono>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <thread>
 
 #include "temporary_folder.h"
+#include "tools/image/display_light.h"
+#include "tools/image/image_reader.h"
 
 namespace quincunx::tools {
 namespace {
@@ -25,13 +30,13 @@ TEST(Png, ReturnsEveryCode) {
     texels[i * 4 + 2] = static_cast<std::uint8_t>(i * 7);
     texels[i * 4 + 3] = static_cast<std::uint8_t>(i * 3);
   }
-  for (const PngAlpha alpha : {PngAlpha::kOpaque, PngAlpha::kKeep}) {
+  for (const Alpha alpha : {Alpha::kOpaque, Alpha::kKeep}) {
     const std::string path = folder.file("a.png");
-    const Status status = write_png(path, extent, texels.data(), 0, alpha);
+    const Status status = write_picture(path, extent, texels.data(), 0, alpha);
     ASSERT_TRUE(status.ok()) << status.message();
     const Result<LoadedImage> image = read_image(path);
     ASSERT_TRUE(image.ok()) << image.status().message();
-    const int channels = alpha == PngAlpha::kKeep ? 4 : 3;
+    const int channels = alpha == Alpha::kKeep ? 4 : 3;
     ASSERT_EQ(image->channels.size(), static_cast<std::size_t>(channels));
     EXPECT_EQ(image->extent, extent);
     for (int i = 0; i < 256; ++i) {
@@ -46,7 +51,7 @@ TEST(Png, SkipsTheEndOfLongRows) {
   const testing::TemporaryFolder folder;
   std::vector<std::uint8_t> texels(2 * 64, 9);
   texels[64] = 200;
-  ASSERT_TRUE(write_png(folder.file("a.png"), {2, 2}, texels.data(), 64).ok());
+  ASSERT_TRUE(write_picture(folder.file("a.png"), {2, 2}, texels.data(), 64).ok());
   const Result<LoadedImage> image = read_image(folder.file("a.png"));
   ASSERT_TRUE(image.ok());
   EXPECT_EQ(std::lround(image->at(0, 1, 0) * 255.0f), 200);
@@ -170,6 +175,186 @@ TEST(Exr, RefusesBadChannels) {
   EXPECT_EQ(folder.entries(), 0);
 }
 
+// Formats that this build writes, each with what its numbers may differ by.
+TEST(Formats, ReturnThePicture) {
+  struct Format {
+    const char* ending;
+    float step;
+  };
+  const testing::TemporaryFolder folder;
+  const Extent extent{16, 8};
+  std::vector<std::uint8_t> texels(static_cast<std::size_t>(extent.area()) * 4, 255);
+  for (std::size_t i = 0; i < texels.size() / 4; ++i)
+    texels[4 * i] = texels[4 * i + 1] = texels[4 * i + 2] = static_cast<std::uint8_t>(2 * i);
+  constexpr float kNone = 0, kTenBits = 1.f / 1023, kJpeg = 4.f / 255;  // of a smooth ramp at quality 95
+  int known = 0;
+  for (const Format format :
+       {Format{".png", kNone}, Format{".tif", kNone}, Format{".dpx", kTenBits}, Format{".jpg", kJpeg}}) {
+    const std::string path = folder.file(std::string("a") + format.ending);
+    if (!format_of(path)) continue;
+    ++known;
+    const Status status = write_picture(path, extent, texels.data());
+    ASSERT_TRUE(status.ok()) << status.message();
+    const auto image = read_image(path);
+    ASSERT_TRUE(image.ok()) << image.status().message();
+    ASSERT_EQ(image->extent, extent) << path;
+    ASSERT_EQ(image->channels, (std::vector<std::string>{"R", "G", "B"})) << path;
+    for (int i = 0; i < extent.area(); ++i)
+      ASSERT_NEAR(image->at(i % 16, i / 16, 1),
+                  static_cast<float>(texels[static_cast<std::size_t>(i) * 4]) / 255, format.step)
+          << path;
+  }
+  EXPECT_TRUE(known == 4 || endings() == ".exr or .png") << endings();
+  const Status light = write_picture(folder.file("a.exr"), extent, texels.data());
+  EXPECT_EQ(light.code(), StatusCode::kInvalidArgument);
+}
+
+// Light comes back as light; a DPX holds it as displayed.
+TEST(Formats, ReturnTheLight) {
+  const testing::TemporaryFolder folder;
+  const std::vector<float> rgba = {0.25f, 0.5f, 4, 1, 1, 0.125f, 100, 0.5f};
+  for (const char* name : {"a.exr", "a.tif", "a.hdr", "a.dpx"}) {
+    const std::string path = folder.file(name);
+    const auto format = format_of(path);
+    const Status status = write_light(path, {2, 1}, rgba, ChannelType::kHalf, {ToneMap::kReinhard, 2});
+    EXPECT_EQ(status.ok(), format.has_value()) << status.message();
+    if (!status.ok()) {
+      EXPECT_NE(status.message().find(endings()), std::string::npos) << status.message();
+      continue;
+    }
+    const auto image = read_image(path);
+    ASSERT_TRUE(image.ok()) << image.status().message();
+    const std::size_t channels = image->channels.size();
+    ASSERT_EQ(channels, *format <= FileFormat::kTiff ? 4u : 3u) << path;
+    for (int i = 0; i < 8; ++i) {
+      if (i % 4 >= static_cast<int>(channels)) continue;
+      const float light = rgba[static_cast<std::size_t>(i)], found = image->at(i / 4, 0, i % 4);
+      if (holds_light(*format)) {
+        EXPECT_NEAR(found, light,
+                    *format == FileFormat::kHdr ? 0.01f * rgba[static_cast<std::size_t>(i / 4 * 4 + 2)] : 0)
+            << path;
+      } else {
+        EXPECT_NEAR(linear_of_srgb(found), 2 * light / (1 + 2 * light), 0.002f) << path;
+      }
+    }
+  }
+}
+
+TEST(Formats, KeepWhatFramesTellOfThemselves) {
+  const testing::TemporaryFolder folder;
+  const std::vector<Attribute> attributes = {
+      {"owner", std::string("A studio")}, {"pixelAspectRatio", 2.f}, {"timeCode", TimeCode{0x01020304, 5}}};
+  const std::vector<float> rgba(4 * 4, 0.5f);
+  for (const char* name : {"a.exr", "a.tif", "a.dpx"}) {
+    if (!format_of(name)) continue;
+    const std::string path = folder.file(name);
+    ASSERT_TRUE(write_light(path, {2, 2}, rgba, ChannelType::kHalf, {}, attributes).ok());
+    const auto reader = ImageReader::open(path);
+    ASSERT_TRUE(reader.ok()) << reader.status().message();
+    EXPECT_FLOAT_EQ(reader->header().parts[0].pixel_aspect, 2) << path;
+    for (const Attribute& wanted : attributes) {
+      if (wanted.name == "timeCode" && path.ends_with("tif")) continue;  // which has no place for it
+      const Attribute* found = reader->header().attribute(wanted.name);
+      ASSERT_NE(found, nullptr) << path << " " << wanted.name;
+      EXPECT_TRUE(found->value == wanted.value) << path << " " << wanted.name;
+    }
+  }
+}
+
+TEST(Formats, TheSamePixelsMakeTheSameFile) {
+  const testing::TemporaryFolder folder;
+  const std::vector<float> rgba(4 * 4, 0.5f);
+  const auto bytes_of_file = [&](const std::string& path) {
+    EXPECT_TRUE(write_light(path, {2, 2}, rgba).ok());
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  for (const char* name : {"a.exr", "a.tif", "a.hdr", "a.dpx", "a.png"}) {
+    if (!format_of(name)) continue;
+    const std::string first = bytes_of_file(folder.file(name));
+    // Some formats count seconds.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    EXPECT_EQ(first, bytes_of_file(folder.file(name))) << name;
+  }
+}
+
+TEST(Formats, AreNamedByTheirEndings) {
+  EXPECT_EQ(format_of("a/b.c.PNG"), FileFormat::kPng);
+  EXPECT_EQ(format_of("a.exr"), FileFormat::kExr);
+  EXPECT_FALSE(format_of("a.gif"));
+  EXPECT_FALSE(format_of("exr"));
+  EXPECT_EQ(format_of(output_pattern("a.#.Exr").value()), FileFormat::kExr);
+  for (const char* bad : {"a.gif", "a.####", "frames"}) {
+    const auto pattern = output_pattern(bad);
+    ASSERT_FALSE(pattern.ok()) << bad;
+    EXPECT_EQ(pattern.status().code(), StatusCode::kInvalidArgument);
+    EXPECT_NE(pattern.status().message().find("must end in .exr"), std::string::npos)
+        << pattern.status().message();
+  }
+}
+
+// Colour of files.
+
+ImagePart part_of(const std::string& space) {
+  ImagePart part;
+  part.colour_space = space;
+  return part;
+}
+
+std::vector<float> light_of(const ImagePart& part, std::vector<float> rgba, const std::string& named = "") {
+  const auto colour = InputColour::of("a.exr", part, named);
+  EXPECT_TRUE(colour.ok()) << colour.status().message();
+  if (colour.ok()) colour->apply(rgba);
+  return rgba;
+}
+
+TEST(InputColour, LeavesLinearRec709AsItIs) {
+  ImagePart part = part_of("linear");
+  EXPECT_TRUE(InputColour::of("a.exr", part)->is_light());
+  part.chromaticities = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+  EXPECT_TRUE(InputColour::of("a.exr", part)->is_light());
+}
+
+// The matrix that ACES publishes for AP1 with D60 to Rec. 709 with D65.
+TEST(InputColour, ConvertsAcesByNameAndByChromaticities) {
+  const float wanted[] = {1.70505f, -0.13026f, -0.02400f};
+  ImagePart part = part_of("linear");
+  const auto named = light_of(part, {1, 0, 0, 1}, "ACEScg");
+  part.chromaticities = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+  const auto told = light_of(part, {1, 0, 0, 1});
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(named[i], wanted[i], 2e-4f);
+    EXPECT_EQ(told[i], named[i]);
+  }
+  EXPECT_EQ(InputColour::of("a.exr", part)->name(), "ACEScg");
+  for (const float white : light_of(part, {1, 1, 1, 1}))
+    EXPECT_NEAR(white, 1, 1e-5f);  // white stays white
+}
+
+TEST(InputColour, TakesCurvesBack) {
+  EXPECT_NEAR(light_of(part_of("sRGB"), {0.5f, 0, 1, 1})[0], 0.2140411f, 1e-6f);
+  const auto film = light_of(part_of("KodakLog"), {95.f / 1023, 685.f / 1023, 445.f / 1023, 1});
+  EXPECT_NEAR(film[0], 0, 1e-6f);
+  EXPECT_NEAR(film[1], 1, 1e-6f);
+  EXPECT_NEAR(film[2], 0.149304f, 1e-5f);
+}
+
+TEST(InputColour, MultipliesByAlphaAfterTheCurve) {
+  ImagePart part = part_of("sRGB");
+  part.straight_alpha = true;
+  EXPECT_NEAR(light_of(part, {0.5f, 0, 1, 0.5f})[0], 0.2140411f / 2, 1e-6f);
+}
+
+TEST(InputColour, UnknownNamesAreOneSentence) {
+  const auto asked = InputColour::of("a.exr", part_of("linear"), "ACEScgg");
+  EXPECT_EQ(asked.status().code(), StatusCode::kInvalidArgument);
+  EXPECT_NE(asked.status().message().find("ACEScg, ACES2065-1"), std::string::npos)
+      << asked.status().message();
+  const auto told = InputColour::of("a.exr", part_of("LogSomething"));
+  EXPECT_EQ(told.status().code(), StatusCode::kIoFailure);
+  EXPECT_NE(told.status().message().find("a.exr"), std::string::npos);
+}
+
 TEST(ReadImage, NamesTheFileAndTheReason) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder.file("text.exr")) << "this is no picture";
@@ -205,7 +390,7 @@ TEST(WriteImage, LeavesNothingBehindOnFailure) {
   const testing::TemporaryFolder folder;
   std::ofstream(folder.file("plain")) << "x";
   const std::vector<std::uint8_t> texel(4);
-  const Status status = write_png(folder.file("plain/a.png"), {1, 1}, texel.data());
+  const Status status = write_picture(folder.file("plain/a.png"), {1, 1}, texel.data());
   EXPECT_EQ(status.code(), StatusCode::kIoFailure);
   EXPECT_NE(status.message().find("plain/a.png"), std::string::npos);
   EXPECT_EQ(folder.entries(), 1);

@@ -16,7 +16,7 @@
 namespace quincunx {
 namespace {
 
-// To nearest even; subnormals, infinities and NaN included.
+// To nearest even; subnormals, infinities and NaN included. By hand: Imath's half would bring a library to the core.
 unsigned half_bits(float value) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
   const unsigned sign = (bits >> 16) & 0x8000u;

@@ -1,5 +1,6 @@
 # blender-extension: a target that makes quincunx-blender-VERSION-linux-ARCH.zip, the add-on as an extension of Blender
-# 4.2 and later. It carries quincunx-resolve and the libraries that it loads, but those of every Linux.
+# 4.2 and later. It carries quincunx-resolve and the libraries that it loads, but those of every Linux. OpenImageIO would
+# bring 250 more, so this program reads and writes EXR and PNG alone.
 #
 # As a script (-P) this file fills the folder of the zip and packs it.
 if(CMAKE_SCRIPT_MODE_FILE)
@@ -49,7 +50,8 @@ endif()
 # The program once more, which looks for libraries beside itself before all other places, for itself and for them.
 quincunx_resolve_program(quincunx-resolve-bundled EXCLUDE_FROM_ALL)
 target_link_options(quincunx-resolve-bundled PRIVATE LINKER:--disable-new-dtags)
-set_target_properties(quincunx-resolve-bundled PROPERTIES BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/../lib")
+set_target_properties(quincunx-resolve-bundled PROPERTIES
+  QUINCUNX_IMAGE_IO openexr BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN/../lib")
 
 string(REPLACE "x86_64" "x64" platform "linux-${CMAKE_SYSTEM_PROCESSOR}")
 string(REPLACE "aarch64" "arm64" platform "${platform}")

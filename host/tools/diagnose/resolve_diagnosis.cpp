@@ -2,6 +2,7 @@
 #include "tools/diagnose/resolve_diagnosis.h"
 
 #include <fmt/format.h>
+#include <half.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,6 @@
 
 #include "embedded_diagnosis_files.h"
 #include "tools/image/display_light.h"
-#include "tools/image/half.h"
 #include "tools/image/image_io.h"
 #include "tools/page/page_template.h"
 #include "tools/program/atomic_file.h"
@@ -46,7 +46,7 @@ std::vector<float> values_of(const RecordedImage& image) {
     return values;
   };
   if (image.format == PixelFormat::kRGBA16F || image.format == PixelFormat::kRG16F)
-    return read(std::uint16_t{}, from_half);
+    return read(std::uint16_t{}, imath_half_to_float);
   if (image.format == PixelFormat::kRGBA8)
     return read(std::uint8_t{},
                 [](std::uint8_t code) { return linear_of_srgb(static_cast<float>(code) / 255); });

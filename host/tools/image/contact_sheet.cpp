@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/contact_sheet.h"
 
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "tools/image/display_light.h"
+#include "tools/image/false_colour.h"
 #include "tools/image/image_io.h"
-#include "tools/image/text_painter.h"
 
 namespace quincunx::tools {
 
@@ -35,70 +38,22 @@ constexpr double kWantedAspect = 1.5;
 // A gap in the last row looks as bad as an aspect that is off by e^0.25.
 constexpr double kCostOfHoles = 0.25;
 
-double decode(int code) {
-  const double x = code / 255.0;
-  return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
-}
-
-std::uint8_t encode(double x) {
-  const double y = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(std::clamp(y, 0.0, 1.0) * 255));
-}
-
-const std::array<float, 256>& linear_of_code() {
-  static const std::array<float, 256> table = [] {
-    std::array<float, 256> values{};
-    for (int i = 0; i < 256; ++i)
-      values[i] = static_cast<float>(decode(i));
-    return values;
-  }();
-  return table;
-}
-
-// Source pixels under one thumbnail pixel of an axis, and how much of the first and the last of them.
-struct Span {
-  int first = 0;
-  std::vector<float> weights;  // sum to 1
-};
-
-std::vector<Span> spans(int source, int thumbnail) {
-  std::vector<Span> result(thumbnail);
-  const double step = static_cast<double>(source) / thumbnail;
-  for (int i = 0; i < thumbnail; ++i) {
-    const double low = i * step;
-    const double high = (i + 1) * step;
-    result[i].first = static_cast<int>(low);
-    for (int j = result[i].first; j < source && j < high; ++j) {
-      const double part = std::min<double>(high, j + 1) - std::max<double>(low, j);
-      if (part > 0 || result[i].weights.empty()) result[i].weights.push_back(static_cast<float>(part / step));
-    }
+// Returns the frame at the thumbnail's size: box filtered in linear light, as OpenImageIO's resize does it.
+std::vector<std::uint8_t> shrunk(Extent from, const std::uint8_t* rgba, std::size_t row_bytes, Extent to) {
+  using OIIO::ImageSpec, OIIO::TypeDesc;
+  OIIO::ImageBuf light(ImageSpec(from.width, from.height, 3, TypeDesc::FLOAT));
+  for (OIIO::ImageBuf::Iterator<float> pixel(light); !pixel.done(); ++pixel) {
+    const std::uint8_t* texel = rgba + static_cast<std::size_t>(pixel.y()) * row_bytes + 4 * pixel.x();
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = linear_of_srgb(static_cast<float>(texel[c]) / 255);
   }
-  return result;
-}
-
-std::vector<std::uint8_t> box_filter(Extent from, const std::uint8_t* rgba, std::size_t row_bytes,
-                                     Extent to) {
-  const std::array<float, 256>& linear = linear_of_code();
-  const std::vector<Span> columns = spans(from.width, to.width);
-  const std::vector<Span> rows = spans(from.height, to.height);
-  std::vector<std::uint8_t> rgb(static_cast<std::size_t>(to.area()) * 3);
-  for (int y = 0; y < to.height; ++y) {
-    for (int x = 0; x < to.width; ++x) {
-      std::array<float, 3> sum{};
-      for (std::size_t j = 0; j < rows[y].weights.size(); ++j) {
-        const std::uint8_t* row = rgba + (rows[y].first + j) * row_bytes;
-        for (std::size_t i = 0; i < columns[x].weights.size(); ++i) {
-          const std::uint8_t* texel = row + (columns[x].first + i) * 4;
-          const float weight = rows[y].weights[j] * columns[x].weights[i];
-          for (int c = 0; c < 3; ++c)
-            sum[c] += weight * linear[texel[c]];
-        }
-      }
-      for (int c = 0; c < 3; ++c) {
-        rgb[(static_cast<std::size_t>(y) * to.width + x) * 3 + c] = encode(sum[c]);
-      }
-    }
-  }
+  OIIO::ImageBuf small(ImageSpec(to.width, to.height, 3, TypeDesc::FLOAT));
+  OIIO::ImageBufAlgo::resize(small, light, "box");
+  std::vector<std::uint8_t> rgb;
+  rgb.reserve(static_cast<std::size_t>(to.area()) * 3);
+  for (OIIO::ImageBuf::ConstIterator<float> pixel(small); !pixel.done(); ++pixel)
+    for (int c = 0; c < 3; ++c)
+      rgb.push_back(static_cast<std::uint8_t>(std::lround(srgb_of_linear(pixel[c]) * 255)));
   return rgb;
 }
 
@@ -120,9 +75,9 @@ int columns_for(int count, Extent cell) {
 }
 
 // Cuts the text until it fits, with an ellipsis; never inside a UTF-8 character.
-std::string fit(const TextPainter& painter, std::string text, int size_px, Face face, int width_px) {
-  if (painter.width(text, size_px, face) <= width_px) return text;
-  while (!text.empty() && painter.width(text + "…", size_px, face) > width_px) {
+std::string fit(std::string text, int size_px, Face face, int width_px) {
+  if (text_width(text, size_px, face) <= width_px) return text;
+  while (!text.empty() && text_width(text + "…", size_px, face) > width_px) {
     while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U)
       text.pop_back();
     if (!text.empty()) text.pop_back();
@@ -138,16 +93,15 @@ void copy_into(Canvas& canvas, int x, int y, Extent extent, const std::vector<st
   }
 }
 
-void draw_caption(Canvas& canvas, const TextPainter& painter, int x, int y, int width,
-                  const ContactSheetCaption& caption) {
+void draw_caption(Canvas& canvas, int x, int y, int width, const ContactSheetCaption& caption) {
   const int inner = width - 2 * kCaptionInset;
-  const std::string right = fit(painter, caption.right, kCaptionSize, Face::kSans, inner);
-  const int left_width = inner - painter.width(right, kCaptionSize, Face::kSans) - kCaptionInset;
-  const std::string left = fit(painter, caption.left, kCaptionSize, Face::kSansBold, std::max(left_width, 0));
-  painter.draw(canvas, x + kCaptionInset, y + kCaptionBaseline, left, kCaptionSize, Face::kSansBold,
-               kBrightText);
-  painter.draw(canvas, x + width - kCaptionInset, y + kCaptionBaseline, right, kCaptionSize, Face::kSans,
-               kDimText, Align::kRight);
+  const std::string right = fit(caption.right, kCaptionSize, Face::kSans, inner);
+  const int left_width = inner - text_width(right, kCaptionSize, Face::kSans) - kCaptionInset;
+  const std::string left = fit(caption.left, kCaptionSize, Face::kSansBold, std::max(left_width, 0));
+  draw_text(canvas, x + kCaptionInset, y + kCaptionBaseline, left, kCaptionSize, Face::kSansBold,
+            kBrightText);
+  draw_text(canvas, x + width - kCaptionInset, y + kCaptionBaseline, right, kCaptionSize, Face::kSans,
+            kDimText, Align::kRight);
 }
 
 }  // namespace
@@ -178,14 +132,13 @@ Status ContactSheet::add(Extent extent, const std::uint8_t* rgba, const ContactS
     small.height = std::max(
         1, static_cast<int>(std::lround(static_cast<double>(extent.height) * small.width / extent.width)));
   }
-  thumbnails_.push_back({small, box_filter(extent, rgba, row_bytes, small), caption});
+  thumbnails_.push_back({small, shrunk(extent, rgba, row_bytes, small), caption});
   return {};
 }
 
 Status ContactSheet::write(const std::string& path) const {
   if (thumbnails_.empty()) return Status::invalid(fmt::format("'{}': a contact sheet needs a frame", path));
-  const TextPainter painter;
-  if (!painter.available()) {
+  if (!has_fonts()) {
     spdlog::warn("contact sheet: no text, because DejaVu Sans is missing; install fonts-dejavu-core");
   }
   Extent picture;
@@ -202,12 +155,10 @@ Status ContactSheet::write(const std::string& path) const {
   Canvas canvas({width, 2 * kMargin + kHeaderHeight + rows * cell.height - kGap}, kCanvasBackground);
 
   const int inner = width - 2 * kMargin;
-  painter.draw(canvas, kMargin, kMargin + 30,
-               fit(painter, settings_.title, kTitleSize, Face::kSansBold, inner), kTitleSize, Face::kSansBold,
-               kBrightText);
-  painter.draw(canvas, kMargin, kMargin + 62,
-               fit(painter, settings_.subtitle, kSubtitleSize, Face::kSans, inner), kSubtitleSize,
-               Face::kSans, kDimText);
+  draw_text(canvas, kMargin, kMargin + 30, fit(settings_.title, kTitleSize, Face::kSansBold, inner),
+            kTitleSize, Face::kSansBold, kBrightText);
+  draw_text(canvas, kMargin, kMargin + 62, fit(settings_.subtitle, kSubtitleSize, Face::kSans, inner),
+            kSubtitleSize, Face::kSans, kDimText);
   for (int i = 0; i < count; ++i) {
     const Thumbnail& thumbnail = thumbnails_[i];
     const int x = kMargin + i % columns * cell.width;
@@ -222,13 +173,13 @@ Status ContactSheet::write(const std::string& path) const {
                   {static_cast<int>(std::lround(part * static_cast<float>(picture.width))), kBarHeight},
                   kAccent);
     }
-    draw_caption(canvas, painter, x, bar_y + kBarHeight, picture.width, thumbnail.caption);
+    draw_caption(canvas, x, bar_y + kBarHeight, picture.width, thumbnail.caption);
   }
-  // write_png takes four channels.
+  // write_picture takes four channels.
   std::vector<std::uint8_t> rgba(static_cast<std::size_t>(canvas.extent.area()) * 4, 255);
   for (std::size_t i = 0; i < rgba.size() / 4; ++i)
     std::copy_n(&canvas.rgb[i * 3], 3, &rgba[i * 4]);
-  return write_png(path, canvas.extent, rgba.data());
+  return write_picture(path, canvas.extent, rgba.data());
 }
 
 }  // namespace quincunx::tools

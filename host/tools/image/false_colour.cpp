@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tools/image/false_colour.h"
 
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -21,54 +25,33 @@ constexpr int kTickBaseline = 60;
 constexpr int kLegendHeight = 70;
 constexpr int kWheelSize = 58;
 
-using Stops = std::array<Rgb, 9>;
-constexpr Stops kGreyStops = {{{0, 0, 0},
-                               {32, 32, 32},
-                               {64, 64, 64},
-                               {96, 96, 96},
-                               {128, 128, 128},
-                               {159, 159, 159},
-                               {191, 191, 191},
-                               {223, 223, 223},
-                               {255, 255, 255}}};
-constexpr Stops kViridisStops = {{{68, 1, 84},
-                                  {71, 44, 122},
-                                  {59, 81, 139},
-                                  {44, 113, 142},
-                                  {33, 144, 141},
-                                  {39, 173, 129},
-                                  {92, 200, 99},
-                                  {170, 220, 50},
-                                  {253, 231, 37}}};
-constexpr Stops kMagmaStops = {{{0, 0, 4},
-                                {28, 16, 68},
-                                {79, 18, 123},
-                                {129, 37, 129},
-                                {181, 54, 122},
-                                {229, 80, 100},
-                                {251, 135, 97},
-                                {254, 194, 135},
-                                {252, 253, 191}}};
+constexpr const char* kSansPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr const char* kSansBoldPath = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 
-std::uint8_t mixed(std::uint8_t a, std::uint8_t b, float t) {
-  return static_cast<std::uint8_t>(
-      std::lround(static_cast<float>(a) + (static_cast<float>(b) - static_cast<float>(a)) * t));
+using Ramp = std::array<Rgb, 256>;
+
+Ramp ramp_named(const char* name) {
+  Ramp ramp{};
+  std::array<float, ramp.size()> places{};
+  for (std::size_t i = 0; i < ramp.size(); ++i)
+    places[i] = static_cast<float>(i) / static_cast<float>(ramp.size() - 1);
+  const int width = static_cast<int>(ramp.size());
+  const OIIO::ImageBuf from(OIIO::ImageSpec(width, 1, 1, OIIO::TypeDesc::FLOAT), places.data());
+  OIIO::ImageBuf to(OIIO::ImageSpec(width, 1, 3, OIIO::TypeDesc::UINT8), ramp.data());
+  OIIO::ImageBufAlgo::color_map(to, from, 0, name);
+  return ramp;
 }
 
-Rgb mixed(Rgb a, Rgb b, float t) {
-  return {mixed(a.r, b.r, t), mixed(a.g, b.g, t), mixed(a.b, b.b, t)};
+Ramp grey_ramp() {
+  Ramp ramp{};
+  for (std::size_t i = 0; i < ramp.size(); ++i)
+    ramp[i].r = ramp[i].g = ramp[i].b = static_cast<std::uint8_t>(i);
+  return ramp;
 }
 
-const Stops& stops_of(ColourMap map) {
-  switch (map) {
-    case ColourMap::kGrey:
-      return kGreyStops;
-    case ColourMap::kViridis:
-      return kViridisStops;
-    case ColourMap::kMagma:
-      return kMagmaStops;
-  }
-  return kGreyStops;
+const Ramp& ramp_of(ColourMap map) {
+  static const Ramp grey = grey_ramp(), viridis = ramp_named("viridis"), magma = ramp_named("magma");
+  return map == ColourMap::kGrey ? grey : map == ColourMap::kViridis ? viridis : magma;
 }
 
 float position(const ScalarScale& scale, float value) {
@@ -94,8 +77,7 @@ Canvas canvas_with_legend(Extent extent, const std::string& title, const ColourA
       canvas.fill(x * factor, y * factor, {factor, factor}, colour_at(index));
     }
   }
-  TextPainter().draw(canvas, kInset, shown.height + kTitleBaseline, title, kTextSize, Face::kSansBold,
-                     kBrightText);
+  draw_text(canvas, kInset, shown.height + kTitleBaseline, title, kTextSize, Face::kSansBold, kBrightText);
   return canvas;
 }
 
@@ -105,11 +87,51 @@ bool is_finite(Vec2 vector) {
 
 }  // namespace
 
+Canvas::Canvas(Extent size, Rgb background) : extent(size), rgb(static_cast<std::size_t>(size.area()) * 3) {
+  fill(0, 0, size, background);
+}
+
+void Canvas::fill(int x, int y, Extent size, Rgb colour) {
+  const int right = std::min(x + size.width, extent.width), bottom = std::min(y + size.height, extent.height);
+  for (int row = std::max(y, 0); row < bottom; ++row) {
+    std::uint8_t* texel = &rgb[(static_cast<std::size_t>(row) * static_cast<std::size_t>(extent.width) +
+                                static_cast<std::size_t>(std::max(x, 0))) *
+                               3];
+    for (int column = std::max(x, 0); column < right; ++column, texel += 3)
+      texel[0] = colour.r, texel[1] = colour.g, texel[2] = colour.b;
+  }
+}
+
+const char* font_path(Face face) {
+  return face == Face::kSans ? kSansPath : kSansBoldPath;
+}
+
+bool has_fonts() {
+  std::error_code error;
+  return std::filesystem::exists(kSansPath, error) && std::filesystem::exists(kSansBoldPath, error);
+}
+
+int text_width(const std::string& text, int size_px, Face face) {
+  if (text.empty() || !has_fonts()) return 0;
+  return OIIO::ImageBufAlgo::text_size(text, size_px, font_path(face)).width();
+}
+
+void draw_text(Canvas& canvas, int x, int y, const std::string& text, int size_px, Face face, Rgb colour,
+               Align align) {
+  if (text.empty() || !has_fonts()) return;
+  OIIO::ImageBuf picture(OIIO::ImageSpec(canvas.extent.width, canvas.extent.height, 3, OIIO::TypeDesc::UINT8),
+                         canvas.rgb.data());
+  const float rgb[] = {static_cast<float>(colour.r) / 255, static_cast<float>(colour.g) / 255,
+                       static_cast<float>(colour.b) / 255};
+  using OIIO::ImageBufAlgo::TextAlignX;
+  OIIO::ImageBufAlgo::render_text(picture, x, y, text, size_px, font_path(face), rgb,
+                                  align == Align::kLeft ? TextAlignX::Left : TextAlignX::Right);
+}
+
 Rgb colour_of(ColourMap map, float t) {
-  const Stops& stops = stops_of(map);
-  const float place = std::clamp(t, 0.0f, 1.0f) * static_cast<float>(stops.size() - 1);
-  const auto below = std::min(static_cast<std::size_t>(place), stops.size() - 2);
-  return mixed(stops[below], stops[below + 1], place - static_cast<float>(below));
+  const Ramp& ramp = ramp_of(map);
+  return ramp[static_cast<std::size_t>(
+      std::lround(std::clamp(t, 0.0f, 1.0f) * static_cast<float>(ramp.size() - 1)))];
 }
 
 Rgb colour_of(Vec2 vector, float longest) {
@@ -147,14 +169,13 @@ Canvas scalar_picture(Extent extent, std::span<const float> values, const Scalar
     const float t = static_cast<float>(x) / static_cast<float>(width - 1);
     canvas.fill(kInset + x, top + kBarTop, {1, kScaleHeight}, colour_of(scale.map, t));
   }
-  const TextPainter painter;
   constexpr int kTicks = 5;
   for (int i = 0; i < kTicks; ++i) {
     const float t = static_cast<float>(i) / (kTicks - 1);
     const std::string label = fmt::format("{:.3g}", value_at(scale, t));
-    const int label_width = painter.width(label, kTextSize, Face::kSans);
+    const int label_width = text_width(label, kTextSize, Face::kSans);
     const int x = kInset + static_cast<int>(t * static_cast<float>(width - label_width));
-    painter.draw(canvas, x, top + kTickBaseline, label, kTextSize, Face::kSans, kDimText);
+    draw_text(canvas, x, top + kTickBaseline, label, kTextSize, Face::kSans, kDimText);
   }
   return canvas;
 }
@@ -174,9 +195,9 @@ Canvas vector_picture(Extent extent, std::span<const Vec2> vectors, float longes
       canvas.fill(left + x, top + (kLegendHeight - kWheelSize) / 2 + y, {1, 1}, colour_of(vector, kRadius));
     }
   }
-  TextPainter().draw(canvas, kInset, top + kTitleBaseline + 24,
-                     fmt::format("hue: direction; rim of the wheel: {:.3g} {} and more", longest, unit),
-                     kTextSize, Face::kSans, kDimText);
+  draw_text(canvas, kInset, top + kTitleBaseline + 24,
+            fmt::format("hue: direction; rim of the wheel: {:.3g} {} and more", longest, unit), kTextSize,
+            Face::kSans, kDimText);
   return canvas;
 }
 
@@ -186,14 +207,13 @@ Canvas class_picture(Extent extent, std::span<const int> classes, std::span<cons
     const bool known = classes[i] >= 0 && static_cast<std::size_t>(classes[i]) < palette.size();
     return known ? palette[static_cast<std::size_t>(classes[i])].colour : kNotFinite;
   });
-  const TextPainter painter;
   const int top = canvas.extent.height - kLegendHeight;
   int x = kInset;
   for (const ClassColour& entry : palette) {
     canvas.fill(x, top + kBarTop + 4, {kScaleHeight, kScaleHeight}, entry.colour);
     x += kScaleHeight + 6;
-    painter.draw(canvas, x, top + kBarTop + 15, entry.name, kTextSize, Face::kSans, kDimText);
-    x += painter.width(entry.name, kTextSize, Face::kSans) + 2 * kInset;
+    draw_text(canvas, x, top + kBarTop + 15, entry.name, kTextSize, Face::kSans, kDimText);
+    x += text_width(entry.name, kTextSize, Face::kSans) + 2 * kInset;
   }
   return canvas;
 }

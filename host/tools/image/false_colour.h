@@ -1,19 +1,51 @@
 // SPDX-License-Identifier: MIT
-// False colour: data that no eye sees (depth, velocity, classes, errors) as a picture that a person can read,
-// with a legend under it. Pure but for the fonts that it looks up; thread-safe.
+// Pictures for people: a canvas with text, and false colour, which shows data that no eye sees (depth, velocity,
+// classes, errors) with a legend under it. By OpenImageIO; thread-safe.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "quincunx/advanced/extent.h"
-#include "tools/image/text_painter.h"
 
 namespace quincunx::tools {
 
-// Perceptually even ramps from dark to bright (van der Walt and Smith, 2015); kMagma is also what FLIP maps
-// use.
+struct Rgb {
+  std::uint8_t r = 0;
+  std::uint8_t g = 0;
+  std::uint8_t b = 0;
+};
+
+constexpr Rgb kCanvasBackground{24, 24, 26};
+constexpr Rgb kBrightText{236, 236, 238};
+constexpr Rgb kDimText{150, 150, 156};
+
+// An opaque RGB picture, sRGB encoded, top row first.
+struct Canvas {
+  Canvas(Extent size, Rgb background);
+
+  void fill(int x, int y, Extent size, Rgb colour);  // clipped to the canvas
+
+  Extent extent;
+  std::vector<std::uint8_t> rgb;
+};
+
+enum class Face { kSans, kSansBold };
+enum class Align { kLeft, kRight };
+
+const char* font_path(Face face);  // the file of Debian's fonts-dejavu-core, whether it is there or not
+bool has_fonts();
+
+// Text is UTF-8, one line; `size_px` is the height of the em.
+int text_width(const std::string& text, int size_px, Face face);  // px; 0 without fonts
+
+// Draws with the baseline at y; x is the left or right end. Does nothing without fonts.
+void draw_text(Canvas& canvas, int x, int y, const std::string& text, int size_px, Face face, Rgb colour,
+               Align align = Align::kLeft);
+
+// OpenImageIO's perceptually even ramps from dark to bright (van der Walt and Smith, 2015).
 enum class ColourMap { kGrey, kViridis, kMagma };
 
 constexpr Rgb kNotFinite{255, 0, 255};  // NaN and infinities in every picture below

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: MIT
+// What both libraries have in common: arguments are checked and files written here, and channels found. So is whether
+// an EXR is whole, by its own tables: libraries tell that only by reading every pixel.
 #include "tools/image/image_io.h"
-
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfOutputFile.h>
-#include <ImfStdIO.h>
-#include <png.h>
-
-#include <algorithm>
-#include <csetjmp>
-#include <cstring>
-#include <exception>
-#include <filesystem>
-#include <set>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "tools/image/image_attributes.h"
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
 
@@ -26,20 +25,24 @@ namespace quincunx::tools {
 
 namespace {
 
-// How a PNG is written. The frame loop waits for files: level 1 out of 9, and one filter, which is 2.5 times faster
-// than trying all and no larger.
-struct PngWay {
-  int level = 1;
-  int filters = PNG_FILTER_UP;
-};
-constexpr PngWay kSmallest = {9, PNG_ALL_FILTERS};
-
-Status cannot_write(const std::string& path, const std::string& reason) {
-  return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
+// Libraries' messages may run over several lines; one sentence is enough.
+Status cannot_read(const std::string& path, std::string reason) {
+  reason.resize(std::min(reason.find('\n'), reason.size()));
+  return Status::io(
+      fmt::format("'{}' cannot be read: {}", path, reason.empty() ? "no reason was given" : reason));
 }
 
-Status cannot_decode(const std::string& path, const std::string& reason) {
-  return Status::io(fmt::format("'{}' cannot be read: {}", path, reason));
+// Channels by layer; within one R, G, B, A before others.
+auto order_of(const HeaderChannel& channel) {
+  const std::size_t dot = channel.name.rfind('.') + 1;  // 0 where there is none
+  const std::string own = channel.name.substr(dot);
+  const std::size_t colour = own.size() == 1 ? std::string("RGBA").find(own) : std::string::npos;
+  return std::tuple(channel.name.substr(0, dot), colour, own);
+}
+
+Status cannot_write(const std::string& path, std::string reason) {
+  reason.resize(std::min(reason.find('\n'), reason.size()));
+  return Status::io(fmt::format("'{}' cannot be written: {}", path, reason));
 }
 
 Status check_extent(const std::string& path, Extent extent) {
@@ -48,62 +51,6 @@ Status check_extent(const std::string& path, Extent extent) {
       fmt::format("'{}': an image of {}x{} pixels cannot be written; each side must be at "
                   "least 1",
                   path, extent.width, extent.height));
-}
-
-struct PngRows {
-  Extent extent;
-  int channels = 3;  // in the file: 1 grey, 3 RGB, 4 RGBA
-  const std::uint8_t* texels = nullptr;
-  std::size_t row_bytes = 0;
-  bool skips_fourth = false;  // of each texel in memory
-};
-
-void append(png_structp png, png_bytep bytes, std::size_t count) {
-  auto& made = *static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(png));
-  made.insert(made.end(), bytes, bytes + count);
-}
-
-// False where libpng refuses: it then jumps back here, so nothing in this function may have a destructor.
-bool write_rows(png_structp png, png_infop info, const PngRows& rows, const PngWay& way) {
-  if (setjmp(png_jmpbuf(png)) != 0) return false;
-  constexpr int kColourTypes[] = {0, PNG_COLOR_TYPE_GRAY, 0, PNG_COLOR_TYPE_RGB, PNG_COLOR_TYPE_RGB_ALPHA};
-  png_set_IHDR(png, info, static_cast<png_uint_32>(rows.extent.width),
-               static_cast<png_uint_32>(rows.extent.height), 8, kColourTypes[rows.channels],
-               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-  png_set_compression_level(png, way.level);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, way.filters);
-  png_write_info(png, info);
-  if (rows.skips_fourth) png_set_filler(png, 0, PNG_FILLER_AFTER);
-  for (int y = 0; y < rows.extent.height; ++y)
-    png_write_row(png, rows.texels + static_cast<std::size_t>(y) * rows.row_bytes);
-  png_write_end(png, info);
-  return true;
-}
-
-// Empty where libpng refuses, which says why on stderr: too long a side, or no memory.
-std::vector<std::uint8_t> encoded(const PngRows& rows, const PngWay& way) {
-  std::vector<std::uint8_t> made;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-  if (info != nullptr) {
-    png_set_write_fn(png, &made, append, nullptr);
-    if (!write_rows(png, info, rows, way)) made.clear();
-  }
-  png_destroy_write_struct(&png, &info);
-  return made;
-}
-
-Status write_bytes(const std::string& path, const void* bytes, std::size_t count) {
-  return write_text(path, {static_cast<const char*>(bytes), count});
-}
-
-std::size_t size_of(ChannelType type) {
-  return type == ChannelType::kHalf ? sizeof(half) : sizeof(float);
-}
-
-Imf::PixelType type_of(ChannelType type) {
-  return type == ChannelType::kHalf ? Imf::HALF : Imf::FLOAT;
 }
 
 Status check_channels(const std::string& path, std::span<const Channel> channels) {
@@ -121,69 +68,170 @@ Status check_channels(const std::string& path, std::span<const Channel> channels
   return {};
 }
 
-// The channel's texels as a packed plane of the type that the file stores.
-template <typename From, typename To>
-std::vector<char> converted(const Channel& channel, Extent extent, std::size_t pixel_stride,
-                            std::size_t row_stride) {
-  std::vector<char> plane(static_cast<std::size_t>(extent.area()) * sizeof(To));
-  char* to = plane.data();
-  for (int y = 0; y < extent.height; ++y) {
-    const char* from = static_cast<const char*>(channel.data) + static_cast<std::size_t>(y) * row_stride;
-    for (int x = 0; x < extent.width; ++x, from += pixel_stride, to += sizeof(To)) {
-      From value;
-      std::memcpy(&value, from, sizeof value);
-      const To stored(value);
-      std::memcpy(to, &stored, sizeof stored);
-    }
+// Codes of 10 bits in the upper bits of 16, as OpenImageIO widens and narrows them.
+std::vector<std::uint16_t> display_codes(const std::vector<float>& light) {
+  std::vector<std::uint16_t> codes;
+  codes.reserve(light.size());
+  for (const float value : light) {
+    const auto code = static_cast<unsigned>(std::lround(srgb_of_linear(value) * 1023));
+    codes.push_back(static_cast<std::uint16_t>(code << 6 | code >> 4));
   }
-  return plane;
+  return codes;
 }
 
-void write_channels(Imf::OutputFile& file, Extent extent, std::span<const Channel> channels) {
-  Imf::FrameBuffer buffer;
-  std::vector<std::vector<char>> planes;
-  for (const Channel& channel : channels) {
-    std::size_t pixel_stride = channel.pixel_stride != 0 ? channel.pixel_stride : size_of(channel.type);
-    std::size_t row_stride = channel.row_stride != 0 ? channel.row_stride : pixel_stride * extent.width;
-    char* data = static_cast<char*>(const_cast<void*>(channel.data));  // which is only read
-    if (channel.type != channel.stored) {
-      planes.push_back(channel.stored == ChannelType::kHalf
-                           ? converted<float, half>(channel, extent, pixel_stride, row_stride)
-                           : converted<half, float>(channel, extent, pixel_stride, row_stride));
-      data = planes.back().data();
-      pixel_stride = size_of(channel.stored);
-      row_stride = pixel_stride * extent.width;
+Status write_bytes(const std::string& path, const Result<backend::Bytes>& bytes) {
+  if (!bytes.ok()) return cannot_write(path, bytes.status().message());
+  return write_text(path, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+}
+
+}  // namespace
+
+std::optional<FileFormat> format_of(std::string_view path) {
+  std::string ending(path.substr(std::min(path.rfind('.'), path.size())));
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  for (const backend::Ending& known : backend::written_endings())
+    if (known.text == ending) return known.format;
+  return std::nullopt;
+}
+
+namespace {
+
+template <typename Keep>
+std::string endings_of(Keep keep) {
+  std::vector<std::string_view> texts;
+  std::set<FileFormat> formats;
+  for (const backend::Ending& known : backend::written_endings())
+    if (keep(known.format) && formats.insert(known.format).second) texts.push_back(known.text);
+  const auto last = texts.end() - 1;
+  return texts.size() == 1 ? std::string(*last)
+                           : fmt::format("{} or {}", fmt::join(texts.begin(), last, ", "), *last);
+}
+
+bool holds_codes(FileFormat format) {
+  return format != FileFormat::kExr && format != FileFormat::kHdr;
+}
+
+}  // namespace
+
+std::string endings() {
+  return endings_of([](FileFormat) { return true; });
+}
+
+Result<FramePattern> output_pattern(const std::string& text) {
+  auto pattern = FramePattern::parse(text);
+  if (!pattern.ok() || format_of(text)) return pattern;
+  const std::string ending = std::filesystem::path(text).extension().string();
+  return Status::invalid(
+      fmt::format("output pattern '{}' {}; it must end in {}", text,
+                  ending.empty() ? "has no extension" : fmt::format("ends in '{}'", ending), endings()));
+}
+
+std::string no_picture(const std::string& path) {
+  const auto format = format_of(path);
+  if (format && holds_codes(*format)) return {};
+  return fmt::format("'{}' must end in {}", path, endings_of(holds_codes));
+}
+
+Status write_picture(const std::string& path, Extent extent, const std::uint8_t* rgba, std::size_t row_bytes,
+                     Alpha alpha, std::span<const Attribute> attributes) {
+  if (Status status = check_extent(path, extent); !status.ok()) return status;
+  if (rgba == nullptr) return Status::invalid(fmt::format("'{}': there are no texels to write", path));
+  if (const std::string problem = no_picture(path); !problem.empty()) return Status::invalid(problem);
+  const std::size_t row = row_bytes != 0 ? row_bytes : static_cast<std::size_t>(extent.width) * 4;
+  return write_bytes(path, backend::encode(*format_of(path),
+                                           {.extent = extent,
+                                            .channels = alpha == Alpha::kKeep ? 4 : 3,
+                                            .data = rgba,
+                                            .pixel_stride = 4,
+                                            .row_stride = row},
+                                           attributes));
+}
+
+Status write_light(const std::string& path, Extent extent, std::span<const float> rgba, ChannelType stored,
+                   const Display& display, std::span<const Attribute> attributes) {
+  if (Status status = check_extent(path, extent); !status.ok()) return status;
+  const auto format = format_of(path);
+  if (!format) return Status::invalid(fmt::format("'{}' must end in {}", path, endings()));
+  const std::size_t width = static_cast<std::size_t>(extent.width), texel = 4 * sizeof(float);
+  if (*format == FileFormat::kExr) {
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; i < 4; ++i) {
+      channels.push_back({.name = std::string(1, "RGBA"[i]),
+                          .type = ChannelType::kFloat,
+                          .data = rgba.data() + i,
+                          .pixel_stride = texel,
+                          .stored = stored});
     }
-    buffer.insert(channel.name, Imf::Slice(type_of(channel.stored), data, pixel_stride, row_stride));
+    return write_exr(path, extent, channels, attributes);
   }
-  file.setFrameBuffer(buffer);
-  file.writePixels(extent.height);
+  backend::Texels texels = {.extent = extent,
+                            .channels = *format == FileFormat::kTiff ? 4 : 3,
+                            .depth = backend::Depth::kFloat,
+                            .data = rgba.data(),
+                            .pixel_stride = texel,
+                            .row_stride = width * texel};
+  if (holds_light(*format)) return write_bytes(path, backend::encode(*format, texels, attributes));
+  const std::vector<std::uint16_t> codes =
+      display_codes(display_light(rgba, display.tone_map, display.exposure));
+  texels.depth = backend::Depth::k16;
+  texels.data = codes.data();
+  texels.pixel_stride = 4 * sizeof codes[0];
+  texels.row_stride = width * texels.pixel_stride;
+  return write_bytes(path, backend::encode(*format, texels, attributes));
 }
 
-Result<LoadedImage> read_png(const std::string& path) {
-  png_image file = {};
-  file.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&file, path.c_str()) == 0) return cannot_decode(path, file.message);
-  file.format &= PNG_FORMAT_FLAG_ALPHA | PNG_FORMAT_FLAG_COLOR;  // 8 bits, in that order
-  std::vector<std::uint8_t> texels(PNG_IMAGE_SIZE(file));
-  if (png_image_finish_read(&file, nullptr, texels.data(), 0, nullptr) == 0)
-    return cannot_decode(path, file.message);
-  LoadedImage image;
-  image.extent = {static_cast<int>(file.width), static_cast<int>(file.height)};
-  image.channels = (file.format & PNG_FORMAT_FLAG_COLOR) != 0 ? std::vector<std::string>{"R", "G", "B"}
-                                                              : std::vector<std::string>{"Y"};
-  if ((file.format & PNG_FORMAT_FLAG_ALPHA) != 0) image.channels.emplace_back("A");
-  image.stored.assign(image.channels.size(), ChannelType::kFloat);
-  for (const std::uint8_t code : texels)
-    image.pixels.push_back(static_cast<float>(code) / 255);
-  return image;
+Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
+                                             std::span<const std::uint8_t> texels) {
+  if (Status status = check_extent("PNG", extent); !status.ok()) return status;
+  const auto count = static_cast<std::size_t>(channels), width = static_cast<std::size_t>(extent.width);
+  if ((channels != 1 && channels != 3) || texels.size() != static_cast<std::size_t>(extent.area()) * count) {
+    return Status::invalid(fmt::format("a PNG of {}x{} pixels cannot be made from {} texels of {} channels",
+                                       extent.width, extent.height, texels.size(), channels));
+  }
+  auto bytes = backend::encode(FileFormat::kPng, {.extent = extent,
+                                                  .channels = channels,
+                                                  .data = texels.data(),
+                                                  .pixel_stride = count,
+                                                  .row_stride = count * width,
+                                                  .small = true});
+  if (!bytes.ok()) return cannot_write("PNG", bytes.status().message());
+  return bytes;
 }
 
-Result<LoadedImage> read_exr(const std::string& path) {
+Status write_exr(const std::string& path, Extent extent, std::span<const Channel> channels,
+                 std::span<const Attribute> attributes) {
+  if (Status status = check_extent(path, extent); !status.ok()) return status;
+  if (Status status = check_channels(path, channels); !status.ok()) return status;
+  std::vector<Channel> packed(channels.begin(), channels.end());
+  for (Channel& channel : packed) {
+    if (channel.pixel_stride == 0) channel.pixel_stride = bytes_of(channel.type);
+    if (channel.row_stride == 0)
+      channel.row_stride = channel.pixel_stride * static_cast<std::size_t>(extent.width);
+  }
+  try {
+    return write_bytes(path, backend::encode_exr(extent, packed, attributes));
+  } catch (const std::exception& problem) {  // no memory
+    return cannot_write(path, problem.what());
+  }
+}
+
+int LoadedImage::channel(std::string_view name) const {
+  const auto found = std::find(channels.begin(), channels.end(), name);
+  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+}
+
+const Attribute* LoadedImage::attribute(std::string_view name) const {
+  const auto found = std::find_if(attributes.begin(), attributes.end(),
+                                  [&](const Attribute& attribute) { return attribute.name == name; });
+  return found == attributes.end() ? nullptr : &*found;
+}
+
+Result<LoadedImage> read_image(const std::string& path) {
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
   const ImagePart& part = reader->header().parts.front();
-  if (part.deep) return cannot_decode(path, "it holds deep pixels; a flat image is needed");
+  if (part.deep) return cannot_read(path, "it holds deep pixels; a flat image is needed");
   LoadedImage image = {.extent = part.display.extent,
                        .channels = {},
                        .stored = {},
@@ -206,72 +254,258 @@ Result<LoadedImage> read_exr(const std::string& path) {
   return image;
 }
 
-}  // namespace
-
-Status write_png(const std::string& path, Extent extent, const std::uint8_t* rgba, std::size_t row_bytes,
-                 PngAlpha alpha) {
-  if (Status status = check_extent(path, extent); !status.ok()) return status;
-  if (rgba == nullptr) return Status::invalid(fmt::format("'{}': there are no texels to write", path));
-  const bool keeps = alpha == PngAlpha::kKeep;
-  const std::size_t row = row_bytes != 0 ? row_bytes : static_cast<std::size_t>(extent.width) * 4;
-  const std::vector<std::uint8_t> bytes = encoded({extent, keeps ? 4 : 3, rgba, row, !keeps}, {});
-  if (bytes.empty()) return cannot_write(path, "it cannot be encoded");
-  return write_bytes(path, bytes.data(), bytes.size());
-}
-
-Result<std::vector<std::uint8_t>> encode_png(Extent extent, int channels,
-                                             std::span<const std::uint8_t> texels) {
-  if (Status status = check_extent("PNG", extent); !status.ok()) return status;
-  if ((channels != 1 && channels != 3) ||
-      texels.size() != static_cast<std::size_t>(extent.area()) * static_cast<std::size_t>(channels)) {
-    return Status::invalid(fmt::format("a PNG of {}x{} pixels cannot be made from {} texels of {} channels",
-                                       extent.width, extent.height, texels.size(), channels));
-  }
-  std::vector<std::uint8_t> bytes =
-      encoded({.extent = extent,
-               .channels = channels,
-               .texels = texels.data(),
-               .row_bytes = static_cast<std::size_t>(extent.width) * static_cast<std::size_t>(channels)},
-              kSmallest);
-  if (bytes.empty()) return cannot_write("PNG", "it cannot be encoded");
-  return bytes;
-}
-
-Status write_exr(const std::string& path, Extent extent, std::span<const Channel> channels,
-                 std::span<const Attribute> attributes) {
-  if (Status status = check_extent(path, extent); !status.ok()) return status;
-  if (Status status = check_channels(path, channels); !status.ok()) return status;
-  Imf::StdOSStream memory;  // the file's own stream would not tell of a full disk
+Result<ImageReader> ImageReader::open(const std::string& path) {
+  if (Status status = check_readable(path); !status.ok()) return status;
   try {
-    Imf::Header header(extent.width, extent.height);
-    header.compression() = Imf::ZIP_COMPRESSION;
-    for (const Channel& channel : channels)
-      header.channels().insert(channel.name, Imf::Channel(type_of(channel.stored)));
-    set_attributes(header, attributes);
-    Imf::OutputFile file(memory, header);
-    write_channels(file, extent, channels);
-  } catch (const std::exception& problem) {
-    return cannot_write(path, problem.what());
+    ImageReader reader(path);
+    reader.file_ = backend::ImageFile::open(path);
+    for (ImagePart& part : reader.file_->header.parts) {
+      std::sort(part.channels.begin(), part.channels.end(),
+                [](const HeaderChannel& a, const HeaderChannel& b) { return order_of(a) < order_of(b); });
+    }
+    return reader;
+  } catch (const std::exception& problem) {  // a damaged header may ask for absurd memory
+    return cannot_read(path, problem.what());
   }
-  const std::string bytes = memory.str();
-  return write_bytes(path, bytes.data(), bytes.size());
 }
 
-int LoadedImage::channel(std::string_view name) const {
-  const auto found = std::find(channels.begin(), channels.end(), name);
-  return found == channels.end() ? -1 : static_cast<int>(found - channels.begin());
+Status ImageReader::read(std::span<const ChannelTarget> targets) {
+  try {
+    file_->read(targets);
+    return {};
+  } catch (const std::exception& problem) {
+    return cannot_read(path_, problem.what());
+  }
 }
 
-const Attribute* LoadedImage::attribute(std::string_view name) const {
+ImageWindow ImagePart::shown() const {
+  const int x = std::max(data.x, display.x), y = std::max(data.y, display.y);
+  return {x,
+          y,
+          {std::min(data.x + data.extent.width, display.x + display.extent.width) - x,
+           std::min(data.y + data.extent.height, display.y + display.extent.height) - y}};
+}
+
+std::optional<ChannelPlace> ImageHeader::find(std::string_view name) const {
+  const auto search = [&](auto&& matches) -> std::optional<ChannelPlace> {
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      for (std::size_t c = 0; c < parts[p].channels.size(); ++c) {
+        if (matches(parts[p], parts[p].channels[c]))
+          return ChannelPlace{static_cast<int>(p), static_cast<int>(c)};
+      }
+    }
+    return std::nullopt;
+  };
+  const auto found =
+      search([&](const ImagePart&, const HeaderChannel& channel) { return channel.name == name; });
+  if (found) return found;
+  return search([&](const ImagePart& part, const HeaderChannel& channel) {
+    return name.size() == part.name.size() + 1 + channel.name.size() && name.starts_with(part.name) &&
+           name[part.name.size()] == '.' && name.ends_with(channel.name);
+  });
+}
+
+const Attribute* ImageHeader::attribute(std::string_view name) const {
   const auto found = std::find_if(attributes.begin(), attributes.end(),
                                   [&](const Attribute& attribute) { return attribute.name == name; });
   return found == attributes.end() ? nullptr : &*found;
 }
 
-Result<LoadedImage> read_image(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(path, error) && path.ends_with(".png")) return read_png(path);
-  return read_exr(path);
+std::string ImageHeader::channel_names() const {
+  std::string names;
+  for (const ImagePart& part : parts) {
+    for (const HeaderChannel& channel : part.channels) {
+      names += names.empty() ? "" : ", ";
+      if (parts.size() > 1) names += part.name + ".";
+      names += channel.name;
+    }
+  }
+  return names;
+}
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the numbers of the file are read as they are");
+
+constexpr std::uint32_t kMagic = 20000630;
+constexpr std::uint32_t kOneTiledPart = 0x200, kSeveralParts = 0x1000;  // flags of the version
+constexpr std::size_t kLongestName = 255;
+// Scanlines in a block, by the number of the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+constexpr std::array<std::int64_t, 10> kLinesOfBlock = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+
+// The file's bytes in order; after a read beyond its end nothing more is good.
+class Bytes {
+ public:
+  explicit Bytes(const std::string& path) : file_(path, std::ios::binary | std::ios::ate) {
+    size_ = file_ ? static_cast<std::int64_t>(file_.tellg()) : 0;
+    file_.seekg(0);
+  }
+
+  template <typename Number>
+  Number take() {
+    Number number = {};
+    file_.read(reinterpret_cast<char*>(&number), sizeof number);
+    return number;
+  }
+
+  std::string take_name() {
+    std::string name;
+    for (char c; file_.get(c) && c != 0;) {
+      if (name.size() == kLongestName) file_.setstate(std::ios::failbit);
+      name += c;
+    }
+    return name;
+  }
+
+  std::string take_text(std::int64_t length) {
+    if (length < 0 || length > left()) file_.setstate(std::ios::failbit);
+    std::string text(file_ ? static_cast<std::size_t>(length) : 0, '\0');
+    file_.read(text.data(), static_cast<std::streamsize>(text.size()));
+    return text;
+  }
+
+  bool good() const { return static_cast<bool>(file_); }
+  std::int64_t size() const { return size_; }
+  std::int64_t left() { return size_ - static_cast<std::int64_t>(file_.tellg()); }
+  void go_to(std::int64_t place) { file_.seekg(place); }
+
+ private:
+  std::ifstream file_;
+  std::int64_t size_ = 0;
+};
+
+struct Part {
+  std::array<std::int32_t, 4> window = {};  // left, top, right, bottom; the last two within
+  std::array<std::uint32_t, 2> tile = {};
+  std::uint8_t levels = 0;  // 0: one; else mipmaps
+  std::uint8_t compression = 0xff;
+  std::optional<std::int32_t> blocks;
+  bool tiled = false;
+  bool deep = false;
+};
+
+template <typename Value>
+void keep(const std::string& bytes, std::size_t at, Value& value) {
+  if (bytes.size() >= at + sizeof value) std::memcpy(&value, bytes.data() + at, sizeof value);
+}
+
+void keep_attribute(const std::string& name, const std::string& value, Part& part) {
+  if (name == "dataWindow") keep(value, 0, part.window);
+  if (name == "compression") keep(value, 0, part.compression);
+  if (name == "chunkCount") keep(value, 0, part.blocks.emplace());
+  if (name == "tiles") {
+    keep(value, 0, part.tile);
+    keep(value, sizeof part.tile, part.levels);
+  }
+  if (name == "type") {
+    part.tiled = value.ends_with("tile") || value == "tiledimage";
+    part.deep = value.starts_with("deep");
+  }
+}
+
+// Nothing for the empty header that ends several, or after the file's end.
+std::optional<Part> take_header(Bytes& bytes) {
+  Part part;
+  std::string name = bytes.take_name();
+  if (name.empty()) return std::nullopt;
+  for (; bytes.good() && !name.empty(); name = bytes.take_name()) {
+    bytes.take_name();  // the type's name
+    keep_attribute(name, bytes.take_text(bytes.take<std::int32_t>()), part);
+  }
+  return bytes.good() ? std::optional(part) : std::nullopt;
+}
+
+std::int64_t parts_of(std::int64_t length, std::int64_t part) {
+  return part > 0 ? (length + part - 1) / part : 0;
+}
+
+// Nothing where the header does not tell.
+std::optional<std::int64_t> count_blocks(const Part& part) {
+  if (part.blocks) return *part.blocks;
+  const std::int64_t width = std::int64_t{part.window[2]} - part.window[0] + 1;
+  const std::int64_t height = std::int64_t{part.window[3]} - part.window[1] + 1;
+  if (width < 1 || height < 1) return std::nullopt;
+  if (part.tiled) {
+    if (part.levels != 0) return std::nullopt;
+    return parts_of(width, part.tile[0]) * parts_of(height, part.tile[1]);
+  }
+  if (part.compression >= kLinesOfBlock.size()) return std::nullopt;
+  return parts_of(height, kLinesOfBlock[part.compression]);
+}
+
+struct Block {
+  std::int64_t offset = 0;
+  std::int64_t head = 0;  // bytes before the pixels, of which the last four are their size; 0: not looked at
+};
+
+class Blocks {
+ public:
+  explicit Blocks(const std::string& path) : path_(path), bytes_(path) {}
+
+  Status check() {
+    const std::vector<Part> parts = take_parts();
+    if (parts.empty() || !bytes_.good()) return {};
+    for (const Part& part : parts) {
+      const auto count = count_blocks(part);
+      if (!count || *count < 0) return {};
+      count_ += *count;
+      if (*count > bytes_.left() / 8) return cut_short(count_);
+      add_table(part, *count);
+    }
+    return missing_ > 0 || last_is_cut() ? cut_short(std::max<std::int64_t>(missing_, 1)) : Status();
+  }
+
+ private:
+  std::vector<Part> take_parts() {
+    if (bytes_.take<std::uint32_t>() != kMagic) return {};
+    const auto version = bytes_.take<std::uint32_t>();
+    several_ = (version & kSeveralParts) != 0;
+    std::vector<Part> parts;
+    while (auto part = take_header(bytes_)) {
+      part->tiled |= (version & kOneTiledPart) != 0;
+      parts.push_back(*part);
+      if (!several_) break;
+    }
+    return parts;
+  }
+
+  void add_table(const Part& part, std::int64_t count) {
+    const std::int64_t head = (several_ ? 4 : 0) + (part.tiled ? 20 : 8);
+    for (std::int64_t i = 0; i < count; ++i) {
+      const auto offset = bytes_.take<std::int64_t>();
+      if (offset <= 0 || offset > bytes_.size() - head) {
+        ++missing_;
+      } else if (offset > last_.offset) {
+        last_ = {offset, part.deep ? 0 : head};
+      }
+    }
+  }
+
+  // Blocks do not overlap, so none but the last can lie partly beyond the end.
+  bool last_is_cut() {
+    if (last_.head == 0) return false;
+    bytes_.go_to(last_.offset + last_.head - 4);
+    return bytes_.take<std::uint32_t>() > bytes_.left();
+  }
+
+  Status cut_short(std::int64_t missing) const {
+    return Status::io(
+        fmt::format("'{}' is cut short: {} of its {} blocks of pixels {} missing; render or copy it again",
+                    path_, missing, count_, missing == 1 ? "is" : "are"));
+  }
+
+  const std::string& path_;
+  Bytes bytes_;
+  bool several_ = false;
+  std::int64_t count_ = 0;
+  std::int64_t missing_ = 0;
+  Block last_;
+};
+
+}  // namespace
+
+Status check_blocks(const std::string& path) {
+  return Blocks(path).check();
 }
 
 }  // namespace quincunx::tools

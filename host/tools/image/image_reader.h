@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// ImageReader: an EXR file's header, and just those of its channels that are wanted.
+// ImageReader: an image file's header, and just those of its channels that are wanted.
 //
 // Knows several parts, tiles, any compression, and data windows that are not the display window. Contents that cannot
-// be used (deep pixels, channels of integers) are said in the header and left to the caller to refuse.
+// be used (deep pixels, channels of integers) are said in the header and left to the caller to refuse. Files of codes
+// (PNG, JPEG, TIFF and DPX of 8 or 16 bits) have values from 0 to 1, as encoded, and channels R, G, B, A or Y, A.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,7 +33,8 @@ struct ImageWindow {
 struct HeaderChannel {
   std::string name;
   ChannelType stored = ChannelType::kHalf;
-  bool integer = false;  // neither half nor float; `stored` then means nothing
+  bool integer = false;                  // whole numbers that are no codes; `stored` then means nothing
+  std::array<int, 2> sampling = {1, 1};  // pixels a sample, in x and y; another than 1 cannot be read
 };
 
 struct ImagePart {
@@ -38,8 +42,16 @@ struct ImagePart {
   ImageWindow data;
   ImageWindow display;
   bool deep = false;
-  bool dwa = false;  // compressed by DWAA or DWAB
+  bool dwa = false;               // compressed by DWAA or DWAB
+  std::string view = {};          // "left"; empty: none is named
+  float pixel_aspect = 1;         // width of a pixel over its height
+  std::string colour_space = {};  // "linear", "sRGB", "KodakLog", as the file or its format has it
+  std::optional<Chromaticities> chromaticities = {};
+  bool straight_alpha = false;  // colour is not multiplied by alpha
   std::vector<HeaderChannel> channels;
+
+  // Pixels of the display window that the data window has; the extent is not positive where there are none.
+  ImageWindow shown() const;
 };
 
 struct ChannelPlace {
@@ -69,31 +81,49 @@ struct ChannelTarget {
   std::size_t row_stride = 0;    // bytes
 };
 
+// Makes interleaved RGBA linear in place; alpha stays.
+using ColourCurve = std::function<void(std::span<float> rgba)>;
+
+namespace backend {
+
+// The curve of a colour space to linear Rec. 709; empty where the library does not know it. And those that it knows.
+ColourCurve curve_to_linear(const std::string& space);
+std::vector<std::string> colour_spaces();
+
+// What the library behind the headers does with an open file. Both functions throw std::exception with the reason.
+class ImageFile {
+ public:
+  static std::unique_ptr<ImageFile> open(const std::string& path);
+  virtual ~ImageFile() = default;
+  virtual void read(std::span<const ChannelTarget> targets) = 0;
+
+  ImageHeader header;
+};
+
+}  // namespace backend
+
 // One open file. Move-only; one thread at a time.
 class ImageReader {
  public:
-  // Errors: kIoFailure for a file that is missing, damaged or no EXR.
+  // Errors: kIoFailure for a file that is missing, damaged or of a format that is not known.
   static Result<ImageReader> open(const std::string& path);
 
-  ~ImageReader();
-  ImageReader(ImageReader&&) noexcept;
-  ImageReader& operator=(ImageReader&&) noexcept;
+  const ImageHeader& header() const { return file_->header; }
 
-  const ImageHeader& header() const;
-
-  // Reads the channels, each file block as few times as may be, with a few megabytes beside the targets.
+  // Reads the channels, each file block once for each of their parts, with a few megabytes a thread beside the targets.
   // Texels of the display window that the data window does not cover stay as they are. Errors: kIoFailure
   // for a damaged file; the targets then hold anything.
   Status read(std::span<const ChannelTarget> targets);
 
  private:
-  struct Impl;
-  explicit ImageReader(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  explicit ImageReader(const std::string& path) : path_(path) {}
+
+  std::string path_;
+  std::unique_ptr<backend::ImageFile> file_;
 };
 
-// Sets the number of threads with which OpenEXR works inside one file, for the process; 0: the caller's alone.
-void set_exr_threads(int threads);
+// Sets the number of threads that work inside one file, for the process; 1: the caller's alone.
+void set_image_threads(int threads);
 
 // Checks whether a file holds all of its pixels, from its size and its tables of offsets alone. Reads the headers and
 // the tables of all parts, and no pixels: well under a millisecond. For files whose headers are known to be good

@@ -50,16 +50,6 @@ Field field_of_printf(std::string_view text) {
   return field;
 }
 
-// Empty for anything but .png and .exr.
-std::optional<FileFormat> format_of(const std::string& extension) {
-  std::string lower = extension;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (lower == ".png") return FileFormat::kPng;
-  if (lower == ".exr") return FileFormat::kExr;
-  return std::nullopt;
-}
-
 struct Range {
   std::int64_t first = 0;
   std::int64_t last = 0;
@@ -104,11 +94,6 @@ Result<FramePattern> FramePattern::parse(const std::string& pattern, const std::
   result.what_ = what;
   result.pattern_ = pattern;
   if (Status status = result.parse_fields(); !status.ok()) return status;
-  const std::string extension = std::filesystem::path(result.expand(0)).extension().string();
-  if (extension.empty()) return result.bad("has no extension; it must end in .png or .exr");
-  const std::optional<FileFormat> format = format_of(extension);
-  if (!format) return result.bad(fmt::format("ends in '{}'; it must end in .png or .exr", extension));
-  result.format_ = *format;
   return result;
 }
 

@@ -14,8 +14,6 @@
 
 namespace quincunx::tools {
 
-enum class FileFormat : std::uint8_t { kPng, kExr };
-
 // A path with at most one number in it: a single '#' stands for four digits as OpenImageIO has it, each of
 // several for one as Nuke and Blender have it ("####" is four digits, too); '@' stands for one, and runs add
 // up ("#@" is five digits, "@@@" three). printf's "%d", "%4d" and "%04d" work too. "%%", "%#" and "%@" stand for
@@ -23,13 +21,11 @@ enum class FileFormat : std::uint8_t { kPng, kExr };
 // wider than the field are written whole. A value; thread-safe.
 class FramePattern {
  public:
-  // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two
-  // numbers, a conversion other than %d, or an extension that is neither .png nor .exr (in any case of
-  // letters).
+  // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two numbers, or a
+  // conversion other than %d.
   static Result<FramePattern> parse(const std::string& pattern, const std::string& what = "output pattern");
 
   bool has_number() const { return has_number_; }
-  FileFormat format() const { return format_; }
   const std::string& text() const { return pattern_; }
 
   std::string expand(std::int64_t frame) const;  // the pattern itself where it has no number
@@ -58,7 +54,6 @@ class FramePattern {
   int digits_ = 0;
   bool zero_padded_ = true;
   bool has_number_ = false;
-  FileFormat format_ = FileFormat::kPng;
 };
 
 // Reads single frames and ranges (FIRST-LAST, FIRST-LASTxSTEP) with commas between, in any order; the result

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Work on threads of its own, so that files do not hold up the next frame: WorkQueue does jobs, compressing say;
-// ReadAhead reads the items of a list, in order, a few ahead of who takes them.
+// ReadAhead reads the items of a list, in order, a few ahead of who takes them. OpenImageIO's ImageCache keeps tiles of
+// files, not whole frames that are decoded as a method wants them.
 #pragma once
 
 #include <chrono>

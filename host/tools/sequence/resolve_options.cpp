@@ -152,6 +152,9 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
   line.add("--colour,--color", text(input.colour_layer, "LAYER"),
            "Layer of colour: R, G, B, A of LAYER (default: without layer)")
       .common();
+  line.add("--input-colour,--input-color", text(input.colour_space, "NAME"),
+           "Colour space of the frames: linear, ACEScg, sRGB, KodakLog or another that OpenImageIO knows "
+           "(default: as the files say)");
   line.add("--velocity", text("U,V", [&input](const std::string& text) { return set_velocity(input, text); }),
            "Motion's channels; camera: from depth and worldToNDC; none (default: backward.u,backward.v, if "
            "any)")
@@ -200,7 +203,7 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
           },
           "linear depth");
   line.add("--reactive", channel(input.reactive),
-           "Channel that is 1 where history lies, or none (default: reactive.mask)");
+           "Channel that is 1 where history lies, or none, or a pattern of images (default: reactive.mask)");
   line.add("--jitter", text(options.jitter, "NAME|FILE"),
            "attribute, none, quincunx, quincunx-half, halton or a file of FRAME X Y (default: the attribute, "
            "if any)")
@@ -213,7 +216,7 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
            "Size of the picture (default: attribute quincunx:outputSize)")
       .common();
   line.add("--exposure", number(options.exposure, {.least = 0, .most = 1e9, .beyond = true}, "FACTOR"),
-           "Multiplies linear colour in a PNG (default: 1, or as recorded)");
+           "Multiplies light in a picture as displayed (default: 1, or as recorded)");
   add_resolve_options(line, options.resolve,
                       {.usual = "what the frames offer decides",
                        .settled = [&options] { return options.method_named; },
@@ -243,15 +246,19 @@ void add_picture_options(CommandLine& line, ResolveOptions& options) {
 void add_output_options(CommandLine& line, ResolveOptions& options) {
   static const std::map<std::string, ChannelType> kTypes = {{"half", ChannelType::kHalf},
                                                             {"float", ChannelType::kFloat}};
-  const auto not_png = [&options] { return !in_lower_case(options.out).ends_with(".png"); };
+  const auto is_exr = [&options] {
+    return format_of(options.out).value_or(FileFormat::kExr) == FileFormat::kExr;
+  };
   line.group("Output");
   line.add("--out", text(options.out, "PATTERN"),
-           "Frames to write: .exr (linear) or .png (presented); #, @ or %04d in the name is the number")
+           "Frames to write: .exr, .tif, .hdr (linear), .png, .jpg, .dpx (as displayed); #, @ or %04d in the "
+           "name "
+           "is the number")
       .common()
       .writes();
   line.add("--store", choice(options.stored, kTypes),
            "Numbers of an EXR: half (default, or as recorded) or float")
-      .counts_if(not_png, "an --out of .exr");
+      .counts_if(is_exr, "an --out of .exr");
   line.add("--resume", flag(options.resume), "Leave frames out that are there already").needs({"--out"});
   line.add("--truth", text(options.truth, "PATTERN"), "True pictures to score the frames against");
   line.add("--truth-colour,--truth-color", text(options.truth_colour, "LAYER"),
@@ -288,7 +295,7 @@ void check_together(const CommandLine& line, ResolveOptions& options) {
 
 CommandLine command_line(ResolveOptions& options) {
   CommandLine line(
-      "Makes full-size frames from an EXR sequence of any renderer, with OpenCL and without OpenGL.",
+      "Makes full-size frames from an image sequence of any renderer, with OpenCL and without OpenGL.",
       "quincunx-resolve", QUINCUNX_VERSION, kExamples);
   options.threads = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u));
   add_frame_options(line, options);

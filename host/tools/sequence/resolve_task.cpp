@@ -27,8 +27,6 @@ int history_of(const ResolvePlan& plan) {
 Result<FramePattern> parse_input(const std::string& text, const std::string& what) {
   auto pattern = FramePattern::parse(text, what);
   if (!pattern.ok()) return pattern.status();
-  if (pattern->format() != FileFormat::kExr)
-    return Status::invalid(fmt::format("{} '{}' must end in .exr", what, text));
   if (!pattern->has_number()) {
     return Status::invalid(
         fmt::format("{} '{}' has no frame number; put %04d, # or @ where it stands", what, text));
@@ -100,17 +98,19 @@ ResolveSettings settings_for(const ResolveTask& task, Extent target, bool half_c
   settings.velocity = PixelFormat::kRG32F;
   settings.output.linear = PixelFormat::kRGBA32F;
   settings.targets.storage = Storage::kBuffer;
-  settings.output.present = task.output && task.output->pattern.format() == FileFormat::kPng;
+  settings.output.present = task.output && task.output->presents();
   settings.targets.clear = false;
   return settings;
 }
 
 Result<std::optional<SequenceOutput>> output_for(const ResolveOptions& options, const ResolveTask& task) {
   if (options.out.empty()) return std::optional<SequenceOutput>();
-  auto pattern = FramePattern::parse(options.out);
+  auto pattern = output_pattern(options.out);
   if (!pattern.ok()) return pattern.status();
-  SequenceOutput output = {
-      .pattern = pattern.value(), .extent = task.format.output, .stored = options.stored};
+  SequenceOutput output = {.pattern = pattern.value(),
+                           .extent = task.format.output,
+                           .stored = options.stored,
+                           .tone_map = task.resolve.output.tone_map};
   output.settings = fmt::format("{}; output {}x{}; stored as {}", resolve_settings_text(task.resolve),
                                 task.format.output.width, task.format.output.height,
                                 options.stored == ChannelType::kHalf ? "half" : "float");
@@ -201,10 +201,11 @@ Status settle_recorded(const ResolveOptions& options, ResolveTask& task) {
   if (!output.ok()) return output.status();
   task.output = std::move(output).value();
   ResolveSettings settings = task.resolve;
-  settings.output.present |= task.output && task.output->pattern.format() == FileFormat::kPng;
+  settings.output.present |= task.output && task.output->presents();
   auto plan = plan_for(options.recorded->needs, settings);
   if (!plan.ok()) return plan.status();
   task.plan = std::move(plan).value();
+  if (task.output && settings.colour == PixelFormat::kRGBA8) task.output->tone_map = ToneMap::kClamp;
   ChannelNames& channels = task.format.channels;
   for (const InputImage& input : kInputs) {
     if (input.viewport != &FrameInputs::render_extent || planned_for(task.plan, input) == nullptr) continue;

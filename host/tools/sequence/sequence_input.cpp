@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "tools/image/display_light.h"
 #include "tools/program/command_line.h"
 
 namespace quincunx::tools {
@@ -216,15 +217,38 @@ float samples_in(const ImageHeader& header) {
 
 }  // namespace
 
+Result<ImageReader> open_mask(const std::string& path, Extent render) {
+  auto reader = ImageReader::open(path);
+  if (!reader.ok()) return reader;
+  const ImagePart& part = reader->header().parts[0];
+  const Extent found = part.display.extent;
+  if (found != render) {
+    return Status::io(fmt::format("mask '{}' is {}x{} pixels; its frame is {}x{}", path, found.width,
+                                  found.height, render.width, render.height));
+  }
+  if (part.deep || part.channels[0].integer)
+    return Status::io(fmt::format("mask '{}' is deep or holds integers; flat pixels are needed", path));
+  return reader;
+}
+
 Result<SequenceFormat> settle(const SequenceInput& input, const std::string& first_path,
                               const ImageHeader& first, const FrameAttributes& attributes) {
   SequenceFormat format;
   format.channels[InputPlane::kColour] = colour_channels_in(first, input.colour_layer);
+  format.colour_space = input.colour_space;
+  if (const auto place = first.find(format.channels[InputPlane::kColour][0])) {
+    const auto colour = InputColour::of(first_path, first.parts[place->part], input.colour_space);
+    if (!colour.ok()) return colour.status();
+    if (!colour->is_light()) format.converted_from = colour->name();
+  }
   if (Status status = settle_motion(input, first_path, first, attributes, format); !status.ok())
     return status;
+  const auto masks = FramePattern::parse(input.reactive.value_or(""), "pattern of masks");
+  if (masks.ok() && masks->has_number()) format.reactive_files = masks.value();
   for (const InputImage& image : kInputs) {
     const InputPlane plane = plane_of(image);
     if (image.viewport != &FrameInputs::render_extent || plane <= InputPlane::kVelocity) continue;
+    if (plane == InputPlane::kReactive && format.reactive_files) continue;
     const auto wanted = plane == InputPlane::kDepth      ? input.depth
                         : plane == InputPlane::kReactive ? input.reactive
                                                          : std::nullopt;
@@ -252,7 +276,7 @@ SceneNeeds needs_of(const SequenceFormat& format) {
   SceneNeeds needs;
   needs.moving_objects = format.motion == MotionSource::kChannels;
   needs.camera_motion = format.motion != MotionSource::kNone;
-  needs.transparents = format.channels.has(InputPlane::kReactive);
+  needs.transparents = format.has_reactive();
   needs.background = format.background;
   return needs;
 }
@@ -271,6 +295,7 @@ Status keep_what_is_read(SequenceFormat& format, const ResolvePlan& plan) {
   for (const InputImage& input : kInputs) {
     if (input.viewport != nullptr && planned_for(plan, input) == nullptr) channels[plane_of(input)].clear();
   }
+  if (!plan.reads_reactive) format.reactive_files.reset();
   format.needs_camera = plan.reads_camera();
   return {};
 }
@@ -327,6 +352,7 @@ std::string summary_of(const SequenceFormat& format) {
   if (!format.recording.empty()) return "a recording, by its settings";
   const ChannelNames& channels = format.channels;
   std::string text = colour_text(channels);
+  if (!format.converted_from.empty()) text += fmt::format(" from {}", format.converted_from);
   if (channels.has(InputPlane::kVelocity)) {
     text += fmt::format("; velocity {} {}", fmt::join(channels[InputPlane::kVelocity], ","),
                         name_of(format.units.convention));
@@ -345,6 +371,7 @@ std::string summary_of(const SequenceFormat& format) {
     const char* name = plane == InputPlane::kAlbedo ? "albedo" : kInputs[p].name;
     if (channels.has(plane)) text += fmt::format("; {} {}", name, fmt::join(channels[plane], ","));
   }
+  if (format.reactive_files) text += fmt::format("; reactive {}", format.reactive_files->text());
   if (format.two_way > 0) text += two_way_text(format);
   if (!format.cuts.empty()) text += fmt::format("; cuts before {}", fmt::join(format.cuts, ","));
   return text + fmt::format("; jitter {}", format.jitter.text());

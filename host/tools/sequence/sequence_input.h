@@ -85,6 +85,7 @@ enum class MotionSource : std::uint8_t {
 
 struct SequenceInput {
   std::string colour_layer;  // "ViewLayer.Combined"; empty: R, G, B, A, or Y
+  std::string colour_space;  // as InputColour has it; empty: as the files say
   MotionSource motion = MotionSource::kAutomatic;
   std::vector<std::string> velocity;                      // names of kChannels
   std::optional<std::vector<std::string>> next_velocity;  // channels of motion to the next frame
@@ -93,7 +94,8 @@ struct SequenceInput {
   std::optional<std::string> depth;                       // absent: Z where there is one; empty: none
   std::optional<DepthKind> depth_kind;                    // absent: the attribute depthKind, else linear
   std::optional<float> near_plane;                        // absent: the attribute near, else kUnknownNear
-  std::optional<std::string> reactive;  // absent: reactive.mask where there is one; empty: none
+  std::optional<std::string>
+      reactive;  // absent: reactive.mask where there is one; empty: none; or files' pattern
   JitterSource jitter;
   std::vector<std::int64_t> cuts;  // frames that begin another shot, ascending, whatever their attributes say
   std::optional<Extent> output;    // absent: the attribute outputSize
@@ -112,8 +114,11 @@ enum class NextMotion : std::uint8_t {
 struct SequenceFormat {
   std::string recording;  // the folder of recorded frames; empty: they are none
   ChannelNames channels;
-  MotionSource motion = MotionSource::kNone;  // never kAutomatic
-  bool needs_camera = false;                  // the attribute worldToNDC of each frame is read
+  std::string colour_space;                    // as SequenceInput has it
+  std::optional<FramePattern> reactive_files;  // files of their own; channels.reactive is then empty
+  std::string converted_from;                  // the first frame's colour space; empty: light as it is wanted
+  MotionSource motion = MotionSource::kNone;   // never kAutomatic
+  bool needs_camera = false;                   // the attribute worldToNDC of each frame is read
   VelocityUnits units;
   int two_way = 0;                                // frames to look ahead; 0: only earlier frames count
   NextMotion next_motion = NextMotion::kNothing;  // told where the plan accumulates
@@ -125,8 +130,13 @@ struct SequenceFormat {
   JitterSource jitter;
   std::vector<std::int64_t> cuts;  // as SequenceInput has them
   Extent output;
+  bool has_reactive() const { return channels.has(InputPlane::kReactive) || reactive_files; }
+
   float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
 };
+
+// Opens a reactive mask of its own, whose first channel counts. Errors: kIoFailure, also for another size than `render`.
+Result<ImageReader> open_mask(const std::string& path, Extent render);
 
 // Errors: kInvalidArgument where the command line says too little (the message names the option), kIoFailure
 // where the first frame lacks what the command line counts on.

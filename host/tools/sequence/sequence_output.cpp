@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/atomic_file.h"
 #include "tools/sequence/sequence_input.h"
@@ -47,6 +48,8 @@ Result<std::vector<float>> read_truth(const std::string& path, const std::string
   const auto places = find_channels(path, reader->header(), names, "--truth-colour");
   if (!places.ok()) return Status::io("truth " + places.status().message());
   if (Status status = check_size(path, places->display.extent, extent); !status.ok()) return status;
+  const auto colour = InputColour::of(path, reader->header().parts[(*places)[InputPlane::kColour][0]->part]);
+  if (!colour.ok()) return Status::io("truth " + colour.status().message());
   std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
   std::vector<ChannelTarget> targets;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -54,6 +57,9 @@ Result<std::vector<float>> read_truth(const std::string& path, const std::string
                        4 * sizeof(float), 4 * sizeof(float) * static_cast<std::size_t>(extent.width)});
   }
   if (Status status = reader->read(targets); !status.ok()) return status;
+  for (std::size_t i = 3; i < rgba.size(); i += 4)
+    rgba[i] = 1;  // nobody looks at it
+  colour->apply(rgba);
   return rgba;
 }
 
@@ -63,7 +69,7 @@ Made SequenceOutput::made(std::int64_t frame) const {
   std::error_code error;
   const std::string file = path(frame);
   if (!std::filesystem::exists(file, error)) return Made::kNot;
-  if (pattern.format() == FileFormat::kPng) return Made::kAsWanted;
+  if (format_of(pattern) != FileFormat::kExr) return Made::kAsWanted;
   const auto reader = ImageReader::open(file);
   if (!reader.ok()) return Made::kOtherwise;
   const ImageHeader& header = reader->header();
@@ -73,25 +79,18 @@ Made SequenceOutput::made(std::int64_t frame) const {
   return same ? Made::kAsWanted : Made::kOtherwise;
 }
 
-Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> rgba,
+Status SequenceOutput::write_linear(std::int64_t frame, std::span<const float> rgba, float exposure,
                                     std::span<const Attribute> kept) const {
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < 4; ++i) {
-    channels.push_back({.name = kColourChannels[i],
-                        .type = ChannelType::kFloat,
-                        .data = rgba.data() + i,
-                        .pixel_stride = 4 * sizeof(float),
-                        .stored = stored});
-  }
   std::vector<Attribute> attributes(kept.begin(), kept.end());
   attributes.push_back({"quincunx:version", 1});
   attributes.push_back({"quincunx:frameIndex", static_cast<int>(frame)});
   attributes.push_back({kSettingsAttribute, settings});
-  return write_exr(path(frame), extent, channels, attributes);
+  return write_light(path(frame), extent, rgba, stored, {tone_map, exposure}, attributes);
 }
 
-Status SequenceOutput::write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba) const {
-  return write_png(path(frame), extent, rgba.data());
+Status SequenceOutput::write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba,
+                                       std::span<const Attribute> kept) const {
+  return write_picture(path(frame), extent, rgba.data(), 0, Alpha::kOpaque, kept);
 }
 
 Status SequenceOutput::check_names(std::span<const std::int64_t> frames,

@@ -24,20 +24,26 @@ struct SequenceOutput {
   FramePattern pattern;
   Extent extent;
   ChannelType stored = ChannelType::kHalf;  // type in an EXR
+  ToneMap tone_map = ToneMap::kClamp;       // of a DPX
   std::string settings = {};  // what the pixels depend on: the attribute quincunx:resolve of an EXR
 
   std::string path(std::int64_t frame) const { return pattern.expand(frame); }
 
   // Returns whether the frame's file is there as this run would make it: an EXR of this extent, made with these
-  // settings; a PNG, if it is there at all. (Files are only ever whole.)
+  // settings; another file, if it is there at all. (Files are only ever whole.)
   Made made(std::int64_t frame) const;
 
+  // Whether the picture as presented is written, in 8 bits. Else light is, or what is made from it.
+  bool presents() const { return has_8_bits(format_of(pattern)); }
+
   // Linear RGBA floats, and the attributes that the frame keeps. The same pixels make the same file, byte for
-  // byte. Errors: kIoFailure.
-  Status write_linear(std::int64_t frame, std::span<const float> rgba, std::span<const Attribute> kept) const;
+  // byte. `exposure`: of a picture as displayed. Errors: kIoFailure.
+  Status write_linear(std::int64_t frame, std::span<const float> rgba, float exposure,
+                      std::span<const Attribute> kept) const;
 
   // RGBA8, sRGB encoded.
-  Status write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba) const;
+  Status write_presented(std::int64_t frame, std::span<const std::uint8_t> rgba,
+                         std::span<const Attribute> kept) const;
 
   // That these frames can be written without harm. Errors: kInvalidArgument where they would overwrite one
   // another or one of `inputs` (by whatever name), kIoFailure where one is a folder.

@@ -2,6 +2,7 @@
 #include "tools/sequence/sequence_reader.h"
 
 #include <fmt/format.h>
+#include <half.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +11,16 @@
 #include <limits>
 #include <utility>
 
-#include "tools/image/half.h"
+#include "tools/image/display_light.h"
 #include "tools/record/exchange_format.h"
 
 namespace quincunx::tools {
 namespace {
 
 constexpr std::uint16_t kHalfOne = 0x3c00;
-constexpr const char* kKeptAttributes[] = {"worldToCamera", "worldToNDC", "framesPerSecond", "chromaticities",
-                                           "pixelAspectRatio"};
+constexpr const char* kKeptAttributes[] = {"worldToCamera",  "worldToNDC",       "framesPerSecond",
+                                           "chromaticities", "pixelAspectRatio", "owner",
+                                           "timeCode",       "comments"};
 
 // Sets the alpha of every pixel that the file has.
 template <typename Texel>
@@ -89,7 +91,7 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
     const PixelFormat texels = format_of(plane, colour);
     const bool is_codes = texels == PixelFormat::kR8;
     const bool is_half = texels == PixelFormat::kRGBA16F;
-    const bool is_read = format.channels.has(plane);
+    const bool is_read = plane == InputPlane::kReactive ? format.has_reactive() : format.channels.has(plane);
     frame.texels[plane].resize(is_read ? pixels * bytes_per_pixel(texels) : 0);
     values[plane].resize(is_read && is_codes ? pixels : 0);
     auto* first = is_codes ? reinterpret_cast<std::byte*>(values[plane].data()) : frame.texels[plane].data();
@@ -104,11 +106,36 @@ Status read_pixels(ImageReader& reader, const ChannelPlaces& places, const Seque
     std::fill(frame.depth().begin(), frame.depth().end(), nothing_seen(format.depth_kind));
   }
   if (Status status = reader.read(targets.all()); !status.ok()) return status;
+  if (format.reactive_files) {
+    auto file = open_mask(format.reactive_files->expand(frame.number), frame.render);
+    if (!file.ok()) return file.status();
+    const std::size_t row = sizeof(float) * static_cast<std::size_t>(frame.render.width);
+    const ChannelTarget target = {
+        {}, ChannelType::kFloat, values[InputPlane::kReactive].data(), sizeof(float), row};
+    if (Status status = file->read({&target, 1}); !status.ok()) return status;
+  }
   for (std::size_t p = 0; p < kPlaneCount; ++p) {
     std::transform(values.values[p].begin(), values.values[p].end(), frame.texels.values[p].begin(),
                    [](float value) { return std::byte{code_of(value)}; });
   }
   return {};
+}
+
+// Converts colour and albedo to linear Rec. 709, which the frame's attributes then tell.
+void make_light(const InputColour& light, PixelFormat colour, SequenceFrame& frame) {
+  for (std::vector<std::byte>* image :
+       {&frame.texels[InputPlane::kColour], &frame.texels[InputPlane::kAlbedo]}) {
+    if (colour == PixelFormat::kRGBA32F) {
+      light.apply({reinterpret_cast<float*>(image->data()), image->size() / sizeof(float)});
+      continue;
+    }
+    auto* halves = reinterpret_cast<half*>(image->data());
+    std::vector<float> rgba(halves, halves + image->size() / sizeof(half));
+    light.apply(rgba);
+    std::copy(rgba.begin(), rgba.end(), halves);
+  }
+  for (Attribute& attribute : frame.kept)
+    if (attribute.name == "chromaticities") attribute.value = kRec709;
 }
 
 Status read_unguarded(const std::string& path, const SequenceFormat& format, const ScannedFrame& expected,
@@ -140,6 +167,10 @@ Status read_unguarded(const std::string& path, const SequenceFormat& format, con
       fill_alpha(frame.texels[InputPlane::kColour], part, 1.0f);
     }
   }
+  const auto light =
+      InputColour::of(path, reader->header().parts[colour_places[0]->part], format.colour_space);
+  if (!light.ok()) return light.status();
+  if (!light->is_light()) make_light(light.value(), colour, frame);
   to_velocity(format.units, frame.render, frame.velocity());
   if (format.units.jittered)
     take_jitter(frame.velocity(), format.units.to_next ? expected.jitter_until : expected.jitter_since);
@@ -301,7 +332,7 @@ SequenceWatch::Cells SequenceWatch::cells_of(const SequenceFrame& frame) const {
     float number = 0;
     if (half) {
       std::memcpy(&bits, frame.texels[InputPlane::kColour].data() + index * sizeof bits, sizeof bits);
-      return tone_mapped(from_half(bits));
+      return tone_mapped(imath_half_to_float(bits));
     }
     std::memcpy(&number, frame.texels[InputPlane::kColour].data() + index * sizeof number, sizeof number);
     return tone_mapped(number);

@@ -2,6 +2,7 @@
 #include "tools/sequence/sequence_resolver.h"
 
 #include <fmt/format.h>
+#include <half.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -22,12 +23,12 @@ int writing_threads(int threads) {
   return std::max(threads / 2, 1);
 }
 
-float float_of(std::uint16_t half) {
-  const std::uint32_t sign = (half & 0x8000u) << 16, rest = static_cast<std::uint32_t>(half & 0x7fffu) << 13;
-  const bool finite = (half & 0x7c00u) != 0x7c00u;
-  const float value =
-      finite ? std::bit_cast<float>(rest) * 0x1p112f : std::bit_cast<float>(rest | 0x7f800000u);
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) | sign);
+// Returns what multiplies light before it is displayed.
+float exposure_of(const SequenceFrame& frame, const ResolvePlan& plan, float asked) {
+  if (plan.settings.colour == PixelFormat::kRGBA8) return 1;  // which it went through already
+  if (!frame.recorded) return asked > 0 ? asked : 1;
+  const float recorded = frame.recorded->inputs.exposure > 0 ? frame.recorded->inputs.exposure : 1;
+  return (asked > 0 ? asked : recorded) * frame.recorded->exposure_image.value_or(1);
 }
 
 // RGBA, tightly packed.
@@ -229,7 +230,7 @@ Status SequenceResolver::download(Picture& picture) const {
       std::vector<std::uint16_t> halves(texels);
       if (Status status = device_.download(linear_.view(), output, halves.data()); !status.ok())
         return status;
-      std::transform(halves.begin(), halves.end(), pixels->begin(), float_of);
+      std::transform(halves.begin(), halves.end(), pixels->begin(), imath_half_to_float);
     }
     if (turns) turn_rows(*pixels, output);
     picture.linear = std::move(pixels);
@@ -245,14 +246,17 @@ Status SequenceResolver::download(Picture& picture) const {
 Status SequenceResolver::hand_over(const SequenceFrame& frame, Picture picture) {
   const std::int64_t number = frame.number;
   if (presents()) {
-    const Status status = writers_.push([this, number, codes = std::move(picture.presented)] {
-      return job_.output->write_presented(number, codes);
-    });
+    const Status status =
+        writers_.push([this, number, codes = std::move(picture.presented), kept = frame.kept] {
+          return job_.output->write_presented(number, codes, kept);
+        });
     if (!status.ok()) return status;
   } else if (job_.output) {
-    const Status status = writers_.push([this, number, linear = picture.linear, kept = frame.kept] {
-      return job_.output->write_linear(number, *linear, kept);
-    });
+    const Status status =
+        writers_.push([this, number, exposure = exposure_of(frame, forward_.service.plan(), job_.exposure),
+                       linear = picture.linear, kept = frame.kept] {
+          return job_.output->write_linear(number, *linear, exposure, kept);
+        });
     if (!status.ok()) return status;
   }
   return job_.scores != nullptr

@@ -30,7 +30,7 @@ struct SequenceJob {
   SequenceFormat format;
   SequenceScan scan;
   std::optional<SequenceOutput> output;  // absent: frames are only scored
-  float exposure = 0;                    // exposure of a PNG; 0: 1, or the recorded one
+  float exposure = 0;                    // exposure of a picture as displayed; 0: 1, or the recorded one
   int threads = 1;                       // that read, and that write, at least one of each
   bool skip_bad_frames = false;
   std::uint64_t memory = kDefaultHistoryBytes;  // limit of histories that are kept
@@ -127,7 +127,7 @@ class SequenceResolver {
   // Does them; false: as far as one whose frame, forwards, turned out bad. That is no longer among the good ones, and
   // the windows are others.
   Result<bool> run_steps(const std::function<void(std::int64_t)>& progress, const std::atomic<bool>& stop);
-  bool presents() const { return job_.output && job_.output->pattern.format() == FileFormat::kPng; }
+  bool presents() const { return job_.output && job_.output->presents(); }
 
   Device device_;
   Stream forward_;

@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
 #include "tools/program/frame_pattern.h"
 
@@ -56,7 +57,10 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   const auto attributes = frame_attributes(path, reader->header());
   if (!attributes.ok()) return attributes.status();
   frame.render = places->display.extent;
-  frame.half_colour = places->half_colour;
+  const auto colour = InputColour::of(path, reader->header().parts[(*places)[InputPlane::kColour][0]->part],
+                                      format.colour_space);
+  if (!colour.ok()) return colour.status();
+  frame.half_colour = places->half_colour && colour->is_light();
   frame.background = places->background;
   frame.dwa = places->dwa;
   frame.has_matrix = attributes->world_to_ndc.has_value();
@@ -64,6 +68,10 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
   frame.reset = attributes->reset.value_or(false) ||
                 std::binary_search(format.cuts.begin(), format.cuts.end(), frame.number);
   if (Status status = check_size(path, frame.render, attributes.value()); !status.ok()) return status;
+  if (format.reactive_files) {
+    const auto mask = open_mask(format.reactive_files->expand(frame.number), frame.render);
+    if (!mask.ok()) return mask.status();
+  }
   if (Status status = check_blocks(path); !status.ok()) return status;
   if (format.needs_camera && !attributes->world_to_ndc) {
     return Status::io(

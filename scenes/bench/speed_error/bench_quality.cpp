@@ -83,7 +83,7 @@ Result<std::vector<float>> truth_of(const Moment& moment) {
   if (auto pixels = kept(path, output)) return std::move(*pixels);
   auto drawn = draw();
   if (!drawn.ok()) return drawn;
-  if (Status status = scenes::write_rgba(path.string(), output, drawn.value()); !status.ok()) {
+  if (Status status = tools::write_light(path.string(), output, drawn.value()); !status.ok()) {
     spdlog::warn("truth is not kept: {}", status.message());
     return drawn;
   }

@@ -2,14 +2,15 @@
 #include "bench/speed_error/contender.h"
 
 #include <epoxy/gl.h>
+#include <half.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string_view>
 
 #include "bench/harness/clocks.h"
 #include "random.h"
-#include "tools/image/half.h"
 
 namespace quincunx::bench {
 namespace {
@@ -31,7 +32,7 @@ Status add_noise(const Device& device, const FrameInputs& inputs, int samples, s
       sum -= std::log(1 - random.unit());
     const float factor = sum / static_cast<float>(samples);
     for (std::size_t c = i; c < i + 3; ++c)
-      colour[c] = tools::to_half(factor * tools::from_half(colour[c]));
+      colour[c] = imath_float_to_half(std::min(factor * imath_half_to_float(colour[c]), 65504.f));
   }
   return device.upload(inputs.colour, extent, colour.data());
 }

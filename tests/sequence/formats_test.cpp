@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Frames in other formats and colour spaces than linear EXR: read, made light, and written.
+#include "sequence_fixture.h"
+#include "tools/image/display_light.h"
+#include "tools/image/image_reader.h"
+
+namespace quincunx::testing {
+namespace {
+
+using tools::Attribute;
+using tools::LoadedImage;
+
+constexpr tools::Chromaticities kAcesCg = {0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+
+class Formats : public SequenceTest {
+ protected:
+  static constexpr Extent kRender = {16, 12};
+  // Frames are shown as they are: a point of the same size is the identity.
+  static constexpr const char* kSame = "--output 16x12 --method point --two-way 0 --store float";
+
+  static std::vector<std::uint8_t> codes() {
+    std::vector<std::uint8_t> texels;
+    for (int i = 0; i < kRender.area(); ++i) {
+      const auto code = [i](int step) { return static_cast<std::uint8_t>(i * step % 256); };
+      texels.insert(texels.end(), {code(1), code(7), code(13), 255});
+    }
+    return texels;
+  }
+
+  static tools::ImageReader opened(const std::string& path) {
+    auto reader = tools::ImageReader::open(path);
+    EXPECT_TRUE(reader.ok()) << reader.status().message();
+    return std::move(reader).value();
+  }
+};
+
+TEST_F(Formats, CodesAreReadAsLight) {
+  const std::vector<std::uint8_t> texels = codes();
+  for (const std::string ending : {"png", "tif"}) {
+    ASSERT_TRUE(tools::write_picture(folder_.file("f.0001." + ending), kRender, texels.data()).ok());
+    const auto result =
+        resolve(fmt::format("'{{}}/f.%04d.{0}' --out '{{}}/{0}.%04d.exr' {1}", ending, kSame));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("colour is sRGB"), std::string::npos) << result.err;
+    const LoadedImage made = image(output(1, ending));
+    for (int i = 0; i < kRender.area(); ++i) {
+      for (int c = 0; c < 3; ++c) {
+        const float code = static_cast<float>(texels[static_cast<std::size_t>(4 * i + c)]) / 255;
+        ASSERT_EQ(made.at(i % kRender.width, i / kRender.width, made.channel(std::string(1, "RGB"[c]))),
+                  tools::linear_of_srgb(code))
+            << ending << " " << i;
+      }
+    }
+  }
+}
+
+// The file's chromaticities, and the option that overrides them.
+TEST_F(Formats, OtherPrimariesBecomeRec709) {
+  FrameFile file = frame(1);
+  file.extent = kRender;
+  file.alpha = file.velocity = false;
+  write_frame(input(1), file);
+  file.attributes.push_back({"chromaticities", kAcesCg});
+  write_frame(input(2), file);
+  resolve_to("asked", fmt::format("--frames 1 {} --input-colour ACEScg", kSame));
+  resolve_to("told", fmt::format("--frames 2 {}", kSame));
+  resolve_to("left", fmt::format("--frames 2 {} --input-colour linear", kSame));
+  resolve_to("plain", fmt::format("--frames 1 {}", kSame));
+  const LoadedImage asked = image(output(1, "asked")), told = image(output(2, "told"));
+  const LoadedImage left = image(output(2, "left")), plain = image(output(1, "plain"));
+  EXPECT_EQ(asked.pixels, told.pixels);
+  EXPECT_EQ(left.pixels, plain.pixels);
+  for (int i = 0; i < kRender.area(); ++i) {
+    const auto at = [i](const LoadedImage& one, const char* name) {
+      return one.at(i % kRender.width, i / kRender.width, one.channel(name));
+    };
+    const float red = 1.70505f * at(plain, "R") - 0.62179f * at(plain, "G") - 0.08326f * at(plain, "B");
+    ASSERT_NEAR(at(told, "R"), red, 2e-3f) << i;
+  }
+  // What is written says what it is.
+  const Attribute* primaries = told.attribute("chromaticities");
+  ASSERT_NE(primaries, nullptr);
+  EXPECT_TRUE(primaries->value == tools::AttributeValue(tools::kRec709));
+}
+
+// The PNG of ACES frames is the PNG of the light that they become.
+TEST_F(Formats, APngOfAcesHasTheRightColour) {
+  FrameFile file = frame(1);
+  file.extent = kRender;
+  file.alpha = file.velocity = false;
+  file.attributes.push_back({"chromaticities", kAcesCg});
+  write_frame(input(1), file);
+  resolve_to("light", kSame);
+  for (const std::string from : {"f", "light"}) {
+    const auto result =
+        resolve(fmt::format("'{{}}/{0}.%04d.exr' --out '{{}}/{0}.%04d.png' -q {1}", from, kSame));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  EXPECT_EQ(image(folder_.file("f.0001.png")).pixels, image(folder_.file("light.0001.png")).pixels);
+}
+
+TEST_F(Formats, EveryFormatIsWrittenAndKeepsWhatItCan) {
+  FrameFile file = frame(1);
+  file.attributes.insert(file.attributes.end(), {{"owner", std::string("A studio")},
+                                                 {"pixelAspectRatio", 2.f},
+                                                 {"timeCode", tools::TimeCode{0x01020304, 5}}});
+  write_frame(input(1), file);
+  for (const std::string ending : {"exr", "tif", "hdr", "png", "jpg", "dpx"}) {
+    const auto result = resolve("'{}/f.%04d.exr' --out '{}/o.%04d." + ending + "' -q");
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const auto reader = opened(folder_.file("o.0001." + ending));
+    EXPECT_EQ(reader.header().parts[0].display.extent, kOutput) << ending;
+    const Attribute* owner = reader.header().attribute("owner");
+    if (ending != "hdr") {
+      ASSERT_NE(owner, nullptr) << ending;
+      EXPECT_TRUE(owner->value == tools::AttributeValue(std::string("A studio"))) << ending;
+    }
+    if (ending == "exr" || ending == "dpx") {
+      const Attribute* code = reader.header().attribute("timeCode");
+      ASSERT_NE(code, nullptr) << ending;
+      EXPECT_TRUE(code->value == tools::AttributeValue(tools::TimeCode{0x01020304, 5})) << ending;
+    }
+    const std::string space = reader.header().parts[0].colour_space;
+    EXPECT_EQ(space == "sRGB", ending == "png" || ending == "jpg" || ending == "dpx")
+        << ending << " " << space;
+  }
+}
+
+TEST_F(Formats, MasksMayBeImagesOfTheirOwn) {
+  for (int number = 1; number <= 3; ++number) {
+    FrameFile file = frame(number);
+    write_frame(input(number), file);
+    std::vector<std::uint8_t> mask(static_cast<std::size_t>(file.extent.area()) * 4, 255);
+    ASSERT_TRUE(
+        tools::write_picture(folder_.file(fmt::format("m.{:04}.png", number)), file.extent, mask.data())
+            .ok());
+    // The same in a channel of each frame.
+    const LoadedImage loaded = image(input(number));
+    const std::vector<float> ones(static_cast<std::size_t>(file.extent.area()), 1.f);
+    std::vector<tools::Channel> channels = {{"reactive.mask", tools::ChannelType::kFloat, ones.data()}};
+    for (std::size_t c = 0; c < loaded.channels.size(); ++c) {
+      channels.push_back({loaded.channels[c], tools::ChannelType::kFloat, loaded.pixels.data() + c,
+                          loaded.channels.size() * sizeof(float), 0, loaded.stored[c]});
+    }
+    ASSERT_TRUE(tools::write_exr(folder_.file(fmt::format("c.{:04}.exr", number)), file.extent, channels,
+                                 file.attributes)
+                    .ok());
+  }
+  const std::string arguments = "--method quincunx -q --out '{}/";
+  ASSERT_EQ(resolve("'{}/f.%04d.exr' --reactive '{}/m.%04d.png' " + arguments + "files.%04d.exr'").exit_code,
+            0);
+  ASSERT_EQ(resolve("'{}/c.%04d.exr' " + arguments + "channel.%04d.exr'").exit_code, 0);
+  ASSERT_EQ(resolve("'{}/f.%04d.exr' " + arguments + "none.%04d.exr'").exit_code, 0);
+  const LoadedImage files = image(output(3, "files"));
+  EXPECT_EQ(files.pixels, image(output(3, "channel")).pixels);
+  EXPECT_NE(files.pixels, image(output(3, "none")).pixels);
+  expect_refused("'{}/f.%04d.exr' --reactive '{}/x.%04d.png' --out '{}/u.%04d.exr'", 1, "x.0001.png");
+}
+
+TEST_F(Formats, UnknownSpacesAreOneSentence) {
+  write_frames(1, 1);
+  expect_refused("'{}/f.%04d.exr' --out '{}/u.%04d.exr' --input-colour ACES_cg", 2,
+                 "no colour space 'ACES_cg' here; near ones: ACEScg");
+}
+
+}  // namespace
+}  // namespace quincunx::testing
