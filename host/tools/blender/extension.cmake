@@ -1,6 +1,6 @@
 # blender-extension: a target that makes quincunx-blender-VERSION-linux-ARCH.zip, the add-on as an extension of Blender
-# 4.2 and later. It carries quincunx-resolve and the libraries that it loads, but those of every Linux. OpenImageIO would
-# bring 250 more, so this program reads and writes EXR and PNG alone.
+# 4.2 and later. It carries quincunx-resolve and the libraries that it loads, but those of every Linux. OpenImageIO
+# would bring 250 more, so this program reads and writes EXR and PNG alone.
 #
 # As a script (-P) this file fills the folder of the zip and packs it.
 if(CMAKE_SCRIPT_MODE_FILE)

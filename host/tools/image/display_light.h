@@ -32,7 +32,7 @@ inline constexpr Chromaticities kRec709 = {.64f, .33f, .3f, .6f, .15f, .06f, .31
 class InputColour {
  public:
   // `named`: a colour space, whatever the file says; empty: as its attributes or its format have it. Names are ours
-  // (ACEScg, ACES2065-1, lin_rec2020, lin_p3d65, KodakLog) or those of OpenImageIO and its configuration (OCIO). Errors:
+  // (ACEScg, ACES2065-1, lin_rec2020, lin_p3d65, KodakLog) or OpenImageIO's, with its configuration (OCIO). Errors:
   // kInvalidArgument for another name (kIoFailure where the file says it), which lists those that are near.
   static Result<InputColour> of(const std::string& path, const ImagePart& part,
                                 const std::string& named = {});

@@ -21,8 +21,8 @@ namespace quincunx::tools {
 // wider than the field are written whole. A value; thread-safe.
 class FramePattern {
  public:
-  // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two numbers, or a
-  // conversion other than %d.
+  // `what` names the pattern in messages: "input pattern". Errors: kInvalidArgument for an empty path, two numbers, or
+  // a conversion other than %d.
   static Result<FramePattern> parse(const std::string& pattern, const std::string& what = "output pattern");
 
   bool has_number() const { return has_number_; }

@@ -135,7 +135,7 @@ struct SequenceFormat {
   float samples = 0;  // a pixel, as Cycles says in the first frame; 0: it does not
 };
 
-// Opens a reactive mask of its own, whose first channel counts. Errors: kIoFailure, also for another size than `render`.
+// Opens a reactive mask of its own, whose first channel counts. Errors: kIoFailure, also where it has another size.
 Result<ImageReader> open_mask(const std::string& path, Extent render);
 
 // Errors: kInvalidArgument where the command line says too little (the message names the option), kIoFailure
