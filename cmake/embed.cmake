@@ -38,6 +38,8 @@ if(CMAKE_SCRIPT_MODE_FILE)
 
 #include <cstddef>
 
+#include \"embedded_file.h\"
+
 namespace ${namespace} {
 
 std::span<const EmbeddedFile> ${function}() {

@@ -16,6 +16,7 @@ run_packages=(
   libegl1 libegl-mesa0 libgl1-mesa-dri   # OpenGL without a window or a GPU
   libgles2                               # OpenGL ES, for --gl es3
   fonts-dejavu-core                      # captions of the contact sheet
+  libjs-chart.js                         # plots of the pages; put into each when it is made
 )
 test_packages=(libgtest-dev clang clang-format python3 python3-numpy python3-cffi chromium
   help2man                               # manual pages

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/temporary_folder.h"
@@ -33,12 +34,33 @@ window.probe = {
     document.body.append(output);
     this.frame.contentDocument.close();
   },
+  all: (selector) => [...document.querySelectorAll(selector)],
+  async until(there) {
+    for (let i = 0; i < 1000 && !there(); ++i) await new Promise((done) => setTimeout(done, 20));
+  },
+  choose(id, value) {
+    const select = document.getElementById(id);
+    select.value = value;
+    select.dispatchEvent(new Event("change"));
+  },
+  chart: (id) => Chart.getChart(document.querySelector(`#${id} canvas`)),
+  // Values of a dataset; of all charts, how many points have no place.
+  values: (dataset) => dataset.data.map((value) => (typeof value === "object" && value !== null ? value.y : value)),
+  misplaced: () => window.probe.all(".plot canvas, .small canvas").map((canvas) => Chart.getChart(canvas)).flatMap((chart) =>
+    chart.data.datasets.flatMap((dataset, i) => chart.getDatasetMeta(i).data.filter((point, at) =>
+      window.probe.values(dataset)[at] !== null && !(Number.isFinite(point.x) && Number.isFinite(point.y))))).length,
 };
 const note = (text) => window.seen.errors.push(String(text));
 addEventListener("error", (event) => note(event.message));
 addEventListener("unhandledrejection", (event) => note(event.reason));
 document.addEventListener("securitypolicyviolation", (event) => note(event.violatedDirective));
 </script>)";
+
+inline std::string with(std::string page, const std::string& after, const std::string& text) {
+  const std::size_t at = page.find(after);
+  EXPECT_NE(at, std::string::npos) << after;
+  return page.insert(at + (after == "<head>" ? after.size() : 0), text);
+}
 
 class PageInBrowser : public ::testing::Test {
  protected:
@@ -57,6 +79,17 @@ class PageInBrowser : public ::testing::Test {
     return text_of("out");
   }
 
+  // Returns what `probe`, a script, left in window.seen of a page.
+  nlohmann::json seen(std::string page, const char* probe, const std::string& options = "") {
+    page = with(with(std::move(page), "<head>", kListener), "</body>", probe);
+    const std::string dom = browse(page, options + " --dump-dom");
+    const std::string mark = "<pre id=\"probe\">";
+    const std::size_t at = dom.find(mark);
+    EXPECT_NE(at, std::string::npos) << "the probe did not end\n" << text_of("err");
+    if (at == std::string::npos) return {};
+    return nlohmann::json::parse(dom.substr(at + mark.size(), dom.find("</pre>", at) - at - mark.size()));
+  }
+
   std::string text_of(const std::string& name) const {
     std::ifstream file(folder_.file(name), std::ios::binary);
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -64,11 +97,5 @@ class PageInBrowser : public ::testing::Test {
 
   TemporaryFolder folder_;
 };
-
-inline std::string with(std::string page, const std::string& after, const std::string& text) {
-  const std::size_t at = page.find(after);
-  EXPECT_NE(at, std::string::npos) << after;
-  return page.insert(at + (after == "<head>" ? after.size() : 0), text);
-}
 
 }  // namespace quincunx::testing

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "tools/image/image_reader.h"
-#include "tools/page/report_page.h"
+#include "tools/page/page.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
 #include "tools/sequence/resolve_advice.h"

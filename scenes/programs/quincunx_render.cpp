@@ -16,7 +16,7 @@
 #include "session/render_session.h"
 #include "session/why_picture.h"
 #include "tools/image/image_io.h"
-#include "tools/page/report_page.h"
+#include "tools/page/page.h"
 #include "tools/program/frame_pattern.h"
 #include "tools/program/program.h"
 #include "window/window_run.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The page as a reader has it: opened in headless Chromium, where a probe script looks at what the page drew,
 // presses its buttons and leaves what it saw in the document.
+#include <cstdlib>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -18,9 +19,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-using testing::kListener;
 using testing::PageInBrowser;
-using testing::with;
 
 constexpr Extent kCrop{16, 8};
 constexpr int kPictures = 3;  // truth and two methods
@@ -28,46 +27,43 @@ constexpr int kPictures = 3;  // truth and two methods
 constexpr const char* kProbe = R"(<script>
 probe.wait();
 (async () => {
-  const all = (selector) => [...document.querySelectorAll(selector)];
-  const pause = () => new Promise((done) => setTimeout(done, 20));
+  const { all, chart, choose } = probe;
   const frame = document.querySelector("#viewer .frame");
   const canvases = all("#viewer canvas");
   const pixels = () => canvases.map((c) => [...c.getContext("2d").getImageData(1, 1, 1, 1).data].slice(0, 3));
   const button = (name) => all("#viewer button").find((b) => b.textContent === name);
   // Waits until the pictures have changed; gives up where they do not.
-  const settled = async (before) => {
-    for (let i = 0; i < 1000 && JSON.stringify(pixels()) === before; ++i) await pause();
-    return pixels();
-  };
-  const choose = async (select, index) => {
+  const chosen = async (select, index) => {
     const before = JSON.stringify(pixels());
     select.selectedIndex = index;
     select.dispatchEvent(new Event("change"));
-    return settled(before);
+    await probe.until(() => JSON.stringify(pixels()) !== before);
+    return pixels();
   };
-  const drawn = () => all("#viewer .stage[data-ready]").length && all("#plot .point").length;
-  for (let i = 0; i < 1000 && !drawn(); ++i) await pause();
-  await pause();
+  await probe.until(() => all("#viewer .stage[data-ready]").length);
   const seen = window.seen;
-  seen.points = all("#plot .point").map((p) => p.dataset.method);
-  seen.onFront = all("#plot .on-front").length;
-  seen.frontPath = all("#plot .front").length;
-  seen.pathsWithoutNumbers = all("svg path").filter((p) => /NaN|undefined|Infinity/.test(p.getAttribute("d"))).length;
-  seen.smallPlots = all("#small-plots svg").length;
-  seen.smallPoints = all("#small-plots svg path[fill]").length;
-  seen.frameBars = all("#frame-plot rect[width][x]").length;
-  seen.seventy = document.getElementById("seventy-plot").textContent;
+  const marks = (of) => of.data.datasets.filter((dataset) => dataset.label !== "front");
+  const plot = chart("plot");
+  seen.points = marks(plot).map((dataset) => [dataset.label, dataset.pointStyle]);
+  seen.errorBar = plot.data.datasets[0].data.map(({ x }) => x);
+  seen.front = plot.data.datasets.at(-1).data.length;
+  seen.axes = [plot.scales.x.type, plot.scales.copies.type, plot.scales.y.type];
+  plot.canvas.dispatchEvent(new KeyboardEvent("keydown", { key: "ArrowRight" }));
+  seen.tip = [plot.tooltip.body[0].lines, plot.canvas.getAttribute("aria-label")];
+  const small = all("#small-plots canvas").map((canvas) => Chart.getChart(canvas));
+  seen.smallPlots = small.length;
+  seen.smallPoints = small.flatMap(marks).length;
+  seen.misplaced = probe.misplaced();
+  const bars = () => chart("frame-plot").data.datasets.map(probe.values);
+  seen.frameBars = bars();
+  seen.seventy = chart("seventy-plot").data.datasets[0].explain(0);
   seen.findings = all("#findings .finding").length;
+  choose("frame-clock", "processor_");
+  seen.otherClock = bars();
+  document.querySelector("#small-plots button:last-child").click();
+  seen.enlarged = [document.getElementById("plot-scene").value, document.getElementById("plot-scale").value];
 
-  const clock = document.getElementById("frame-clock");
-  const wall = document.getElementById("frame-plot").textContent;
-  clock.selectedIndex = 1;
-  clock.dispatchEvent(new Event("change"));
-  seen.clockChanges = wall !== document.getElementById("frame-plot").textContent;
-
-  const scale = document.getElementById("table-scale");
-  scale.selectedIndex = 0;
-  scale.dispatchEvent(new Event("change"));
+  choose("table-scale", "");
   const lines = () => all("#rows-table tbody tr").filter((r) => !r.hidden).map((r) => r.children[2].textContent + r.children[1].textContent);
   seen.unsorted = lines();
   const head = all("#rows-table th button").find((b) => b.textContent === "FLIP");
@@ -78,10 +74,10 @@ probe.wait();
 
   const [scene, at, left, right] = all("#viewer select");
   seen.first = pixels();
-  seen.otherMethod = await choose(left, 1);
-  seen.truthLeft = await choose(left, 0);
-  seen.errorMap = await choose(left, 3);
-  seen.otherScene = await choose(scene, 1);
+  seen.otherMethod = await chosen(left, 1);
+  seen.truthLeft = await chosen(left, 0);
+  seen.errorMap = await chosen(left, 3);
+  seen.otherScene = await chosen(scene, 1);
   button("flip").click();
   seen.flipped = [0, 1].map(() => { frame.dispatchEvent(new Event("pointerdown")); return getComputedStyle(canvases[0]).visibility; });
   button("wipe").click();
@@ -91,14 +87,14 @@ probe.wait();
 })();
 </script>)";
 
-// Only waits until the page has drawn, which it does when it knows its width.
-constexpr const char* kPatience = R"(<script>
+constexpr const char* kSections = R"(<script>
 probe.wait();
-(async () => {
-  for (let i = 0; i < 1000 && !document.querySelector("#plot .point"); ++i)
-    await new Promise((done) => setTimeout(done, 20));
-  probe.end();
-})();
+window.seen.sections = probe.all("main section").map((section) => section.id);
+window.seen.links = probe.all("nav a").map((link) => link.getAttribute("href"));
+window.seen.canvases = probe.all(".plot canvas").length;
+window.seen.rows = probe.all("#rows-table tbody tr").length;
+window.seen.note = document.getElementById("no-plots")?.textContent ?? "";
+probe.end();
 </script>)";
 
 // Picture k of scene s at scale index z: every pixel of one colour.
@@ -157,25 +153,24 @@ Json grey(int scene, int scale, int picture) {
 
 TEST_F(PageInBrowser, DrawsItsPlotsSortsItsTablesAndSwitchesItsPictures) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  std::string page = page_of(sample_of_two_scenes(), sample_gallery());
-  page = with(with(std::move(page), "<head>", kListener), "</body>", kProbe);
-  const std::string dom = browse(page, "--dump-dom");
-  const std::string mark = "<pre id=\"probe\">";
-  const std::size_t start = dom.find(mark);
-  ASSERT_NE(start, std::string::npos) << "the probe did not end\n" << text_of("err");
-  const std::size_t end = dom.find("</pre>", start);
-  const Json seen = Json::parse(dom.substr(start + mark.size(), end - start - mark.size()));
-
+  const Json seen = this->seen(page_of(sample_of_two_scenes(), sample_gallery()), kProbe);
   EXPECT_EQ(seen["errors"], Json::array());
-  EXPECT_EQ(seen["points"], (Json{"bilinear", "quincunx:mean"}));
-  EXPECT_EQ(seen["onFront"], 2);  // the one is quicker, the other better
-  EXPECT_EQ(seen["frontPath"], 1);
-  EXPECT_EQ(seen["pathsWithoutNumbers"], 0);
+  EXPECT_EQ(seen["points"], (Json{{"bilinear", "circle"}, {"quincunx:mean", "rectRot"}}));
+  EXPECT_EQ(seen["errorBar"], (Json{.99, 1, 1.01}));
+  EXPECT_EQ(seen["front"],
+            2 + 3);  // the one is quicker, the other better; and the corners before and behind them
+  EXPECT_EQ(seen["axes"], (Json{"logarithmic", "logarithmic", "linear"}));
+  EXPECT_EQ(seen["tip"][0][0], "bilinear at scale 0.7");
+  EXPECT_EQ(seen["tip"][1].get<std::string>().find("bilinear at scale 0.7"), 0u);
   EXPECT_EQ(seen["smallPlots"], 2 * 4);
   EXPECT_EQ(seen["smallPoints"], 2 * 4 * 2);
-  EXPECT_GE(seen["frameBars"], 4 * 3);
-  EXPECT_EQ(seen["clockChanges"], true);
-  EXPECT_NE(seen["seventy"].get<std::string>().find("70 %"), std::string::npos) << seen["seventy"];
+  EXPECT_EQ(seen["misplaced"], 0);
+  EXPECT_EQ(seen["frameBars"].size(), 3u);
+  EXPECT_EQ(seen["frameBars"][2], (Json{1, 1, 1, 1})) << "the resolve at each scale";
+  EXPECT_NE(seen["frameBars"], seen["otherClock"]);
+  EXPECT_EQ(seen["enlarged"], (Json{"wires", "1"}));
+  EXPECT_EQ(seen["seventy"].get<std::string>().find("pan: 70 % of the time on the wall"), 0u)
+      << seen["seventy"];
   EXPECT_GE(seen["findings"], 5);
 
   EXPECT_EQ(seen["unsorted"].size(), 16u);
@@ -195,9 +190,8 @@ TEST_F(PageInBrowser, DrawsItsPlotsSortsItsTablesAndSwitchesItsPictures) {
 
 TEST_F(PageInBrowser, ShowsSomething) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  std::string page = page_of(sample_of_two_scenes(), sample_gallery());
-  page = with(with(std::move(page), "<head>", kListener), "</body>", kPatience);
-  browse(page, "--hide-scrollbars --window-size=900,1600 --screenshot='" + folder_.file("shot.png") + "'");
+  browse(page_of(sample_of_two_scenes(), sample_gallery()),
+         "--hide-scrollbars --window-size=900,1600 --screenshot='" + folder_.file("shot.png") + "'");
   const auto shot = tools::read_image(folder_.file("shot.png"));
   ASSERT_TRUE(shot.ok()) << shot.status().message();
   EXPECT_EQ(shot->extent, (Extent{900, 1600}));
@@ -212,12 +206,24 @@ TEST_F(PageInBrowser, ShowsSomething) {
 
 TEST_F(PageInBrowser, WithoutPicturesHasNoViewer) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  std::string page = page_of(testing::sample_result(), {});
-  page = with(with(std::move(page), "<head>", kListener), "</body>", kPatience);
-  const std::string dom = browse(page, "--dump-dom");
-  EXPECT_EQ(text_of("err").find("CONSOLE"), std::string::npos) << text_of("err");
-  EXPECT_EQ(dom.find("<a href=\"#pictures\""), std::string::npos);  // no link leads there
-  EXPECT_NE(dom.find("class=\"point"), std::string::npos);
+  const Json seen = this->seen(page_of(testing::sample_result(), {}), kSections);
+  EXPECT_EQ(seen["errors"], Json::array());
+  EXPECT_EQ(seen["links"], (Json{"#error", "#frame", "#figures", "#method"}));
+  EXPECT_EQ(seen["canvases"], 3);
+  EXPECT_EQ(seen["note"], "");
+}
+
+TEST_F(PageInBrowser, WithoutTheLibraryHasTablesAndNamesThePackage) {
+  if (!there()) QUINCUNX_SKIP("there is no chromium");
+  setenv("QUINCUNX_CHART_JS", "/no/such/chart.js", 1);
+  const std::string page = page_of(sample_of_two_scenes(), sample_gallery());
+  unsetenv("QUINCUNX_CHART_JS");
+  const Json seen = this->seen(page, kSections);
+  EXPECT_EQ(seen["errors"], Json::array());
+  EXPECT_EQ(seen["sections"], (Json{"findings", "pictures", "figures", "method"}));
+  EXPECT_EQ(seen["canvases"], 0);
+  EXPECT_EQ(seen["rows"], 16);
+  EXPECT_NE(seen["note"].get<std::string>().find("libjs-chart.js"), std::string::npos) << seen["note"];
 }
 
 }  // namespace
@@ -231,24 +237,16 @@ namespace quincunx::traces {
 
 namespace {
 
-using testing::kListener;
 using testing::PageInBrowser;
-using testing::with;
 using Json = nlohmann::json;
 
 constexpr const char* kProbe = R"(<script>
 probe.wait();
 (async () => {
-  const all = (selector) => [...document.querySelectorAll(selector)];
-  const pause = () => new Promise((done) => setTimeout(done, 20));
-  for (let i = 0; i < 1000 && !all("#time-plot svg").length; ++i) await pause();
+  const { all, choose } = probe;
   const seen = window.seen;
-  const choose = (id, value) => {
-    const select = document.getElementById(id);
-    select.value = value;
-    select.dispatchEvent(new Event("change"));
-  };
-  const areas = () => all("#time-plot .area").map((path) => path.getAttribute("d"));
+  const chart = () => probe.chart("time-plot");
+  const curves = (axis) => chart().data.datasets.filter((dataset) => dataset.yAxisID === axis);
   const shown = () => all("#rows-table tbody tr").filter((row) => !row.hidden).length;
   seen.totals = all("#totals-table tbody tr").length;
   seen.best = all("#totals-table td.best").length;
@@ -256,17 +254,18 @@ probe.wait();
   choose("rows-trace", "");
   seen.everything = shown();
   seen.controllers = all("#time-controller option").map((option) => option.value);
-  seen.two = areas().length;
+  seen.two = curves("area").map((curve) => curve.label);
   choose("time-beside", "");
-  seen.one = areas().length;
-  seen.loads = all("#time-plot .load").length + all("#time-plot .oracle").length;
+  seen.one = curves("area").length;
+  seen.loads = curves("load").length;
   choose("time-trace", "1");
-  const before = areas()[0];
+  const before = probe.values(curves("area")[0]);
   choose("time-controller", "proportional [W]");
-  seen.changes = before !== areas()[0];
-  seen.drops = all("#time-plot .drop").map((mark) => mark.getAttribute("aria-label"));
-  seen.pathsWithoutNumbers = all("svg path").filter((p) => /NaN|undefined|Infinity/.test(p.getAttribute("d"))).length;
-  seen.title = document.getElementById("time-plot").textContent;
+  seen.changes = JSON.stringify(before) !== JSON.stringify(probe.values(curves("area")[0]));
+  const [drops] = curves("drops");
+  seen.drops = drops.data.map((_, i) => drops.explain(i));
+  seen.count = chart().scales.drops.ticks.map((tick) => tick.label);
+  seen.misplaced = probe.misplaced();
   probe.end();
 })();
 </script>)";
@@ -289,15 +288,7 @@ TraceRun sample() {
 
 TEST_F(PageInBrowser, DrawsControllersOverTime) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
-  std::string page = page_of(sample(), "quincunx-bench --traces");
-  page = with(with(std::move(page), "<head>", kListener), "</body>", kProbe);
-  const std::string dom = browse(page, "--dump-dom");
-  const std::string mark = "<pre id=\"probe\">";
-  const std::size_t start = dom.find(mark);
-  ASSERT_NE(start, std::string::npos) << "the probe did not end\n" << text_of("err");
-  const std::size_t end = dom.find("</pre>", start);
-  const Json seen = Json::parse(dom.substr(start + mark.size(), end - start - mark.size()));
-
+  const Json seen = this->seen(page_of(sample(), "quincunx-bench --traces"), kProbe);
   const std::size_t controllers = controller_kinds().size();
   EXPECT_EQ(seen["errors"], Json::array());
   EXPECT_EQ(seen["totals"], controllers);
@@ -305,13 +296,14 @@ TEST_F(PageInBrowser, DrawsControllersOverTime) {
   EXPECT_EQ(seen["shown"], controllers) << "of the first trace";
   EXPECT_EQ(seen["everything"], 2 * controllers);
   EXPECT_EQ(seen["controllers"].size(), controllers);
-  EXPECT_EQ(seen["two"], 2);
-  EXPECT_EQ(seen["one"], 1);
+  EXPECT_EQ(seen["two"], (Json{"predictive", "proportional [W]", "the oracle's resolution"}));
+  EXPECT_EQ(seen["one"], 2);
   EXPECT_EQ(seen["loads"], 2);
   EXPECT_EQ(seen["changes"], true);
   ASSERT_GE(seen["drops"].size(), 1u) << "the slow controller meets the step";
   EXPECT_NE(seen["drops"][0].get<std::string>().find("proportional"), std::string::npos);
-  EXPECT_EQ(seen["pathsWithoutNumbers"], 0);
+  EXPECT_EQ(seen["count"][0].get<std::string>().find("proportional [W]: "), 0u) << seen["count"];
+  EXPECT_EQ(seen["misplaced"], 0);
 }
 
 }  // namespace

@@ -11,20 +11,17 @@
 namespace quincunx::tools {
 namespace {
 
-using testing::kListener;
-using testing::with;
 using Json = nlohmann::json;
 
 constexpr const char* kProbe = R"(<script>
 probe.wait();
 (async () => {
-  const pause = () => new Promise((done) => setTimeout(done, 20));
-  const stage = () => document.querySelector("#viewer .stage");
-  for (let i = 0; i < 1000 && stage() && !stage().dataset.ready; ++i) await pause();
+  const stage = document.querySelector("#viewer .stage");
+  await probe.until(() => !stage || stage.dataset.ready);
   const seen = window.seen;
   seen.lead = document.getElementById("lead").textContent;
   seen.rows = [...document.querySelectorAll("#found tr")].map((row) => [...row.cells].map((cell) => cell.textContent));
-  seen.pictures = !document.getElementById("pictures").hidden;
+  seen.pictures = document.getElementById("pictures") !== null;
   seen.frames = [...document.querySelectorAll("#viewer select")].map((select) => select.options.length);
   const pixel = (canvas) => [...canvas.getContext("2d").getImageData(1, 0, 1, 1).data.slice(0, 3)];
   seen.pixels = [...document.querySelectorAll("#viewer canvas")].map(pixel);
@@ -45,13 +42,7 @@ class DiagnosisPage : public testing::PageInBrowser {
   Json seen(std::span<const FailureMap> maps) {
     const auto page = diagnosis_page("shot/a.%04d.exr", kJson, maps);
     EXPECT_TRUE(page.ok()) << page.status().message();
-    const std::string text = browse(with(with(page.value(), "<head>", kListener), "</body>", kProbe),
-                                    "--window-size=1200,900 --dump-dom");
-    const std::string mark = "<pre id=\"probe\">";
-    const std::size_t at = text.find(mark);
-    EXPECT_NE(at, std::string::npos) << text_of("err");
-    if (at == std::string::npos) return {};
-    return Json::parse(text.substr(at + mark.size(), text.find("</pre>", at) - at - mark.size()));
+    return PageInBrowser::seen(page.value(), kProbe, "--window-size=1200,900");
   }
 };
 

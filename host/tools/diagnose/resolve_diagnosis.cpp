@@ -14,7 +14,7 @@
 #include "embedded_diagnosis_files.h"
 #include "tools/image/display_light.h"
 #include "tools/image/image_io.h"
-#include "tools/page/page_template.h"
+#include "tools/page/page.h"
 #include "tools/program/atomic_file.h"
 #include "tools/sequence/sequence_reader.h"
 
@@ -344,11 +344,8 @@ Result<std::string> diagnosis_page(const std::string& input, const std::string& 
                                    std::span<const FailureMap> maps) {
   auto pictures = pictures_json(maps);
   if (!pictures.ok()) return pictures.status();
-  return page_from_template(
-      {.files = embedded_diagnosis_files(),
-       .title = "diagnosis",
-       .body = "diagnosis.html",
-       .scripts = {"elements.js", "viewer.js", "diagnosis.js"}},
+  return make_page(
+      {.title = "diagnosis", .script = text_of(embedded_diagnosis_files(), "diagnosis.js")},
       {{"input", input}, {"diagnosis", Json::parse(json)}, {"pictures", std::move(pictures).value()}});
 }
 

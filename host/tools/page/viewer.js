@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The viewer: two pictures of the same pixels, wiped or flipped. For pages that have elements.js.
+// The viewer: two pictures of the same pixels, wiped or flipped.
 
 // Perceptually even, dark to bright: every 16th colour of "magma" (van der Walt and Smith, 2015).
 const kMagma = [[0, 0, 4], [11, 9, 36], [32, 17, 75], [59, 15, 112], [87, 21, 126], [114, 31, 129], [140, 41, 129], [168, 50, 125], [196, 60, 117],
@@ -12,7 +12,15 @@ function magma(t) {
 }
 const kMagmaTable = Array.from({ length: 256 }, (_, i) => magma(i / 255));
 
-function decode(base64) {
+const decoded = { pictures: new Map(), maps: new Map() };
+
+// Returns a promise of the ImageData of a PNG; of a map in colours. Keeps what it has decoded.
+function decode(base64, isMap = false) {
+  const kept = isMap ? decoded.maps : decoded.pictures;
+  if (!kept.has(base64)) kept.set(base64, decodeAnew(base64).then(isMap ? paintMap : (picture) => picture));
+  return kept.get(base64);
+}
+function decodeAnew(base64) {
   return new Promise((resolve, reject) => {
     const image = new Image();
     image.onload = () => {
@@ -32,38 +40,37 @@ function paintMap(picture) {
   return picture;
 }
 
-// A subclass fills `this.choices` with its options, gives load(), which shows what they say, and may have further selects.
 class PictureViewer {
-  // `size`: width and height of the pictures, x and y of their upper left pixel. `selects`: [label, select] before left
-  // and right. `legend`: what the ends of the scale of maps mean.
-  constructor(host, size, selects, legend) {
+  // `size`: width and height of the pictures, x and y of their upper left pixel. `selects`: those before left and right,
+  // as controls() takes them. `choices`: the pictures there are; `shown`: which of them left and right show at first.
+  // Where the selects have `values`, picture(choice, values) returns a promise of the ImageData of a choice, and
+  // caption(choice, values) what is written above it; corner(values), if given, the x and y that hold then.
+  // `legend`: what the ends of the scale of maps mean.
+  constructor(host, { size, selects, choices, shown, picture, caption, legend, corner = () => size }) {
     const { width, height } = size;
-    this.size = size;
-    this.selects = selects.map(([, select]) => select);
-    this.pictures = [null, null];
-    this.top = true;
-    this.zoom = 0;
+    Object.assign(this, { size, picture, caption, corner, pictures: [null, null], top: true, zoom: 0 });
     this.canvases = [el("canvas", { width, height }), el("canvas", { width, height })];
     this.divider = el("div", { class: "divider" });
     this.frame = el("div", { class: "frame" }, ...this.canvases, this.divider);
     this.stage = el("div", { class: "stage", tabindex: 0, role: "img", "aria-label": "Two pictures, wiped" }, this.frame);
-    this.choices = [el("select"), el("select")];
+    this.controls = controls([...selects, ["Left", "left", choices, shown[0]], ["Right", "right", choices, shown[1]]], () => this.load());
+    this.left = this.controls.nodes.at(-2);
     this.wipe = el("input", { type: "range", class: "wipe", min: 0, max: 100, value: 50, step: 0.5, "aria-label": "Where the wipe stands" });
     this.flipping = el("button", { type: "button", "aria-pressed": "false", onclick: () => this.setMode(true) }, "flip");
     this.wiping = el("button", { type: "button", "aria-pressed": "true", onclick: () => this.setMode(false) }, "wipe");
     this.captions = [el("span"), el("span")];
     this.readout = el("div", { class: "readout" });
     this.magnification = el("span");
-    host.append(...this.layout(selects, legend));
+    host.append(...this.layout(legend));
     this.listen();
+    this.load();
   }
 
-  layout(selects, legend) {
+  layout(legend) {
     const zoomButton = (text, step) => el("button", { type: "button", "aria-label": step > 0 ? "larger" : "smaller", onclick: () => this.setZoom(step) }, text);
     const bar = kMagmaTable.filter((_, i) => i % 15 === 0).map((c) => `rgb(${c})`).join(",");
-    const labelled = [...selects, ["Left ", this.choices[0]], ["Right ", this.choices[1]]];
     return [
-      el("div", { class: "controls" }, ...labelled.map(([label, select]) => el("label", {}, label, select))),
+      this.controls.node,
       el("div", { class: "controls" }, this.wiping, this.flipping, zoomButton("−", -1), this.magnification, zoomButton("+", 1)),
       el("div", { class: "captions" }, ...this.captions), this.stage, this.wipe, this.readout,
       el("div", { class: "legend" }, legend[0], el("i", { style: `background:linear-gradient(90deg,${bar})` }), legend[1]),
@@ -73,7 +80,6 @@ class PictureViewer {
   }
 
   listen() {
-    for (const select of [...this.selects, ...this.choices]) select.addEventListener("change", () => this.load());
     this.wipe.addEventListener("input", () => { this.setMode(false); this.place(); });
     this.frame.addEventListener("pointermove", (event) => {
       this.read(event);
@@ -103,8 +109,8 @@ class PictureViewer {
   }
 
   step(by) {
-    const select = this.choices[0];
-    select.selectedIndex = (select.selectedIndex + by + select.options.length) % select.options.length;
+    const { options, selectedIndex } = this.left;
+    this.left.selectedIndex = (selectedIndex + by + options.length) % options.length;
     this.load();
   }
 
@@ -168,12 +174,18 @@ class PictureViewer {
     this.readout.textContent = `pixel ${this.size.x + x}, ${this.size.y + y}   left ${at(this.pictures[0])}   right ${at(this.pictures[1])}`;
   }
 
-  // Two ImageData, and for each a list of nodes and texts.
-  show(pictures, captions) {
+  // Shows what the selects say.
+  async load() {
+    const values = this.controls.values();
+    const choices = values.slice(-2);
+    const pictures = await Promise.all(choices.map((choice) => this.picture(choice, values)));
+    // Another choice may have overtaken this one.
+    if (values.some((value, i) => value !== this.controls.values()[i])) return;
     this.pictures = pictures;
+    this.size = { ...this.size, ...this.corner(values) };
     pictures.forEach((picture, i) => {
       this.canvases[i].getContext("2d").putImageData(picture, 0, 0);
-      this.captions[i].replaceChildren(...captions[i]);
+      this.captions[i].replaceChildren(...this.caption(choices[i], values));
     });
     this.stage.setAttribute("aria-label", `Left ${this.captions[0].textContent}; right ${this.captions[1].textContent}`);
     this.fit();

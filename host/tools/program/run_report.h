@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// RunReport: what a run did and what it cost, as one page of text and as JSON (and to look at: page/report_page.h).
+// RunReport: what a run did and what it cost, as one page of text and as JSON (and to look at: page/page.h).
 //
 // Plain data that a program fills; an empty string or a negative number means "not known" and is left out of
 // the text and null in the JSON. No device is needed to make one.

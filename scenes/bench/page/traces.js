@@ -16,7 +16,7 @@ const kScoreColumns = [
 ];
 
 function makeTotalsTable() {
-  return makeTable([
+  return makeTable("totals-table", [
     textColumn("traces", (row) => row.traces), textColumn("display", (row) => displayText(row.display)),
     textColumn("controller", (row) => row.controller), ...kScoreColumns,
     numberColumn("dropped per 1,000", (row) => row.dropped_per_thousand, null, -1),
@@ -26,7 +26,7 @@ function makeTotalsTable() {
 function makeTraceTable() {
   const rows = run.results.flatMap((result) =>
     result.rows.map((row) => ({ ...row, traces: result.traces, display: result.display, controller: result.controller })));
-  return makeTable([
+  return makeTable("rows-table", [
     textColumn("traces", (row) => row.traces), textColumn("display", (row) => displayText(row.display)),
     textColumn("trace", (row) => row.trace), textColumn("kind", (row) => row.kind),
     textColumn("controller", (row) => row.controller), ...kScoreColumns,
@@ -35,123 +35,98 @@ function makeTraceTable() {
 }
 
 // Curves are [frame, value, frame, value, ...]: a value holds until the next.
-function stepPath(curve, x, y) {
-  let path = "";
-  for (let i = 0; i < curve.length; i += 2) {
-    path += i === 0 ? `M${x(curve[0])},${y(curve[1])}` : `H${x(curve[i])}V${y(curve[i + 1])}`;
-  }
-  return `${path}H${x(page.frames)}`;
-}
-const highest = (curves) => Math.max(...curves.flatMap((curve) => curve.filter((_, i) => i % 2 === 1)));
-
-function panelOf(chart, area, x, most, title) {
-  const y = (value) => area.bottom - (value / most) * (area.bottom - area.top);
-  chart.append(svg("text", { class: "axis", x: area.left, y: area.top - 6 }, title));
-  for (const tick of linearTicks(0, most, 4)) {
-    chart.append(svg("path", { class: "grid", d: `M${area.left},${y(tick)}H${area.right}` }),
-      svg("text", { class: "tick", x: area.left - 6, y: y(tick) + 4, "text-anchor": "end" }, String(Number(tick.toPrecision(4)))));
-  }
-  return y;
+function stepsOf(curve) {
+  const points = [];
+  for (let i = 0; i < curve.length; i += 2) points.push({ x: curve[i], y: curve[i + 1] });
+  return points;
 }
 
-function line(kind, curve, x, y, colour, dashed) {
-  return svg("path", { class: kind, d: stepPath(curve, x, y), fill: "none", stroke: colour, "stroke-width": 1.4, "stroke-dasharray": dashed ? "4 3" : null });
-}
-
-function drawDropped(chart, area, x, chosen) {
-  chart.append(svg("text", { class: "axis", x: area.left, y: area.top - 6 }, "dropped refreshes"));
-  chosen.forEach(({ name, curve, colour }, i) => {
-    const top = area.top + 24 * i;
-    const counts = (value, at, all) => at % 2 === 1 && all[at - 1] >= run.warm_up_frames;
-    const count = curve.dropped.filter(counts).reduce((sum, value) => sum + value, 0);
-    chart.append(svg("path", { class: "grid", d: `M${area.left},${top + 18}H${area.right}` }));
-    for (let at = 0; at < curve.dropped.length; at += 2) {
-      const seconds = (curve.dropped[at] / page.refresh_hz).toFixed(2);
-      chart.append(svg("rect", { class: "drop part", x: x(curve.dropped[at]) - 1.5, y: top + 2, width: 3, height: 16, fill: colour,
-        ...explains(`${name}: ${curve.dropped[at + 1]} dropped at ${seconds} s`) }));
-    }
-    chart.append(svg("text", { x: area.right, y: top + 12, "text-anchor": "end", fill: colour, "paint-order": "stroke", stroke: "var(--paper)", "stroke-width": 3 }, `${name}: ${count}`));
+// Three panels over one axis of time: loads, resolutions, and a row of dropped refreshes for each controller.
+function drawTime(host, trace, names) {
+  const chosen = names.map((name) => ({
+    name, curve: trace.curves[controllerNames.indexOf(name)], colour: colourOf(controllerNames.indexOf(name)) }));
+  const line = (label, curve, axis, colour, dashed = false) => {
+    const points = stepsOf(curve);
+    return { label, yAxisID: axis, borderColor: colour, borderWidth: 1.4, borderDash: dashed ? [4, 3] : [], stepped: "before",
+      pointRadius: 0, pointHitRadius: 0, showLine: true, data: [...points, { x: page.frames, y: points.at(-1).y }] };
+  };
+  const drops = chosen.map(({ name, curve, colour }, row) => {
+    const data = stepsOf(curve.dropped);
+    return { label: `drops of ${name}`, yAxisID: "drops", data: data.map(({ x }) => ({ x, y: row })), pointStyle: "line",
+      rotation: 90, pointRadius: 8, pointBorderWidth: 3, pointHoverBorderWidth: 3, pointHitRadius: 4, borderColor: colour,
+      explain: (i) => `${name}: ${data[i].y} dropped at ${(data[i].x / page.refresh_hz).toFixed(2)} s` };
+  });
+  const counts = chosen.map(({ curve }) =>
+    stepsOf(curve.dropped).filter(({ x }) => x >= run.warm_up_frames).reduce((sum, { y }) => sum + y, 0));
+  const panel = (stackWeight, title, more) => ({ axis: "y", position: "left", stack: "panels", stackWeight, offset: true, min: 0, title: titled(title, "center"), ...more });
+  draw(host, `${trace.name}: load, resolution and dropped frames over time`, {
+    type: "scatter",
+    data: { datasets: [
+      line("load", trace.load, "load", css("--ink")), line("the processor's load", trace.cpu, "load", css("--quiet"), true),
+      ...chosen.map(({ name, curve, colour }) => line(name, curve.area, "area", colour)),
+      line("the oracle's resolution", trace.oracle, "area", css("--quiet"), true), ...drops,
+    ] },
+    options: {
+      plugins: { legend: { labels: { filter: ({ text }) => !text.startsWith("drops of") } } },
+      scales: {
+        x: { min: 0, max: page.frames, ticks: { stepSize: 5 * page.refresh_hz, callback: (frame) => `${short(frame / page.refresh_hz)} s` } },
+        drops: panel(1, "dropped", {
+          min: -0.5, max: chosen.length - 0.5, reverse: true, afterBuildTicks: atTicks(() => chosen.map((_, row) => row)),
+          ticks: { callback: (row) => `${chosen[row].name}: ${counts[row]}` }, grid: { display: false },
+        }),
+        area: panel(4, "part of the output's pixels", { max: 1.04, ticks: { includeBounds: false } }),
+        load: panel(2, "load, targets", { grace: "8%", suggestedMax: 1 }),
+      },
+    },
   });
 }
 
-function drawTime(host, trace, names) {
-  const width = Math.max(host.clientWidth, 280);
-  const chosen = names.filter((name) => name !== "").map((name) => ({
-    name, curve: trace.curves[controllerNames.indexOf(name)], colour: colourOf(controllerNames.indexOf(name)) }));
-  const height = 520 + 24 * chosen.length;
-  const left = 46;
-  const right = width - 8;
-  const x = (frame) => left + (frame / page.frames) * (right - left);
-  const chart = svg("svg", { viewBox: `0 0 ${width} ${height}`, height, role: "group", "aria-label": `${trace.name}: load, resolution and dropped frames over time` });
-  const load = { left, right, top: 22, bottom: 160 };
-  const loadY = panelOf(chart, load, x, Math.max(1, highest([trace.load, trace.cpu])) * 1.08, "load at the output's resolution, targets; dashed: the processor's");
-  chart.append(line("load", trace.load, x, loadY, "var(--ink)"), line("cpu", trace.cpu, x, loadY, "var(--quiet)", true));
-  const area = { left, right, top: 196, bottom: 440 };
-  const areaY = panelOf(chart, area, x, 1.04, "resolution: part of the output's pixels; dashed: the oracle's");
-  chart.append(line("oracle", trace.oracle, x, areaY, "var(--quiet)", true));
-  for (const { curve, colour } of chosen) chart.append(line("area", curve.area, x, areaY, colour));
-  const drops = { left, right, top: 470, bottom: 470 + 24 * chosen.length };
-  drawDropped(chart, drops, x, chosen);
-  for (const tick of linearTicks(0, page.frames / page.refresh_hz, 8)) {
-    chart.append(svg("text", { class: "tick", x: x(tick * page.refresh_hz), y: height - 8, "text-anchor": tick * page.refresh_hz < page.frames ? "middle" : "end" }, `${tick} s`));
-  }
-  host.replaceChildren(chart);
-}
-
-function startTime() {
-  const trace = byId("time-trace");
-  const controller = byId("time-controller");
-  const beside = byId("time-beside");
+function showTime() {
+  const host = plot("time-plot", 560);
   const first = Math.max(0, page.traces.findIndex((one) => one.name.startsWith("step up")));
-  options(trace, page.traces.map((one, i) => [i, `${one.list}: ${one.name}`]), first);
-  options(controller, controllerNames.map((name) => [name, name]), controllerNames[0]);
-  options(beside, [["", "none"], ...controllerNames.map((name) => [name, name])], controllerNames[1] || "");
-  byId("time-lead").append(`Of the first display (${displayText(run.results[0].display)}) and seed ${run.seeds[0]}. Every controller starts at the top; the first ${run.warm_up_frames} frames count in no figure.`);
-  const draw = () => {
-    hideTip();
-    drawTime(byId("time-plot"), page.traces[Number(trace.value)], unique([controller.value, beside.value]));
+  const chosen = controls([
+    ["Trace", "time-trace", page.traces.map((one, i) => [i, `${one.list}: ${one.name}`]), first],
+    ["Controller", "time-controller", controllerNames, controllerNames[0]],
+    ["beside", "time-beside", withAll(controllerNames, "none"), controllerNames[1] || ""],
+  ], () => show());
+  const show = () => {
+    const [trace, ...names] = chosen.values();
+    drawTime(host, page.traces[Number(trace)], unique(names).filter(Boolean));
   };
-  for (const select of [trace, controller, beside]) select.addEventListener("change", draw);
-  return draw;
+  section("time", "Over time", el("p", {},
+    `Of the first display (${displayText(run.results[0].display)}) and seed ${run.seeds[0]}. The load is that of a frame at the output's resolution, in targets. Every controller starts at the top; the first ${run.warm_up_frames} frames count in no figure.`),
+    chosen.node, host);
+  keepDrawn(show);
 }
 
-function startTables() {
-  byId("totals-table").append(makeTotalsTable().node);
+function showRows() {
   const table = makeTraceTable();
-  const trace = byId("rows-trace");
-  const controller = byId("rows-controller");
   const names = unique(page.traces.map((one) => one.name));
-  options(trace, [["", "all"], ...names.map((name) => [name, name])], names[0]);
-  options(controller, [["", "all"], ...controllerNames.map((name) => [name, name])], "");
-  const filter = () => table.show((row) =>
-    (trace.value === "" || row.trace === trace.value) && (controller.value === "" || row.controller === controller.value));
-  for (const select of [trace, controller]) select.addEventListener("change", filter);
-  filter();
-  byId("rows-table").append(table.node);
+  const filter = (trace, controller) => table.show((row) =>
+    (trace === "" || row.trace === trace) && (controller === "" || row.controller === controller));
+  const chosen = controls([
+    ["Trace", "rows-trace", withAll(names), names[0]], ["Controller", "rows-controller", withAll(controllerNames), ""],
+  ], filter);
+  filter(...chosen.values());
+  section("rows", "Each trace", chosen.node, table.node);
 }
 
-function showFacts() {
-  byId("lead").append(`${controllerNames.length} controllers over ${page.traces.length} loads on a simulated display with vertical synchronisation: what they drop and what they draw.`);
-  const facts = [
-    ["command", el("code", {}, page.command)],
-    ["ladder", `${run.output[0]}×${run.output[1]}, scale ${run.min_scale} to ${run.max_scale} on each axis`],
-    ["seeds", `${run.seeds.join(", ")}; figures are means over them`],
-    ["dropped", "refreshes without a new frame, of one seed, over the feasible traces; frames that wait for the processor do not count"],
-    ["pixels", "mean area drawn over that of an oracle that knows each frame's load and fits it into one refresh"],
-    ["settles", "frames until the area stays within 5 % of its final mean after a step of the load that lowers or raises it"],
-    ["development, held-out", "the constants of the predictive controller were searched on the first list alone"],
-    ["stand-ins", "controllers with -like in their name are written from public descriptions and are not the products"],
-  ];
-  byId("facts").append(...facts.flatMap(([term, text]) => [el("dt", {}, term), el("dd", {}, text)]));
-}
+const kFacts = [
+  ["command", el("code", {}, page.command)],
+  ["ladder", `${run.output[0]}×${run.output[1]}, scale ${run.min_scale} to ${run.max_scale} on each axis`],
+  ["seeds", `${run.seeds.join(", ")}; figures are means over them`],
+  ["dropped", "refreshes without a new frame, of one seed, over the feasible traces; frames that wait for the processor do not count"],
+  ["pixels", "mean area drawn over that of an oracle that knows each frame's load and fits it into one refresh"],
+  ["settles", "frames until the area stays within 5 % of its final mean after a step of the load that lowers or raises it"],
+  ["development, held-out", "the constants of the predictive controller were searched on the first list alone"],
+  ["stand-ins", "controllers with -like in their name are written from public descriptions and are not the products"],
+];
 
-showFacts();
-startTables();
-const drawAll = startTime();
-let drawnWidth = 0;
-new ResizeObserver(() => {
-  if (document.body.clientWidth === drawnWidth) return;
-  drawnWidth = document.body.clientWidth;
-  // Later: drawing changes the height, and an observer must not resize what it observes.
-  requestAnimationFrame(drawAll);
-}).observe(document.body);
+head("Resolution controllers",
+  `${controllerNames.length} controllers over ${page.traces.length} loads on a simulated display with vertical synchronisation: what they drop and what they draw.`);
+section("totals", "All traces",
+  quiet("Over the feasible traces of a list. Choose a column's title to sort by it. Bold: the best of its list and display."),
+  makeTotalsTable().node);
+if (hasPlots) showTime();
+showRows();
+section("method", "How it was measured", terms("facts", kFacts));

@@ -12,7 +12,7 @@
 #include "embedded_bench_files.h"
 #include "tools/image/flip.h"
 #include "tools/image/image_io.h"
-#include "tools/page/page_template.h"
+#include "tools/page/page.h"
 
 namespace quincunx::bench {
 namespace {
@@ -94,65 +94,57 @@ struct Box {
   }
 };
 
+// Places of values between two ends; on a logarithmic axis equal quotients are equally far apart.
 struct Axis {
   double low, high, from, to;
-  double operator()(double value) const { return from + (value - low) / (high - low) * (to - from); }
+  bool logarithmic = false;
+
+  double at(double value) const { return logarithmic ? std::log(value) : value; }
+  double operator()(double value) const {
+    return from + (at(value) - at(low)) / (at(high) - at(low)) * (to - from);
+  }
 };
 
-// An axis of costs, which lie between one copy and some tens: equal quotients are equally far apart.
-struct CostAxis {
-  Axis logarithm;
-  double operator()(double cost) const { return logarithm(std::log(cost)); }
-};
-
-// Some room around the values, at the end more, for labels.
-Axis axis_of(const std::vector<double>& values, double from, double to, double room_at_end) {
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const double span = std::max(*high - *low, 0.1 * *high + 1e-6);
-  return {std::max(0.0, *low - 0.12 * span), *high + room_at_end * span, from, to};
+// Costs lie between one copy and some tens. Labels need room behind the last.
+Axis cost_axis(const std::vector<MethodMean>& means) {
+  const auto [low, high] = std::ranges::minmax(means, {}, &MethodMean::cost);
+  return {low.cost / 1.15, high.cost * 2.2, kLeft, kRight, true};
 }
 
-CostAxis cost_axis_of(const std::vector<double>& costs, double from, double to) {
-  const auto [low, high] = std::minmax_element(costs.begin(), costs.end());
-  constexpr double kRoomBefore = 1.15;
-  constexpr double kRoomAfter = 2.2;  // for labels
-  return {{std::log(*low / kRoomBefore), std::log(*high * kRoomAfter), from, to}};
+Axis error_axis(const std::vector<MethodMean>& means) {
+  const auto [low, high] = std::ranges::minmax(means, {}, &MethodMean::flip);
+  const double room = 0.12 * std::max(high.flip - low.flip, 0.1 * high.flip + 1e-6);
+  return {std::max(0.0, low.flip - room), high.flip + room, kBottom, kTop};
 }
 
-// 1, 2 or 5 times a power of ten, as far as the axis goes.
-std::vector<double> cost_ticks(const CostAxis& axis) {
+// 1, 2 or 5 times a power of ten: on a logarithmic axis all of them, else multiples of the one that gives about six.
+std::vector<double> ticks(const Axis& axis) {
   std::vector<double> ticks;
-  for (double power = 0.01; power < 1e6; power *= 10) {
+  for (double power = 1e-6; power < 1e6; power *= 10) {
     for (const double step : {1.0, 2.0, 5.0}) {
-      const double tick = std::log(step * power);
-      if (tick >= axis.logarithm.low && tick <= axis.logarithm.high) ticks.push_back(step * power);
+      const double tick = step * power;
+      if (axis.logarithmic) {
+        if (tick >= axis.low && tick <= axis.high) ticks.push_back(tick);
+      } else if (ticks.empty() && tick >= (axis.high - axis.low) / 6) {
+        for (double i = std::ceil(axis.low / tick); i * tick <= axis.high; ++i)
+          ticks.push_back(i * tick);
+      }
     }
   }
   return ticks;
-}
-
-// The step of 1, 2 or 5 that gives about six ticks.
-double tick_step(const Axis& axis) {
-  const double raw = (axis.high - axis.low) / 6;
-  const double power = std::pow(10, std::floor(std::log10(raw)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= raw) return step * power;
-  }
-  return 10 * power;
 }
 
 std::string text(double x, double y, const char* kind, const std::string& words) {
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" {}>{}</text>\n", x, y, kind, words);
 }
 
-std::string grid(const CostAxis& x, const Axis& y) {
+std::string grid(const Axis& x, const Axis& y) {
   std::string svg;
-  const double step_y = tick_step(y);
-  for (const double tick : cost_ticks(x)) {
+  for (const double tick : ticks(x)) {
     svg += fmt::format("<path class=\"grid\" d=\"M{:.1f},{}V{}\"/>\n", x(tick), kTop, kBottom);
     svg += text(x(tick), kBottom + 18, "class=\"quiet\" text-anchor=\"middle\"", fmt::format("{:.3g}", tick));
   }
-  for (double tick = std::ceil(y.low / step_y) * step_y; tick <= y.high; tick += step_y) {
+  for (const double tick : ticks(y)) {
     svg += fmt::format("<path class=\"grid\" d=\"M{},{:.1f}H{}\"/>\n", kLeft, y(tick), kRight);
     svg += text(kLeft - 8, y(tick) + 4, "class=\"quiet\" text-anchor=\"end\"", fmt::format("{:.3g}", tick));
   }
@@ -160,17 +152,16 @@ std::string grid(const CostAxis& x, const Axis& y) {
 }
 
 // Steps along the methods that nothing beats, cheapest first.
-std::string front(std::vector<MethodMean> means, const CostAxis& x, const Axis& y) {
+std::string front(std::vector<MethodMean> means, const Axis& x, const Axis& y) {
   std::erase_if(means, [](const MethodMean& mean) { return !mean.on_front; });
-  std::sort(means.begin(), means.end(),
-            [](const MethodMean& a, const MethodMean& b) { return a.cost < b.cost; });
+  std::ranges::sort(means, {}, &MethodMean::cost);
   std::string path = fmt::format("M{:.1f},{}", x(means.front().cost), kTop);
   for (const MethodMean& mean : means)
     path += fmt::format("H{:.1f}V{:.1f}", x(mean.cost), y(mean.flip));
   return fmt::format("<path class=\"front\" d=\"{}H{}\"/>\n", path, kRight);
 }
 
-std::string points(const std::vector<MethodMean>& means, const CostAxis& x, const Axis& y) {
+std::string points(const std::vector<MethodMean>& means, const Axis& x, const Axis& y) {
   std::string svg;
   std::vector<Box> taken;
   for (const MethodMean& mean : means)
@@ -182,7 +173,7 @@ std::string points(const std::vector<MethodMean>& means, const CostAxis& x, cons
     // The nearest line beside the point that is free.
     for (const double line : {0.0, 1.0, -1.0, 2.0, -2.0, 3.0, -3.0}) {
       label = {px + 11, px + 11 + width, py + kLine * line - 7, py + kLine * line + 7};
-      if (std::none_of(taken.begin(), taken.end(), [&](const Box& box) { return box.meets(label); })) break;
+      if (std::ranges::none_of(taken, [&](const Box& box) { return box.meets(label); })) break;
     }
     taken.push_back(label);
     svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5.5\" class=\"{}\"/>\n", px, py,
@@ -296,13 +287,10 @@ Result<std::vector<std::uint8_t>> GalleryMaker::sheet(const GalleryScene& scene,
 }
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {
-  return tools::page_from_template(
-      {.files = embedded_bench_files(),
-       .title = "speed against error",
-       .body = "bench.html",
-       .scripts = {"elements.js", "data.js", "plots.js", "frames.js", "sorted_table.js", "tables.js",
-                   "viewer.js", "gallery.js", "page.js"}},
-      page_json(result, gallery));
+  return tools::make_page({.title = "speed against error",
+                           .script = tools::text_of(embedded_bench_files(), "bench.js"),
+                           .beside = "bench.csv"},
+                          page_json(result, gallery));
 }
 
 std::string plot_of(const BenchResult& result) {
@@ -310,13 +298,7 @@ std::string plot_of(const BenchResult& result) {
   const double scale = headline_scale(result);
   std::vector<MethodMean> means = method_means(result);
   std::erase_if(means, [scale](const MethodMean& mean) { return mean.scale != scale; });
-  std::vector<double> costs, errors;
-  for (const MethodMean& mean : means) {
-    costs.push_back(mean.cost);
-    errors.push_back(mean.flip);
-  }
-  const CostAxis x = cost_axis_of(costs, kLeft, kRight);
-  const Axis y = axis_of(errors, kBottom, kTop, 0.12);
+  const Axis x = cost_axis(means), y = error_axis(means);
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
       "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -70,8 +71,7 @@ class GalleryMaker {
 // Size of the crops so that all sheets together stay near `bytes`.
 Extent crop_for(Extent output, std::size_t pictures, double bytes);
 
-// Returns one HTML file: the template with style, script, figures and pictures put in. An empty gallery leaves the
-// viewer out. Pure.
+// Returns the page of a result; an empty gallery leaves the viewer out.
 std::string page_of(const BenchResult& result, const Gallery& gallery);
 
 // Returns an SVG that stands alone, of error over cost at the headline scale: mean FLIP of all scenes over the mean

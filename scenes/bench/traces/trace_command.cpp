@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "embedded_bench_files.h"
-#include "tools/page/page_template.h"
+#include "tools/page/page.h"
 #include "tools/program/atomic_file.h"
 
 namespace quincunx::traces {
@@ -96,15 +96,14 @@ std::string page_of(const TraceRun& run, const std::string& command) {
       traces.push_back(trace_json(list.name, trace, settings));
     }
   }
-  return tools::page_from_template({.files = bench::embedded_bench_files(),
-                                    .title = "resolution controllers",
-                                    .body = "traces.html",
-                                    .scripts = {"elements.js", "sorted_table.js", "traces.js"}},
-                                   {{"command", command},
-                                    {"frames", longest},
-                                    {"refresh_hz", settings.displays.front().refresh_hz},
-                                    {"run", Json::parse(json_of(run))},
-                                    {"traces", std::move(traces)}});
+  return tools::make_page({.title = "resolution controllers",
+                           .script = tools::text_of(bench::embedded_bench_files(), "traces.js"),
+                           .beside = "traces.csv"},
+                          {{"command", command},
+                           {"frames", longest},
+                           {"refresh_hz", settings.displays.front().refresh_hz},
+                           {"run", Json::parse(json_of(run))},
+                           {"traces", std::move(traces)}});
 }
 
 Result<TraceRun> run_traces(const TraceOptions& options) {
