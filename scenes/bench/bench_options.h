@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "bench/front/front_command.h"
-#include "bench/parts/parts_command.h"
-#include "bench/resize/resize_command.h"
+#include "bench/front.h"
+#include "bench/parts.h"
+#include "bench/resize.h"
 #include "bench/traces/trace_command.h"
-#include "bench/tune/tune_command.h"
+#include "bench/tune.h"
 #include "frames/picture_options.h"
 #include "quincunx/advanced/extent.h"
 

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <type_traits>
 
 #include "bench/bench_options.h"
-#include "bench/front/front_points.h"
+#include "bench/front.h"
+#include "bench/harness/measuring.h"
 #include "bench/speed_error/bench_compare.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_page.h"
@@ -19,25 +22,19 @@
 namespace quincunx::bench {
 namespace {
 
-Status write_files(const std::string& folder, const BenchRun& run) {
+void write_files(const std::string& folder, const BenchRun& run) {
   const auto write = [&folder](const char* name, const std::string& text) {
-    return tools::write_text((std::filesystem::path(folder) / name).string(), text);
+    checked(tools::write_text((std::filesystem::path(folder) / name).string(), text));
   };
-  if (Status status = write("bench.json", to_tables(run.result)); !status.ok()) return status;
-  if (Status status = write("bench.csv", to_csv(run.result)); !status.ok()) return status;
-  if (Status status = write("bench.svg", plot_of(run.result)); !status.ok()) return status;
-  return write("bench.html", page_of(run.result, run.gallery));
+  write("bench.json", to_tables(run.result));
+  write("bench.csv", to_csv(run.result));
+  write("bench.svg", plot_of(run.result));
+  write("bench.html", page_of(run.result, run.gallery));
 }
 
-Result<BenchRun> results_for(const BenchOptions& options) {
-  if (!options.from.empty()) {
-    auto result = read_result(options.from);
-    if (!result.ok()) return result.status();
-    return BenchRun{std::move(result).value(), {}};
-  }
-  auto plan = plan_from(options);
-  if (!plan.ok()) return plan.status();
-  return run_bench(plan.value(), options);
+BenchRun results_for(const BenchOptions& options) {
+  if (!options.from.empty()) return {checked(read_result(options.from)), {}};
+  return run_bench(checked(plan_from(options)), options);
 }
 
 void print_methods() {
@@ -48,79 +45,55 @@ void print_methods() {
 int measure(const BenchOptions& options) {
   // Before minutes of work, so that a wrong name is no surprise at their end.
   std::optional<BenchResult> old;
-  if (!options.compare.empty()) {
-    auto read = read_result(options.compare);
-    if (!read.ok()) return tools::fail(read.status());
-    old = std::move(read).value();
-  }
-  auto run = results_for(options);
-  if (!run.ok()) return tools::fail(run.status());
-  if (!options.out.empty()) {
-    if (Status status = write_files(options.out, run.value()); !status.ok()) return tools::fail(status);
-  }
+  if (!options.compare.empty()) old = checked(read_result(options.compare));
+  const BenchRun run = results_for(options);
+  if (!options.out.empty()) write_files(options.out, run);
   if (options.json) {
-    fmt::print("{}", to_json(run->result));
+    fmt::print("{}", to_json(run.result));
   } else if (!options.quiet) {
-    fmt::print("{}", text_of(run->result));
+    fmt::print("{}", text_of(run.result));
     if (!options.out.empty()) fmt::print("\nThe page: {}/bench.html\n", options.out);
   }
   if (!old) return tools::kDone;
-  const auto comparison = compare(*old, run->result);
-  if (!comparison.ok()) return tools::fail(comparison.status());
-  if (!options.quiet) fmt::print(options.json ? stderr : stdout, "\n{}", text_of(comparison.value()));
-  return comparison->worse() ? tools::kFailed : tools::kDone;
-}
-
-int replay_traces(const BenchOptions& options) {
-  const auto run = traces::run_traces(options.traces);
-  if (!run.ok()) return tools::fail(run.status());
-  if (!options.out.empty()) {
-    if (Status status = traces::write_files(run.value(), options.out, options.command_line); !status.ok()) {
-      return tools::fail(status);
-    }
-  }
-  if (options.json) {
-    fmt::print("{}", traces::json_of(run.value()));
-  } else if (!options.quiet) {
-    fmt::print("{}", traces::text_of(run.value()));
-    if (!options.out.empty()) fmt::print("\nThe page: {}/traces.html\n", options.out);
-  }
-  return tools::kDone;
+  const Comparison comparison = checked(compare(*old, run.result));
+  if (!options.quiet) fmt::print(options.json ? stderr : stdout, "\n{}", text_of(comparison));
+  return comparison.worse() ? tools::kFailed : tools::kDone;
 }
 
 // Makes tables instead of the whole comparison: `measure` returns what text_of(), json_of() and csv_of() take; `name`
-// is that of the files in --out.
-template <typename Measure>
-int tabulate(const BenchOptions& options, const std::string& name, const Measure& measure) {
+// is that of the files in --out. page(result), if given, is written there, too.
+template <typename Measure, typename Page = std::nullptr_t>
+int tabulate(const BenchOptions& options, const std::string& name, const Measure& measure,
+             const Page& page = {}) {
   const auto result = measure(options);
-  if (!result.ok()) return tools::fail(result.status());
+  const std::string base = (std::filesystem::path(options.out) / name).string();
+  constexpr bool kHasPage = !std::is_same_v<Page, std::nullptr_t>;
   if (!options.out.empty()) {
-    const std::string base = (std::filesystem::path(options.out) / name).string();
-    Status status = tools::write_text(base + ".json", json_of(result.value()));
-    if (status.ok()) status = tools::write_text(base + ".csv", csv_of(result.value()));
-    if (!status.ok()) return tools::fail(status);
+    checked(tools::write_text(base + ".json", json_of(result)));
+    checked(tools::write_text(base + ".csv", csv_of(result)));
+    if constexpr (kHasPage) checked(tools::write_text(base + ".html", page(result)));
   }
   if (options.json) {
-    fmt::print("{}", json_of(result.value()));
+    fmt::print("{}", json_of(result));
   } else if (!options.quiet) {
-    fmt::print("{}", text_of(result.value()));
+    fmt::print("{}", text_of(result));
+    if (kHasPage && !options.out.empty()) fmt::print("\nThe page: {}.html\n", base);
   }
   return tools::kDone;
 }
 
 int write_measured_front(const BenchOptions& options) {
-  const auto front = measure_front(options);
-  if (!front.ok()) return tools::fail(front.status());
-  if (Status status = write_front(options, front.value()); !status.ok()) return tools::fail(status);
+  const ErrorFront front = measure_front(options);
+  write_front(options, front);
   if (options.json) {
-    fmt::print("{}", front->to_json());
+    fmt::print("{}", front.to_json());
   } else if (!options.quiet) {
-    fmt::print("{}", text_of(front.value()));
+    fmt::print("{}", text_of(front));
   }
   return tools::kDone;
 }
 
-int run(int argc, char** argv) {
+int run_command(int argc, char** argv) {
   BenchOptions options;
   if (const auto exit_code = parse_command_line(argc, argv, options)) return *exit_code;
   tools::set_up_log(options.quiet, options.verbosity);
@@ -134,9 +107,11 @@ int run(int argc, char** argv) {
     scenes::print_devices(options);
   } else if (options.traces.quality) {
     return tabulate(options, "quality",
-                    [](const BenchOptions& all) { return traces::run_quality(all.traces); });
+                    [](const BenchOptions& all) { return checked(traces::run_quality(all.traces)); });
   } else if (options.traces.wanted) {
-    return replay_traces(options);
+    return tabulate(
+        options, "traces", [](const BenchOptions& all) { return checked(traces::run_traces(all.traces)); },
+        [&options](const traces::TraceRun& run) { return traces::page_of(run, options.command_line); });
   } else if (options.resize.wanted) {
     return tabulate(options, "resize", run_resize);
   } else if (options.parts_bench.wanted) {
@@ -149,6 +124,14 @@ int run(int argc, char** argv) {
     return measure(options);
   }
   return tools::kDone;
+}
+
+int run(int argc, char** argv) {
+  try {
+    return run_command(argc, argv);
+  } catch (const Failure& failure) {
+    return tools::fail(failure.status);
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "bench/front/front_points.h"
+#include "bench/front.h"
 #include "catalog/scene_catalog.h"
 
 namespace quincunx::bench {

@@ -155,7 +155,7 @@ TEST_F(PageInBrowser, DrawsItsPlotsSortsItsTablesAndSwitchesItsPictures) {
   if (!there()) QUINCUNX_SKIP("there is no chromium");
   const Json seen = this->seen(page_of(sample_of_two_scenes(), sample_gallery()), kProbe);
   EXPECT_EQ(seen["errors"], Json::array());
-  EXPECT_EQ(seen["points"], (Json{{"bilinear", "circle"}, {"quincunx:mean", "rectRot"}}));
+  EXPECT_EQ(seen["points"], Json::parse(R"([["bilinear", "circle"], ["quincunx:mean", "rectRot"]])"));
   EXPECT_EQ(seen["errorBar"], (Json{.99, 1, 1.01}));
   EXPECT_EQ(seen["front"],
             2 + 3);  // the one is quicker, the other better; and the corners before and behind them

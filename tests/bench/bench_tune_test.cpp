@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/tune/tune_choice.h"
+#include "bench/tune.h"
 
 #include <gtest/gtest.h>
 

@@ -44,8 +44,8 @@ ROOMS = (
     ("renderer/session", "scenes/session", "renderer/frames tools/page"),
     ("renderer/window", "scenes/window", "renderer/session"),
     ("renderer/programs", "scenes/programs", "renderer/window"),
-    ("bench/harness", "scenes/bench/harness", "core"),
-    ("bench/traces", "scenes/bench/traces", "scenes tools/page"),
+    ("bench/harness", "scenes/bench/harness", "core/device"),
+    ("bench/traces", "scenes/bench/traces", "scenes tools/page bench/harness"),
     ("bench", "scenes/bench", "bench/harness bench/traces renderer/session core/passes"),
 )
 SHEDS = ("diagnose", "bench")  # built only where they are asked for

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/harness/clocks.h"
+#include "bench/harness/measuring.h"
 #include "device/opencl.h"
 #include "kernel_cases.h"
 #include "peers.h"

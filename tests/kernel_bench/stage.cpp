@@ -10,8 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "bench/harness/clocks.h"
-#include "bench/harness/copy_kernel.h"
+#include "bench/harness/measuring.h"
 
 namespace quincunx::bench {
 namespace {

@@ -26,8 +26,8 @@ struct PageParts {
 };
 
 // Returns the page of these figures, whatever names they hold. Chart.js is read from the file that the environment
-// variable QUINCUNX_CHART_JS names, else from where Debian's package libjs-chart.js has it, and put into the page. Where
-// it is missing the page has tables only, and says why; so does the log.
+// variable QUINCUNX_CHART_JS names, else from where Debian's package libjs-chart.js has it, and put into the page.
+// Where it is missing the page has tables only, and says why; so does the log.
 std::string make_page(const PageParts& parts, const nlohmann::ordered_json& figures);
 
 // Returns bytes as text (RFC 4648, with padding), as pages carry pictures.

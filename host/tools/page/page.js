@@ -167,9 +167,11 @@ function setColours() {
     displayColors: false, backgroundColor: css("--ink"), bodyColor: css("--paper"), padding: 9,
     filter: (item) => Boolean(item.dataset.explain),
   });
-  Object.assign(defaults.plugins.tooltip.callbacks, { title: () => [], label: (item) => explained(item).split("\n") });
+  const { scatter } = Chart.overrides;  // which has words of its own
+  for (const callbacks of [defaults.plugins.tooltip.callbacks, scatter.plugins.tooltip.callbacks])
+    Object.assign(callbacks, { title: () => [], label: ({ dataset, dataIndex }) => dataset.explain(dataIndex).split("\n") });
+  scatter.interaction.mode = "nearest";
 }
-const explained = ({ dataset, dataIndex }) => dataset.explain(dataIndex);
 
 // Draws a chart into `host` in place of the one before. `config` is one of Chart.js, whose datasets may have
 // explain(index), the words that mouse and arrow keys show; `label` says what the chart shows, and overlay(context,

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 #include <tuple>
 
 #include "bench/speed_error/bench_statistics.h"
@@ -21,40 +19,6 @@ constexpr double kDeviations = 4;
 constexpr double kDeviationsOfInterval = 1.96;  // half a 95 % interval
 constexpr double kNormalMad = 1.4826;           // standard deviation / median absolute deviation
 constexpr std::size_t kFewestRows = 3;          // rows of a method, for a mean with a spread of its own
-
-// A change of an error counts from this much, absolute plus part of the old value.
-struct Threshold {
-  std::string_view measure;
-  double absolute;
-  double relative;
-};
-constexpr std::array kThresholds = {
-    Threshold{"psnr", 0.05, 0},
-    Threshold{"psnr_linear", 0.05, 0},
-    Threshold{"ssim", 0.001, 0},
-    Threshold{"flip", 0.0005, 0.005},
-    Threshold{"error_p99", 0.001, 0.01},
-    Threshold{"relative_error", 1e-5, 0.02},
-    Threshold{"worst_window", 0.002, 0.01},
-    Threshold{"flicker", 1e-5, 0.01},
-    Threshold{"ghosting", 0.0005, 0.01},
-    Threshold{"psnr_thin", 0.1, 0},
-    Threshold{"psnr_behind_thin", 0.1, 0},
-    Threshold{"psnr_disoccluded", 0.1, 0},
-    Threshold{"psnr_edge", 0.1, 0},
-    Threshold{"psnr_rest", 0.1, 0},
-    Threshold{"psnr_focus", 0.1, 0},
-    Threshold{"psnr_outside", 0.1, 0},
-};
-
-double threshold_of(std::string_view measure, double before) {
-  for (const Threshold& threshold : kThresholds) {
-    if (threshold.measure != measure) continue;
-    return threshold.absolute +
-           (threshold.relative > 0 ? threshold.relative * std::abs(before) : 0);  // may be infinite
-  }
-  return 0;
-}
 
 std::string key_text(const Row& row) {
   return fmt::format("{}, {}, {}", row.scene, row.scale, row.method);
@@ -126,7 +90,7 @@ class Comparer {
       // Infinite in both is no difference at all.
       const double growth = before == after ? 0 : after - before;
       add(row, measure.label, before, after, measure.higher_is_better ? -growth : growth,
-          threshold_of(measure.name, before));
+          measure.threshold(before));
     }
     const auto count = [](const Row& r) { return static_cast<double>(r.quality.non_finite); };
     add(row, "non-finite pixels", count(old), count(row), count(row) - count(old), 0);
@@ -204,30 +168,26 @@ class Comparer {
   Comparison comparison_;
 };
 
-std::string size_text(Extent extent) {
-  return fmt::format("{}x{}", extent.width, extent.height);
-}
-
 Status check_conditions(const Conditions& before, const Conditions& after) {
-  const auto differ = [](const char* what, const auto& old, const auto& now) {
-    return Status::invalid(fmt::format(
-        "the results cannot be compared: the old one has {} {}, the new one {}; measure with the same", what,
-        old, now));
+  Status status;
+  const auto check = [&status](const char* option, const auto& old, const auto& now) {
+    if (old == now || !status.ok()) return;
+    status = Status::invalid(fmt::format(
+        "the results cannot be compared: the old one has {} {}, the new one {}; measure with the same",
+        option, old, now));
   };
-  if (before.output != after.output)
-    return differ("--output", size_text(before.output), size_text(after.output));
-  if (before.frames != after.frames) return differ("--frames", before.frames, after.frames);
-  if (before.warm_up != after.warm_up) return differ("--warm-up", before.warm_up, after.warm_up);
-  if (before.history_warm_up && after.history_warm_up && before.history_warm_up != after.history_warm_up)
-    return differ("--history-warm-up", *before.history_warm_up, *after.history_warm_up);
-  if (before.seed != after.seed) return differ("--seed", before.seed, after.seed);
-  if (before.fps != after.fps) return differ("--fps", before.fps, after.fps);
-  if (before.start != after.start) return differ("--start", before.start, after.start);
-  if (before.noise != after.noise)
-    return differ("--noise", before.noise.value_or(0), after.noise.value_or(0));
-  if (before.truth_samples != after.truth_samples)
-    return differ("--truth", before.truth_samples, after.truth_samples);
-  return {};
+  const auto size = [](Extent extent) { return fmt::format("{}x{}", extent.width, extent.height); };
+  check("--output", size(before.output), size(after.output));
+  check("--frames", before.frames, after.frames);
+  check("--warm-up", before.warm_up, after.warm_up);
+  if (before.history_warm_up && after.history_warm_up)
+    check("--history-warm-up", *before.history_warm_up, *after.history_warm_up);
+  check("--seed", before.seed, after.seed);
+  check("--fps", before.fps, after.fps);
+  check("--start", before.start, after.start);
+  check("--noise", before.noise.value_or(0), after.noise.value_or(0));
+  check("--truth", before.truth_samples, after.truth_samples);
+  return status;
 }
 
 std::string list_text(const char* title, const std::vector<std::string>& items) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bench/harness/measuring.h"
 #include "bench/speed_error/bench_findings.h"
 #include "bench/speed_error/bench_statistics.h"
 #include "embedded_bench_files.h"
@@ -231,18 +232,13 @@ void GalleryMaker::add(double scale, const tools::MeasuredPicture& picture) {
   shots_.back().shots.push_back({to_bytes(picture.tone_mapped()), to_bytes(map)});
 }
 
-Status GalleryMaker::end_scene() {
+void GalleryMaker::end_scene() {
   GalleryScene& scene = gallery_.scenes.back();
   choose_crop(scene);
   for (const Shots& shots : shots_) {
-    auto pictures = sheet(scene, shots, false);
-    if (!pictures.ok()) return pictures.status();
-    auto errors = sheet(scene, shots, true);
-    if (!errors.ok()) return errors.status();
-    scene.sheets.push_back({shots.scale, std::move(pictures).value(), std::move(errors).value()});
+    scene.sheets.push_back({shots.scale, sheet(scene, shots, false), sheet(scene, shots, true)});
   }
   shots_.clear();
-  return {};
 }
 
 void GalleryMaker::choose_crop(GalleryScene& scene) const {
@@ -270,8 +266,8 @@ void GalleryMaker::choose_crop(GalleryScene& scene) const {
   }
 }
 
-Result<std::vector<std::uint8_t>> GalleryMaker::sheet(const GalleryScene& scene, const Shots& shots,
-                                                      bool errors) const {
+std::vector<std::uint8_t> GalleryMaker::sheet(const GalleryScene& scene, const Shots& shots,
+                                              bool errors) const {
   const int channels = errors ? 1 : 3;
   std::vector<std::uint8_t> texels;
   for (int y = scene.y; y < scene.y + gallery_.crop.height; ++y) {
@@ -283,7 +279,7 @@ Result<std::vector<std::uint8_t>> GalleryMaker::sheet(const GalleryScene& scene,
     }
   }
   const Extent extent{gallery_.crop.width, gallery_.crop.height * static_cast<int>(shots.shots.size())};
-  return tools::encode_png(extent, channels, texels);
+  return checked(tools::encode_png(extent, channels, texels));
 }
 
 std::string page_of(const BenchResult& result, const Gallery& gallery) {

@@ -45,7 +45,7 @@ class GalleryMaker {
 
   void begin_scene(const std::string& name, const tools::MeasuredPicture& truth);
   void add(double scale, const tools::MeasuredPicture& picture);  // in the order of the methods
-  Status end_scene();
+  void end_scene();
 
   Gallery take() { return std::move(gallery_); }
 
@@ -60,7 +60,7 @@ class GalleryMaker {
   };
 
   void choose_crop(GalleryScene& scene) const;
-  Result<std::vector<std::uint8_t>> sheet(const GalleryScene& scene, const Shots& shots, bool errors) const;
+  std::vector<std::uint8_t> sheet(const GalleryScene& scene, const Shots& shots, bool errors) const;
 
   Extent output_;
   Gallery gallery_;

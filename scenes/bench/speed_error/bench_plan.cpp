@@ -5,8 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <set>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -36,146 +35,119 @@ constexpr double kSmallestScale = 0.02;
 constexpr double kLargestScale = 2;
 constexpr int kSmallestSide = 16;  // the worst window has 16 x 16 pixels
 
-// "temporal:balanced" for "temporal"; the name itself where there is no such method.
-std::string longest_name(const std::string& name) {
-  const auto variant = parse_variant(name);
-  return variant.ok() ? name_of(variant.value()) : name;
-}
+// A method's twin, which has a mark before its name: what differs.
+struct Twin {
+  std::string_view mark;
+  const char* words;  // added to the summary
+  Status (*apply)(BenchMethod&, int noise);
+};
 
+constexpr Twin kTwins[] = {
+    {"checkerboard/", ", of a checkerboard",
+     [](BenchMethod& method, int) {
+       method.resolve.targets.shading = Shading::kCheckerboard;
+       return Status();
+     }},
+    {"focus/", ", with a focus",
+     [](BenchMethod& method, int) {
+       method.focuses = true;
+       return Status();
+     }},
+    {"denoised/", ", denoised",
+     [](BenchMethod& method, int noise) {
+       if (!method.accumulates || noise == 0) {
+         return Status::invalid(
+             fmt::format("--methods: '{}' needs --noise, and a method that accumulates", method.name));
+       }
+       method.resolve.temporal.noise = 1 / static_cast<float>(noise);
+       return Status();
+     }},
+    {"two-way/", ", both ways",
+     [](BenchMethod& method, int) {
+       if (!method.accumulates)
+         return Status::invalid(fmt::format("--methods: '{}' has no history to merge", method.name));
+       method.two_way = true;
+       return Status();
+     }},
+};
 constexpr std::string_view kEncoded = "@rgba8";
-
-// The method on RGBA8 colour. The curve is that of the metrics, which can be taken back to compare with truth.
-BenchMethod in_eight_bits(BenchMethod method) {
-  method.name += kEncoded;
-  method.summary += ", of RGBA8 colour";
-  method.resolve.colour = PixelFormat::kRGBA8;
-  method.resolve.output.tone_map = ToneMap::kReinhard;
-  method.is_default = false;
-  return method;
-}
-
-// A method's twin of frames in which half of the pixels are shaded.
-constexpr std::string_view kCheckerboard = "checkerboard/";
-
-BenchMethod on_checkerboard(BenchMethod method) {
-  method.name = std::string(kCheckerboard) + method.name;
-  method.summary += ", of a checkerboard";
-  method.resolve.targets.shading = Shading::kCheckerboard;
-  method.is_default = false;
-  return method;
-}
-
-// A method's twin with a part of the picture in focus.
-constexpr std::string_view kFocus = "focus/";
-
-BenchMethod with_focus(BenchMethod method) {
-  method.name = std::string(kFocus) + method.name;
-  method.summary += ", with a focus";
-  method.focuses = true;
-  method.is_default = false;
-  return method;
-}
-
-// A method's twin at an output of so much of the picture's size on each axis, which is then scaled to it.
 constexpr std::string_view kDual = "dual";
 
-// "dual0.8/temporal": 0.8 and "temporal"; nothing for a name without it. Errors: for a scale that is none.
-struct DualName {
-  std::string scale;
-  std::string method;
-};
-std::optional<DualName> split_dual(const std::string& name) {
+const Twin* twin_of(std::string_view name) {
+  const auto* const twin =
+      std::ranges::find_if(kTwins, [name](const Twin& one) { return name.starts_with(one.mark); });
+  return twin != std::end(kTwins) ? twin : nullptr;
+}
+
+Result<BenchMethod> method_named(const std::string& name, int noise);
+
+// The method behind the mark of a twin. Only frames both ways may also be denoised.
+Result<BenchMethod> marked_method(const Twin& twin, const std::string& name, int noise) {
+  auto method = method_named(name.substr(twin.mark.size()), noise);
+  if (!method.ok()) return method;
+  method->name.insert(0, twin.mark);
+  method->summary += twin.words;
+  method->is_default = false;
+  if (Status status = twin.apply(method.value(), noise); !status.ok()) return status;
+  return method;
+}
+
+// "dual0.8/NAME": the method at an output of .8 of the picture on each axis, which is then scaled to it.
+Result<BenchMethod> dual_method(const std::string& name, int noise) {
   const std::size_t slash = name.find('/');
-  if (!name.starts_with(kDual) || slash == std::string::npos) return {};
-  return DualName{name.substr(kDual.size(), slash - kDual.size()), name.substr(slash + 1)};
-}
-
-BenchMethod at_smaller_output(BenchMethod method, const std::string& scale) {
-  method.name = std::string(kDual) + scale + "/" + method.name;
-  method.summary += fmt::format(", at {} of the output, scaled", scale);
-  method.dual = scale;
-  method.is_default = false;
+  const std::string scale = name.substr(kDual.size(), slash - kDual.size());
+  if (auto outputs = scenes::OutputPath::parse(scale, {1000, 1000}, 0); !outputs.ok())
+    return Status::invalid(fmt::format("--methods: '{}': {}", name, outputs.status().message()));
+  auto method = method_named(name.substr(slash + 1), noise);
+  if (!method.ok()) return method;
+  if (method->two_way)
+    return Status::invalid(fmt::format("--methods: '{}': both ways there is one output", name));
+  method->name.insert(0, name.substr(0, slash + 1));
+  method->summary += fmt::format(", at {} of the output, scaled", scale);
+  method->dual = scale;
+  method->is_default = false;
   return method;
 }
 
-// The twin of a method that accumulates, which is told how noisy its frames are.
-constexpr std::string_view kDenoised = "denoised/";
-
-Result<BenchMethod> denoised(BenchMethod method, int noise) {
-  if (!method.accumulates || noise == 0) {
-    return Status::invalid(fmt::format("--methods: '{}{}' needs --noise, and a method that accumulates",
-                                       kDenoised, method.name));
+Result<BenchMethod> method_named(const std::string& name, int noise) {
+  if (name.starts_with(kDual) && name.find('/') != std::string::npos) return dual_method(name, noise);
+  if (const Twin* const twin = twin_of(name)) {
+    const Twin* const inner = twin_of(std::string_view(name).substr(twin->mark.size()));
+    if (inner == nullptr || (twin->mark == "two-way/" && inner->mark == "denoised/"))
+      return marked_method(*twin, name, noise);
   }
-  method.name = std::string(kDenoised) + method.name;
-  method.summary += ", denoised";
-  method.resolve.temporal.noise = 1 / static_cast<float>(noise);
-  method.is_default = false;
-  return method;
-}
-
-// The twin of a method that accumulates, with the histories of both directions.
-constexpr std::string_view kTwoWay = "two-way/";
-
-Result<BenchMethod> both_ways(BenchMethod method) {
-  if (!method.accumulates)
-    return Status::invalid(fmt::format("--methods: '{}{}' has no history to merge", kTwoWay, method.name));
-  method.name = std::string(kTwoWay) + method.name;
-  method.summary += ", both ways";
-  method.two_way = true;
-  method.is_default = false;
+  const bool encoded = name.ends_with(kEncoded);
+  const std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
+  const auto variant = parse_variant(plain);
+  const std::vector<BenchMethod> methods = all_methods();
+  const auto found =
+      std::ranges::find(methods, variant.ok() ? name_of(variant.value()) : "", &BenchMethod::name);
+  if (found == methods.end()) {
+    std::vector<std::string> known;
+    std::ranges::transform(methods, std::back_inserter(known), &BenchMethod::name);
+    const std::string meant = tools::did_you_mean(plain, known);
+    return Status::invalid(fmt::format("--methods: there is no method '{}'{}", name,
+                                       meant.empty() ? "; --list-methods has all" : meant));
+  }
+  BenchMethod method = *found;
+  if (encoded) {
+    // The curve is that of the metrics, which can be taken back to compare with truth.
+    method.name += kEncoded;
+    method.summary += ", of RGBA8 colour";
+    method.resolve.colour = PixelFormat::kRGBA8;
+    method.resolve.output.tone_map = ToneMap::kReinhard;
+    method.is_default = false;
+  }
   return method;
 }
 
 Result<std::vector<BenchMethod>> chosen_methods(const std::vector<std::string>& names, int noise) {
-  std::vector<BenchMethod> methods = all_methods();
-  if (names.empty()) return methods;
+  if (names.empty()) return all_methods();
   std::vector<BenchMethod> chosen;
   for (const std::string& name : names) {
-    if (const auto dual = split_dual(name)) {
-      if (auto outputs = scenes::OutputPath::parse(dual->scale, {1000, 1000}, 0); !outputs.ok())
-        return Status::invalid(fmt::format("--methods: '{}': {}", name, outputs.status().message()));
-      auto method = chosen_methods({dual->method}, noise);
-      if (!method.ok()) return method.status();
-      if (method->front().two_way)
-        return Status::invalid(fmt::format("--methods: '{}': both ways there is one output", name));
-      chosen.push_back(at_smaller_output(method->front(), dual->scale));
-      continue;
-    }
-    const bool encoded = name.ends_with(kEncoded);
-    const bool focuses = name.starts_with(kFocus);
-    const bool checkerboard = name.starts_with(kCheckerboard);
-    const bool two_way = name.starts_with(kTwoWay);
-    std::string plain = encoded ? name.substr(0, name.size() - kEncoded.size()) : name;
-    if (two_way) plain.erase(0, kTwoWay.size());
-    const bool denoises = plain.starts_with(kDenoised);
-    if (denoises) plain.erase(0, kDenoised.size());
-    if (checkerboard) plain.erase(0, kCheckerboard.size());
-    if (focuses) plain.erase(0, kFocus.size());
-    const std::string longest = longest_name(plain);
-    const auto found = std::find_if(methods.begin(), methods.end(),
-                                    [&](const BenchMethod& method) { return method.name == longest; });
-    if (found == methods.end()) {
-      std::vector<std::string> known;
-      for (const BenchMethod& method : methods)
-        known.push_back(method.name);
-      const std::string meant = tools::did_you_mean(plain, known);
-      return Status::invalid(fmt::format("--methods: there is no method '{}'{}", name,
-                                         meant.empty() ? "; --list-methods has all" : meant));
-    }
-    BenchMethod method = *found;
-    if (encoded) method = in_eight_bits(std::move(method));
-    if (checkerboard) method = on_checkerboard(std::move(method));
-    if (denoises) {
-      auto twin = denoised(std::move(method), noise);
-      if (!twin.ok()) return twin.status();
-      method = std::move(twin).value();
-    }
-    if (two_way) {
-      auto twin = both_ways(std::move(method));
-      if (!twin.ok()) return twin.status();
-      method = std::move(twin).value();
-    }
-    chosen.push_back(focuses ? with_focus(std::move(method)) : std::move(method));
+    auto method = method_named(name, noise);
+    if (!method.ok()) return method.status();
+    chosen.push_back(std::move(method).value());
   }
   return chosen;
 }
@@ -289,6 +261,14 @@ Result<BenchPlan> plan_from(const BenchOptions& options) {
     plan.conditions.focus_scale = options.focus_scale;
   }
   return plan;
+}
+
+Result<BenchPlan> single_plan_from(BenchOptions options) {
+  if (options.methods.empty()) options.methods = {name_of(variant_of(ResolveSettings{}))};
+  if (options.scenes.empty()) options.scenes = {"courtyard"};
+  options.scenes.resize(1);
+  options.methods.resize(1);
+  return plan_from(options);
 }
 
 scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method) {

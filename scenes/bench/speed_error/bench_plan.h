@@ -28,7 +28,7 @@ struct BenchMethod {
   std::string dual = {};     // as --dual; empty: its output is the picture's size
 };
 
-// Every method that there is.
+// Returns every method that there is.
 std::vector<BenchMethod> all_methods();
 
 struct BenchPlan {
@@ -39,13 +39,17 @@ struct BenchPlan {
   Conditions conditions;
 };
 
-// Errors: kInvalidArgument, for a name or a number that is no good; the message says what would be.
+// Makes a plan. Errors: kInvalidArgument, for a wrong name or number; the message says what would be right.
 Result<BenchPlan> plan_from(const BenchOptions& options);
 
-// The frames of one scale as methods with this jitter and bias get them; their times are seconds_of().
+// Returns the plan of the first scene and the first method that the options name; by default the courtyard and the
+// default method.
+Result<BenchPlan> single_plan_from(BenchOptions options);
+
+// Returns the frames of one scale as methods with this jitter and bias get them; their times are seconds_of().
 scenes::SequenceSettings sequence_for(const BenchPlan& plan, double scale, const BenchMethod& method);
 
-// The focus of those frames; plan_from() has checked it.
+// Returns the focus of those frames; plan_from() has checked it.
 scenes::FocusOptions focus_for(const Conditions& conditions, const BenchMethod& method);
 
 // The frames of a case are numbered from 0: `warm_up` that warm up, those whose errors are measured, again
@@ -54,11 +58,10 @@ scenes::FocusOptions focus_for(const Conditions& conditions, const BenchMethod& 
 int first_frame_for(const Conditions& conditions, const BenchMethod& method);
 int frames_of(const Conditions& conditions);
 
-// Scene time of a frame.
+// Returns the scene time of a frame.
 double seconds_of(const Conditions& conditions, int frame);
 
-// As they are, but for a scene with cuts: from the first cut on that would be measured, so that the first
-// measured frame is the first of a shot.
+// Returns the conditions of a scene: where it has cuts, its first measured frame is the first after a cut.
 Conditions conditions_for(const Conditions& conditions, const scenes::Scene& scene);
 
 }  // namespace quincunx::bench

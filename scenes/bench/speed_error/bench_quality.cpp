@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "bench/harness/measuring.h"
 #include "bench/speed_error/bench_plan.h"
 #include "embedded_shader_files.h"
 #include "frames/target_file.h"
@@ -43,18 +44,17 @@ struct Moment {
   double seconds;
 };
 
-Result<std::string> key_of(const Moment& moment) {
+std::string key_of(const Moment& moment) {
   const Conditions& conditions = moment.conditions;
-  const auto sample =
-      scenes::render_truth(moment.renderer, {.output = conditions.output, .samples = 1}, moment.seconds);
-  if (!sample.ok()) return sample.status();
+  const auto sample = checked(
+      scenes::render_truth(moment.renderer, {.output = conditions.output, .samples = 1}, moment.seconds));
   std::string text =
       fmt::format("{} {} {} {} {}x{} {}\n", QUINCUNX_VERSION, moment.scene, conditions.seed, moment.seconds,
                   conditions.output.width, conditions.output.height, conditions.truth_samples);
   text += moment.gl_version;
   for (const EmbeddedFile& file : scenes::embedded_shader_files())
     text += file.text;
-  text.append(reinterpret_cast<const char*>(sample->data()), sample->size() * sizeof(float));
+  text.append(reinterpret_cast<const char*>(sample.data()), sample.size() * sizeof(float));
   const XXH128_hash_t hash = XXH3_128bits(text.data(), text.size());
   return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
@@ -69,21 +69,18 @@ std::optional<std::vector<float>> kept(const fs::path& path, Extent extent) {
 }
 
 // As it comes back from the file, so that the first run and the next measure alike.
-Result<std::vector<float>> truth_of(const Moment& moment) {
+std::vector<float> truth_of(const Moment& moment) {
   const Extent output = moment.conditions.output;
   const auto draw = [&] {
-    return scenes::render_truth(
-        moment.renderer, {.output = output, .samples = moment.conditions.truth_samples}, moment.seconds);
+    return checked(scenes::render_truth(
+        moment.renderer, {.output = output, .samples = moment.conditions.truth_samples}, moment.seconds));
   };
   const auto folder = cache_folder();
   if (!folder) return draw();
-  auto key = key_of(moment);
-  if (!key.ok()) return key.status();
-  const fs::path path = *folder / "truth" / (key.value() + ".exr");
+  const fs::path path = *folder / "truth" / (key_of(moment) + ".exr");
   if (auto pixels = kept(path, output)) return std::move(*pixels);
   auto drawn = draw();
-  if (!drawn.ok()) return drawn;
-  if (Status status = tools::write_light(path.string(), output, drawn.value()); !status.ok()) {
+  if (Status status = tools::write_light(path.string(), output, drawn); !status.ok()) {
     spdlog::warn("truth is not kept: {}", status.message());
     return drawn;
   }
@@ -174,22 +171,19 @@ Quality QualityTally::quality() const {
   return quality;
 }
 
-Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
-                              const std::string& gl_version, const Conditions& conditions) {
+SceneTruth make_truth(scenes::Renderer& renderer, const scenes::Scene& scene, const std::string& gl_version,
+                      const Conditions& conditions) {
   SceneTruth truth;
   double change = 0;
   for (int frame = 0; frame < conditions.frames; ++frame) {
     const double seconds = seconds_of(conditions, conditions.warm_up + frame);
     auto rgba = truth_of({renderer, scene.name, gl_version, conditions, seconds});
-    if (!rgba.ok()) return rgba.status();
-    truth.pictures.push_back(tools::measured(conditions.output, std::move(rgba).value(), scene.exposure));
+    truth.pictures.push_back(tools::measured(conditions.output, std::move(rgba), scene.exposure));
     if (frame > 0) change += mean_change(truth.pictures.back(), *(truth.pictures.end() - 2));
     spdlog::debug("truth of {} at {:.3f} s", scene.name, seconds);
   }
   if (conditions.frames > 1) truth.flicker = change / (conditions.frames - 1);
-  auto masks = masks_of_frames(renderer, scene, conditions);
-  if (!masks.ok()) return masks.status();
-  truth.masks = std::move(masks).value();
+  truth.masks = checked(masks_of_frames(renderer, scene, conditions));
   add_parts(truth);
   return truth;
 }

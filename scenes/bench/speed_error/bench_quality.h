@@ -48,9 +48,7 @@ class QualityTally {
   std::optional<tools::MeasuredPicture> latest_;
 };
 
-// SceneTruth: what the measured frames of a scene truly look like, and what their pixels show.
-
-// One truth for all scales and methods: made once, before anything is timed.
+// The true pictures of a scene's measured frames, and what their pixels show: one truth for all scales and methods.
 struct SceneTruth {
   std::vector<tools::MeasuredPicture> pictures;  // one for each measured frame, exposed
   std::vector<FrameMasks> masks;                 // one for each measured frame
@@ -59,10 +57,10 @@ struct SceneTruth {
   RegionFigures region_part;                     // shares of all pixels
 };
 
-// Truth of the measured frames. Pictures are kept on disk, below "truth" in the cache folder of
-// cache_folder.h, under a key of all that determines them: scene, seed, time, size, samples, OpenGL driver,
-// shaders, and the same moment drawn with one sample a pixel, which tells when a scene has changed.
-Result<SceneTruth> make_truth(scenes::Renderer& renderer, const scenes::Scene& scene,
-                              const std::string& gl_version, const Conditions& conditions);
+// Makes the truth of the measured frames. Pictures are kept below "truth" in the cache folder, under a key of all that
+// determines them: scene, seed, time, size, samples, OpenGL driver, shaders, and the same moment drawn with one sample
+// a pixel, which differs when a scene has changed. Throws a Failure where a step fails.
+SceneTruth make_truth(scenes::Renderer& renderer, const scenes::Scene& scene, const std::string& gl_version,
+                      const Conditions& conditions);
 
 }  // namespace quincunx::bench

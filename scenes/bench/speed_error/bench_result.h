@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/harness/records.h"
 #include "quincunx/advanced/extent.h"
 #include "quincunx/status.h"
 
@@ -28,6 +29,7 @@ struct Spread {
 
   friend bool operator==(const Spread&, const Spread&) = default;
 };
+QUINCUNX_FIELDS(Spread, median, p95, low, high)
 
 // The kinds of content on which methods fail differently. Each pixel is in the first one that holds. docs/bench.md
 // defines each.
@@ -43,6 +45,14 @@ inline constexpr double kHighestRegionPsnr = 100;  // dB: stands for no error at
 
 // A figure for each region; absent where it has no pixel, and in results from before there were regions.
 using RegionFigures = std::array<std::optional<double>, kRegions>;
+
+// Fields that are named for what they are of, with the region behind it: "psnr_thin".
+template <typename Io, SameAs<RegionFigures> Figures>
+void region_fields(Io& io, const std::string& prefix, Figures& figures) {
+  constexpr std::array<const char*, kRegions> kNames = {"thin", "behind_thin", "disoccluded", "edge", "rest"};
+  for (std::size_t i = 0; i < kRegions; ++i)
+    io((prefix + kNames[i]).c_str(), figures[i]);
+}
 
 // Errors against supersampled truth over the measured frames. Colours are exposed as the scene asks; "tone
 // mapped" is max(c, 0) / (1 + c), sRGB encoded. docs/bench.md defines each.
@@ -66,6 +76,13 @@ struct Quality {
 
   friend bool operator==(const Quality&, const Quality&) = default;
 };
+template <typename Io, SameAs<Quality> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(psnr, psnr_linear, ssim, flip, error_p99, relative_error, worst_window, worst_frame,
+                      worst_x, worst_y, flicker, ghosting)
+  region_fields(io, "psnr_", value.region_psnr);
+  QUINCUNX_EACH_FIELD(psnr_focus, psnr_outside, non_finite)
+}
 
 // The cost of the resolve passes of one frame, without the present pass.
 struct Speed {
@@ -80,6 +97,8 @@ struct Speed {
 
   friend bool operator==(const Speed&, const Speed&) = default;
 };
+QUINCUNX_FIELDS(Speed, ms, least_ms, processor_ms, ratio, processor_ratio, bytes, gigabytes_per_second,
+                kernels)
 
 struct Row {
   std::string scene;
@@ -92,6 +111,7 @@ struct Row {
 
   friend bool operator==(const Row&, const Row&) = default;
 };
+QUINCUNX_FIELDS(Row, scene, scale, method, render, quality, speed, front)
 
 // The float4 copy of the output's size, measured among the methods of each scene and scale.
 struct CopyRow {
@@ -103,6 +123,7 @@ struct CopyRow {
 
   friend bool operator==(const CopyRow&, const CopyRow&) = default;
 };
+QUINCUNX_FIELDS(CopyRow, scene, scale, ms, processor_ms, gigabytes_per_second)
 
 // A whole frame with one method, nothing overlapped.
 struct FrameRow {
@@ -122,6 +143,9 @@ struct FrameRow {
 
   friend bool operator==(const FrameRow&, const FrameRow&) = default;
 };
+QUINCUNX_FIELDS(FrameRow, scene, scale, method, render, draw_ms, interop_ms, resolve_ms, frame_ms,
+                draw_processor_ms, interop_processor_ms, resolve_processor_ms, frame_processor_ms,
+                interop_bytes)
 
 struct SceneRow {
   std::string name;
@@ -133,6 +157,11 @@ struct SceneRow {
 
   friend bool operator==(const SceneRow&, const SceneRow&) = default;
 };
+template <typename Io, SameAs<SceneRow> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(name, summary, reason, truth_flicker, disoccluded)
+  region_fields(io, "part_", value.region_part);
+}
 
 struct MethodRow {
   std::string name;
@@ -142,6 +171,7 @@ struct MethodRow {
 
   friend bool operator==(const MethodRow&, const MethodRow&) = default;
 };
+QUINCUNX_FIELDS(MethodRow, name, summary, jitter, lod_bias)
 
 struct Machine {
   std::string processor;
@@ -161,6 +191,16 @@ struct Machine {
 
   friend bool operator==(const Machine&, const Machine&) = default;
 };
+QUINCUNX_FIELDS(Machine, processor, processors, memory_gib, system, cl_device, cl_platform, cl_driver,
+                cl_version, cl_on_processor, gl_renderer, gl_version, interop, load_before, load_after)
+
+// What the smaller results say of their run.
+struct RunFacts {
+  std::string version;
+  std::string command;
+  std::string date;  // UTC, "2026-11-21 14:03"
+  Machine machine;
+};
 
 struct Conditions {
   Extent output;
@@ -179,6 +219,8 @@ struct Conditions {
 
   friend bool operator==(const Conditions&, const Conditions&) = default;
 };
+QUINCUNX_FIELDS(Conditions, output, frames, warm_up, history_warm_up, rounds, truth_samples, seed, fps, start,
+                focus, focus_scale, noise)
 
 struct BenchResult {
   std::string version;
@@ -195,6 +237,8 @@ struct BenchResult {
 
   friend bool operator==(const BenchResult&, const BenchResult&) = default;
 };
+QUINCUNX_FIELDS(BenchResult, version, command, date, wall_seconds, machine, conditions, scenes, methods,
+                copies, rows, frames)
 
 // Both hold the same, numbers to 6 significant digits: for programs that read it, nested objects; and to be kept, a
 // line for each row of each list.

@@ -2,10 +2,11 @@
 #include "bench/speed_error/bench_statistics.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <ranges>
+#include <type_traits>
 
 namespace quincunx::bench {
 namespace {
@@ -13,37 +14,35 @@ namespace {
 constexpr int kResamplings = 1000;
 constexpr double kConfidence = 0.95;
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-template <Region kRegion>
-double region_psnr(const Quality& quality) {
-  return quality.region_psnr[static_cast<std::size_t>(kRegion)].value_or(kNone);
+// Returns a figure; NaN where there is none.
+template <auto kField>
+double figure(const Quality& quality) {
+  std::optional<double> value;
+  if constexpr (std::is_same_v<decltype(kField), Region>) {
+    value = quality.region_psnr[static_cast<std::size_t>(kField)];
+  } else {
+    value = quality.*kField;
+  }
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-constexpr std::array kMeasures = {
-    ErrorMeasure{"flip", "FLIP", false, [](const Quality& q) { return q.flip; }},
-    ErrorMeasure{"psnr", "PSNR, dB", true, [](const Quality& q) { return q.psnr; }},
-    ErrorMeasure{"psnr_linear", "PSNR of linear light, dB", true,
-                 [](const Quality& q) { return q.psnr_linear; }},
-    ErrorMeasure{"ssim", "SSIM", true, [](const Quality& q) { return q.ssim; }},
-    ErrorMeasure{"error_p99", "99th percentile of error", false,
-                 [](const Quality& q) { return q.error_p99; }},
-    ErrorMeasure{"relative_error", "relative HDR error", false,
-                 [](const Quality& q) { return q.relative_error; }},
-    ErrorMeasure{"worst_window", "worst 16×16 window", false,
-                 [](const Quality& q) { return q.worst_window; }},
-    ErrorMeasure{"flicker", "flicker", false, [](const Quality& q) { return q.flicker.value_or(kNone); }},
-    ErrorMeasure{"ghosting", "ghosting", false, [](const Quality& q) { return q.ghosting.value_or(kNone); }},
-    ErrorMeasure{"psnr_thin", "PSNR of thin things, dB", true, region_psnr<Region::kThin>},
-    ErrorMeasure{"psnr_behind_thin", "PSNR behind thin things, dB", true, region_psnr<Region::kBehindThin>},
-    ErrorMeasure{"psnr_disoccluded", "PSNR of what is disoccluded, dB", true,
-                 region_psnr<Region::kDisoccluded>},
-    ErrorMeasure{"psnr_edge", "PSNR of edges of motion, dB", true, region_psnr<Region::kEdge>},
-    ErrorMeasure{"psnr_rest", "PSNR of the rest, dB", true, region_psnr<Region::kRest>},
-    ErrorMeasure{"psnr_focus", "PSNR in focus, dB", true,
-                 [](const Quality& q) { return q.psnr_focus.value_or(kNone); }},
-    ErrorMeasure{"psnr_outside", "PSNR outside of the focus, dB", true,
-                 [](const Quality& q) { return q.psnr_outside.value_or(kNone); }},
+constexpr ErrorMeasure kMeasures[] = {
+    {"flip", "FLIP", false, 0.0005, 0.005, figure<&Quality::flip>},
+    {"psnr", "PSNR, dB", true, 0.05, 0, figure<&Quality::psnr>},
+    {"psnr_linear", "PSNR of linear light, dB", true, 0.05, 0, figure<&Quality::psnr_linear>},
+    {"ssim", "SSIM", true, 0.001, 0, figure<&Quality::ssim>},
+    {"error_p99", "99th percentile of error", false, 0.001, 0.01, figure<&Quality::error_p99>},
+    {"relative_error", "relative HDR error", false, 1e-5, 0.02, figure<&Quality::relative_error>},
+    {"worst_window", "worst 16×16 window", false, 0.002, 0.01, figure<&Quality::worst_window>},
+    {"flicker", "flicker", false, 1e-5, 0.01, figure<&Quality::flicker>},
+    {"ghosting", "ghosting", false, 0.0005, 0.01, figure<&Quality::ghosting>},
+    {"psnr_thin", "PSNR of thin things, dB", true, 0.1, 0, figure<Region::kThin>},
+    {"psnr_behind_thin", "PSNR behind thin things, dB", true, 0.1, 0, figure<Region::kBehindThin>},
+    {"psnr_disoccluded", "PSNR of what is disoccluded, dB", true, 0.1, 0, figure<Region::kDisoccluded>},
+    {"psnr_edge", "PSNR of edges of motion, dB", true, 0.1, 0, figure<Region::kEdge>},
+    {"psnr_rest", "PSNR of the rest, dB", true, 0.1, 0, figure<Region::kRest>},
+    {"psnr_focus", "PSNR in focus, dB", true, 0.1, 0, figure<&Quality::psnr_focus>},
+    {"psnr_outside", "PSNR outside of the focus, dB", true, 0.1, 0, figure<&Quality::psnr_outside>},
 };
 
 Samples joined(const Rounds& rounds, std::span<const std::size_t> chosen) {

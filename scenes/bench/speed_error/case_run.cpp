@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "bench/speed_error/two_way_run.h"
+#include "src/passes/two_way.h"
 #include "tools/image/display_light.h"
 
 namespace quincunx::bench {
@@ -43,26 +43,99 @@ DispatchTime both_ways(DispatchTime time) {
   return time;
 }
 
+constexpr int kAhead = 8;  // as --two-way has it by itself
+
+struct KeptFrame {
+  KeptHistory history;
+  FrameInputs inputs;  // without images
+};
+
+FrameInputs without_images(FrameInputs inputs) {
+  inputs.colour = inputs.velocity = inputs.depth = inputs.reactive = {};
+  return inputs;
+}
+
+// A direction of the frames, and the service that accumulates them.
+struct Direction {
+  FrameFeed feed;
+  ResolveService service;
+
+  static Direction create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
+                          ResolveSettings resolve, std::optional<int> noise) {
+    resolve.output.present = false;
+    auto feed = FrameFeed::create(stage, sequence, {resolve}, std::nullopt, std::nullopt, noise);
+    auto service = checked(TwoWay::create(stage.device(), feed.plans().front()));
+    return Direction{std::move(feed), std::move(service)};
+  }
+
+  // Adds the next frame; `kept` null: it is not measured. Gives its inputs without images.
+  FrameInputs add(bool merges, KeptHistory* kept) {
+    const auto inputs = feed.next();
+    const bool both = merges && !inputs.reset;
+    const FrameReport report = TwoWay::add(service, inputs, both, both || !merges ? kept : nullptr);
+    checked(report.status);
+    checked(service.finish());
+    feed.release();
+    return without_images(inputs);
+  }
+};
+
+std::vector<std::vector<float>> show(ResolveService& service, const std::vector<KeptFrame>& frames) {
+  const Extent output = service.plan().settings.output_extent;
+  auto image = checked(service.device().allocate(output, service.plan().settings.output.linear));
+  std::vector<std::vector<float>> pictures;
+  for (const KeptFrame& frame : frames) {
+    const FrameReport report = TwoWay::show(service, frame.inputs, frame.history, {.linear = image.view()});
+    checked(report.status);
+    pictures.emplace_back(static_cast<std::size_t>(output.area()) * 4);
+    checked(service.device().download(image.view(), output, pictures.back().data()));
+  }
+  return pictures;
+}
+
+// Returns the linear pictures of the measured frames, in order, as quincunx-resolve --two-way 8 makes them: RGBA of the
+// output's extent. What is to come cannot be resolved beside the other methods, so these frames are drawn by
+// themselves, forwards and backwards.
+std::vector<std::vector<float>> two_way_pictures(const scenes::FrameSource& stage, const BenchPlan& plan,
+                                                 double scale, const BenchMethod& method) {
+  const int before = plan.conditions.warm_up - first_frame_for(plan.conditions, method);
+  const int measured = plan.conditions.frames;
+  scenes::SequenceSettings sequence = sequence_for(plan, scale, method);
+  sequence.frames = before + measured + kAhead;
+  auto forward = Direction::create(stage, sequence, method.resolve, plan.conditions.noise);
+  std::vector<KeptFrame> frames(static_cast<std::size_t>(measured));
+  for (int i = -before; i < measured + kAhead; ++i) {
+    const bool keeps = i >= 0 && i < measured;
+    KeptFrame unused, &frame = keeps ? frames[static_cast<std::size_t>(i)] : unused;
+    frame.inputs = forward.add(false, keeps ? &frame.history : nullptr);
+  }
+  sequence.backwards = true;
+  auto backward = Direction::create(stage, sequence, method.resolve, plan.conditions.noise);
+  for (int i = measured + kAhead; i-- > 0;) {
+    KeptHistory* const kept = i < measured ? &frames[static_cast<std::size_t>(i)].history : nullptr;
+    backward.add(kept != nullptr, kept);
+    if (i + 1 < measured + kAhead) continue;
+    checked(TwoWay::turn(backward.service, forward.service));
+  }
+  return show(forward.service, frames);
+}
+
 }  // namespace
 
 CaseRun::CaseRun(const scenes::FrameSource& stage, const BenchPlan& plan, const SceneTruth& truth,
                  double scale)
     : plan_(plan), truth_(truth), scale_(scale), device_(stage.device()) {}
 
-Result<std::unique_ptr<CaseRun>> CaseRun::create(const scenes::FrameSource& stage, const BenchPlan& plan,
-                                                 const SceneTruth& truth, double scale) {
+std::unique_ptr<CaseRun> CaseRun::create(const scenes::FrameSource& stage, const BenchPlan& plan,
+                                         const SceneTruth& truth, double scale) {
   auto run = std::unique_ptr<CaseRun>(new CaseRun(stage, plan, truth, scale));
-  if (Status status = run->open(stage); !status.ok()) return status;
+  run->open(stage);
   return run;
 }
 
-Status CaseRun::open(const scenes::FrameSource& stage) {
-  auto resolved = device_.allocate(plan_.conditions.output, ResolveSettings{}.output.linear);
-  if (!resolved.ok()) return resolved.status();
-  resolved_ = std::move(resolved).value();
-  auto copy = CopyKernel::create(device_, plan_.conditions.output);
-  if (!copy.ok()) return copy.status();
-  copy_.emplace(std::move(copy).value());
+void CaseRun::open(const scenes::FrameSource& stage) {
+  resolved_ = checked(device_.allocate(plan_.conditions.output, ResolveSettings{}.output.linear));
+  copy_.emplace(checked(CopyKernel::create(device_, plan_.conditions.output)));
 
   using Feeding =
       std::tuple<Shading, scenes::Jitter, scenes::TextureDetail, bool, PixelFormat, bool, std::string>;
@@ -75,13 +148,12 @@ Status CaseRun::open(const scenes::FrameSource& stage) {
   }
   entries_.resize(plan_.methods.size());
   for (const auto& [frames, methods] : feeds) {
-    if (Status status = open_feed(stage, methods); !status.ok()) return status;
+    open_feed(stage, methods);
   }
   inputs_.resize(feeds_.size());
-  return {};
 }
 
-Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods) {
+void CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods) {
   std::vector<ResolveSettings> resolves;
   for (const std::size_t method : methods) {
     resolves.push_back(plan_.methods[method].resolve);
@@ -92,31 +164,24 @@ Status CaseRun::open_feed(const scenes::FrameSource& stage, const std::vector<st
   const BenchMethod& any = plan_.methods[methods.front()];
   auto feed = FrameFeed::create(stage, sequence_for(plan_, scale_, any), resolves, std::nullopt,
                                 focus_for(plan_.conditions, any), plan_.conditions.noise);
-  if (!feed.ok()) return feed.status();
   for (std::size_t i = 0; i < resolves.size(); ++i) {
-    auto contender = Contender::create(device_, feed->plans()[i]);
-    if (!contender.ok()) return contender.status();
+    auto contender = Contender::create(device_, feed.plans()[i]);
     if (i < methods.size()) {
       const bool is_encoded = resolves[i].colour == PixelFormat::kRGBA8;
-      entries_[methods[i]] =
-          std::make_unique<Entry>(Entry{feeds_.size(), is_encoded, std::move(contender).value()});
+      entries_[methods[i]] = std::make_unique<Entry>(Entry{feeds_.size(), is_encoded, std::move(contender)});
     } else {
-      presenter_ = std::make_unique<Contender>(std::move(contender).value());
+      presenter_ = std::make_unique<Contender>(std::move(contender));
       presenter_feed_ = feeds_.size();
     }
   }
-  feeds_.push_back({first_frame_for(plan_.conditions, any), std::move(feed).value()});
-  return {};
+  feeds_.push_back({first_frame_for(plan_.conditions, any), std::move(feed)});
 }
 
-Status CaseRun::draw(int frame) {
+void CaseRun::draw(int frame) {
   for (std::size_t i = 0; i < feeds_.size(); ++i) {
     if (!has_begun(i, frame)) continue;
-    auto inputs = feeds_[i].frames.next();
-    if (!inputs.ok()) return inputs.status();
-    inputs_[i] = inputs.value();
+    inputs_[i] = feeds_[i].frames.next();
   }
-  return {};
 }
 
 void CaseRun::release(int frame) {
@@ -125,30 +190,26 @@ void CaseRun::release(int frame) {
   }
 }
 
-Result<std::vector<float>> CaseRun::resolve_and_read(Entry& entry) {
+std::vector<float> CaseRun::resolve_and_read(Entry& entry) {
   auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
                                        {.linear = resolved_.view()});
-  if (!time.ok()) return time.status();
   const Extent output = plan_.conditions.output;
   std::vector<float> rgba(static_cast<std::size_t>(output.area()) * 4);
-  if (Status status = device_.download(resolved_.view(), output, rgba.data()); !status.ok()) return status;
+  checked(device_.download(resolved_.view(), output, rgba.data()));
   return entry.is_encoded ? tools::light_before_reinhard(rgba) : rgba;
 }
 
-Status CaseRun::measure_frame(int frame) {
+void CaseRun::measure_frame(int frame) {
   std::vector<std::vector<float>> pictures(entries_.size());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (!has_begun(entries_[i]->feed, frame)) continue;
-    auto rgba = resolve_and_read(*entries_[i]);
-    if (!rgba.ok()) return rgba.status();
-    pictures[i] = std::move(rgba).value();
+    pictures[i] = resolve_and_read(*entries_[i]);
   }
-  if (frame < plan_.conditions.warm_up) return {};
+  if (frame < plan_.conditions.warm_up) return;
   const auto at = static_cast<std::size_t>(frame - plan_.conditions.warm_up);
   for_each_in_parallel(entries_.size(), [&](std::size_t i) {
     if (!plan_.methods[i].two_way) tally(i, at, std::move(pictures[i]));
   });
-  return {};
 }
 
 // Adds the picture of measured frame `at` to what is known of a method.
@@ -160,39 +221,37 @@ void CaseRun::tally(std::size_t entry, std::size_t at, std::vector<float> pictur
                truth_.pictures[at], previous, truth_.masks[at]);
 }
 
-Status CaseRun::measure_two_way(const scenes::FrameSource& stage) {
+void CaseRun::measure_two_way(const scenes::FrameSource& stage) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     if (!plan_.methods[i].two_way) continue;
     auto pictures = two_way_pictures(stage, plan_, scale_, plan_.methods[i]);
-    if (!pictures.ok()) return pictures.status();
-    for (std::size_t at = 0; at < pictures->size(); ++at) {
-      std::vector<float>& picture = pictures.value()[at];
+    for (std::size_t at = 0; at < pictures.size(); ++at) {
+      std::vector<float>& picture = pictures[at];
       tally(i, at, entries_[i]->is_encoded ? tools::light_before_reinhard(picture) : std::move(picture));
     }
   }
-  return {};
 }
 
-Status CaseRun::run_quality(const scenes::FrameSource& stage) {
+void CaseRun::run_quality(const scenes::FrameSource& stage) {
   int first = 0;
   for (const Feed& feed : feeds_)
     first = std::min(first, feed.first_frame);
   next_frame_ = plan_.conditions.warm_up + plan_.conditions.frames;
   for (int frame = first; frame < next_frame_; ++frame) {
-    if (Status status = draw(frame); !status.ok()) return status;
-    if (Status status = measure_frame(frame); !status.ok()) return status;
+    draw(frame);
+    measure_frame(frame);
     if (has_begun(presenter_feed_, frame)) {
-      if (Status status = time_whole_frame(false); !status.ok()) return status;
+      time_whole_frame(false);
     }
-    if (Status status = time_copy(false); !status.ok()) return status;
+    time_copy(false);
     release(frame);
   }
-  if (Status status = measure_two_way(stage); !status.ok()) return status;
+  measure_two_way(stage);
   // Refills the caches, which the work on errors may have emptied.
-  return time_frames(plan_.conditions.warm_up, false);
+  time_frames(plan_.conditions.warm_up, false);
 }
 
-Status CaseRun::run_timed() {
+void CaseRun::run_timed() {
   for (auto& entry : entries_)
     entry->contender.begin_round();
   for (Rounds* rounds : {&copy_ms_, &copy_processor_ms_})
@@ -201,65 +260,58 @@ Status CaseRun::run_timed() {
     frame_.ms[step].emplace_back();
     frame_.processor_ms[step].emplace_back();
   }
-  return time_frames(plan_.conditions.frames, true);
+  time_frames(plan_.conditions.frames, true);
 }
 
-Status CaseRun::time_frames(int count, bool keep) {
+void CaseRun::time_frames(int count, bool keep) {
   for (const int end = next_frame_ + count; next_frame_ < end; ++next_frame_) {
-    if (Status status = draw(next_frame_); !status.ok()) return status;
-    if (Status status = time_frame(next_frame_, keep); !status.ok()) return status;
+    draw(next_frame_);
+    time_frame(next_frame_, keep);
     release(next_frame_);
   }
-  return {};
 }
 
 // Each frame another method goes first, so that no place in the order is always the same method's.
-Status CaseRun::time_frame(int frame, bool keep) {
-  if (Status status = time_copy(keep); !status.ok()) return status;
+void CaseRun::time_frame(int frame, bool keep) {
+  time_copy(keep);
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const std::size_t method = (i + static_cast<std::size_t>(frame)) % entries_.size();
     Entry& entry = *entries_[method];
     auto time = entry.contender.dispatch(inputs_[entry.feed], feeds_[entry.feed].frames.focus(),
                                          {.linear = resolved_.view()});
-    if (!time.ok()) return time.status();
-    if (keep) entry.contender.keep(plan_.methods[method].two_way ? both_ways(time.value()) : time.value());
+    if (keep) entry.contender.keep(plan_.methods[method].two_way ? both_ways(time) : time);
   }
-  return time_whole_frame(keep);
+  time_whole_frame(keep);
 }
 
-Status CaseRun::time_copy(bool keep) {
+void CaseRun::time_copy(bool keep) {
   const StepClock clock;
-  auto ms = copy_->run();
+  const double ms = checked(copy_->run());
   const StepTime step = clock.elapsed();
-  if (!ms.ok()) return ms.status();
-  if (!keep) return {};
-  copy_ms_.back().push_back(ms.value());
+  if (!keep) return;
+  copy_ms_.back().push_back(ms);
   copy_processor_ms_.back().push_back(step.processor_ms);
-  return {};
 }
 
-Status CaseRun::time_whole_frame(bool keep) {
+void CaseRun::time_whole_frame(bool keep) {
   FrameFeed& feed = feeds_[presenter_feed_].frames;
-  auto presented = feed.bridge().begin_present();
-  if (!presented.ok()) return presented.status();
-  auto time = presenter_->dispatch(inputs_[presenter_feed_], feed.focus(), {.presented = presented.value()});
-  if (!time.ok()) return time.status();
+  auto presented = checked(feed.bridge().begin_present());
+  auto time = presenter_->dispatch(inputs_[presenter_feed_], feed.focus(), {.presented = presented});
   const StepClock clock;
-  if (Status status = feed.bridge().present(); !status.ok()) return status;
+  checked(feed.bridge().present());
   StepTime interop = feed.interop_time();
   interop += clock.elapsed();
   render_ = inputs_[presenter_feed_].render_extent;
   frame_.interop_bytes = feed.bytes_in() + feed.bridge().traffic().bytes_out;
-  if (!keep) return {};
+  if (!keep) return;
   StepTime whole = feed.draw_time();
   whole += interop;
-  whole += time->step;
-  const StepTime steps[kSteps] = {feed.draw_time(), interop, time->step, whole};
+  whole += time.step;
+  const StepTime steps[kSteps] = {feed.draw_time(), interop, time.step, whole};
   for (std::size_t i = 0; i < kSteps; ++i) {
     frame_.ms[i].back().push_back(steps[i].ms);
     frame_.processor_ms[i].back().push_back(steps[i].processor_ms);
   }
-  return {};
 }
 
 std::vector<Row> CaseRun::rows(const std::string& scene) const {

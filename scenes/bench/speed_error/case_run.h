@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "bench/harness/copy_kernel.h"
+#include "bench/harness/measuring.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_quality.h"
 #include "bench/speed_error/contender.h"
@@ -18,14 +18,14 @@ namespace quincunx::bench {
 // One thread, that of the GL context. `stage`, `plan` and `truth` outlive it.
 class CaseRun {
  public:
-  static Result<std::unique_ptr<CaseRun>> create(const scenes::FrameSource& stage, const BenchPlan& plan,
-                                                 const SceneTruth& truth, double scale);
+  static std::unique_ptr<CaseRun> create(const scenes::FrameSource& stage, const BenchPlan& plan,
+                                         const SceneTruth& truth, double scale);
 
   // The frames whose pictures are measured, and those that warm up everything before and after them. First.
-  Status run_quality(const scenes::FrameSource& stage);
+  void run_quality(const scenes::FrameSource& stage);
 
   // A round whose times count.
-  Status run_timed();
+  void run_timed();
 
   // Results, after both.
   std::vector<Row> rows(const std::string& scene) const;
@@ -55,20 +55,20 @@ class CaseRun {
   };
 
   CaseRun(const scenes::FrameSource& stage, const BenchPlan& plan, const SceneTruth& truth, double scale);
-  Status open(const scenes::FrameSource& stage);
-  Status open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods);
+  void open(const scenes::FrameSource& stage);
+  void open_feed(const scenes::FrameSource& stage, const std::vector<std::size_t>& methods);
 
   bool has_begun(std::size_t feed, int frame) const { return frame >= feeds_[feed].first_frame; }
-  Status draw(int frame);
+  void draw(int frame);
   void release(int frame);
-  Result<std::vector<float>> resolve_and_read(Entry& entry);
-  Status measure_frame(int frame);
+  std::vector<float> resolve_and_read(Entry& entry);
+  void measure_frame(int frame);
   void tally(std::size_t entry, std::size_t at, std::vector<float> picture);
-  Status measure_two_way(const scenes::FrameSource& stage);
-  Status time_frames(int count, bool keep);
-  Status time_frame(int frame, bool keep);
-  Status time_copy(bool keep);
-  Status time_whole_frame(bool keep);
+  void measure_two_way(const scenes::FrameSource& stage);
+  void time_frames(int count, bool keep);
+  void time_frame(int frame, bool keep);
+  void time_copy(bool keep);
+  void time_whole_frame(bool keep);
 
   const BenchPlan& plan_;
   const SceneTruth& truth_;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "bench/harness/clocks.h"
+#include "bench/harness/measuring.h"
 #include "random.h"
 
 namespace quincunx::bench {
@@ -21,10 +21,10 @@ double now_ms() {
 }
 
 // Multiplies the light of each pixel by a gamma factor of mean 1 and variance 1 / samples.
-Status add_noise(const Device& device, const FrameInputs& inputs, int samples, std::uint32_t time) {
+void add_noise(const Device& device, const FrameInputs& inputs, int samples, std::uint32_t time) {
   const Extent extent = inputs.render_extent;
   std::vector<std::uint16_t> colour(static_cast<std::size_t>(extent.area()) * 4);
-  if (Status status = device.download(inputs.colour, extent, colour.data()); !status.ok()) return status;
+  checked(device.download(inputs.colour, extent, colour.data()));
   for (std::size_t i = 0; i < colour.size(); i += 4) {
     scenes::Random random(time, i);
     float sum = 0;
@@ -34,7 +34,7 @@ Status add_noise(const Device& device, const FrameInputs& inputs, int samples, s
     for (std::size_t c = i; c < i + 3; ++c)
       colour[c] = imath_float_to_half(std::min(factor * imath_half_to_float(colour[c]), 65504.f));
   }
-  return device.upload(inputs.colour, extent, colour.data());
+  checked(device.upload(inputs.colour, extent, colour.data()));
 }
 
 }  // namespace
@@ -51,58 +51,51 @@ StepTime StepClock::elapsed() const {
   return {now_ms() - start_ms_, bench::processor_ms() - start_processor_ms_};
 }
 
-Result<FrameFeed> FrameFeed::create(const scenes::FrameSource& stage,
-                                    const scenes::SequenceSettings& sequence,
-                                    const std::vector<ResolveSettings>& resolves,
-                                    const std::optional<scenes::PartsSettings>& parts,
-                                    const std::optional<scenes::FocusOptions>& focus,
-                                    std::optional<int> noise) {
-  auto source = stage.another(sequence, parts, focus);
-  if (!source.ok()) return source.status();
-  FrameFeed feed(std::move(source).value());
-  auto plans = feed.source_->connect_all(resolves);
-  if (!plans.ok()) return plans.status();
-  feed.plans_ = std::move(plans).value();
+FrameFeed FrameFeed::create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
+                            const std::vector<ResolveSettings>& resolves,
+                            const std::optional<scenes::PartsSettings>& parts,
+                            const std::optional<scenes::FocusOptions>& focus, std::optional<int> noise) {
+  auto source = checked(stage.another(sequence, parts, focus));
+  FrameFeed feed(std::move(source));
+  feed.plans_ = checked(feed.source_->connect_all(resolves));
   feed.noise_ = noise;
   feed.fps_ = sequence.fps;
   return feed;
 }
 
-Result<FrameInputs> FrameFeed::next() {
+FrameInputs FrameFeed::next() {
   const StepClock draw;
-  if (Status status = source_->begin(drawn_); !status.ok()) return status;
+  checked(source_->begin(drawn_));
   glFinish();
   draw_ = draw.elapsed();
   const StepClock interop;
-  if (Status status = source_->submit(); !status.ok()) return status;
-  auto inputs = source_->acquire();
+  checked(source_->submit());
+  FrameInputs inputs = checked(source_->acquire());
   interop_ = interop.elapsed();
   ++drawn_;
-  if (!noise_ || !inputs.ok()) return inputs;
+  if (!noise_) return inputs;
   // Quarters of frames, because scenes with cuts begin between two.
   const auto time = static_cast<std::uint32_t>(std::llround(4 * fps_ * source_->oldest().view.seconds));
-  if (Status status = add_noise(source_->device(), inputs.value(), *noise_, time); !status.ok())
-    return status;
+  add_noise(source_->device(), inputs, *noise_, time);
   return inputs;
 }
 
-Result<Contender> Contender::create(const Device& device, const ResolvePlan& plan) {
-  auto service = ResolveService::create(device, plan);
-  if (!service.ok()) return service.status();
-  return Contender(std::move(service).value());
+Contender Contender::create(const Device& device, const ResolvePlan& plan) {
+  auto service = checked(ResolveService::create(device, plan));
+  return Contender(std::move(service));
 }
 
-Result<DispatchTime> Contender::dispatch(const FrameInputs& inputs, const FocusInputs* focus,
-                                         const FrameOutputs& outputs) {
+DispatchTime Contender::dispatch(const FrameInputs& inputs, const FocusInputs* focus,
+                                 const FrameOutputs& outputs) {
   DispatchTime time;
   const StepClock clock;
   const FrameReport accepted =
       focus != nullptr ? service_.dispatch(inputs, *focus, outputs) : service_.dispatch(inputs, outputs);
-  if (!accepted.ok()) return accepted.status;
-  if (Status status = service_.finish(); !status.ok()) return status;
+  checked(accepted.status);
+  checked(service_.finish());
   time.step = clock.elapsed();
   const auto report = service_.next_completed();
-  if (!report) return Status::device("a finished frame has no report");
+  if (!report) throw Failure(Status::device("a finished frame has no report"));
   for (const PassReport& pass : report->passes) {
     if (std::string_view(pass.kernel) == "present") continue;
     time.resolve_ms += pass.ms;

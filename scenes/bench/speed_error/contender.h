@@ -21,7 +21,7 @@ struct StepTime {
   StepTime& operator+=(const StepTime& other);
 };
 
-// Starts where it is made.
+// Measures from its construction on.
 class StepClock {
  public:
   StepClock();
@@ -35,19 +35,19 @@ class StepClock {
 // One thread, that of the GL context.
 class FrameFeed {
  public:
-  // From the scene, context and device of `stage`, for these resolves of each frame; the parts are the stage's where
-  // none are given. `noise`: light has that of so many samples a pixel, the same in each feed; of RGBA16F targets
-  // without a focus.
-  static Result<FrameFeed> create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
-                                  const std::vector<ResolveSettings>& resolves,
-                                  const std::optional<scenes::PartsSettings>& parts = {},
-                                  const std::optional<scenes::FocusOptions>& focus = {},
-                                  std::optional<int> noise = {});
+  // Draws from the scene, context and device of `stage`, for these resolves of each frame; the parts are the stage's
+  // where none are given. `noise` gives light the noise of so many samples a pixel, the same in each feed; it needs
+  // RGBA16F targets and no focus. Throws a Failure where a step fails, as all that follows here does.
+  static FrameFeed create(const scenes::FrameSource& stage, const scenes::SequenceSettings& sequence,
+                          const std::vector<ResolveSettings>& resolves,
+                          const std::optional<scenes::PartsSettings>& parts = {},
+                          const std::optional<scenes::FocusOptions>& focus = {},
+                          std::optional<int> noise = {});
 
   const std::vector<ResolvePlan>& plans() const { return plans_; }
 
   // Draws the next frame of the sequence and waits until OpenCL can read it.
-  Result<FrameInputs> next();
+  FrameInputs next();
   const FocusInputs* focus() const { return source_->focus(); }  // as in the last next(); null: none
   void release() { source_->release(); }                         // the frame of the last next()
 
@@ -83,19 +83,18 @@ struct DispatchTime {
 
 class Contender {
  public:
-  static Result<Contender> create(const Device& device, const ResolvePlan& plan);
+  static Contender create(const Device& device, const ResolvePlan& plan);
 
-  // `focus` null: none.
-  Result<DispatchTime> dispatch(const FrameInputs& inputs, const FocusInputs* focus,
-                                const FrameOutputs& outputs);
+  // Resolves a frame and waits for it. `focus` may be null.
+  DispatchTime dispatch(const FrameInputs& inputs, const FocusInputs* focus, const FrameOutputs& outputs);
 
   const ResolvePlan& plan() const { return service_.plan(); }
 
-  // Keeps a time under the latest round.
+  // Begins a round; keeps a time in it.
   void begin_round();
   void keep(const DispatchTime& time);
 
-  // `copy_ms`, `copy_processor_ms`: of the float4 copy in the same rounds.
+  // Returns the speed in all rounds, by the times of the float4 copy in the same rounds.
   Speed speed(const Rounds& copy_ms, const Rounds& copy_processor_ms) const;
 
  private:

@@ -13,8 +13,9 @@
 
 namespace quincunx::bench {
 
-// At the centre of each pixel. Depth is reversed and infinite: 1 near, 0 far; velocity is uv, this position - previous
-// position. The background, at depth 0, has the velocity that the camera gives it, whatever the scene says of it.
+// Depth and motion at the centre of each pixel. Depth is reversed and infinite: 1 near, 0 far; velocity is uv, this
+// position - previous position. The background, at depth 0, has the velocity that the camera gives it, whatever the
+// scene says of it.
 struct Geometry {
   Extent extent;
   std::vector<float> depth;
@@ -26,10 +27,10 @@ struct Geometry {
 inline constexpr float kNearer = 1.05f;
 inline constexpr float kHorizon = 1e-6f;  // depth above this is a surface
 
-// Whether `depth` is of a surface that stands before `other`.
+// Returns whether `depth` is of a surface that stands before `other`.
 bool is_nearer(float depth, float other);
 
-// `targets` have the extent wanted, and velocity.
+// Draws a moment and reads its geometry. `targets` have the extent wanted, and velocity.
 Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets& targets, double seconds,
                              double previous_seconds);
 
@@ -37,17 +38,15 @@ Result<Geometry> geometry_at(scenes::Renderer& renderer, const gl::RenderTargets
 Result<std::vector<float>> nearest_depth_at(scenes::Renderer& renderer, const gl::RenderTargets& targets,
                                             double seconds);
 
-// Disoccluded pixels show what was hidden a moment ago, where a method that trusts the past shows ghosts.
+// Masks, 1 where something holds.
 
-// 1 for each pixel of `now` whose place in `before` lies on screen and is hidden there: all four pixels
-// around it are nearer. 0 where it comes from outside the picture.
+// Marks each pixel of `now` whose place in `before` lies on screen and is hidden there: all four pixels around it are
+// nearer. A method that trusts the past shows ghosts in these. A pixel from outside the picture has 0.
 std::vector<std::uint8_t> disoccluded_since(const Geometry& now, const Geometry& before);
 
-// `newer`, and what comes from where `older`, the mask of the frame before, is 1.
+// Adds to `newer` the pixels that come from where `older`, the mask of the frame before, is 1.
 std::vector<std::uint8_t> disoccluded_within_two(const Geometry& now, std::vector<std::uint8_t> newer,
                                                  const std::vector<std::uint8_t>& older);
-
-// Regions: the parts of a picture where methods fail apart, told by the scene's true depth and motion.
 
 // Classes of the pixels of one frame, output extent.
 struct FrameMasks {
@@ -56,19 +55,19 @@ struct FrameMasks {
   std::vector<std::uint8_t> focus;  // 1 where a focus shows; empty where the conditions have none
 };
 
-// 1 for each pixel with a surface that fills no block of 4 x 4 pixels around it: some pixel of every such block shows
-// what lies behind that surface. `nearest`: the depth of the nearest surface in each pixel. What goes on beyond the
-// edge of the picture is taken to be as near.
+// Marks each pixel with a surface that fills no block of 4 x 4 pixels around it: some pixel of every such block shows
+// what lies behind that surface. `nearest` is the depth of the nearest surface in each pixel. Surfaces are taken to go
+// on beyond the edge of the picture.
 std::vector<std::uint8_t> thin_pixels(Extent extent, std::span<const float> nearest);
 
-// 1 for each pixel that is not `thin` and has a nearer one that is within 4 pixels each way.
+// Marks each pixel that is not `thin` and has a nearer one that is within 4 pixels each way.
 std::vector<std::uint8_t> behind_thin_pixels(Extent extent, std::span<const float> nearest,
                                              std::span<const std::uint8_t> thin);
 
-// 1 for each pixel within 2 pixels each way of two that touch and whose motions differ by more than half a pixel.
+// Marks each pixel within 2 pixels each way of two that touch and whose motions differ by more than half a pixel.
 std::vector<std::uint8_t> edges_of_motion(const Geometry& geometry);
 
-// Each pixel's first region that holds, in the order of Region.
+// Returns each pixel's first region that holds, in the order of Region.
 std::vector<Region> regions_of(const Geometry& geometry, std::span<const float> nearest,
                                std::span<const std::uint8_t> disoccluded);
 

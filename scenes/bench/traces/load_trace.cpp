@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <sstream>
 #include <vector>
@@ -99,27 +100,8 @@ std::vector<std::string> cells(std::string line) {
   return list;
 }
 
-// Columns by name; -1 where there is none.
-struct Columns {
-  int gpu_ms = -1;
-  int area_fraction = -1;
-  int cpu_ms = -1;
-
-  explicit Columns(const std::vector<std::string>& header) {
-    const auto find = [&header](const char* name) {
-      const auto at = std::find(header.begin(), header.end(), name);
-      return at == header.end() ? -1 : static_cast<int>(at - header.begin());
-    };
-    gpu_ms = find("gpu_ms");
-    area_fraction = find("area_fraction");
-    cpu_ms = find("cpu_ms");
-  }
-};
-
-// A positive finite number, or nothing (0).
-double positive(const std::vector<std::string>& row, int column) {
-  if (column < 0 || column >= static_cast<int>(row.size())) return 0;
-  const std::string& text = row[static_cast<std::size_t>(column)];
+// Returns a positive finite number; 0 for anything else.
+double positive(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   return end == text.c_str() + text.size() && std::isfinite(value) && value > 0 ? value : 0;
@@ -254,16 +236,20 @@ Result<LoadTrace> recorded_trace(const std::string& name, const std::string& csv
   std::stringstream lines(csv);
   std::string line;
   std::getline(lines, line);
-  const Columns columns(cells(line));
-  if (columns.gpu_ms < 0 || columns.area_fraction < 0) {
+  const std::vector<std::string> header = cells(line);
+  const auto has = [&header](const char* name) { return std::ranges::count(header, name) > 0; };
+  if (!has("gpu_ms") || !has("area_fraction")) {
     return Status::invalid(name + ": line 1 must name the columns gpu_ms and area_fraction");
   }
   LoadTrace trace{.name = name, .frames = {}};
   for (int number = 2; std::getline(lines, line); ++number) {
     if (line.empty()) continue;
     const std::vector<std::string> row = cells(line);
-    const double gpu = positive(row, columns.gpu_ms) / recording.target_ms;
-    const double area = positive(row, columns.area_fraction);
+    std::map<std::string, double> figures;  // by column, where the row has it
+    for (std::size_t i = 0; i < std::min(row.size(), header.size()); ++i)
+      figures.try_emplace(header[i], positive(row[i]));
+    const double gpu = figures["gpu_ms"] / recording.target_ms;
+    const double area = figures["area_fraction"];
     if (gpu <= 0 || area <= 0) {
       return Status::invalid(
           fmt::format("{}: line {} needs a positive gpu_ms and area_fraction", name, number));
@@ -271,7 +257,7 @@ Result<LoadTrace> recorded_trace(const std::string& name, const std::string& csv
     const double level = gpu / (recording.fixed_part + (1 - recording.fixed_part) * area);
     trace.frames.push_back({.fixed = level * recording.fixed_part,
                             .scaling = level * (1 - recording.fixed_part),
-                            .cpu = positive(row, columns.cpu_ms) / recording.target_ms});
+                            .cpu = figures["cpu_ms"] / recording.target_ms});
   }
   if (trace.frames.empty()) return Status::invalid(name + ": no frames after the header");
   return trace;

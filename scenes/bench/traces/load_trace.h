@@ -46,7 +46,7 @@ enum class Split { kDevelopment, kHeldOut };
 
 constexpr int kFrames = 1800;
 
-// 16 feasible traces, then one infeasible and one bound by the processor.
+// Return 16 feasible traces, then one infeasible and one bound by the processor.
 std::vector<LoadTrace> development_traces(std::uint64_t seed);
 std::vector<LoadTrace> held_out_traces(std::uint64_t seed);
 std::vector<LoadTrace> traces_of(Split split, std::uint64_t seed);
@@ -57,8 +57,8 @@ struct Recording {
   double fixed_part = 0.25;  // share of the cost at the output resolution that does not scale, in [0, 0.9]
 };
 
-// CSV text: a header line that names at least `gpu_ms` and `area_fraction`, in any order and among others,
-// then a line for each frame; `cpu_ms` is read where it is there. No quotes. Errors: kInvalidArgument naming
+// Makes a trace of CSV text: a header line that names at least `gpu_ms` and `area_fraction`, in any order and among
+// others, then a line for each frame; `cpu_ms` is read where it is there. No quotes. Errors: kInvalidArgument naming
 // the line.
 Result<LoadTrace> recorded_trace(const std::string& name, const std::string& csv, const Recording& recording);
 

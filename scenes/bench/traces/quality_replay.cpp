@@ -10,11 +10,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bench/harness/measuring.h"
 #include "random.h"
 
 namespace quincunx::traces {
 namespace {
 
+using bench::checked;
 using scenes::Random;
 
 constexpr double kToldWrong = 0.05;      // share of the picture, at most
@@ -23,11 +25,6 @@ constexpr double kCostDeviation = 0.2;   // per method
 constexpr double kMeasuredWrong = 0.03;  // at most
 constexpr std::uint64_t kHeldOutStream = 104729;
 constexpr std::uint64_t kMeasuredStream = 7;
-
-ErrorFront checked(Result<ErrorFront> front) {
-  if (!front.ok()) throw std::logic_error(front.status().message());
-  return std::move(front).value();
-}
 
 // Still, pan, objects, thin, light, zoom; scaled to sum 1.
 SceneMix mix_from(std::array<double, kSceneClasses> shares) {
@@ -127,72 +124,6 @@ struct Resolved {
   double weight = 1;
 };
 
-// Frames with a method whose passes the program times; a controller is told of them.
-class Program : public ReplayedProgram {
- public:
-  Program(const QualityStage& stage, const ResolutionLadder& ladder) : stage_(&stage), ladder_(&ladder) {}
-  const ResolutionLadder& ladder() const override { return *ladder_; }
-  double besides_ms(std::size_t index) const override { return passes_.at(index); }
-  const std::vector<Resolved>& resolved() const { return resolved_; }
-
- protected:
-  Extent resolve(Extent render, const Resolved& how) {
-    resolved_.push_back(how);
-    const double area = ladder_->area_fraction(render);
-    passes_.push_back(passes_ms(*stage_, *ladder_, how.method, area) +
-                      (how.from ? passes_ms(*stage_, *ladder_, *how.from, area) : 0));
-    return render;
-  }
-  const QualityStage& stage() const { return *stage_; }
-
- private:
-  const QualityStage* stage_;
-  const ResolutionLadder* ladder_;
-  std::vector<Resolved> resolved_;
-  std::vector<double> passes_;
-};
-
-class QualityProgram final : public Program {
- public:
-  QualityProgram(const QualityStage& stage, QualityController& controller)
-      : Program(stage, controller.ladder()), controller_(&controller) {}
-  void observe(const FrameTiming& timing) override {
-    QualityFrame frame = {.timing = timing};
-    if (stage().times_passes) frame.resolve_ms = besides_ms(timing.frame);
-    frame.content = told(stage().trace->content[timing.frame], stage().seed, timing.frame);
-    frame.content->judged = resolved().at(timing.frame).method.method == Method::kTemporal;
-    if (!frame.content->judged) frame.content->light = 0;  // moving shadows have no reactive values
-    const Status status = controller_->observe(frame);
-    if (!status.ok()) throw std::logic_error(status.message());
-  }
-  Extent next(std::size_t) override {
-    const QualityChoice choice = controller_->choice();
-    return resolve(choice.render_extent, {choice.method, choice.fading_from, choice.weight});
-  }
-
- private:
-  QualityController* controller_;
-};
-
-class FixedProgram final : public Program {
- public:
-  FixedProgram(const QualityStage& stage, const ResolutionLadder& ladder, ResolutionController* controller,
-               const MethodVariant& method)
-      : Program(stage, ladder), controller_(controller), method_(method) {}
-  void observe(const FrameTiming& timing) override {
-    if (controller_ == nullptr) return;
-    const Status status = controller_->observe(timing);
-    if (!status.ok()) throw std::logic_error(status.message());
-  }
-  Extent next(std::size_t) override {
-    return resolve(controller_ != nullptr ? controller_->next() : ladder().output(), {method_});
-  }
-
- private:
-  ResolutionController* controller_;
-  MethodVariant method_;
-};
-
 // How much history a method has: frames since it began or the shot did.
 class History {
  public:
@@ -248,16 +179,42 @@ QualityScore score_of(const QualityStage& stage, const std::vector<ReplayedFrame
       sum += error;
       refreshes += 1 + frames[index].dropped;
       score.dropped += frames[index].dropped;
-      score.area += frames[index].area;
+      score.pixels += frames[index].area;
       changes += how.method == resolved[index - 1].method ? 0 : 1;
       ++score.frames;
     }
     shown_before = error;
   }
-  score.error = sum / refreshes;
-  score.area /= score.frames;
+  score.flip = sum / refreshes;
+  score.pixels /= score.frames;
   score.changes_per_second = changes * stage.display.refresh_hz / refreshes;
   return score;
+}
+
+// Replays a program that resolves frames as `next` says. `observe` is told of each what it took.
+QualityScore replay_and_score(
+    const QualityStage& stage, const ResolutionLadder& ladder,
+    const std::function<std::pair<Extent, Resolved>()>& next,
+    const std::function<void(const FrameTiming&, const Resolved&, double)>& observe) {
+  std::vector<Resolved> resolved;
+  std::vector<double> passes;
+  const ReplayedProgram program = {
+      .ladder = ladder,
+      .observe =
+          [&](const FrameTiming& timing) {
+            observe(timing, resolved.at(timing.frame), passes.at(timing.frame));
+          },
+      .next =
+          [&](std::size_t) {
+            const auto [render, how] = next();
+            const double area = ladder.area_fraction(render);
+            passes.push_back(passes_ms(stage, ladder, how.method, area) +
+                             (how.from ? passes_ms(stage, ladder, *how.from, area) : 0));
+            resolved.push_back(how);
+            return render;
+          },
+      .besides_ms = [&] { return passes.back(); }};
+  return score_of(stage, replay(stage.trace->load, stage.display, program), resolved);
 }
 
 struct Best {
@@ -265,37 +222,18 @@ struct Best {
   double area = 0;
 };
 
-// The largest area at which a frame of this load takes one refresh; the lowest rung's where none does.
-double area_that_fits(const QualityStage& stage, const ResolutionLadder& ladder, const FrameLoad& load,
-                      const MethodVariant& method) {
-  const double target_ms = stage.display.target_ms();
-  int low = 0;
-  int high = ladder.top();
-  while (low < high) {
-    const int middle = (low + high + 1) / 2;
-    const double area = ladder.area_fraction(middle);
-    if (load.gpu(area) * target_ms + passes_ms(stage, ladder, method, area) <= target_ms) {
-      low = middle;
-    } else {
-      high = middle - 1;
-    }
-  }
-  return ladder.area_fraction(low);
-}
-
-Best best_of(const QualityStage& stage, const ResolutionLadder& ladder, std::size_t index) {
+// Returns the best that a method can do for a frame; nothing where it does not fit into one refresh even on the lowest
+// rung, but for the first method.
+std::optional<Best> best_with(const QualityStage& stage, const ResolutionLadder& ladder, std::size_t index,
+                              const MethodVariant& method) {
   const FrameLoad& load = stage.trace->load.frames[index];
   const double target_ms = stage.display.target_ms();
-  Best best;
-  for (const MethodVariant& method : stage.machine->methods()) {
-    const double area = area_that_fits(stage, ladder, load, method);
-    const bool fits = load.gpu(area) * target_ms + passes_ms(stage, ladder, method, area) <= target_ms;
-    if (!fits && !(method == stage.machine->methods().front())) continue;
-    const double error =
-        stage.machine->flip(stage.trace->content[index].mix, method, std::sqrt(area)).value();
-    if (error < best.error) best = {error, area};
-  }
-  return best;
+  const auto fits = [&](double area) {
+    return load.gpu(area) * target_ms + passes_ms(stage, ladder, method, area) <= target_ms;
+  };
+  const double area = largest_area(ladder, fits);
+  if (!fits(area) && !(method == stage.machine->methods().front())) return {};
+  return Best{stage.machine->flip(stage.trace->content[index].mix, method, scale_of(area)).value(), area};
 }
 
 }  // namespace
@@ -375,28 +313,47 @@ double passes_ms(const QualityStage& stage, const ResolutionLadder& ladder, cons
 }
 
 QualityScore replay_quality(const QualityStage& stage, QualityController& controller) {
-  QualityProgram program(stage, controller);
-  const auto frames = replay(stage.trace->load, stage.display, program);
-  return score_of(stage, frames, program.resolved());
+  const auto next = [&] {
+    const QualityChoice choice = controller.choice();
+    return std::pair{choice.render_extent, Resolved{choice.method, choice.fading_from, choice.weight}};
+  };
+  return replay_and_score(stage, controller.ladder(), next,
+                          [&](const FrameTiming& timing, const Resolved& resolved, double passes_ms) {
+                            QualityFrame frame = {.timing = timing};
+                            if (stage.times_passes) frame.resolve_ms = passes_ms;
+                            frame.content =
+                                told(stage.trace->content[timing.frame], stage.seed, timing.frame);
+                            frame.content->judged = resolved.method.method == Method::kTemporal;
+                            // Moving shadows have no reactive values.
+                            if (!frame.content->judged) frame.content->light = 0;
+                            checked(controller.observe(frame));
+                          });
 }
 
 QualityScore replay_fixed(const QualityStage& stage, const ResolutionLadder& ladder,
                           ResolutionController* controller, const MethodVariant& method) {
-  FixedProgram program(stage, ladder, controller, method);
-  const auto frames = replay(stage.trace->load, stage.display, program);
-  return score_of(stage, frames, program.resolved());
+  const auto next = [&] {
+    return std::pair{controller != nullptr ? controller->next() : ladder.output(), Resolved{method}};
+  };
+  return replay_and_score(stage, ladder, next, [&](const FrameTiming& timing, const Resolved&, double) {
+    if (controller != nullptr) checked(controller->observe(timing));
+  });
 }
 
 QualityScore oracle(const QualityStage& stage, const ResolutionLadder& ladder) {
   QualityScore score;
   for (std::size_t index = kWarmUp; index < stage.trace->content.size(); ++index) {
-    const Best best = best_of(stage, ladder, index);
-    score.error += best.error;
-    score.area += best.area;
+    Best best;
+    for (const MethodVariant& method : stage.machine->methods()) {
+      const auto with = best_with(stage, ladder, index, method);
+      if (with && with->error < best.error) best = *with;
+    }
+    score.flip += best.error;
+    score.pixels += best.area;
     ++score.frames;
   }
-  score.error /= score.frames;
-  score.area /= score.frames;
+  score.flip /= score.frames;
+  score.pixels /= score.frames;
   return score;
 }
 

@@ -30,8 +30,8 @@ struct ContentTrace {
   std::vector<FrameContent> content;  // one for each frame
 };
 
-// Each feasible load of the split with one of four scripts of what is shown. Held-out scripts have other lengths, other
-// mixes and other seeds.
+// Returns each feasible load of the split with one of four scripts of contents. Held-out scripts have other lengths,
+// other mixes and other seeds.
 std::vector<ContentTrace> content_traces(Split split, std::uint64_t seed);
 
 // A machine on which the passes of temporal:balanced at scale .71 take this part of a frame's target. Errors and times
@@ -56,24 +56,26 @@ struct QualityStage {
   bool times_passes = true;  // the program knows what the resolve took; else the whole frame alone
 };
 
+// Figures of a trace, or their means.
 struct QualityScore {
   int frames = 0;                 // that count
-  int dropped = 0;                // refreshes without a new frame
-  double error = 0;               // mean expected FLIP of a refresh
+  double dropped = 0;             // refreshes without a new frame
+  double flip = 0;                // mean expected FLIP of a refresh
   double changes_per_second = 0;  // changes of method
-  double area = 0;                // mean area fraction
+  double pixels = 0;              // mean area fraction
 };
 
 // Returns the milliseconds that the passes of a method take on the stage's machine.
 double passes_ms(const QualityStage& stage, const ResolutionLadder& ladder, const MethodVariant& method,
                  double area);
 
+// Replays with a controller that chooses the method; with a fixed method, where `controller` sizes the frames, or all
+// have scale 1 if it is null.
 QualityScore replay_quality(const QualityStage& stage, QualityController& controller);
-// The method stays; `controller` sizes frames, null: all at scale 1.
 QualityScore replay_fixed(const QualityStage& stage, const ResolutionLadder& ladder,
                           ResolutionController* controller, const MethodVariant& method);
-// The least error of any method and resolution with which each frame fits into one refresh, knowing its load and the
-// machine, as if all history were there. Where none fits it takes the first method at the lowest resolution.
+// Returns the least error of any method and resolution with which each frame fits into one refresh, knowing its load
+// and the machine, as if all history were there. Where none fits it takes the first method at the lowest resolution.
 QualityScore oracle(const QualityStage& stage, const ResolutionLadder& ladder);
 
 }  // namespace quincunx::traces

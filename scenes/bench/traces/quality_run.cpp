@@ -4,20 +4,16 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
+#include "bench/harness/measuring.h"
+#include "bench/harness/records.h"
 #include "quincunx/control/predictive_controller.h"
 
 namespace quincunx::traces {
 namespace {
 
-template <typename Made>
-Made checked(Result<Made> made) {
-  if (!made.ok()) throw std::invalid_argument(made.status().message());
-  return std::move(made).value();
-}
+using bench::checked;
 
 struct Contender {
   std::string name;
@@ -88,29 +84,51 @@ std::vector<Stage> stages_for(const QualityRunSettings& settings, const Resoluti
 QualityResult result_of(const QualityRunSettings& settings, const std::vector<Stage>& stages,
                         const Contender& contender) {
   QualityResult result = {.controller = contender.name};
-  result.errors.resize(stages.front().traces.size());
+  result.flips.resize(stages.front().traces.size());
   const auto seeds = static_cast<double>(stages.size());
-  const double share = 1 / (seeds * static_cast<double>(result.errors.size()));
+  const double share = 1 / (seeds * static_cast<double>(result.flips.size()));
+  QualityScore& mean = result.score;
   for (const Stage& stage : stages) {
-    result.frames = 0;
+    mean.frames = 0;
     for (std::size_t index = 0; index < stage.traces.size(); ++index) {
       const QualityScore score = contender.replay({.trace = &stage.traces[index],
                                                    .machine = &stage.machine,
                                                    .display = settings.display,
                                                    .seed = stage.seed,
                                                    .times_passes = settings.times_passes});
-      result.frames += score.frames;
-      result.dropped += score.dropped / seeds;
-      result.error += share * score.error;
-      result.errors[index] += score.error / seeds;
-      result.changes_per_second += share * score.changes_per_second;
-      result.area += share * score.area;
+      mean.frames += score.frames;
+      mean.dropped += score.dropped / seeds;
+      mean.flip += share * score.flip;
+      mean.changes_per_second += share * score.changes_per_second;
+      mean.pixels += share * score.pixels;
+      result.flips[index] += score.flip / seeds;
     }
   }
   return result;
 }
 
 }  // namespace
+
+template <typename Io, bench::SameAs<QualityResult> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(traces, machine, budget, controller)
+  io("frames", value.score.frames);
+  io("dropped", value.score.dropped);
+  io("flip", value.score.flip);
+  QUINCUNX_EACH_FIELD(flip_over_oracle)
+  io("changes_per_second", value.score.changes_per_second);
+  io("pixels", value.score.pixels);
+  QUINCUNX_EACH_FIELD(flips)
+}
+
+template <typename Io, bench::SameAs<QualityRun> Self>
+void fields(Io& io, Self& value) {
+  const QualityRunSettings& settings = value.settings;
+  io("seeds", settings.seeds);
+  fields(io, settings.display);
+  io("times_passes", settings.times_passes);
+  QUINCUNX_EACH_FIELD(results)
+}
 
 QualityRun run_quality(const QualityRunSettings& settings) {
   const ResolutionLadder ladder = checked(ResolutionLadder::create(settings.ladder));
@@ -127,9 +145,9 @@ QualityRun run_quality(const QualityRunSettings& settings) {
           result.budget = budget;
           run.results.push_back(std::move(result));
           QualityResult& last = run.results.back();
-          for (std::size_t i = 0; i < last.errors.size(); ++i)
-            last.over_oracle +=
-                last.errors[i] / run.results[oracle].errors[i] / static_cast<double>(last.errors.size());
+          for (std::size_t i = 0; i < last.flips.size(); ++i)
+            last.flip_over_oracle +=
+                last.flips[i] / run.results[oracle].flips[i] / static_cast<double>(last.flips.size());
         }
       }
     }
@@ -138,59 +156,32 @@ QualityRun run_quality(const QualityRunSettings& settings) {
 }
 
 std::string text_of(const QualityRun& run) {
-  std::string text;
-  const QualityResult* before = nullptr;
+  std::string text, before;
   for (const QualityResult& result : run.results) {
-    if (before == nullptr || before->traces != result.traces || before->machine != result.machine ||
-        before->budget != result.budget) {
-      text += fmt::format("\n{} traces, {} machine, {:g} of the time\n", result.traces, result.machine,
-                          result.budget);
-      text += fmt::format("{:<36}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "controller", "FLIP", "/oracle", "dropped",
-                          "changes/s", "pixels");
+    const std::string head = fmt::format("\n{} traces, {} machine, {:g} of the time\n", result.traces,
+                                         result.machine, result.budget);
+    if (head != before) {
+      text += head + fmt::format("{:<36}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "controller", "FLIP", "/oracle",
+                                 "dropped", "changes/s", "pixels");
     }
-    text += fmt::format("{:<36}{:>9.4f}{:>9.3f}{:>9.1f}{:>11.2f}{:>9.3f}\n", result.controller, result.error,
-                        result.over_oracle, result.dropped, result.changes_per_second, result.area);
-    before = &result;
+    text += fmt::format("{:<36}{:>9.4f}{:>9.3f}{:>9.1f}{:>11.2f}{:>9.3f}\n", result.controller,
+                        result.score.flip, result.flip_over_oracle, result.score.dropped,
+                        result.score.changes_per_second, result.score.pixels);
+    before = head;
   }
   return text + fmt::format(
                     "\nFLIP: expected, mean of all refreshes, dropped frames included; the traces' mean over "
                     "that of "
                     "the oracle.\ndropped: of {} frames, mean of {} seeds.  changes/s: of the method.\n",
-                    run.results.front().frames, run.settings.seeds.size());
+                    run.results.front().score.frames, run.settings.seeds.size());
 }
 
 std::string json_of(const QualityRun& run) {
-  nlohmann::ordered_json root = {{"seeds", run.settings.seeds},
-                                 {"refresh_hz", run.settings.display.refresh_hz},
-                                 {"buffers", run.settings.display.buffers},
-                                 {"timer_latency_frames", run.settings.display.timer_latency},
-                                 {"times_passes", run.settings.times_passes},
-                                 {"results", nlohmann::ordered_json::array()}};
-  for (const QualityResult& result : run.results) {
-    root["results"].push_back({{"traces", result.traces},
-                               {"machine", result.machine},
-                               {"budget", result.budget},
-                               {"controller", result.controller},
-                               {"frames", result.frames},
-                               {"dropped", result.dropped},
-                               {"flip", result.error},
-                               {"flip_over_oracle", result.over_oracle},
-                               {"changes_per_second", result.changes_per_second},
-                               {"pixels", result.area},
-                               {"flips", result.errors}});
-  }
-  return root.dump(1) + "\n";
+  return bench::json_of(run);
 }
 
 std::string csv_of(const QualityRun& run) {
-  std::string text =
-      "traces,machine,budget,controller,frames,dropped,flip,flip_over_oracle,changes_per_second,pixels\n";
-  for (const QualityResult& result : run.results) {
-    text += fmt::format("{},{},{:g},\"{}\",{},{:g},{:g},{:g},{:g},{:g}\n", result.traces, result.machine,
-                        result.budget, result.controller, result.frames, result.dropped, result.error,
-                        result.over_oracle, result.changes_per_second, result.area);
-  }
-  return text;
+  return bench::csv_text(run.results);
 }
 
 }  // namespace quincunx::traces

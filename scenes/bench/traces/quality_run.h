@@ -19,19 +19,15 @@ struct QualityRunSettings {
   std::vector<double> budgets = {1};  // multiples of the time that loads and machines are written for
 };
 
-// Means over the traces of a split on one machine, and over the seeds; drops are those of one seed.
+// Means over the traces of a split on one machine, and over the seeds; frames and drops are sums over the traces.
 struct QualityResult {
   std::string controller;    // "oracle", "quality", "predictive, temporal:fast"
   std::string traces = {};   // "development", "held-out"
   std::string machine = {};  // "strong"
   double budget = 1;
-  int frames = 0;  // for one seed
-  double dropped = 0;
-  double error = 0;        // mean expected FLIP of a refresh
-  double over_oracle = 0;  // mean of the traces' error over the oracle's
-  double changes_per_second = 0;
-  double area = 0;
-  std::vector<double> errors = {};  // one for each trace, in their order
+  QualityScore score = {};
+  double flip_over_oracle = 0;     // mean of the traces' FLIP over the oracle's
+  std::vector<double> flips = {};  // one for each trace, in their order
 };
 
 struct QualityRun {

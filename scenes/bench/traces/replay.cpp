@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
+
+#include "bench/harness/measuring.h"
 
 namespace quincunx::traces {
 namespace {
@@ -66,20 +67,6 @@ class Pipeline {
   bool waited_for_cpu_ = false;
 };
 
-double oracle_area(const FrameLoad& load, const ResolutionLadder& ladder) {
-  int low = 0;
-  int high = ladder.top();
-  while (low < high) {
-    const int middle = (low + high + 1) / 2;
-    if (load.gpu(ladder.area_fraction(middle)) <= 1) {
-      low = middle;
-    } else {
-      high = middle - 1;
-    }
-  }
-  return ladder.area_fraction(low);
-}
-
 // Frames after `step` until the area stays within 5 % of its mean over the last quarter before the next step.
 double settling(const std::vector<ReplayedFrame>& frames, int step, int end) {
   constexpr double kNear = 0.05;
@@ -96,9 +83,9 @@ double settling(const std::vector<ReplayedFrame>& frames, int step, int end) {
   return settled - step;
 }
 
-double mean_settling(const LoadTrace& trace, const std::vector<ReplayedFrame>& frames,
-                     const std::vector<int>& steps) {
-  if (steps.empty()) return -1;
+std::optional<double> mean_settling(const LoadTrace& trace, const std::vector<ReplayedFrame>& frames,
+                                    const std::vector<int>& steps) {
+  if (steps.empty()) return {};
   std::vector<int> all = trace.steps_up;
   all.insert(all.end(), trace.steps_down.begin(), trace.steps_down.end());
   all.push_back(static_cast<int>(frames.size()));
@@ -121,43 +108,45 @@ FrameTiming timing_of(const std::vector<ReplayedFrame>& frames, int index, int m
           .missed_vsyncs = missed};
 }
 
-class ControlledProgram final : public ReplayedProgram {
- public:
-  explicit ControlledProgram(ResolutionController& controller) : controller_(&controller) {}
-  const ResolutionLadder& ladder() const override { return controller_->ladder(); }
-  void observe(const FrameTiming& timing) override {
-    const Status status = controller_->observe(timing);
-    if (!status.ok()) throw std::logic_error(status.message());
-  }
-  Extent next(std::size_t) override { return controller_->next(); }
-  double besides_ms(std::size_t) const override { return 0; }
-
- private:
-  ResolutionController* controller_;
-};
-
 }  // namespace
+
+double largest_area(const ResolutionLadder& ladder, const std::function<bool(double area)>& fits) {
+  int low = 0;
+  int high = ladder.top();
+  while (low < high) {
+    const int middle = (low + high + 1) / 2;
+    if (fits(ladder.area_fraction(middle))) {
+      low = middle;
+    } else {
+      high = middle - 1;
+    }
+  }
+  return ladder.area_fraction(low);
+}
 
 std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display,
                                   ResolutionController& controller) {
-  ControlledProgram program(controller);
-  return replay(trace, display, program);
+  return replay(trace, display,
+                {.ladder = controller.ladder(),
+                 .observe = [&](const FrameTiming& timing) { bench::checked(controller.observe(timing)); },
+                 .next = [&](std::size_t) { return controller.next(); }});
 }
 
-std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display, ReplayedProgram& program) {
+std::vector<ReplayedFrame> replay(const LoadTrace& trace, const Display& display,
+                                  const ReplayedProgram& program) {
   Pipeline pipeline(display);
   std::vector<ReplayedFrame> frames;
   const double target_ms = display.target_ms();
   for (const FrameLoad& load : trace.frames) {
-    const int known = static_cast<int>(frames.size()) - display.timer_latency;
+    const int known = static_cast<int>(frames.size()) - display.timer_latency_frames;
     if (known >= 0) {
       const int missed = frames[static_cast<std::size_t>(known)].dropped;
       program.observe(timing_of(frames, known, missed));
     }
     ReplayedFrame frame{.render = program.next(frames.size())};
-    frame.area = program.ladder().area_fraction(frame.render);
-    frame.oracle_area = oracle_area(load, program.ladder());
-    frame.gpu_ms = load.gpu(frame.area) * target_ms + program.besides_ms(frames.size());
+    frame.area = program.ladder.area_fraction(frame.render);
+    frame.oracle_area = largest_area(program.ladder, [&load](double area) { return load.gpu(area) <= 1; });
+    frame.gpu_ms = load.gpu(frame.area) * target_ms + program.besides_ms();
     frame.cpu_ms = load.cpu * target_ms;
     pipeline.draw(frame.gpu_ms, frame.cpu_ms);
     frame.interval_ms = pipeline.interval();
@@ -188,11 +177,11 @@ ReplayScore score(const LoadTrace& trace, const Display& display, const std::vec
     direction = now;
   }
   const double seconds = result.frames / display.refresh_hz;
-  result.pixels = area / oracle;
+  result.pixels_over_oracle = area / oracle;
   result.changes_per_second = changes / seconds;
-  result.oscillation = reversals / seconds;
-  result.settle_up = mean_settling(trace, frames, trace.steps_up);
-  result.settle_down = mean_settling(trace, frames, trace.steps_down);
+  result.reversals_per_second = reversals / seconds;
+  result.settle_up_frames = mean_settling(trace, frames, trace.steps_up);
+  result.settle_down_frames = mean_settling(trace, frames, trace.steps_down);
   return result;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -125,15 +124,6 @@ Result<QualityRun> run_quality(const TraceOptions& options) {
                                         .seeds = options.seeds,
                                         .times_passes = !options.untimed,
                                         .budgets = options.budgets});
-}
-
-Status write_files(const TraceRun& run, const std::string& folder, const std::string& command) {
-  const auto write = [&folder](const char* name, const std::string& text) {
-    return tools::write_text((std::filesystem::path(folder) / name).string(), text);
-  };
-  if (Status status = write("traces.json", json_of(run)); !status.ok()) return status;
-  if (Status status = write("traces.csv", csv_of(run)); !status.ok()) return status;
-  return write("traces.html", page_of(run, command));
 }
 
 }  // namespace quincunx::traces

@@ -27,18 +27,14 @@ struct TraceOptions {
   bool untimed = false;
 };
 
-// --traces, and options that need it.
-// Replays everything. Errors: of a recording that cannot be read.
+// Replays everything. Errors: a recording that cannot be read.
 Result<TraceRun> run_traces(const TraceOptions& options);
 
-// The quality controller instead, on the first of the displays.
+// Replays the quality controller instead, on the first of the displays.
 Result<QualityRun> run_quality(const TraceOptions& options);
 
-// traces.json, traces.csv and traces.html in `folder`. Errors: kIoFailure.
-Status write_files(const TraceRun& run, const std::string& folder, const std::string& command);
-
 // Returns a run as one HTML page: tables that sort, and load, resolution and dropped frames over time. `command`: as
-// typed. The curves are those of the first display and seed, replayed for the page. Pure.
+// typed. The curves are those of the first display and seed, replayed for the page.
 std::string page_of(const TraceRun& run, const std::string& command);
 
 }  // namespace quincunx::traces

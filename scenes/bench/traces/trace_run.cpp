@@ -3,178 +3,114 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <array>
 #include <utility>
 
-#include "bench/traces/peer_controllers.h"
-#include "quincunx/control/predictive_controller.h"
+#include "bench/harness/records.h"
 
 namespace quincunx::traces {
 namespace {
 
-Controller checked(Result<Controller> made) {
-  if (!made.ok()) throw std::invalid_argument(made.status().message());
-  return std::move(made).value();
+// Returns the mean of a field over the scores that have it.
+template <typename Value>
+Value mean_of(const std::vector<ReplayScore>& scores, Value ReplayScore::*field) {
+  double sum = 0;
+  int count = 0;
+  for (const ReplayScore& score : scores) {
+    const std::optional<double> value = score.*field;
+    if (!value) continue;
+    sum += *value;
+    ++count;
+  }
+  return count > 0 ? Value(sum / count) : Value();
 }
 
-ControllerKind peer(const std::string& name, Controller (*make)(const ResolutionLadder&, double)) {
-  return {name, false, [make](const LadderSettings& ladder, const Display& display) {
-            Result<ResolutionLadder> made = ResolutionLadder::create(ladder);
-            if (!made.ok()) throw std::invalid_argument(made.status().message());
-            return make(made.value(), display.target_ms());
-          }};
+// Returns the means of all but the frames.
+ReplayScore mean_of(const std::vector<ReplayScore>& scores) {
+  const auto mean = [&scores](auto field) { return mean_of(scores, field); };
+  return {.dropped = mean(&ReplayScore::dropped),
+          .cpu_dropped = mean(&ReplayScore::cpu_dropped),
+          .pixels_over_oracle = mean(&ReplayScore::pixels_over_oracle),
+          .changes_per_second = mean(&ReplayScore::changes_per_second),
+          .reversals_per_second = mean(&ReplayScore::reversals_per_second),
+          .settle_up_frames = mean(&ReplayScore::settle_up_frames),
+          .settle_down_frames = mean(&ReplayScore::settle_down_frames)};
 }
 
-// A mean over those values that are there.
-class Mean {
- public:
-  void add(double value) {
-    if (value < 0) return;
-    sum_ += value;
-    ++count_;
-  }
-  double value() const { return count_ > 0 ? sum_ / count_ : -1; }
-
- private:
-  double sum_ = 0;
-  int count_ = 0;
-};
-
-class RowMeans {
- public:
-  void add(const ReplayScore& score) {
-    frames_ = score.frames;
-    dropped_.add(score.dropped);
-    cpu_dropped_.add(score.cpu_dropped);
-    pixels_.add(score.pixels);
-    changes_.add(score.changes_per_second);
-    oscillation_.add(score.oscillation);
-    up_.add(score.settle_up);
-    down_.add(score.settle_down);
-  }
-  TraceRow row(const LoadTrace& trace) const {
-    TraceRow row{.trace = trace.name, .kind = trace.kind, .score = {}};
-    row.dropped = dropped_.value();
-    row.cpu_dropped = cpu_dropped_.value();
-    row.score.frames = frames_;
-    row.score.pixels = pixels_.value();
-    row.score.changes_per_second = changes_.value();
-    row.score.oscillation = oscillation_.value();
-    row.score.settle_up = up_.value();
-    row.score.settle_down = down_.value();
-    return row;
-  }
-
- private:
-  int frames_ = 0;
-  Mean dropped_, cpu_dropped_, pixels_, changes_, oscillation_, up_, down_;
-};
-
-TraceTotals totals_of(const std::vector<TraceRow>& rows) {
-  TraceTotals totals;
-  Mean pixels, changes, oscillation, up, down;
+ReplayScore totals_of(const std::vector<TraceRow>& rows) {
+  std::vector<ReplayScore> feasible;
   for (const TraceRow& row : rows) {
-    if (row.kind != TraceKind::kFeasible) continue;
-    totals.frames += row.score.frames;
-    totals.dropped += row.dropped;
-    pixels.add(row.score.pixels);
-    changes.add(row.score.changes_per_second);
-    oscillation.add(row.score.oscillation);
-    up.add(row.score.settle_up);
-    down.add(row.score.settle_down);
+    if (row.kind == TraceKind::kFeasible) feasible.push_back(row.score);
   }
-  totals.pixels = pixels.value();
-  totals.changes_per_second = changes.value();
-  totals.oscillation = oscillation.value();
-  totals.settle_up = up.value();
-  totals.settle_down = down.value();
+  ReplayScore totals = mean_of(feasible);
+  totals.dropped = totals.cpu_dropped = 0;
+  for (const ReplayScore& score : feasible) {
+    totals.frames += score.frames;
+    totals.dropped += score.dropped;
+    totals.cpu_dropped += score.cpu_dropped;
+  }
   return totals;
 }
 
-using Json = nlohmann::ordered_json;
-
 const char* name_of(TraceKind kind) {
-  switch (kind) {
-    case TraceKind::kFeasible:
-      return "feasible";
-    case TraceKind::kInfeasible:
-      return "infeasible";
-    case TraceKind::kCpuBound:
-      return "cpu-bound";
-  }
-  return "";
+  constexpr const char* kNames[] = {"feasible", "infeasible", "cpu-bound"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
-Json known(double value) {
-  return value >= 0 ? Json(value) : Json(nullptr);
+std::string frames_text(std::optional<double> frames) {
+  return frames ? fmt::format("{:.1f}", *frames) : "-";
 }
 
-std::string frames_text(double value) {
-  return value >= 0 ? fmt::format("{:.1f}", value) : "-";
-}
-
-Json json_of(const Display& display) {
-  return {{"refresh_hz", display.refresh_hz},
-          {"buffers", display.buffers},
-          {"timer_latency_frames", display.timer_latency}};
-}
-
-Json json_of(const TraceRow& row) {
-  return {{"trace", row.trace},
-          {"kind", name_of(row.kind)},
-          {"frames", row.score.frames},
-          {"dropped", row.dropped},
-          {"cpu_dropped", row.cpu_dropped},
-          {"pixels_over_oracle", row.score.pixels},
-          {"changes_per_second", row.score.changes_per_second},
-          {"reversals_per_second", row.score.oscillation},
-          {"settle_up_frames", known(row.score.settle_up)},
-          {"settle_down_frames", known(row.score.settle_down)}};
-}
-
-Json json_of(const ControllerResult& result) {
-  const TraceTotals& totals = result.totals;
-  Json json = {{"controller", result.controller},
-               {"ours", result.ours},
-               {"traces", result.list},
-               {"display", json_of(result.display)},
-               {"frames", totals.frames},
-               {"dropped", totals.dropped},
-               {"dropped_per_thousand", totals.dropped_per_thousand()},
-               {"pixels_over_oracle", totals.pixels},
-               {"changes_per_second", totals.changes_per_second},
-               {"reversals_per_second", totals.oscillation},
-               {"settle_up_frames", known(totals.settle_up)},
-               {"settle_down_frames", known(totals.settle_down)},
-               {"rows", Json::array()}};
-  for (const TraceRow& row : result.rows)
-    json["rows"].push_back(json_of(row));
-  return json;
+std::string text_of(const Display& display) {
+  return fmt::format("{:g} Hz, {} buffers, timers {} frames late", display.refresh_hz, display.buffers,
+                     display.timer_latency_frames);
 }
 
 }  // namespace
 
-std::vector<ControllerKind> controller_kinds() {
-  return {
-      {"predictive", true,
-       [](const LadderSettings& ladder, const Display& display) {
-         return checked(make_predictive_controller(
-             {.ladder = ladder, .target_ms = display.target_ms(), .buffers = display.buffers}));
-       }},
-      {"proportional [W]", true,
-       [](const LadderSettings& ladder, const Display& display) {
-         return checked(make_proportional_controller({.ladder = ladder, .target_ms = display.target_ms()}));
-       }},
-      {"minimum of N [N]", true,
-       [](const LadderSettings& ladder, const Display& display) {
-         return checked(make_minimum_of_n_controller({.ladder = ladder, .target_ms = display.target_ms()}));
-       }},
-      peer("Unreal-like", make_unreal_like),
-      peer("Valve-like", make_valve_like),
-      peer("Unity-like", make_unity_like),
-      peer("Filament-like", make_filament_like),
-  };
+// A line of the CSV.
+struct TraceLine {
+  std::string traces;
+  Display display;
+  std::string controller;
+  TraceRow row;
+};
+
+QUINCUNX_FIELDS(ReplayScore, frames, dropped, cpu_dropped, pixels_over_oracle, changes_per_second,
+                reversals_per_second, settle_up_frames, settle_down_frames)
+
+template <typename Io, bench::SameAs<TraceRow> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(trace)
+  io("kind", std::string(name_of(value.kind)));
+  fields(io, value.score);
+}
+
+template <typename Io, bench::SameAs<TraceLine> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(traces)
+  fields(io, value.display);
+  QUINCUNX_EACH_FIELD(controller)
+  fields(io, value.row);
+}
+
+template <typename Io, bench::SameAs<ControllerResult> Self>
+void fields(Io& io, Self& value) {
+  QUINCUNX_EACH_FIELD(controller, ours, traces, display)
+  fields(io, value.totals);
+  io("dropped_per_thousand", value.totals.dropped_per_thousand());
+  QUINCUNX_EACH_FIELD(rows)
+}
+
+template <typename Io, bench::SameAs<TraceRun> Self>
+void fields(Io& io, Self& value) {
+  const LadderSettings& ladder = value.settings.ladder;
+  io("output", std::array{ladder.output_extent.width, ladder.output_extent.height});
+  io("min_scale", ladder.min_scale);
+  io("max_scale", ladder.max_scale);
+  io("seeds", value.settings.seeds);
+  io("warm_up_frames", kWarmUp);
+  QUINCUNX_EACH_FIELD(results)
 }
 
 std::vector<NamedTraces> scripted_traces() {
@@ -190,15 +126,17 @@ TraceRun run_traces(const TraceSettings& settings) {
     for (const Display& display : settings.displays) {
       for (const ControllerKind& kind : controller_kinds()) {
         ControllerResult result{
-            .controller = kind.name, .ours = kind.ours, .list = list.name, .display = display};
+            .controller = kind.name, .ours = kind.ours, .traces = list.name, .display = display};
         for (std::size_t index = 0; index < traces.front().size(); ++index) {
-          RowMeans means;
+          std::vector<ReplayScore> scores;
           for (const std::vector<LoadTrace>& of_seed : traces) {
             const LoadTrace& trace = of_seed[index];
-            const Controller controller = kind.make(settings.ladder, display);
-            means.add(score(trace, display, replay(trace, display, *controller)));
+            const auto controller = kind.make(settings.ladder, display);
+            scores.push_back(score(trace, display, replay(trace, display, *controller)));
           }
-          result.rows.push_back(means.row(traces.front()[index]));
+          const LoadTrace& trace = traces.front()[index];
+          result.rows.push_back({trace.name, trace.kind, mean_of(scores)});
+          result.rows.back().score.frames = scores.front().frames;
         }
         result.totals = totals_of(result.rows);
         run.results.push_back(std::move(result));
@@ -209,25 +147,19 @@ TraceRun run_traces(const TraceSettings& settings) {
 }
 
 std::string text_of(const TraceRun& run) {
-  std::string text;
-  const ControllerResult* before = nullptr;
+  std::string text, before;
   for (const ControllerResult& result : run.results) {
-    const Display& display = result.display;
-    const bool same = before != nullptr && before->list == result.list &&
-                      before->display.refresh_hz == display.refresh_hz &&
-                      before->display.buffers == display.buffers &&
-                      before->display.timer_latency == display.timer_latency;
-    if (!same) {
-      text += fmt::format("\n{} traces, {:g} Hz, {} buffers, timers {} frames late\n", result.list,
-                          display.refresh_hz, display.buffers, display.timer_latency);
-      text += fmt::format("{:<18}{:>10}{:>9}{:>11}{:>13}{:>10}{:>10}\n", "controller", "dropped", "pixels",
-                          "changes/s", "reversals/s", "down", "up");
+    const std::string head = fmt::format("\n{} traces, {}\n", result.traces, text_of(result.display));
+    if (head != before) {
+      text += head + fmt::format("{:<18}{:>10}{:>9}{:>11}{:>13}{:>10}{:>10}\n", "controller", "dropped",
+                                 "pixels", "changes/s", "reversals/s", "down", "up");
     }
-    const TraceTotals& totals = result.totals;
+    const ReplayScore& totals = result.totals;
     text += fmt::format("{:<18}{:>10.1f}{:>9.3f}{:>11.2f}{:>13.2f}{:>10}{:>10}\n", result.controller,
-                        totals.dropped, totals.pixels, totals.changes_per_second, totals.oscillation,
-                        frames_text(totals.settle_up), frames_text(totals.settle_down));
-    before = &result;
+                        totals.dropped, totals.pixels_over_oracle, totals.changes_per_second,
+                        totals.reversals_per_second, frames_text(totals.settle_up_frames),
+                        frames_text(totals.settle_down_frames));
+    before = head;
   }
   text += fmt::format(
       "\ndropped: refreshes without a new frame, mean of {} seeds, over the feasible traces.  pixels: over "
@@ -239,34 +171,16 @@ std::string text_of(const TraceRun& run) {
 }
 
 std::string json_of(const TraceRun& run) {
-  const LadderSettings& ladder = run.settings.ladder;
-  Json root = {{"output", {ladder.output_extent.width, ladder.output_extent.height}},
-               {"min_scale", ladder.min_scale},
-               {"max_scale", ladder.max_scale},
-               {"seeds", run.settings.seeds},
-               {"warm_up_frames", kWarmUp},
-               {"results", Json::array()}};
-  for (const ControllerResult& result : run.results)
-    root["results"].push_back(json_of(result));
-  return root.dump(1) + "\n";
+  return bench::json_of(run);
 }
 
 std::string csv_of(const TraceRun& run) {
-  std::string text =
-      "traces,refresh_hz,buffers,timer_latency_frames,controller,trace,kind,frames,dropped,cpu_dropped,"
-      "pixels_over_oracle,changes_per_second,reversals_per_second,settle_up_frames,settle_down_frames\n";
-  const auto cell = [](double value) { return value >= 0 ? fmt::format("{:g}", value) : std::string(); };
+  std::vector<TraceLine> lines;
   for (const ControllerResult& result : run.results) {
-    for (const TraceRow& row : result.rows) {
-      const Display& display = result.display;
-      text += fmt::format("{},{:g},{},{},{},\"{}\",{},{},{:g},{:g},{:g},{:g},{:g},{},{}\n", result.list,
-                          display.refresh_hz, display.buffers, display.timer_latency, result.controller,
-                          row.trace, name_of(row.kind), row.score.frames, row.dropped, row.cpu_dropped,
-                          row.score.pixels, row.score.changes_per_second, row.score.oscillation,
-                          cell(row.score.settle_up), cell(row.score.settle_down));
-    }
+    for (const TraceRow& row : result.rows)
+      lines.push_back({result.traces, result.display, result.controller, row});
   }
-  return text;
+  return bench::csv_text(lines);
 }
 
 }  // namespace quincunx::traces

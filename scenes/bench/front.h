@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The points of an ErrorFront, from results of the bench; the built-in scenes that stand for each class, and those that
-// its users are judged by. Pure.
+// quincunx-bench --front: error and cost by class of scenes, method and scale, from results of the bench.
 #pragma once
 
 #include <span>
@@ -10,9 +9,31 @@
 
 #include "bench/speed_error/bench_result.h"
 #include "quincunx/control/error_front.h"
+#include "quincunx/status.h"
+
+namespace quincunx::tools {
+class CommandLine;
+}
 
 namespace quincunx::bench {
 
+struct BenchOptions;
+
+struct FrontOptions {
+  std::string file;  // to write; empty: no front is wanted
+};
+
+// Sets the defaults of --front where no option says otherwise: the methods that are on a front, scales and conditions.
+void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options);
+
+// Measures two views of each scene of class_scenes(): --start with --seed, and a later moment with another seed. Takes
+// minutes. Throws a Failure where a step fails.
+ErrorFront measure_front(const BenchOptions& options);
+
+// Writes it to the file of the options and to where find_front() looks for it. Throws a Failure where a step fails.
+void write_front(const BenchOptions& options, const ErrorFront& front);
+
+// The built-in scenes that stand for a class, and those that the users of a front are judged by.
 struct ClassScenes {
   SceneClass scene_class;
   std::span<const std::string_view> measured;  // by --front

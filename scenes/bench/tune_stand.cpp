@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "bench/tune/tune_stand.h"
+#include "bench/tune_stand.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -34,8 +34,7 @@ scenes::FocusOptions focus_of(Extent output) {
   return focus;
 }
 
-Result<FrameFeed> open_feed(const scenes::FrameSource& stage, const TuneCase& what,
-                            const TuneEffort& effort) {
+FrameFeed open_feed(const scenes::FrameSource& stage, const TuneCase& what, const TuneEffort& effort) {
   scenes::PartsSettings parts;
   std::optional<scenes::FocusOptions> focus;
   if (what.has_parts) {
@@ -67,16 +66,14 @@ ResolveSettings settings_of(Method method) {
 
 using Services = std::vector<std::optional<ResolveService>>;
 
-Result<Services> open_services(const Device& device, const ResolvePlan& plan,
-                               std::span<const DeviceProfile> profiles) {
+Services open_services(const Device& device, const ResolvePlan& plan,
+                       std::span<const DeviceProfile> profiles) {
   Services services(profiles.size());
   for (std::size_t i = 0; i < profiles.size(); ++i) {
     auto service = ResolveService::create(device.with_profile(profiles[i]), plan);
-    if (service.ok()) {
-      services[i] = std::move(service).value();
+    if (i == 0 || service.ok()) {
+      services[i] = checked(std::move(service));
       services[i]->allow_timing_waits(true);
-    } else if (i == 0) {
-      return service.status();
     } else {
       spdlog::info("a shape is not tried: {}", service.status().message());
     }
@@ -90,29 +87,25 @@ class StoredCopies {
  public:
   StoredCopies(const Device& device, Storage storage) : device_(device), storage_(storage) {}
 
-  Result<FrameInputs> of(FrameInputs inputs) {
+  FrameInputs of(FrameInputs inputs) {
     std::array<Image, 4>& images = frames_[next_];
     next_ = 1 - next_;
     std::size_t at = 0;
     for (ImageView* view : {&inputs.colour, &inputs.depth, &inputs.velocity, &inputs.reactive}) {
       Image& image = images[at++];
       if (!*view) continue;
-      if (Status status = copy(*view, inputs.render_extent, image); !status.ok()) return status;
+      copy(*view, inputs.render_extent, image);
       *view = image.view();
     }
     return inputs;
   }
 
  private:
-  Status copy(const ImageView& from, Extent render, Image& to) {
-    if (!to.view()) {
-      auto made = device_.allocate(from.extent, from.format, storage_);
-      if (!made.ok()) return made.status();
-      to = std::move(made).value();
-    }
+  void copy(const ImageView& from, Extent render, Image& to) {
+    if (!to.view()) to = checked(device_.allocate(from.extent, from.format, storage_));
     texels_.resize(static_cast<std::size_t>(render.area()) * bytes_per_pixel(from.format));
-    if (Status status = device_.download(from, render, texels_.data()); !status.ok()) return status;
-    return device_.upload(to.view(), render, texels_.data());
+    checked(device_.download(from, render, texels_.data()));
+    checked(device_.upload(to.view(), render, texels_.data()));
   }
 
   Device device_;
@@ -128,12 +121,10 @@ struct StorageWay {
   Samples copies = {};  // whole frames, in copies of the same round
 };
 
-Result<StorageWay> open_way(const Device& device, const ResolvePlan& like, const ResolveSettings& settings) {
-  const auto plan = plan_for(like.needs, settings);
-  if (!plan.ok()) return plan.status();
-  auto service = ResolveService::create(device, plan.value());
-  if (!service.ok()) return service.status();
-  StorageWay way{std::move(service).value(), settings.targets.storage};
+StorageWay open_way(const Device& device, const ResolvePlan& like, const ResolveSettings& settings) {
+  const auto plan = checked(plan_for(like.needs, settings));
+  auto service = checked(ResolveService::create(device, plan));
+  StorageWay way{std::move(service), settings.targets.storage};
   way.service.allow_timing_waits(true);
   return way;
 }
@@ -150,110 +141,91 @@ struct Ways {
   std::optional<StorageWay> buffers, images, floats;
 };
 
-Result<Ways> open_ways(const Device& device, const ResolvePlan& plan) {
+Ways open_ways(const Device& device, const ResolvePlan& plan) {
   Ways ways;
-  const auto open = [&](std::optional<StorageWay>& way, const ResolveSettings& settings) -> Status {
-    auto made = open_way(device, plan, settings);
-    if (!made.ok()) return made.status();
-    way.emplace(std::move(made).value());
-    return {};
-  };
   ResolveSettings settings = plan.settings;
   settings.targets.storage = Storage::kBuffer;
-  Status status = open(ways.buffers, settings);
-  if (status.ok() && plan.accumulates()) {
+  ways.buffers.emplace(open_way(device, plan, settings));
+  if (plan.accumulates()) {
     settings.temporal.history = PixelFormat::kRGBA32F;
-    status = open(ways.floats, settings);
+    ways.floats.emplace(open_way(device, plan, settings));
     settings.temporal.history = plan.settings.temporal.history;
   }
   settings.targets.storage = Storage::kImage;
-  if (status.ok() && device.info().images) status = open(ways.images, settings);
-  if (!status.ok()) return status;
+  if (device.info().images) ways.images.emplace(open_way(device, plan, settings));
   return ways;
 }
 
-Result<TunedStorage> time_storage(const scenes::FrameSource& stage, const TuneCase& what,
-                                  const TuneEffort& effort, const DeviceProfile& profile) {
+TunedStorage time_storage(const scenes::FrameSource& stage, const TuneCase& what, const TuneEffort& effort,
+                          const DeviceProfile& profile) {
   auto stand = TuneStand::create(stage, what, effort);
-  if (!stand.ok()) return stand.status();
-  auto ways = open_ways(stage.device().with_profile(profile), stand->plan());
-  if (!ways.ok()) return ways.status();
-  const Storage drawn = stand->plan().settings.targets.storage;
+  auto ways = open_ways(stage.device().with_profile(profile), stand.plan());
+  const Storage drawn = stand.plan().settings.targets.storage;
   StoredCopies copies(stage.device(), drawn == Storage::kImage ? Storage::kBuffer : Storage::kImage);
   for (int frame = 0; frame < TuneEffort::kWarmUp + effort.frames; ++frame) {
-    auto inputs = stand->feed().next();
-    if (!inputs.ok()) return inputs.status();
-    auto copied = ways->images ? copies.of(inputs.value()) : inputs;
-    if (!copied.ok()) return copied.status();
-    const auto copy_ms = stand->time_copy();
-    if (!copy_ms.ok()) return copy_ms.status();
-    for (std::optional<StorageWay>* way : {&ways->buffers, &ways->images, &ways->floats}) {
+    const FrameInputs inputs = stand.feed().next();
+    const FrameInputs copied = ways.images ? copies.of(inputs) : inputs;
+    const auto copy_ms = stand.time_copy();
+    for (std::optional<StorageWay>* way : {&ways.buffers, &ways.images, &ways.floats}) {
       if (!*way) continue;
       PassTimes times;
-      const FrameInputs& own = (*way)->storage == drawn ? inputs.value() : copied.value();
-      if (Status status = stand->resolve((*way)->service, own, &times); !status.ok()) return status;
-      if (frame >= TuneEffort::kWarmUp) (*way)->copies.push_back(sum_of(times) / copy_ms.value());
+      const FrameInputs& own = (*way)->storage == drawn ? inputs : copied;
+      stand.resolve((*way)->service, own, &times);
+      if (frame >= TuneEffort::kWarmUp) (*way)->copies.push_back(sum_of(times) / copy_ms);
     }
-    stand->feed().release();
+    stand.feed().release();
   }
-  const auto median = [](const std::optional<StorageWay>& way) { return way ? median_of(way->copies) : 0; };
-  return TunedStorage{what.name, median(ways->buffers), median(ways->images), median(ways->floats)};
+  const auto median = [](const std::optional<StorageWay>& way) {
+    return way ? std::optional(median_of(way->copies)) : std::nullopt;
+  };
+  return TunedStorage{what.name, median_of(ways.buffers->copies), median(ways.images), median(ways.floats)};
 }
 
 }  // namespace
 
-Result<TuneStand> TuneStand::create(const scenes::FrameSource& stage, const TuneCase& what,
-                                    const TuneEffort& effort) {
+TuneStand TuneStand::create(const scenes::FrameSource& stage, const TuneCase& what,
+                            const TuneEffort& effort) {
   auto feed = open_feed(stage, what, effort);
-  if (!feed.ok()) return feed.status();
-  const ResolvePlan& drawn = feed->plans().front();
+  const ResolvePlan& drawn = feed.plans().front();
   SceneNeeds needs = drawn.needs;
   if (what.only_camera_moves) needs.moving_objects = false;
-  auto plan = plan_for(needs, drawn.settings);
-  if (!plan.ok()) return plan.status();
-  auto copy = CopyKernel::create(stage.device(), effort.output);
-  if (!copy.ok()) return copy.status();
-  TuneStand stand(stage.device(), std::move(feed).value(), std::move(plan).value(), std::move(copy).value());
-  if (Status status = stand.allocate(); !status.ok()) return status;
+  auto plan = checked(plan_for(needs, drawn.settings));
+  auto copy = checked(CopyKernel::create(stage.device(), effort.output));
+  TuneStand stand(stage.device(), std::move(feed), std::move(plan), std::move(copy));
+  stand.allocate();
   return stand;
 }
 
-Status TuneStand::allocate() {
+void TuneStand::allocate() {
   const ResolveSettings& settings = plan_.settings;
-  const auto make = [&](Image& image, PixelFormat format, Storage storage) -> Status {
-    auto made = device_.allocate(settings.output_extent, format, storage);
-    if (!made.ok()) return made.status();
-    image = std::move(made).value();
-    return {};
+  const auto make = [&](PixelFormat format, Storage storage) {
+    return checked(device_.allocate(settings.output_extent, format, storage));
   };
-  Status status = make(linear_, settings.output.linear, Storage::kBuffer);
-  if (status.ok() && settings.control.fades) status = make(other_, settings.output.linear, Storage::kBuffer);
-  if (status.ok() && settings.output.present)
-    status = make(presented_, PixelFormat::kRGBA8, plan_.presented_storage());
-  return status;
+  linear_ = make(settings.output.linear, Storage::kBuffer);
+  if (settings.control.fades) other_ = make(settings.output.linear, Storage::kBuffer);
+  if (settings.output.present) presented_ = make(PixelFormat::kRGBA8, plan_.presented_storage());
 }
 
-Result<double> TuneStand::time_copy() {
+double TuneStand::time_copy() {
   const StepClock clock;
-  Result<double> ms = copy_.run();
-  if (!ms.ok() || pass_timer(device_) == PassTimer::kEvents) return ms;
-  return clock.elapsed().ms;
+  const double ms = checked(copy_.run());
+  return pass_timer(device_) == PassTimer::kEvents ? ms : clock.elapsed().ms;
 }
 
-Status TuneStand::resolve(ResolveService& service, FrameInputs inputs, PassTimes* times) {
+void TuneStand::resolve(ResolveService& service, FrameInputs inputs, PassTimes* times) {
   if (plan_.settings.control.fades) inputs.fading_from = other_.view();
   const FrameOutputs outputs{.linear = linear_.view(), .presented = presented_.view()};
   const FocusInputs* focus = feed_.focus();
   const FrameReport accepted =
       focus != nullptr ? service.dispatch(inputs, *focus, outputs) : service.dispatch(inputs, outputs);
-  if (!accepted.ok()) return accepted.status;
-  if (Status status = service.finish(); !status.ok()) return status;
+  checked(accepted.status);
+  checked(service.finish());
   const auto report = service.next_completed();
-  if (!report) return Status::device("a finished frame has no report");
-  if (times == nullptr) return report->status;
+  if (!report) throw Failure(Status::device("a finished frame has no report"));
+  checked(report->status);
+  if (times == nullptr) return;
   for (const auto& [kernel, ms] : pass_times(*report))
     (*times)[kernel].push_back(ms);
-  return report->status;
 }
 
 std::vector<TuneCase> tune_cases() {
@@ -303,36 +275,29 @@ Result<std::vector<TuneCase>> tune_cases(const std::vector<std::string>& names) 
   return chosen;
 }
 
-Result<CaseTimes> time_case(const scenes::FrameSource& stage, const TuneCase& what, const TuneEffort& effort,
-                            std::span<const DeviceProfile> profiles) {
+CaseTimes time_case(const scenes::FrameSource& stage, const TuneCase& what, const TuneEffort& effort,
+                    std::span<const DeviceProfile> profiles) {
   auto stand = TuneStand::create(stage, what, effort);
-  if (!stand.ok()) return stand.status();
-  auto services = open_services(stage.device(), stand->plan(), profiles);
-  if (!services.ok()) return services.status();
+  auto services = open_services(stage.device(), stand.plan(), profiles);
   CaseTimes times;
   times.shapes.resize(profiles.size());
   for (int frame = 0; frame < TuneEffort::kWarmUp + effort.frames; ++frame) {
-    auto inputs = stand->feed().next();
-    if (!inputs.ok()) return inputs.status();
+    const FrameInputs inputs = stand.feed().next();
     const bool counts = frame >= TuneEffort::kWarmUp;
-    auto copy_ms = stand->time_copy();
-    if (!copy_ms.ok()) return copy_ms.status();
-    if (counts) times.copy_ms.push_back(copy_ms.value());
+    auto copy_ms = stand.time_copy();
+    if (counts) times.copy_ms.push_back(copy_ms);
     for (std::size_t i = 0; i < profiles.size(); ++i) {
       const std::size_t at = (i + static_cast<std::size_t>(frame)) % profiles.size();
-      std::optional<ResolveService>& service = services.value()[at];
-      if (!service) continue;
-      const Status status = stand->resolve(*service, inputs.value(), counts ? &times.shapes[at] : nullptr);
-      if (!status.ok()) return status;
+      std::optional<ResolveService>& service = services[at];
+      if (service) stand.resolve(*service, inputs, counts ? &times.shapes[at] : nullptr);
     }
-    stand->feed().release();
+    stand.feed().release();
   }
   return times;
 }
 
-Result<std::vector<TunedStorage>> time_storages(const scenes::FrameSource& stage,
-                                                const std::vector<TuneCase>& cases, const TuneEffort& effort,
-                                                const DeviceProfile& profile) {
+std::vector<TunedStorage> time_storages(const scenes::FrameSource& stage, const std::vector<TuneCase>& cases,
+                                        const TuneEffort& effort, const DeviceProfile& profile) {
   std::vector<TunedStorage> storages;
   for (const Method method : {Method::kBilinear, Method::kQuincunx, Method::kTemporal}) {
     TuneCase what{.name = name_of(method), .resolve = {}};
@@ -340,10 +305,7 @@ Result<std::vector<TunedStorage>> time_storages(const scenes::FrameSource& stage
     what.resolve.output.present = false;
     const bool is_wanted = std::any_of(cases.begin(), cases.end(),
                                        [&what](const TuneCase& one) { return one.name == what.name; });
-    if (!is_wanted) continue;
-    auto storage = time_storage(stage, what, effort, profile);
-    if (!storage.ok()) return storage.status();
-    storages.push_back(std::move(storage).value());
+    if (is_wanted) storages.push_back(time_storage(stage, what, effort, profile));
   }
   return storages;
 }

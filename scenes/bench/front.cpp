@@ -1,13 +1,22 @@
 // SPDX-License-Identifier: MIT
-#include "bench/front/front_points.h"
+#include "bench/front.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
+#include "bench/bench_options.h"
+#include "bench/harness/measuring.h"
+#include "bench/speed_error/bench_plan.h"
+#include "bench/speed_error/bench_run.h"
 #include "bench/speed_error/bench_statistics.h"
+#include "quincunx/control/front_file.h"
+#include "quincunx/device.h"
+#include "session/calibration.h"
+#include "tools/program/atomic_file.h"
+#include "tools/program/command_line.h"
 
 namespace quincunx::bench {
 namespace {
@@ -65,6 +74,31 @@ std::string cell(const FrontPoint& point, const std::vector<FrontPoint>& front) 
                      point.ms_per_megapixel, on_front ? '*' : ' ');
 }
 
+constexpr double kLaterView = 2.5;  // seconds after the first
+
+std::vector<std::string> measured_scenes() {
+  std::vector<std::string> names;
+  for (const ClassScenes& members : class_scenes())
+    names.insert(names.end(), members.measured.begin(), members.measured.end());
+  return names;
+}
+
+FrontSource source_of(const BenchResult& result) {
+  const int samples = result.conditions.truth_samples;
+  DeviceInfo device;
+  device.platform = result.machine.cl_platform;
+  device.name = result.machine.cl_device;
+  device.driver = result.machine.cl_driver;
+  const FrontKey key = front_key(device);
+  return {.device = key.device,
+          .driver = key.driver,
+          .scene = key.scene,
+          .date = result.date,
+          .command = result.command,
+          .truth = fmt::format("{} samples a pixel", samples * samples),
+          .output_extent = result.conditions.output};
+}
+
 }  // namespace
 
 std::span<const ClassScenes> class_scenes() {
@@ -108,6 +142,43 @@ std::string text_of(const ErrorFront& front) {
     last = &point;
   }
   return text + "\n";
+}
+
+void apply_front_defaults(const tools::CommandLine& app, BenchOptions& options) {
+  const auto unless_given = [&app](const char* option, auto& value, auto usual) {
+    if (!app.has(option)) value = usual;
+  };
+  unless_given("--output", options.output, Extent{480, 270});
+  unless_given("--scales", options.scales, std::vector<double>{0.35, 0.5, 0.71, 1});
+  std::vector<std::string> methods;
+  for (const MethodVariant& variant : scenes::front_variants())
+    methods.push_back(name_of(variant));
+  unless_given("--methods", options.methods, methods);
+  unless_given("--frames", options.frames, 2);
+  unless_given("--rounds", options.rounds, 3);
+  unless_given("--truth", options.truth, 6);
+}
+
+ErrorFront measure_front(const BenchOptions& options) {
+  BenchOptions view = options;
+  view.scenes = measured_scenes();
+  std::vector<BenchResult> results;
+  for (int later = 0; later < 2; ++later) {
+    view.start = options.start + later * kLaterView;
+    view.seed = options.seed + static_cast<std::uint64_t>(later);
+    results.push_back(run_bench(checked(plan_from(view)), view).result);
+  }
+  return checked(ErrorFront::create(source_of(results.front()), checked(front_points(results))));
+}
+
+void write_front(const BenchOptions& options, const ErrorFront& front) {
+  const std::string text = front.to_json();
+  checked(tools::write_text(options.front.file, text));
+  const FrontSource& source = front.source();
+  const auto path = front_path({source.device, source.driver, source.scene});
+  if (!path) return;
+  const Status status = tools::write_text(path->string(), text);
+  if (!status.ok()) spdlog::warn("the front is not kept for other programs: {}", status.message());
 }
 
 }  // namespace quincunx::bench
