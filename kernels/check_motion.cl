@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// check_motion: how well the previous frame foretells this one where velocity says that its samples come from, and
-// where it would say so with another sign of x, of y, and of both. Asked is every kMotionStep-th sample of every such
-// row of which all four places lie in the previous frame; it counts for each axis along which it moves by a sample or
-// more. Both frames are softened, so that a place between samples is no smoother than one at a sample.
+// check_motion: predicts samples of this frame from the previous one, at the place that velocity gives and at those
+// with another sign of x, of y and of both, and sums the four errors. Takes every kMotionStep-th sample of every
+// kMotionStep-th row if all four places lie in the previous frame; it counts for each axis along which it moves by a
+// sample or more. Both frames are softened, so that a place between samples is no smoother than one at a sample.
 //   params      in      viewports, layouts, items, places
 //   velocity    in      RG16F or RG32F, viewport, in the caller's units; NaN counts as 0, +-Inf as +-65504
 //   colour0, 1  in      RGBA16F, RGBA32F or RGBA8, viewports of frames n and n-1

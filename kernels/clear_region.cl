@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// clear_region: one value into the top left rectangle of an image, the partial clear.
+// clear_region: fills the top left rectangle of an image with one value: the partial clear.
 //   params  in   rectangle; the value as bits of one texel (buffer) and as numbers (image)
 //   output  out  any format of image.h
 // Options: OUTPUT_STORAGE  BUFFER (default) | IMAGE

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// convert_inputs: one input of a frame in the conventions of the kernels, from the caller's.
+// convert_inputs: converts one input of a frame from the caller's conventions to those of the kernels.
 //   params  in   viewport, layouts, planes, motion of the jitter
 //   given   in   the caller's image, viewport
 //   made    out  the same kind of image, viewport
-// Both may be images; then a layout's offset and pitch count rows, so that they can be turned.
+// Both may be images. A layout's offset and pitch count rows, so that they can be turned.
 // Options: INPUT           DEPTH (default): reversed and infinite, from a distance or from any depth between planes
 //                          VELOCITY: without the jitter, where it is not (0, 0)
 //                          ROWS: every texel as it is; images only

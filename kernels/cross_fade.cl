@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// cross_fade: the picture and another one, mixed.
+// cross_fade: mixes the picture with another one.
 //   params  in      extents, layouts, weight of the picture in [0, 1]
 //   other   in      RGBA32F or RGBA16F, the picture's extent, linear, premultiplied; a buffer
 //   output  in/out  as other, other memory: the picture. out = other + weight * (picture - other)
-// NaN counts as 0 and +-Inf as +-65504. Where both are the same, that is what there is.
+// NaN counts as 0 and +-Inf as +-65504. Equal pictures are copied.
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of other; OUTPUT_FORMAT is the same
 // Reference: tests/reference/cross_fade.cpp
 #include "bits.h"

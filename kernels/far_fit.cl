@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// far_fit: the camera's motion that fits the surroundings best, by least squares over all cells. Each parameter is held
-// back a little, so that one of which the surroundings tell nothing is 0.
-//   cells     in   how many
+// far_fit: fits the camera's motion to the surroundings, by least squares over all cells. Each parameter is held back a
+// little, so that one without evidence is 0.
+//   cells     in   their number
 //   sums      in   FarSums of each cell, from far_surroundings
 //   previous  in   FarModel of the frame before; all zero where there is none
 //   match     in   FarMatch of the frame before

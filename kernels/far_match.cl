@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// far_match: which explains better what is infinitely far away and was drawn without motion, the motion of far_fit or
-// none: the previous frame's colour at both places, as forecasts of this frame's. One of each 2x2 samples is asked. It
-// is no evidence where either place lies outside of the previous frame, or something stood before it there.
+// far_match: compares two motions of infinitely far samples that were drawn without any: that of far_fit, and none. The
+// previous frame's colours at both places are forecasts of this frame's. Takes one of each 2x2 samples, unless either
+// place lies outside of the previous frame or behind something there.
 //   params             in   viewports, layouts, places
 //   depth0, 1          in   R32F, viewports of frames n and n-1
 //   drawn              in   RG16F or RG32F, viewport, in the caller's units
 //   colour0, 1         in   RGBA16F or RGBA32F, viewports
 //   motion             in   FarModel
-//   match              out  FarMatch grows by what the cell's samples say
+//   match              out  FarMatch, to which each cell adds its errors
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, VELOCITY_FORMAT as in texel.h
 // Reference: tests/reference/far_motion.cpp
 #include "bits.h"

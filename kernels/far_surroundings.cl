@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// far_surroundings: what the drawn velocities of a cell of samples say of the camera's motion: sums for a fit by least
-// squares of the model in motion/camera_velocity.h. A sample counts 1 / depth, since the farther it is the more the
-// turning of the camera and the less its walking is seen in it, and 1 / (1 + (r / .25)^2), r being how many output
-// pixels the motion of the frame before is wrong about it: what moves by itself drops out. One of each 2x2 samples is
-// asked.
+// far_surroundings: sums the drawn velocities of a cell of samples for a fit by least squares of the camera's motion,
+// the model in motion/camera_velocity.h. A sample counts 1 / depth, since far samples show the camera's turning more
+// than its walking, and 1 / (1 + (r / .25)^2), where r is the error of the previous frame's motion at it in output
+// pixels, so that moving objects drop out. Takes one of each 2x2 samples.
 //   params    in   viewport, layouts, places
 //   depth     in   R32F, viewport, reversed and infinite
 //   drawn     in   RG16F or RG32F, viewport, in the caller's units

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// far_velocity: the velocity that was drawn, and that of the sky where none was: a sample that is infinitely far away
-// and has a velocity of exactly 0 gets what the camera's motion gives it there. All others keep every bit.
+// far_velocity: gives the sky its velocity. A sample that is infinitely far away and has a velocity of exactly 0 moves
+// as the camera moves its picture; all others keep every bit.
 //   params    in   viewport, layouts, camera motion, places
 //   depth     in   R32F, viewport, reversed and infinite: 0 at infinity
 //   drawn     in   RG16F or RG32F, viewport, in the caller's units
 //   motion    in   FAR EVIDENCE: FarModel, from far_fit
-//   match     in   FAR EVIDENCE: FarMatch, from far_match: where standing still explains more nothing is moved
+//   match     in   FAR EVIDENCE: FarMatch, from far_match: nothing is moved if standing still has the smaller error
 //   velocity  out  the same format and units as drawn, viewport; within +-65504
 // Options: FAR  CAMERA (default): the camera's motion is given | EVIDENCE: it was fitted
 //          SOURCE_STORAGE (of depth and velocities), VELOCITY_FORMAT as in texel.h

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// lay_focus: lays the picture of a region over the picture, where a mask says so.
+// lay_focus: lays the picture of a region over the picture, weighted by rectangles and a mask.
 //   params  in      the part that is laid over, layouts, rectangles
 //   focus   in      RGBA32F or RGBA16F, the region's extent, linear, premultiplied; a buffer
 //   mask    in      R8, the region's extent: 0 keeps the picture, 255 leaves the weight of the rectangles as it is; a

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// measure_content: what a frame shows, as sums over 8 x 8 samples of each tile of the picture.
+// measure_content: sums statistics of a frame, over 8 x 8 samples of each tile of the picture.
 //   params    in      viewport, layouts, tiles, from velocity to output pixels
 //   velocity  in      RG16F or RG32F, viewport, in the caller's units; NaN counts as 0, +-Inf as +-65504
 //   depth     in      R32F, viewport, reversed and infinite

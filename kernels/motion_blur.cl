@@ -11,10 +11,10 @@
 // Options: SOURCE_FORMAT  HALF (default) | FLOAT   of source; OUTPUT_FORMAT is the same
 //          SOURCE_STORAGE, VELOCITY_FORMAT as in texel.h, of velocity and depth
 // A surface that moves by the streak s a shutter was at p, the fraction f of the shutter's time ago, if it is at p + f
-// s now. Two such surfaces are looked for: one that moves as the pixel's own surface does and, where that is another
-// motion, one that moves as the longest streak around does; of both the nearer. Where neither is found p saw what is
-// hidden now: behind a nearer surface the other way along the streak stands in, else what lies beyond the edge. Reads
-// stop at the outermost pixels.
+// s now. Two such surfaces are looked for: one with the motion of the pixel's own surface and, where that is another
+// motion, one with the longest streak around; the nearer of both counts. Where neither is found, p saw a surface
+// that is hidden now: behind a nearer surface the place on the other side along the streak stands in, else the one
+// beyond the edge. Reads stop at the outermost pixels.
 // Source: McGuire et al. 2012; Guertin, McGuire, Nowrouzezahrai, "A Fast and Stable Feature-Aware Motion Blur Filter",
 // 2014.
 // Reference: tests/reference/motion_blur.cpp

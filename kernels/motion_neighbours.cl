@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// motion_neighbours: for each tile of the output what can reach it, or be reached from it, while the shutter is open,
-// and so how its pixels are blurred.
+// motion_neighbours: finds the streaks that can reach each tile of the output, or be reached from it, while the shutter
+// is open, and so how its pixels are blurred.
 //   params   in   tiles_x, tiles_y, most_samples_log2
 //   tiles    in   TileStreaks of motion_tiles
 //   longest  in   longest[0]: the longest streak of all

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// motion_tiles: the streaks of the surfaces seen in each tile of the output.
+// motion_tiles: finds the streaks of the surfaces in each tile of the output.
 //   params    in   extents, layout of velocity, scale from velocity to streaks
 //   axes      in   AxisTap of each output column, then of each output row: the samples that pixels see
 //   velocity  in   RG16F or RG32F, the viewport of the frame; NaN and Inf count as 0

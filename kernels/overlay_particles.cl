@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// overlay_particles: particles that were drawn into a viewport of their own, laid over the frame they belong to.
+// overlay_particles: lays particles that were drawn into a viewport of their own over the frame that they belong to.
 // Colour, coverage and reactive value of the particles at a pixel are the mean of the four particle texels around its
 // centre, each weighted by its bilinear weight times
 //   clamp(1 - (g - h) / (.05 + h), 0, 1)     g  the gap |z' - z| / max(z', z) of the texel's depth z' and the pixel's z

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// reproject: where the surface that each sample shows was in the previous frame, and how far history there is to be
-// trusted.
+// reproject: finds the place in the previous frame of each sample's surface, and the trust in history there.
 //   trust = (1 - reactive0) (1 - reactive1) inside visible / (1 + K |v0 - v1|^2)
 //   inside   falls from 1 at the previous frame's edge to 0 a pixel beyond it
 //   visible  1 if at least one of the 2x2 previous depths at that place does not lie in front of the sample's surface,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resolve_checkerboard: a whole frame from one in which every other pixel is shaded. Shaded pixels keep every bit; a
+// resolve_checkerboard: fills a frame of which every other pixel is shaded. Shaded pixels keep every bit; a
 // pixel between them gets, of its four neighbours, which are shaded,
 //   colour    t0 h0 + (1 - t0) (t1 h1 + (1 - t1) s)
 //   h0, h1    the previous frame's filled colour, bilinear, where the nearest and the farthest surface among the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// resolve_reprojected: this frame and the previous one where its surfaces have moved to, each sample weighted by its
-// distance.
+// resolve_reprojected: blends this frame with the previous one, whose samples are read where their surfaces were, each
+// sample weighted by its distance.
 //   out = (sum w0 h c0 + g sum w1 h c1) / (sum w0 h + g sum w1 h)
 //   w1   of the 2x2 previous samples around q, the place in frame n-1 of what the sample nearest to the output pixel's
 //        centre p shows: (1 - d^2/r^2)^3 on each axis, d in render pixels

@@ -6,7 +6,7 @@
 //   output      out  RGBA32F or RGBA16F, output extent
 //   non_finite  out  non_finite[params.counter] grows by the pixels with a NaN or infinite sample of non-zero weight
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// Above scale 1 it still reads four samples: it does not average what lies between output pixels.
+// Above scale 1 it still reads four samples, and skips those between output pixels.
 // Reference: tests/reference/scale_bilinear.cpp
 #include "bilinear.h"
 #include "bits.h"

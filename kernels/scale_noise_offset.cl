@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// scale_noise_offset: each output pixel takes one sample, that which a place drawn evenly from a square around the
-// pixel's centre falls into. The square is a texel wide, which gives the four samples around the centre bilinear's
-// weights as probabilities: bilinear in the mean of many pixels or frames, and no blur in any one. Above scale 1 the
-// square is as wide as the output pixel.
+// scale_noise_offset: each output pixel takes one sample, at a random place of a square around the pixel's centre. The
+// square is a texel wide, so that the four samples around the centre have bilinear's weights as probabilities: bilinear
+// in the mean of many pixels or frames, and no blur in any one. Above scale 1 the square is as wide as the output
+// pixel.
 //   params      in   extents and layouts; seed: another seed gives another pattern; reach: the square. Not read:
 //                    amplitude
 //   axes        in   AxisTap of each output column, then of each output row; jitter is in them
@@ -10,7 +10,7 @@
 //   output      out  RGBA32F or RGBA16F, output extent
 //   non_finite  out  non_finite[params.scale.counter] grows by the pixels whose sample is NaN or infinite
 // Options: SOURCE_STORAGE, SOURCE_FORMAT, OUTPUT_FORMAT as in texel.h
-// The random values belong to the output pixel: jitter moves the samples under them, not them.
+// The random values belong to the output pixel; jitter moves the samples under them.
 // Source: Binks, "Dynamic Resolution Rendering", 2012 (noise offset filtering).   Reference: tests/reference/noise.cpp
 #include "bits.h"
 #include "resolve_params.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// undilate_velocity: each sample's own velocity, from one in which each has that of the nearest of its 3x3 samples, as
+// undilate_velocity: gives each sample its own velocity back where it has that of the nearest of its 3x3 samples, as
 // many renderers write it. The velocity of a sample i belongs to a surface of the depth D(i), the largest of its 3x3.
 //   D(i) = d(i)           i has its own velocity
 //   D(i) <= d(i) 33 / 32  i has that of a sample of its own surface. It gets that of the first of its eight neighbours
 //                         k with D(k) = d(i), which is its own exactly; if there is none it keeps what it has
 //   else                  i has that of something before it. It gets that of the neighbour k whose D(k) is closest to
 //                         d(i), if that is within d(i) / 32; if there is none, of such a sample two columns or rows
-//                         away, and so on to REACH; if there is none, what the camera's motion gives it, where that is
-//                         known; else it keeps what it has
+//                         away, and so on to REACH; if there is none, that of the camera's motion, where it is known;
+//                         else it keeps its own
 // Where samples are equally close, the first counts, row by row. A NaN in depth is no surface, and a sample that has
 // it, or a depth of less than 0, keeps its velocity.
 //   params    in   viewport, layouts, camera motion

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// velocity_from_depth: the velocity that a moving camera gives a still scene, from depth.
+// velocity_from_depth: computes the velocity that a moving camera gives a still scene, from depth.
 //   params    in   viewport, layouts, camera motion
 //   depth     in   R32F, viewport, reversed and infinite: 1 at the near plane, 0 at infinity
 //   velocity  out  RG16F or RG32F, viewport: this position - the previous one, uv, jitter excluded

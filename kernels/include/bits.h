@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Values as bits: those that are not finite, and random ones.
+// Values as bits: tests for non-finite ones, and random ones.
 // Non-finite and large values are told by their bits: right even where a user's build options let a compiler drop
 // isnan() and isinf().
 #pragma once

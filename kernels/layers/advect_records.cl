@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// advect_records: carries the records of thin things over from the previous frame, each to the cell that its motion
-// leads to. A record of this frame, or a younger one, keeps its cell.
+// advect_records: carries the records of thin things over from the previous frame, each to the cell at the end of its
+// motion. A record of this frame, or a younger one, keeps its cell.
 //
 //   params            in      viewports, scales
 //   previous_keys     in      of the previous frame's grid of records

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // display_layers: lays the near layer over the picture that temporal_display has made of the far one:
-// near + (1 - coverage) far, the near layer resampled at the pixel's centre where it has a phase. Where nothing is
-// known of the far layer the near one's colour stands in for it. Pixels of one layer stay what they are.
+// near + (1 - coverage) far, the near layer resampled at the pixel's centre where it has a phase. The near layer's
+// colour stands in for a far one without samples. Pixels of one layer stay as they are.
 //
 //   params        in      as in temporal_display
 //   now           in      this frame's samples

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// layer_split: which samples have two layers, and which. With r the record within 1.7 samples of a sample whose squared
+// layer_split: finds the samples that have two layers. With r the record within 1.7 samples of a sample whose squared
 // distance + .4 of its age is least, and b the closest of its 3x3 samples that lies behind r by 3 % of depth, the
 // sample is split if the two move apart. Its reprojection becomes that of the far layer: a near sample takes b's.
-//   If r is new, and no record of the previous frame lies around where it comes from, the two have only begun to move
-//   apart: what history has there holds both, and open trust is little.
+//   If r is new, and no record of the previous frame lies around the place that it comes from, the two have only begun
+//   to move apart: history there holds both, and open trust is low.
 //
 //   params            in      viewports, layouts, scales
 //   velocity          in      RG16F or RG32F, viewport

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resize_layers: what the history has of two layers, in the size of another output. Runs after resize_history and
+// resize_layers: resizes the near layer and the states of the history to another output. Runs after resize_history and
 // resize_tiles, in layered tiles only.
 //   The state of a pixel is that of the texel nearest to its centre. Where that has two layers, the near one is read as
 //   resize_history reads the far one, among texels whose near layer is what stands before the depth half-way between

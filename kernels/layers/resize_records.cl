@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resize_records: the previous frame's records in pixels of an output of another size.
+// resize_records: converts the previous frame's records to pixels of an output of another size.
 //
 //   width, height  in      of the grid: the previous frame's viewport
 //   ratio          in      pixels of this output in each of the previous one

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resolve_layers: what resolve_temporal does, in tiles where pixels may have two layers. A pixel has those of the
+// resolve_layers: does the work of resolve_temporal in tiles where pixels may have two layers. A pixel has those of the
 // sample nearest to its picture.
 //   One layer: as in resolve_temporal, but of texels of two layers it takes the one of its own depth.
 //   The far layer: the same, with samples of the far surface only. It is not rectified.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// resize_history: the history in the size of another output, so that it goes on where the output's resolution changes.
+// resize_history: resizes the history to another output, so that it goes on where the output's resolution changes.
 //   A pixel is the mean of the history at its places, by the cubic of resolve_temporal. On an axis of at most 1.5
 //   texels a pixel there is one place, the pixel's centre; else there are as many as texels, rounded up, 4 at most.
 //   A texel holds its picture at its centre + its tile's phase; here phases end.

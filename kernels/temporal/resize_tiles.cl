@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// resize_tiles: what the history keeps of its tiles, in the tiles of an output of another size. resize_history has
-// ended phases, so no tile is rigid. A tile has whatever any tile of the history under it has: motion edges, layers.
+// resize_tiles: makes the tiles of an output of another size from those of the history. resize_history has ended
+// phases, so no tile is rigid. A tile has motion edges or layers if any tile of the history under it has.
 // Light is that of the tile under its centre.
 //
 //   params              in   extents

@@ -9,8 +9,8 @@
 //   w  its weight, (1 - d^2 / r^2)^2 / max(1, brightest channel of s / 2);
 //      r = .98, in still tiles down to .82 as W grows; 1.05 in tiles that are not rigid
 // In a tile that holds back (TileLight), outliers of pixels whose history is known do not count.
-// Only where something speaks against history is it brought into the range of the samples there: doing so everywhere
-// would cost more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.
+// History is brought into the range of the samples only where there is evidence against it: done everywhere, that loses
+// more than it saves. Where W is less than .15 history is reseeded with a Gaussian of this frame's samples.
 //
 //   params          in   extents, layouts, distances
 //   positions       in   of each output column, then row, in the viewport, as in resolve_reprojected

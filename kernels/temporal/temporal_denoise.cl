@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// temporal_denoise: the picture of a history without the noise of its frames. It is not fed back.
+// temporal_denoise: takes the noise of the frames out of the picture of a history. The result is not fed back.
 //   t  a colour in tone space, c / (1 + max(red, green, blue, 0)), with W its confidence + .03
-//   v  variance that chance gives it: noise (1 - max(t, 0))^2 |t|^2 / W
+//   v  its variance by noise: noise (1 - max(t, 0))^2 |t|^2 / W
 //   s  part of it that the picture shows: min(sum of |t - mean of four neighbours|^2 / sum of v, .7), over 5x5 pixels
 //   t <- mean of the 7x7 pixels, each weighted W bell(d / (s (v + v of the own ones))), where d, the squared distance,
 //        and v are sums over the 3x3 pixels around it and the own ones

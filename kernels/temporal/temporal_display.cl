@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// temporal_display: the picture of a history: resampled at the pixels' centres where a tile has a phase, and smoothed
-// where little is known. It is not fed back.
+// temporal_display: makes the picture of a history: resampled at the pixels' centres where a tile has a phase, and
+// smoothed where confidence is low. The result is not fed back.
 //   A pixel of confidence W < 1.5 becomes a weighted mean: it counts W + .02 and its eight neighbours .3 exp(-2 W)
 //   each, or its own texel in place of neighbours of the other kind, of one layer or of two. The picture of a first
 //   frame is not smoothed: it would lose what it has of fine texture.

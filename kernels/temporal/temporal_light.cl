@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// temporal_light: whether the light has changed in each tile, from the evidence in it and in the eight tiles around it.
+// temporal_light: judges a change of light in each tile by the evidence in it and in the eight tiles around it.
 //   relative   sum of brightenings / sum of light: the change of light
 //   coherence  |sum of brightenings| / sum of their magnitudes: how far tiles agree
 //   gain       the relighting gain: a coherent change that persists for two frames gives 1 + relative; aliased texture
@@ -7,16 +7,16 @@
 //              surfaces move apart a change of light cannot be told from one of surface: the gain is 1, or the whole
 //              picture's
 //   rejection  of each cell the larger of two, clamped to [0, 1]:
-//     judged     by a small network, from what the samples of the cell, of the cells and of the tiles around say, and
-//                said of late: how far they differ from history, which way, and by how much more than neighbours do.
-//                It is not asked where the gain is not 1, or the cell flickers too much for its change to tell
-//                anything. In a rigid tile, around which nothing was confirmed lately, this waits for a second frame
-//                that says the same: each place of the jitter can look like a change of its own
-//     by cut     over the whole picture history foretells worse than the neighbours: it is another picture
+//     judged     by a small network, from the samples of the cell and of the cells and tiles around, now and of late:
+//                how far they differ from history, which way, and by how much more than neighbours do. 0 where the
+//                gain is not 1, and where the cell flickers more than its change. In a rigid tile without a recent
+//                confirmation around it, this waits for a second frame that says the same: each place of the jitter
+//                can look like a change of its own
+//     by cut     over the whole picture history predicts worse than the neighbours: it is another picture
 //   holds back samples that are far brighter than history, or negative, side by side, and the first of late
 //              (outliers): gain is 1 and rejection 0 then, and cells remember what they did before
 //
-//   tiles_x, tiles_y  in   how many tiles there are
+//   tiles_x, tiles_y  in   the number of tiles
 //   tiles             in   TileReprojection of each tile: motion edges, whether it is rigid, and where it was
 //   evidence          in   TileEvidence of each tile
 //   total             in   TotalLight: of all tiles

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// temporal_refine: the picture of a history sharpened, and smoothed along its edges. It is not fed back.
+// temporal_refine: sharpens the picture of a history, and smooths it along its edges. The result is not fed back.
 //   t      a channel in tone space, c / (1 + max(red, green, blue, 0))
 //   mean   of the 3x3 pixels
 //   D_n, D_t  second derivatives of t across and along the edge that luma of tone has around the pixel
 //   K      how much of an edge it is, 0 to 1: the coherence of luma's gradients
 //   t <- clamp(t + a (t - mean) + K (b D_t + c D_n), range of the 3x3 pixels)
-//   a, b, c  by the pixel's confidence, and by whether it has two layers (temporal/constants.h). The less is known,
-//            the smoother along edges
+//   a, b, c  by the pixel's confidence and its number of layers (temporal/constants.h): the lower the confidence, the
+//            smoother along edges
 //   A pixel of which no channel moves keeps its colour bit by bit.
 //
 //   params   in   extents, layouts

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// temporal_tiles: how history is taken over in each tile of kTemporalTile^2 output pixels, and what the tile's samples
-// say of it.
+// temporal_tiles: finds how each tile of kTemporalTile^2 output pixels takes history over, and sums the evidence of its
+// samples for and against that history.
 //   A tile is rigid if its samples, and the next ones around it, move alike within .05 output pixels. With r the phase
 //   of the previous tile that its middle comes from and v the way that it has come, both in output pixels, it takes
 //   texels round(r + v) away and has the phase r + v - round(r + v).

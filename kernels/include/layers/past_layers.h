@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A history of two layers: what its texels are, and rows of them. A row has twelve texels where eight pixels see it
+// A history of two layers: its texels, and rows of them. A row has twelve texels where eight pixels see it
 // between texels, and eight where they see it on texels. All may lie anywhere and are clamped to the edge.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Surfaces at single samples, and the grid of records: one cell for each sample of a viewport, row by row.
 //
-// A cell's *key* tells whose record it holds: 0 nobody's; else the younger the record the larger the key, and among
-// those of one age that of the first cell. So atomic maxima of keys give the same grid in whatever order records come.
+// A cell's *key* names its record: 0 for none; else the younger the record the larger the key, and of one age that
+// from the first cell is the largest. So atomic maxima of keys give the same grid in whatever order records come.
 #pragma once
 
 #include "bits.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The layers of eight pixels of a row: what history has of each, and this frame's samples added to it.
-//   The far layer, or the surface that a pixel has alone, goes the way of resolve_temporal.
-//   The near layer follows the near surface. A sample of the far one says that nothing of the near one is there.
+// Adds this frame's samples to the layers of eight pixels of a row.
+//   The far layer, or the only one of a pixel, takes the steps of resolve_temporal.
+//   The near layer follows the near surface. A sample of the far surface is one of coverage 0.
 #pragma once
 
 #include "arithmetic.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The velocity that a moving camera gives surfaces that stand still: near ones by depth, infinitely far ones by a model
-// of how it moves its picture.
+// The velocity that a moving camera gives still surfaces: near ones by depth, infinitely far ones by a model of the
+// motion of its picture.
 #pragma once
 
 #include "bits.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How a history's pixels are shown: resampled at their centres, and smoothed where little is known of them.
+// Displays a history's pixels: resampled at their centres, and smoothed where their confidence is low.
 //
 // Option: SMOOTH  1 (default) | 0
 #pragma once

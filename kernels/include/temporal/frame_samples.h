@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The samples of this frame, one at a time or one for each of eight pixels. Those that are not finite, or as large as
-// a half can be, are invalid and take no part.
+// The samples of this frame, one at a time or one for each of eight pixels. A sample that is not finite, or as large as
+// a half can be, is invalid and takes no part.
 #pragma once
 
 #include "arithmetic.h"

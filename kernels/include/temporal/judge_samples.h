@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What the samples of a tile say of the history at their places. On a CPU eight columns of a row lie in the lanes of a
-// vector: the middle six are judged, and the outer two are only their neighbours. Elsewhere samples come one by one:
-// the same code for vectors takes Mesa's compiler four times as long.
+// The evidence of a tile's samples about the history at their places. On a CPU eight columns of a row lie in the lanes
+// of a vector: the middle six are judged, and the outer two are only their neighbours. Elsewhere samples come one by
+// one: the same code for vectors takes Mesa's compiler four times as long.
 //
 // Option: LAYERS  0 (default) | 1: samples of a near layer do not judge
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How far fetched history is to be believed, and in which light it is taken: eight output pixels of one row and one
+// Limits the confidence of fetched history, and applies the gain of its light: eight output pixels of one row and one
 // tile at a time.
 #pragma once
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rectification: history that is rejected is brought into the range of this frame's samples around the pixel, in tone
-// space, c / (1 + max c), where differences are as the eye has them rather than as light. After Karis, "High-Quality
-// Temporal Supersampling", 2014, but only where something speaks against history: applied everywhere, as is usual, it
-// costs .5 dB, on still pictures 6 (docs/lab/temporal.md).
+// space, c / (1 + max c), where differences are perceptual. After Karis, "High-Quality Temporal Supersampling", 2014,
+// but only where there is evidence against history: applied everywhere, as is usual, it loses .5 dB, on still pictures
+// 6 (docs/lab/temporal.md).
 #pragma once
 
 #include "temporal/constants.h"

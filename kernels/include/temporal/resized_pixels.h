@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where eight pixels of a row of an output lie among the texels of a history of another size.
+// The places of eight pixels of a row of an output among the texels of a history of another size.
 #pragma once
 
 #include "arithmetic.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loads of what else was drawn, velocity, depth and reactive values, and stores of velocity.
+// Loads of velocity, depth and reactive values, and stores of velocity.
 #pragma once
 
 #include "texels/storage.h"
