@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "tools/image/image_io.h"
 #include "tools/program/atomic_file.h"
 #include "tools/program/command_line.h"
 #include "tools/program/program.h"
