@@ -104,7 +104,7 @@ quincunx_package(tools quincunx-tools graphics "dynamic resolution rendering wit
   "${about}This package has quincunx-render, which renders scenes, quincunx-resolve, which
 makes full-size frames from EXR sequences, quincunx-dump, which shows the
 stages of a frame, and quincunx-bench, which reports speed against error."
-  DEPENDS "${both}, ${opencl}, fonts-dejavu-core" RECOMMENDS "libgl1-mesa-dri, libegl1, libgles2")
+  DEPENDS "${both}, ${opencl}, fonts-dejavu-core" RECOMMENDS "libgl1-mesa-dri, libegl1, libgles2, libjs-chart.js")
 quincunx_package(doc quincunx-doc doc "dynamic resolution rendering with OpenCL: documentation"
   "${about}This package has the documentation, with pictures." ALL)
 quincunx_package(python python3-quincunx python "dynamic resolution rendering with OpenCL: Python module"

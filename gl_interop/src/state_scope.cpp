@@ -116,7 +116,10 @@ ComputeScope::ComputeScope(Before before) {
     glGetIntegerv(GL_ACTIVE_TEXTURE, &active_unit_);
   }
   glActiveTexture(GL_TEXTURE0);
-  if (!asks) return;
+  if (!asks) {
+    if (!is_desktop()) image_[4] = GL_R32UI;  // the initial format there, where R8 is none
+    return;
+  }
   glGetIntegerv(GL_TEXTURE_BINDING_2D, &texture_);
   glGetIntegerv(GL_SAMPLER_BINDING, &sampler_);
   for (std::size_t i = 0; i < kImage.size(); ++i)

@@ -256,6 +256,7 @@ TEST_P(ImportTest, ASteadyFrameAsksNothingAboutTextures) {
       about_textures = asked.about_textures();
       about_state = asked.about_state();
     }
+    EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
     EXPECT_EQ(about_textures, 0);
     if (GetParam() == Way::kCopy) {
       EXPECT_EQ(about_state, restores ? 4 * 14 : 0) << "5 of the pixel store and 3 more, 5 and 1 more";

@@ -75,6 +75,13 @@ TEST_F(Refusal, WrongUsage) {
   expect_refused(kRun + "--device none-such", 2, "none-such");
 }
 
+// Later frames of the shot may not be rendered yet.
+TEST_F(Refusal, AChunkMayNameCutsBeyondIt) {
+  write_frames(1, 2);
+  const auto run = resolve(kRun + "--frames 1-2 --cuts 900 --method bilinear");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
 TEST_F(Refusal, PatternsThatCannotWork) {
   write_frames(1, 2);
   expect_refused("'{}/f.exr' --out '{}/u.%04d.exr'", 2, "has no frame number");

@@ -70,10 +70,11 @@ class BothWays : public testing::SequenceTest {
   static constexpr Extent kRender = {48, 30};
   static constexpr Extent kPicture = {96, 60};
 
-  float noise_ = 0;      // variance of a sample, of its square
-  float fade_ = 0;       // of the light, that each frame adds
-  std::string samples_;  // as Cycles has them; empty: it does not
-  std::string albedo_;   // layer of it; empty: there is none
+  float noise_ = 0;        // variance of a sample, of its square
+  float fade_ = 0;         // of the light, that each frame adds
+  bool jittered_ = false;  // the motion holds the jitter
+  std::string samples_;    // as Cycles has them; empty: it does not
+  std::string albedo_;     // layer of it; empty: there is none
 
   struct Seen {
     float light[3], distance, speed_x, speed_y;  // output pixels a frame
@@ -108,6 +109,9 @@ class BothWays : public testing::SequenceTest {
              float alpha = 1, Extent render = kRender, bool cut = false) {
     const Vec2 jitter = {static_cast<float>(halton(number % 16, 2)),
                          static_cast<float>(halton(number % 16, 3))};
+    const Vec2 since = jittered_ ? Vec2{jitter.x - static_cast<float>(halton((number - 1) % 16, 2)),
+                                        jitter.y - static_cast<float>(halton((number - 1) % 16, 3))}
+                                 : Vec2{};
     std::vector<std::string> names = {"R", "G", "B", "A", "Z", "backward.u", "backward.v"};
     names.insert(names.end(), next.begin(), next.end());
     for (const char* channel : {".R", ".G", ".B"})
@@ -127,8 +131,8 @@ class BothWays : public testing::SequenceTest {
                                 light * seen.light[2],
                                 alpha,
                                 seen.distance,
-                                -u,
-                                -v,
+                                -u + since.x,
+                                -v - since.y,
                                 sign * u,
                                 sign * v,
                                 seen.light[0],
@@ -293,6 +297,23 @@ TEST_F(BothWays, NoiseIsSeenInFramesThatDoNotTellIt) {
     EXPECT_GT(by_frames, .75 * told) << noise;
     expect_same_files(20, 23, "auto", "chunk");
   }
+}
+
+TEST_F(BothWays, NoiseIsSeenWhereMotionHoldsTheJitter) {
+  jittered_ = true;
+  noise_ = .0625f;
+  write_all(1, 33);
+  const std::string options = "--velocity-jittered --two-way 0 --frames 20-33";
+  resolve_to("noisy", options);
+  resolve_to("told", options + " --noise 16");
+  resolve_to("auto", options + " --noise auto");
+  double told = 0, by_frames = 0;
+  for (int number = 20; number <= 33; ++number) {
+    told += psnr_of("told", number) - psnr_of("noisy", number);
+    by_frames += psnr_of("auto", number) - psnr_of("noisy", number);
+  }
+  EXPECT_GT(told, 0);
+  EXPECT_GT(by_frames, .75 * told);
 }
 
 TEST_F(BothWays, AlbedoKeepsWhatSurfacesShowFromWhatIsDenoised) {

@@ -415,6 +415,10 @@ TEST(Service, ClearFillsTheRectangleOnly) {
   EXPECT_FALSE(service->clear(image->view(), {17, 7}, value).ok());
   EXPECT_FALSE(service->clear(image->view(), {0, 7}, value).ok());
   EXPECT_FALSE(service->clear({}, {1, 1}, value).ok());
+  ImageView far = image->view();  // by numbers alone: kernels count in 32 bits
+  far.offset = std::size_t{1} << 40;
+  const Status refused = service->clear(far, {5, 7}, value);
+  EXPECT_NE(refused.message().find("image.offset"), std::string::npos) << refused.message();
 }
 
 TEST(Service, ClearThatWasNotPlannedIsRefused) {

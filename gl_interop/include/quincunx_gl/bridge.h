@@ -115,8 +115,8 @@ class QUINCUNX_API Bridge {
   Result<SharedFrame> import(const FrameTextures& textures, Extent render);
 
   // Has OpenGL asked again about textures of the caller's. The bridge asks once about each name in each place, so that
-  // a steady frame asks nothing, and again where a texture seems too small or wrong. Call it when a texture got another
-  // format, other levels or filters, or when a name that was deleted is in use again.
+  // a steady frame asks nothing, and again where a texture seems too small or wrong. Call it when a texture got
+  // another size, format, other levels or filters, and when one was deleted.
   void textures_changed();
 
   // Returns the target of FrameOutputs::presented, or of the linear picture: output extent, BridgeSettings::picture.

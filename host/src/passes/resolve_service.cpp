@@ -281,6 +281,7 @@ Status ResolveService::clear(const ImageView& image, Extent render, const float 
         fmt::format("the rectangle to clear is {}x{}; it must lie within 1x1 and the image's {}x{}",
                     render.width, render.height, image.extent.width, image.extent.height));
   }
+  if (Status status = validate_layout(plan(), "image", image); !status.ok()) return status;
   ClearRegionPass* pass = impl_->clear_pass(image);
   if (pass == nullptr) {
     return Status::invalid(

@@ -18,6 +18,8 @@ namespace quincunx {
 // none.
 Status validate_inputs(const ResolvePlan& plan, const FrameInputs& inputs);
 Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const FocusInputs& focus);
+// Checks the offset and the pitch of any image that kernels read or write; `field` names it.
+Status validate_layout(const ResolvePlan& plan, const char* field, const ImageView& image);
 
 // Each returns its argument unchanged where the conventions are the library's. The pitch of a buffer whose rows are
 // turned is negative, in two's complement, and its offset that of the highest row: layout_of() and kernels take both.

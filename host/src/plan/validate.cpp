@@ -33,13 +33,14 @@ class FrameCheck {
   void output(const char* field, const ImageView& image, PixelFormat format, Storage storage, Extent extent,
               const char* whose);
   void finite(const char* field, float value, float low, float high);
+  // Checks where a buffer's rows lie, and that kernels can count to their end.
+  void layout(const char* field, const ImageView& image);
 
   void complain(const std::string& text) { complaints_ += (complaints_.empty() ? "" : "; ") + text; }
   Status status() const { return complaints_.empty() ? Status() : Status::invalid(complaints_); }
 
  private:
   void image_in(const char* field, const ImageView& image, PixelFormat format, Storage storage);
-  void layout(const char* field, const ImageView& image);
 
   const ResolvePlan& plan_;
   std::string complaints_;
@@ -114,9 +115,8 @@ void FrameCheck::layout(const char* field, const ImageView& image) {
   if (image.offset > most || row > most - image.offset ||
       (rows != 0 && image.row_pitch() > (most - image.offset - row) / rows)) {
     complain(
-        fmt::format("{0}.offset is {1}, {0}.pitch {2} and {0}.extent {3}x{4}; the image must end within the "
-                    "first {5} bytes of "
-                    "its buffer, as kernels count texels in 32 bits",
+        fmt::format("{0}.offset is {1}, {0}.pitch {2} and {0}.extent {3}x{4}; the image must end within "
+                    "the first {5} bytes of its buffer, as kernels count texels in 32 bits",
                     field, image.offset, image.row_pitch(), image.extent.width, image.extent.height, most));
   }
 }
@@ -276,6 +276,12 @@ Status validate_focus(const ResolvePlan& plan, const ResolvePlan* region, const 
   check_inputs(frame, *region, focus.frame);
   if (const Status status = frame.status(); !status.ok())
     check.complain("of focus.frame: " + std::string(status.message()));
+  return check.status();
+}
+
+Status validate_layout(const ResolvePlan& plan, const char* field, const ImageView& image) {
+  FrameCheck check(plan);
+  if (image.storage == Storage::kBuffer) check.layout(field, image);
   return check.status();
 }
 

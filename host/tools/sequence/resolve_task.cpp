@@ -38,7 +38,7 @@ std::string recorded_pattern(const std::string& folder) {
   return (std::filesystem::path(folder) / "frame.%04d.exr").string();
 }
 
-// A cut where no frame is would do nothing.
+// A cut where no frame is would do nothing. Of a chunk (--frames), later frames may not be rendered yet.
 Status check_cuts(const std::vector<std::int64_t>& cuts, const FramePattern& input) {
   if (cuts.empty()) return {};
   const auto frames = input.frames_on_disk();
@@ -255,7 +255,9 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
     task.truth = TruthFiles{std::move(truth).value(), options.truth_colour};
   }
   if (Status status = settle_frames(options, task); !status.ok()) return status;
-  if (Status status = check_cuts(options.sequence.cuts, task.input); !status.ok()) return status;
+  if (!options.frames) {
+    if (Status status = check_cuts(options.sequence.cuts, task.input); !status.ok()) return status;
+  }
   const Status settled = recorded ? settle_recorded(options, task) : settle_sequence(options, task);
   if (!settled.ok()) return settled;
   const int history = recorded ? std::numeric_limits<int>::max() : history_of(task.plan);

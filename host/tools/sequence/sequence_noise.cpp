@@ -116,7 +116,7 @@ std::vector<Tile> tiles_of(std::span<const LitFrame> frames) {
 }
 
 // The middle of a frame, of at most kFramePixels.
-LitFrame middle_of(const SequenceFrame& frame, const ScannedFrame& scanned, bool jittered) {
+LitFrame middle_of(const SequenceFrame& frame, const ScannedFrame& scanned) {
   const double part =
       std::min(1.0, std::sqrt(static_cast<double>(kFramePixels) / static_cast<double>(frame.render.area())));
   const Extent kept = {static_cast<int>(frame.render.width * part),
@@ -133,9 +133,7 @@ LitFrame middle_of(const SequenceFrame& frame, const ScannedFrame& scanned, bool
       float rgb[3];
       std::memcpy(rgb, frame.texels[InputPlane::kColour].data() + index * 4 * sizeof(float), sizeof rgb);
       lit.light.push_back((rgb[0] + 2 * rgb[1] + rgb[2]) / 4);
-      Vec2 velocity = frame.velocity()[index];
-      if (jittered && velocity != Vec2{})
-        velocity = {velocity.x + scanned.jitter_since.x, velocity.y + scanned.jitter_since.y};
+      const Vec2 velocity = frame.velocity()[index];  // without jitter, as read_frame() gives it
       lit.seen.velocity.push_back({velocity.x * scale.x, velocity.y * scale.y});
       if (!frame.depth().empty()) lit.seen.depth.push_back(frame.depth()[index]);
     }
@@ -174,7 +172,7 @@ float noise_of(const FramePattern& pattern, const SequenceFormat& format) {
   for (const ScannedFrame& scanned : scan.frames) {
     if (!scanned.problem.empty() || (!frames.empty() && scanned.render != scan.frames.front().render)) break;
     if (!read_frame(pattern.expand(scanned.number), format, scanned, PixelFormat::kRGBA32F, read).ok()) break;
-    frames.push_back(middle_of(read, scanned, format.units.jittered));
+    frames.push_back(middle_of(read, scanned));
   }
   return frames.size() < kFramesRead ? 0 : noise_between(frames);
 }
