@@ -4,8 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string_view>
@@ -22,13 +20,11 @@ using Json = nlohmann::ordered_json;
 std::string chart_library() {
   const char* const set = std::getenv("QUINCUNX_CHART_JS");
   const std::string path = set != nullptr ? set : "/usr/share/javascript/chart.js/chart.min.js";
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (text.empty())
-    spdlog::warn(
-        "the page has tables only: '{}' cannot be read; for plots, install the Debian package libjs-chart.js",
-        path);
-  return text;
+  const Result<std::string> text = read_text(path);
+  if (text.ok()) return text.value();
+  spdlog::warn("the page has tables only: {}; for plots, install the Debian package libjs-chart.js",
+               text.status().message());
+  return {};
 }
 
 // JSON inside a script element: no "</script>" or "<!--" may end it, whatever a name holds.

@@ -196,12 +196,8 @@ void add_channel_options(CommandLine& line, ResolveOptions& options) {
            "linear (distance along the view axis), device (far is 1) or device-reversed (far is 0)")
       .counts_if(has_depth, "depth, not with --depth none");
   line.add("--near", number(input.near_plane, {.least = 1e-9, .most = 1e9}, "D"),
-           "Near plane's distance, of linear depth (default: attribute quincunx:near)")
-      .counts_if(
-          [&input, has_depth] {
-            return has_depth() && input.depth_kind.value_or(DepthKind::kLinear) == DepthKind::kLinear;
-          },
-          "linear depth");
+           "Near plane's distance (default: attribute quincunx:near)")
+      .counts_if(has_depth, "depth, not with --depth none");
   line.add("--reactive", channel(input.reactive),
            "Channel that is 1 where history lies, or none, or a pattern of images (default: reactive.mask)");
   line.add("--jitter", text(options.jitter, "NAME|FILE"),
