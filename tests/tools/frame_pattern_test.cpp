@@ -57,8 +57,8 @@ TEST(FramePattern, OneNameIsNotForManyFrames) {
 }
 
 TEST(FramePattern, MessagesNameWhatItIsFor) {
-  const Result<FramePattern> parsed = FramePattern::parse("a.jpg", "input pattern");
-  EXPECT_EQ(parsed.status().message().rfind("input pattern 'a.jpg'", 0), 0u) << parsed.status().message();
+  const Result<FramePattern> parsed = FramePattern::parse("a.%s.jpg", "input pattern");
+  EXPECT_EQ(parsed.status().message().rfind("input pattern 'a.%s.jpg'", 0), 0u) << parsed.status().message();
 }
 
 TEST(FramePattern, FindsTheNumberInAPath) {

@@ -416,7 +416,7 @@ const char* name_of(VelocitySource source) {
 }
 
 const char* name_of(Scaling scaling) {
-  return name_in({"scales", "last frame's", "its own", "fixed"}, scaling);
+  return name_in({"scales", "its own", "last frame's", "fixed"}, scaling);
 }
 
 const char* name_of(SkyMotion motion) {

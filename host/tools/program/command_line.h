@@ -170,14 +170,14 @@ std::string read_number(const std::string& text, const Bounds& bounds, bool whol
 // Returns a function that stores values: the first one of a list replaces the default.
 template <typename Target>
 auto store_in(Target& target) {
-  return [&target, first = true](typename Inner<Target>::Value value) mutable {
-    if constexpr (kIsList<Target>) {
+  if constexpr (kIsList<Target>) {
+    return [&target, first = true](typename Inner<Target>::Value value) mutable {
       if (std::exchange(first, false)) target.clear();
       target.push_back(std::move(value));
-    } else {
-      target = std::move(value);
-    }
-  };
+    };
+  } else {
+    return [&target](typename Inner<Target>::Value value) { target = std::move(value); };
+  }
 }
 
 }  // namespace detail
