@@ -382,7 +382,7 @@ TEST_F(RecordingFolder, WhatCannotBeReplayedIsSaid) {
   expect_refused(replay, 1, "sequence.json' is not there or says nothing of a recording");
   record_all(2);
   expect_refused(replay + " --velocity none", 2, "--velocity: it is what the recording in");
-  expect_refused(replay + " --output 30x20", 2, "--output: is what the recording in");
+  expect_refused(replay + " --output 30x20", 2, "--output: it is what the recording in");
   expect_refused(replay + " --method temporal", 1, "has no channel");
   expect_refused(replay + " --frames 1-3", 1, "frame 2 is missing");
   edit("\"grain\"", "\"grian\"");

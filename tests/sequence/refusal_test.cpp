@@ -174,7 +174,7 @@ TEST_F(Refusal, FarMotionNeedsMatricesAndDepth) {
   write_frame(input(1), file);
   expect_refused(kRun + "--sky-motion camera", 1,
                  "has no attribute 'worldToNDC', which --sky-motion camera needs");
-  resolve_to("u", "--sky-motion camera --method bilinear");
+  expect_refused(kRun + "--sky-motion camera --method bilinear", 2, "it does nothing here");
   file.attributes.push_back({"worldToNDC", tools::Matrix{}});
   file.depth = false;
   write_frame(input(1), file);

@@ -196,7 +196,10 @@ bool CommandLine::has(const std::string& name) const {
 
 void CommandLine::refuse(std::initializer_list<const char*> names, const std::string& why) const {
   for (const char* name : names) {
-    if (has(name)) throw UsageError{name, why};
+    for (const Row& row : rows_) {
+      if ((row.group == name || is_named(row, name)) && texts_.contains(&row))
+        throw UsageError{name_of(row), why};
+    }
   }
 }
 

@@ -111,7 +111,7 @@ class CommandLine {
   void check(std::function<void(const CommandLine& line)> check) { checks_.push_back(std::move(check)); }
 
   bool has(const std::string& name) const;  // the user gave it
-  // Throws UsageError for the first of `names` that the user gave.
+  // Throws UsageError for the first option of `names`, options or groups, that the user gave.
   void refuse(std::initializer_list<const char*> names, const std::string& why) const;
 
   // On --help, --version, --completion or an error, prints and returns the program's exit code.

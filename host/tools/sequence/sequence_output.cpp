@@ -124,7 +124,8 @@ Status SequenceOutput::prepare_folder(std::span<const std::int64_t> frames) cons
   const std::string folder = folder_of(pattern.expand(0));
   const auto is_of_this_run = [&](const std::string& target) {
     const auto number = pattern.number_in(folder + target);
-    return number && std::binary_search(frames.begin(), frames.end(), *number);
+    // Number 0 is that of the file by which the command line tries whether --out can be written.
+    return number && (*number == 0 || std::binary_search(frames.begin(), frames.end(), *number));
   };
   std::error_code error;
   for (std::filesystem::directory_iterator entry(folder.empty() ? "." : folder, error), end;
