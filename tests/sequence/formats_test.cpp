@@ -3,6 +3,7 @@
 #include "sequence_fixture.h"
 #include "tools/image/display_light.h"
 #include "tools/image/image_reader.h"
+#include "tools/sequence/sequence_input.h"
 
 namespace quincunx::testing {
 namespace {
@@ -16,6 +17,7 @@ class Formats : public SequenceTest {
  protected:
   static constexpr Extent kRender = {16, 12};
   // Frames are shown as they are: a point of the same size is the identity.
+  static constexpr const char* kPoint = "--output 16x12 --method point --two-way 0";
   static constexpr const char* kSame = "--output 16x12 --method point --two-way 0 --store float";
 
   static std::vector<std::uint8_t> codes() {
@@ -92,8 +94,8 @@ TEST_F(Formats, APngOfAcesHasTheRightColour) {
   write_frame(input(1), file);
   resolve_to("light", kSame);
   for (const std::string from : {"f", "light"}) {
-    const auto result = resolve(
-        fmt::format("'{{}}/{0}.%04d.exr' --out '{{}}/{0}.%04d.png' -q --output 16x12 --method point", from));
+    const auto result =
+        resolve(fmt::format("'{{}}/{0}.%04d.exr' --out '{{}}/{0}.%04d.png' -q {1}", from, kPoint));
     ASSERT_EQ(result.exit_code, 0) << result.err;
   }
   EXPECT_EQ(image(folder_.file("f.0001.png")).pixels, image(folder_.file("light.0001.png")).pixels);
@@ -155,6 +157,80 @@ TEST_F(Formats, MasksMayBeImagesOfTheirOwn) {
   EXPECT_EQ(files.pixels, image(output(3, "channel")).pixels);
   EXPECT_NE(files.pixels, image(output(3, "none")).pixels);
   expect_refused("'{}/f.%04d.exr' --reactive '{}/x.%04d.png' --out '{}/u.%04d.exr'", 1, "x.0001.png");
+}
+
+// Alpha is no mask.
+TEST_F(Formats, AMaskOfGreyAndAlphaIsItsGrey) {
+  std::vector<std::uint8_t> grey_alpha;
+  for (int i = 0; i < kRender.area(); ++i)
+    grey_alpha.insert(grey_alpha.end(), {static_cast<std::uint8_t>(i % 2 * 255), 255});
+  const auto bytes = tools::backend::encode(
+      tools::FileFormat::kPng,
+      {.extent = kRender, .channels = 2, .data = grey_alpha.data(), .pixel_stride = 2, .row_stride = 32}, {});
+  ASSERT_TRUE(bytes.ok()) << bytes.status().message();
+  std::ofstream(folder_.file("m.png"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes->data()), static_cast<std::streamsize>(bytes->size()));
+  auto mask = tools::open_mask(folder_.file("m.png"), kRender);
+  ASSERT_TRUE(mask.ok()) << mask.status().message();
+  std::vector<float> values(static_cast<std::size_t>(kRender.area()));
+  const tools::ChannelTarget target = {{}, tools::ChannelType::kFloat, values.data(), 4, 64};
+  ASSERT_TRUE(mask->read({&target, 1}).ok());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    ASSERT_EQ(values[i], static_cast<float>(i % 2)) << i;
+}
+
+// A copy that was broken off: as a frame, a mask, a truth, and as a result that --resume would keep.
+TEST_F(Formats, CutPicturesAreRefusedBeforeTheFirstFrame) {
+  const std::vector<std::uint8_t> texels = codes();
+  for (const std::string ending : {"png", "jpg", "dpx", "tif"}) {
+    for (const char* name : {"a.0001.", "cut.0001."})
+      ASSERT_TRUE(tools::write_picture(folder_.file(name + ending), kRender, texels.data()).ok());
+    const std::string cut = folder_.file("cut.0001." + ending);
+    std::filesystem::resize_file(cut, std::filesystem::file_size(cut) - 20);
+    const std::string out = fmt::format(" --out '{{}}/o.%04d.exr' -q {}", kSame);
+    expect_refused("'{}/cut.%04d." + ending + "'" + out, 1, "cut.0001." + ending);
+    expect_refused("'{}/a.%04d.png' --truth '{}/cut.%04d." + ending + "'" + out, 1, "truth '" + cut);
+    EXPECT_FALSE(tools::open_mask(cut, kRender).ok()) << ending;
+  }
+  const auto resume = [&] {
+    return resolve(fmt::format("'{{}}/a.%04d.png' --out '{{}}/r.%04d.png' --resume -q {}", kPoint));
+  };
+  ASSERT_EQ(resume().exit_code, 0);
+  const LoadedImage whole = image(folder_.file("r.0001.png"));
+  std::filesystem::resize_file(folder_.file("r.0001.png"), 100);
+  ASSERT_EQ(resume().exit_code, 0);
+  EXPECT_EQ(image(folder_.file("r.0001.png")).pixels, whole.pixels);
+}
+
+TEST_F(Formats, SubsampledChannelsAreRefused) {
+  tools::ImageHeader header;
+  header.parts.emplace_back().display.extent = kRender;
+  for (const char* name : {"R", "G", "B"})
+    header.parts[0].channels.push_back({.name = name});
+  header.parts[0].channels[1].sampling = {2, 1};
+  tools::ChannelNames names;
+  names[tools::InputPlane::kColour] = tools::colour_channels_in(header, "");
+  EXPECT_EQ(tools::find_channels("a.exr", header, names).status().message(),
+            "'a.exr' has channel 'G' subsampled 2x1; render it at full size");
+}
+
+// A truth that says nothing of its colour has the frames'; one that does keeps it.
+TEST_F(Formats, TruthIsInTheColourThatIsAsked) {
+  FrameFile file = frame(1);
+  file.extent = kRender;
+  file.alpha = file.velocity = false;
+  write_frame(input(1), file);
+  ASSERT_TRUE(tools::write_picture(folder_.file("f.0001.png"), kRender, codes().data()).ok());
+  const auto is_its_own_truth = [&](const std::string& ending, const std::string& space) {
+    const auto result =
+        resolve(fmt::format("'{{}}/f.%04d.{0}' --truth '{{}}/f.%04d.{0}' {1} {2}", ending, kPoint, space));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return result.out.find("       1       inf ") != std::string::npos;  // its PSNR
+  };
+  EXPECT_TRUE(is_its_own_truth("exr", ""));
+  EXPECT_TRUE(is_its_own_truth("exr", "--input-colour ACEScg"));
+  EXPECT_TRUE(is_its_own_truth("png", ""));
+  EXPECT_FALSE(is_its_own_truth("png", "--input-colour linear"));
 }
 
 TEST_F(Formats, UnknownSpacesAreOneSentence) {

@@ -175,6 +175,25 @@ TEST(Exr, RefusesBadChannels) {
   EXPECT_EQ(folder.entries(), 0);
 }
 
+// Two pixels of grey and alpha: black of alpha 1, white of alpha .5.
+const std::uint8_t kGreyAlphaPng[] = {
+    137, 80, 78, 71,  13, 10,  26,  10,  0,   0,   0, 13, 73, 72, 68, 82, 0,  0,   0,   2,  0,  0,   0,   1,
+    8,   4,  0,  0,   0,  94,  43,  183, 1,   0,   0, 0,  13, 73, 68, 65, 84, 120, 156, 99, 96, 248, 255, 191,
+    1,   0,  5,  128, 2,  127, 225, 103, 180, 210, 0, 0,  0,  0,  73, 69, 78, 68,  174, 66, 96, 130};
+
+TEST(Png, GreyComesBeforeAlpha) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder.file("a.png"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(kGreyAlphaPng), sizeof kGreyAlphaPng);
+  const auto image = read_image(folder.file("a.png"));
+  ASSERT_TRUE(image.ok()) << image.status().message();
+  EXPECT_EQ(image->channels, (std::vector<std::string>{"Y", "A"}));
+  EXPECT_EQ(image->at(0, 0, 0), 0);
+  EXPECT_EQ(image->at(1, 0, 0), 1);
+  EXPECT_EQ(image->at(0, 0, 1), 1);
+  EXPECT_NEAR(image->at(1, 0, 1), .5f, .01f);
+}
+
 // Formats that this build writes, each with what its numbers may differ by.
 TEST(Formats, ReturnThePicture) {
   struct Format {
@@ -238,6 +257,19 @@ TEST(Formats, ReturnTheLight) {
       }
     }
   }
+}
+
+TEST(Formats, AnHdrHoldsNoNegativeLight) {
+  const testing::TemporaryFolder folder;
+  if (!format_of("a.hdr")) GTEST_SKIP() << "this build writes no HDR";
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const std::vector<float> rgba = {-0.5f, 1, 2, 1, std::nanf(""), 1, -kInfinity, 1, 1, kInfinity, 0, 1};
+  ASSERT_TRUE(write_light(folder.file("a.hdr"), {3, 1}, rgba, ChannelType::kHalf, {}).ok());
+  const auto image = read_image(folder.file("a.hdr"));
+  ASSERT_TRUE(image.ok()) << image.status().message();
+  const std::vector<float> wanted = {0, 1, 2, 0, 1, 0, 0, 1e38f, 0};
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    EXPECT_NEAR(image->pixels[i], wanted[i], .02f * wanted[i]) << i;
 }
 
 TEST(Formats, KeepWhatFramesTellOfThemselves) {
@@ -331,6 +363,38 @@ TEST(InputColour, ConvertsAcesByNameAndByChromaticities) {
     EXPECT_NEAR(white, 1, 1e-5f);  // white stays white
 }
 
+TEST(InputColour, PrimariesMayHaveNoLuminance) {
+  ImagePart part = part_of("linear");
+  constexpr float kThird = 1.f / 3;
+  part.chromaticities = {1, 0, 0, 1, 0, 0, kThird, kThird};  // XYZ
+  for (const float white : light_of(part, {1, 1, 1, 1}))
+    EXPECT_NEAR(white, 1, 1e-5f);
+  const auto green = light_of(part, {0, 1, 0, 1});
+  EXPECT_LT(green[0], 0);
+  EXPECT_GT(green[1], 1);
+}
+
+TEST(InputColour, RefusesPrimariesThatSpanNoColours) {
+  ImagePart part = part_of("linear");
+  for (const Chromaticities& bad : {Chromaticities{},
+                                    {.64f, .33f, .64f, .33f, .15f, .06f, .3127f, .329f},
+                                    {.64f, .33f, .3f, .6f, .15f, .06f, .3127f, 0},
+                                    {std::nanf(""), .33f, .3f, .6f, .15f, .06f, .3127f, .329f}}) {
+    part.chromaticities = bad;
+    const auto colour = InputColour::of("a.exr", part);
+    EXPECT_EQ(colour.status().code(), StatusCode::kIoFailure);
+    EXPECT_NE(colour.status().message().find("span no colours; say --input-colour"), std::string::npos)
+        << colour.status().message();
+    EXPECT_TRUE(InputColour::of("a.exr", part, "linear").ok());
+  }
+}
+
+TEST(InputColour, KeepsInfiniteAndUnknownLightInItsChannel) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(light_of(part_of("ACEScg"), {infinity, 0, 0, 1}), light_of(part_of("ACEScg"), {65504, 0, 0, 1}));
+  EXPECT_EQ(light_of(part_of("ACEScg"), {0, std::nanf(""), 1, 1}), light_of(part_of("ACEScg"), {0, 0, 1, 1}));
+}
+
 TEST(InputColour, TakesCurvesBack) {
   EXPECT_NEAR(light_of(part_of("sRGB"), {0.5f, 0, 1, 1})[0], 0.2140411f, 1e-6f);
   const auto film = light_of(part_of("KodakLog"), {95.f / 1023, 685.f / 1023, 445.f / 1023, 1});
@@ -384,6 +448,58 @@ TEST(ReadImage, RefusesTruncatedFiles) {
     EXPECT_FALSE(image.ok()) << part;
     EXPECT_EQ(image.status().message().find('\n'), std::string::npos) << image.status().message();
   }
+}
+
+TEST(CheckWhole, TellsCutFilesOfEveryFormatThatIsWritten) {
+  const testing::TemporaryFolder folder;
+  std::vector<std::uint8_t> texels(64 * 64 * 4);
+  for (std::size_t i = 0; i < texels.size(); ++i)
+    texels[i] = static_cast<std::uint8_t>(i * i * 7919 >> 8);
+  for (const char* name : {"a.png", "a.jpg", "a.dpx", "a.tif"}) {
+    if (!format_of(name)) continue;
+    const std::string path = folder.file(name);
+    ASSERT_TRUE(write_picture(path, {64, 64}, texels.data()).ok());
+    EXPECT_TRUE(check_whole(path).ok()) << check_whole(path).message();
+    const auto size = std::filesystem::file_size(path);
+    for (const auto part : {size - 16, size / 2}) {
+      std::filesystem::resize_file(path, part);
+      EXPECT_EQ(check_whole(path).message(),
+                "'" + path + "' is cut short: its end is missing; render or copy it again");
+    }
+  }
+}
+
+TEST(CheckWhole, KnowsTheEndsOfOtherPrograms) {
+  using namespace std::string_literals;
+  const testing::TemporaryFolder folder;
+  const auto is_whole = [&](const std::string& bytes) {
+    std::ofstream(folder.file("a"), std::ios::binary | std::ios::trunc) << bytes;
+    return check_whole(folder.file("a")).ok();
+  };
+  EXPECT_TRUE(is_whole("\xff\xd8\xff\xe0 \xff\xd9\0\0\0"s));
+  EXPECT_FALSE(is_whole("\xff\xd8\xff\xe0 \xff\xd9 "s));
+  const std::string dpx = "V1.0\0\0\0\0"s;  // between the offset of the pixels and the size of the file
+  EXPECT_TRUE(is_whole("SDPX\0\0\0\0"s + dpx + "\0\0\0\x16  "s));
+  EXPECT_FALSE(is_whole("SDPX\0\0\0\0"s + dpx + "\0\0\0\x17  "s));
+  EXPECT_FALSE(is_whole("XPDS\0\0\0\0"s + dpx + "\x17\0\0\0  "s));
+  EXPECT_TRUE(is_whole("XPDS\0\0\0\0"s + dpx + "\xff\xff\xff\xff  "s));
+  // The directory of a TIFF before its pixels: two strips of four bytes, at 42 and 46.
+  const std::string tiff =
+      "II*\0\x08\0\0\0\2\0"
+      "\x11\1\3\0\2\0\0\0\x2a\0\x2e\0"
+      "\x17\1\4\0\2\0\0\0\x22\0\0\0"
+      "\4\0\0\0\4\0\0\0pixelpix"s;
+  EXPECT_TRUE(is_whole(tiff));
+  for (std::size_t size = 4; size < tiff.size(); ++size)
+    EXPECT_FALSE(is_whole(tiff.substr(0, size))) << size;
+  EXPECT_TRUE(
+      is_whole("MM\0*\0\0\0\x08\0\2"
+               "\1\x44\0\4\0\0\0\1\0\0\0\x22"
+               "\1\x45\0\3\0\0\0\1\0\2\0\0pi"s));
+  EXPECT_FALSE(
+      is_whole("MM\0*\0\0\0\x08\0\2"
+               "\1\x44\0\4\0\0\0\1\0\0\0\x22"
+               "\1\x45\0\3\0\0\0\1\0\3\0\0pi"s));
 }
 
 TEST(WriteImage, LeavesNothingBehindOnFailure) {

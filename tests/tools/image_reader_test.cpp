@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <ImfIntAttribute.h>
+#include <ImfStringAttribute.h>
 #include <gtest/gtest.h>
 
 #include "exr_files.h"
@@ -161,6 +163,43 @@ TEST_F(Reading, WhatCannotBeUsedIsSaidInTheHeader) {
   EXPECT_TRUE(deep->header().parts[0].deep);
 }
 
+TEST_F(Reading, SubsampledChannelsAreToldAtOnce) {
+  Imf::Header header(4, 4);
+  std::vector<half> texels(4);
+  Imf::FrameBuffer buffer;
+  for (const char* name : {"BY", "RY"}) {
+    header.channels().insert(name, Imf::Channel(Imf::HALF, 2, 2));
+    buffer.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(texels.data()), 2, 4, 2, 2));
+  }
+  {
+    Imf::OutputFile file(folder_.file("a.exr").c_str(), header);
+    file.setFrameBuffer(buffer);
+    file.writePixels(4);
+  }
+  const auto reader = ImageReader::open(folder_.file("a.exr"));
+  if (reader.ok()) {
+    EXPECT_EQ(reader->header().parts[0].channels[0].sampling, (std::array<int, 2>{2, 2}));
+  } else {
+    const std::string message = reader.status().message();
+    EXPECT_NE(message.find("ubsampled"), std::string::npos) << message;
+    EXPECT_TRUE(message.ends_with("; render it at full size")) << message;
+  }
+}
+
+// Whatever another program has remarked in an EXR, its colour is linear and multiplied by alpha.
+TEST_F(Reading, AttributesOfALibraryLeaveTheColourOfAnExrAsItIs) {
+  Imf::Header header(1, 1);
+  header.insert("oiio:ColorSpace", Imf::StringAttribute("sRGB"));
+  header.insert("oiio:UnassociatedAlpha", Imf::IntAttribute(1));
+  for (const char* name : {"R", "G", "B", "A"})
+    header.channels().insert(name, Imf::Channel(Imf::HALF));
+  Imf::OutputFile(folder_.file("a.exr").c_str(), header);
+  const auto reader = ImageReader::open(folder_.file("a.exr"));
+  ASSERT_TRUE(reader.ok()) << reader.status().message();
+  EXPECT_EQ(reader->header().parts[0].colour_space, "linear");
+  EXPECT_FALSE(reader->header().parts[0].straight_alpha);
+}
+
 TEST_F(Reading, AttributesOfSeveralTypesReturn) {
   const float red = 1;
   const Channel channels[] = {{.name = "R", .type = ChannelType::kFloat, .data = &red}};
@@ -240,11 +279,11 @@ class ExrBlocks : public ::testing::Test {
   // The file is whole; without its last byte, or half of it, it is not.
   void expect_told(const std::vector<ExrPart>& parts, const std::string& what) {
     testing::write_exr_parts(path_, parts);
-    EXPECT_TRUE(check_blocks(path_).ok()) << what << ": " << check_blocks(path_).message();
+    EXPECT_TRUE(check_whole(path_).ok()) << what << ": " << check_whole(path_).message();
     const auto whole = std::filesystem::file_size(path_);
     for (const auto size : {whole - 1, whole * 2 / 3}) {
       std::filesystem::resize_file(path_, size);
-      const Status status = check_blocks(path_);
+      const Status status = check_whole(path_);
       EXPECT_EQ(status.code(), StatusCode::kIoFailure) << what << " " << size;
       EXPECT_EQ(status.message().rfind("'" + path_ + "' is cut short: ", 0), 0u) << status.message();
     }
@@ -275,7 +314,7 @@ TEST_F(ExrBlocks, OfTilesAndSeveralParts) {
 TEST_F(ExrBlocks, TheMessageCountsThem) {
   testing::write_exr_parts(path_, {part_of({64, 160}, "zip", 0)});
   std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 1);
-  EXPECT_EQ(check_blocks(path_).message(),
+  EXPECT_EQ(check_whole(path_).message(),
             "'" + path_ + "' is cut short: 1 of its 10 blocks of pixels is missing; render or copy it again");
   // A renderer that is not through has written no offset.
   testing::write_exr_parts(path_, {part_of({64, 160}, "zip", 0)});
@@ -288,16 +327,16 @@ TEST_F(ExrBlocks, TheMessageCountsThem) {
   file.write(std::string(24, '\0').data(), 24);
   file.close();
   EXPECT_EQ(
-      check_blocks(path_).message(),
+      check_whole(path_).message(),
       "'" + path_ + "' is cut short: 3 of its 10 blocks of pixels are missing; render or copy it again");
 }
 
 TEST_F(ExrBlocks, WhatItDoesNotKnowIsLeftToOthers) {
   std::ofstream(path_) << "no picture";
-  EXPECT_TRUE(check_blocks(path_).ok());
-  EXPECT_TRUE(check_blocks(folder_.file("none.exr")).ok());
+  EXPECT_TRUE(check_whole(path_).ok());
+  EXPECT_TRUE(check_whole(folder_.file("none.exr")).ok());
   testing::write_deep_exr(path_, {24, 14});
-  EXPECT_TRUE(check_blocks(path_).ok());
+  EXPECT_TRUE(check_whole(path_).ok());
 }
 
 // The check ends whatever bytes a header holds.
@@ -310,7 +349,7 @@ TEST_F(ExrBlocks, DamagedHeadersDoNoHarm) {
       std::string bytes = whole;
       bytes[at] = value;
       std::ofstream(path_, std::ios::binary | std::ios::trunc) << bytes;
-      const Status status = check_blocks(path_);
+      const Status status = check_whole(path_);
       EXPECT_TRUE(status.ok() || status.code() == StatusCode::kIoFailure) << at;
     }
   }

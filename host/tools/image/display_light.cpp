@@ -16,8 +16,13 @@ namespace {
 
 constexpr float kLargestHalf = 65504;
 
+// NaN counts as 0, as everywhere.
+float finite(float light) {
+  return std::isnan(light) ? 0.0f : std::clamp(light, -kLargestHalf, kLargestHalf);
+}
+
 float curve(ToneMap tone_map, float light) {
-  const float x = std::isnan(light) ? 0.0f : std::clamp(light, 0.0f, kLargestHalf);
+  const float x = std::max(finite(light), 0.0f);
   switch (tone_map) {
     case ToneMap::kReinhard:
       return x / (1 + x);
@@ -64,21 +69,32 @@ namespace {
 
 using Imath::M33d, Imath::V3d;  // vectors are rows
 
-V3d xyz_of(double x, double y) {
-  return {x / y, 1, (1 - x - y) / y};
+V3d primary(double x, double y) {
+  return {x, y, 1 - x - y};
 }
 
 V3d white_of(const Chromaticities& c) {
-  return xyz_of(double{c[6]}, double{c[7]});
+  return primary(double{c[6]}, double{c[7]}) / double{c[7]};
+}
+
+M33d primaries_of(const Chromaticities& c) {
+  M33d rows;
+  for (int i = 0; i < 3; ++i) {
+    const V3d row = primary(double{c[2 * i]}, double{c[2 * i + 1]});
+    std::copy_n(&row.x, 3, rows[i]);
+  }
+  return rows;
+}
+
+// NaN spans nothing.
+bool span_colours(const Chromaticities& c) {
+  constexpr double kLeast = 1e-6;
+  return std::abs(primaries_of(c).determinant()) > kLeast && c[7] > 0;
 }
 
 // From linear RGB to XYZ, of a white of luminance 1.
 M33d to_xyz(const Chromaticities& c) {
-  M33d rows;
-  for (int i = 0; i < 3; ++i) {
-    const V3d primary = xyz_of(double{c[2 * i]}, double{c[2 * i + 1]});
-    std::copy_n(&primary.x, 3, rows[i]);
-  }
+  M33d rows = primaries_of(c);
   const V3d amounts = white_of(c) * rows.inverse();
   for (int i = 0; i < 9; ++i)
     rows[i / 3][i % 3] *= amounts[i / 3];
@@ -175,6 +191,10 @@ Result<InputColour> InputColour::of(const std::string& path, const ImagePart& pa
     const bool told = named.empty() && part.chromaticities && are_rec709(space.primaries);
     const Chromaticities& primaries = told ? *part.chromaticities : space.primaries;
     if (are_rec709(primaries)) return colour;
+    if (!span_colours(primaries))
+      return Status::io(
+          fmt::format("'{}' has chromaticities {:.4g} that span no colours; say --input-colour NAME", path,
+                      fmt::join(primaries, " ")));
     colour.matrix_ = to_rec709(primaries);
     if (told) colour.name_ = fmt::format("linear, of chromaticities {:.4g}", fmt::join(primaries, " "));
     for (const LinearSpace& known : linear_spaces())
@@ -199,7 +219,7 @@ void InputColour::apply(std::span<float> rgba) const {
     float* c = &rgba[i];
     if (matrix_) {
       const auto& m = *matrix_;
-      const float r = c[0], g = c[1], b = c[2];
+      const float r = finite(c[0]), g = finite(c[1]), b = finite(c[2]);
       for (std::size_t j = 0; j < 3; ++j)
         c[j] = m[3 * j] * r + m[3 * j + 1] * g + m[3 * j + 2] * b;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What both libraries have in common: arguments are checked and files written here, and channels found. So is whether
-// an EXR is whole, by its own tables: libraries tell that only by reading every pixel.
+// a file is whole, by its own tables or its end: libraries tell that only by reading every pixel, or not at all.
 #include "tools/image/image_io.h"
 
 #include <fmt/format.h>
@@ -32,11 +32,11 @@ Status cannot_read(const std::string& path, std::string reason) {
       fmt::format("'{}' cannot be read: {}", path, reason.empty() ? "no reason was given" : reason));
 }
 
-// Channels by layer; within one R, G, B, A before others.
+// Channels by layer; within one R, G, B, X, Y, A before others.
 auto order_of(const HeaderChannel& channel) {
   const std::size_t dot = channel.name.rfind('.') + 1;  // 0 where there is none
   const std::string own = channel.name.substr(dot);
-  const std::size_t colour = own.size() == 1 ? std::string("RGBA").find(own) : std::string::npos;
+  const std::size_t colour = own.size() == 1 ? std::string("RGBXYA").find(own) : std::string::npos;
   return std::tuple(channel.name.substr(0, dot), colour, own);
 }
 
@@ -171,6 +171,13 @@ Status write_light(const std::string& path, Extent extent, std::span<const float
                             .data = rgba.data(),
                             .pixel_stride = texel,
                             .row_stride = width * texel};
+  std::vector<float> positive;
+  if (*format == FileFormat::kHdr) {  // RGBE has no other numbers
+    positive.assign(rgba.begin(), rgba.end());
+    for (float& value : positive)
+      value = value > 0 ? std::min(value, 1e38f) : 0;
+    texels.data = positive.data();
+  }
   if (holds_light(*format)) return write_bytes(path, backend::encode(*format, texels, attributes));
   const std::vector<std::uint16_t> codes =
       display_codes(display_light(rgba, display.tone_map, display.exposure));
@@ -502,9 +509,79 @@ class Blocks {
   Block last_;
 };
 
+std::uint64_t number_of(std::string_view bytes, bool big_endian) {
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    number = number << 8 | static_cast<std::uint8_t>(bytes[big_endian ? i : bytes.size() - 1 - i]);
+  return number;
+}
+
+// Returns whether all strips or tiles of a TIFF's first picture lie within the file.
+// Source: "TIFF Revision 6.0", Adobe, 1992; BigTIFF as libtiff documents it.
+bool tiff_is_whole(Bytes& bytes, bool big_endian) {
+  constexpr std::uint64_t kStripOffsets = 273, kStripSizes = 279, kTileOffsets = 324, kTileSizes = 325;
+  constexpr std::uint64_t kShort = 3, kLong = 4;
+  const auto number = [&](std::string_view text) { return number_of(text, big_endian); };
+  const auto take = [&](std::int64_t length) { return number(bytes.take_text(length)); };
+  bytes.go_to(2);
+  const bool wide = take(2) == 43;
+  const std::int64_t word = wide ? 8 : 4;
+  bytes.go_to(word);
+  auto place = static_cast<std::int64_t>(take(word));
+  bytes.go_to(place);
+  std::uint64_t entries = take(wide ? 8 : 2);
+  place += wide ? 8 : 2;
+  std::vector<std::uint64_t> offsets, sizes;
+  for (; entries > 0 && bytes.good(); --entries, place += 4 + 2 * word) {
+    bytes.go_to(place);
+    const std::uint64_t tag = take(2), type = take(2);
+    const auto count = static_cast<std::int64_t>(take(word));
+    const bool is_offset = tag == kStripOffsets || tag == kTileOffsets;
+    std::vector<std::uint64_t>& numbers = is_offset ? offsets : sizes;
+    if ((!is_offset && tag != kStripSizes && tag != kTileSizes) || !numbers.empty()) continue;
+    const std::int64_t each = type == kShort ? 2 : type == kLong ? 4 : 8;
+    if (count < 0 || count > bytes.size() / each) return false;
+    if (count * each > word) bytes.go_to(static_cast<std::int64_t>(take(word)));
+    for (std::int64_t i = 0; i < count; ++i)
+      numbers.push_back(take(each));
+  }
+  for (std::size_t i = 0; i < std::min(offsets.size(), sizes.size()); ++i) {
+    const auto whole = static_cast<std::uint64_t>(bytes.size());
+    if (offsets[i] > whole || sizes[i] > whole - offsets[i]) return false;
+  }
+  return bytes.good();
+}
+
+// Returns whether a file that is no EXR ends as its format has it. True for a format that is not known.
+bool end_is_there(Bytes& bytes) {
+  using namespace std::string_view_literals;
+  const std::string begin = bytes.take_text(std::min<std::int64_t>(bytes.size(), 20));
+  const bool jpeg = begin.starts_with("\xff\xd8\xff"), png = begin.starts_with("\x89PNG");
+  if (jpeg || png) {
+    constexpr std::int64_t kTail = 4096;  // zeros may follow the end
+    bytes.go_to(std::max<std::int64_t>(bytes.size() - kTail, 0));
+    std::string end = bytes.take_text(std::min(bytes.size(), kTail));
+    end.resize(end.find_last_not_of('\0') + 1);
+    return end.ends_with(jpeg ? "\xff\xd9" : "IEND\xae\x42\x60\x82");
+  }
+  const bool big_dpx = begin.starts_with("SDPX");
+  if (big_dpx || begin.starts_with("XPDS")) {
+    constexpr std::uint64_t kUndefined = 0xffffffff;
+    const std::uint64_t said = begin.size() < 20 ? kUndefined : number_of(begin.substr(16, 4), big_dpx);
+    return said == kUndefined || said <= static_cast<std::uint64_t>(bytes.size());
+  }
+  const bool big_tiff = begin.starts_with("MM\0*"sv) || begin.starts_with("MM\0+"sv);
+  if (big_tiff || begin.starts_with("II*\0"sv) || begin.starts_with("II+\0"sv))
+    return tiff_is_whole(bytes, big_tiff);
+  return true;
+}
+
 }  // namespace
 
-Status check_blocks(const std::string& path) {
+Status check_whole(const std::string& path) {
+  Bytes bytes(path);
+  if (!end_is_there(bytes))
+    return Status::io(fmt::format("'{}' is cut short: its end is missing; render or copy it again", path));
   return Blocks(path).check();
 }
 

@@ -2,7 +2,7 @@
 // image_io.h and image_reader.h by OpenImageIO.
 //
 // Beside it OpenEXR's library is used nowhere but in image_openexr.cpp. Its half is the number format everywhere, and
-// check_blocks() reads the tables of an EXR by itself. OpenImageIO cannot read subsampled channels (luminance and
+// check_whole() reads the tables of an EXR by itself. OpenImageIO cannot read subsampled channels (luminance and
 // chroma): it refuses such a file.
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/filesystem.h>
@@ -188,7 +188,7 @@ bool is_code(Base type) {
   return type == TypeDesc::UINT8 || type == TypeDesc::UINT16;
 }
 
-ImagePart describe(const OIIO::ImageSpec& spec) {
+ImagePart describe(const OIIO::ImageSpec& spec, bool is_exr) {
   ImagePart part;
   part.name = spec["oiio:subimagename"].get();
   part.data = {spec.x, spec.y, {spec.width, spec.height}};
@@ -197,8 +197,11 @@ ImagePart describe(const OIIO::ImageSpec& spec) {
   part.dwa = OIIO::Strutil::starts_with(spec["compression"].get(), "dwa");
   part.view = spec["view"].get();
   part.pixel_aspect = spec["PixelAspectRatio"].get(1.0f);
-  part.straight_alpha = spec["oiio:UnassociatedAlpha"].get(0) != 0 && spec.alpha_channel >= 0;
-  part.colour_space = spec["oiio:ColorSpace"].get(is_code(Base(spec.format.basetype)) ? "sRGB" : "linear");
+  part.colour_space = is_code(Base(spec.format.basetype)) ? "sRGB" : "linear";
+  if (!is_exr) {  // whose own attributes of these names are another program's remarks
+    part.straight_alpha = spec["oiio:UnassociatedAlpha"].get(0) != 0 && spec.alpha_channel >= 0;
+    part.colour_space = spec["oiio:ColorSpace"].get(part.colour_space);
+  }
   if (const auto* found = spec.find_attribute("chromaticities", kChromaticitiesType))
     part.chromaticities = copied<Chromaticities>(*found);
   for (int c = 0; c < spec.nchannels; ++c) {
@@ -369,14 +372,20 @@ std::string read_bands(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, con
 class File : public backend::ImageFile {
  public:
   explicit File(const std::string& path) : path_(path), input_(open_input(path)) {
-    if (!input_) throw std::runtime_error(OIIO::geterror());
+    if (!input_) {
+      std::string why = OIIO::geterror();
+      if (OIIO::Strutil::contains(why, "Subsampled"))
+        why = fmt::format("{}; render it at full size",
+                          OIIO::Strutil::strip(why.substr(0, why.find('\n')), "."));
+      throw std::runtime_error(why);
+    }
     is_exr_ = std::string_view(input_->format_name()) == "openexr";
     const int count = is_exr_ ? std::max(input_->spec()["oiio:subimages"].get(1), 1) : 1;
     for (int i = 0; i < count; ++i) {
       if (!input_->seek_subimage(i, 0)) throw std::runtime_error(input_->geterror());
       OIIO::ImageSpec spec = input_->spec();
       if (spec.nchannels == 2 && spec.alpha_channel == 1) spec.channelnames[0] = "Y";
-      header.parts.push_back(describe(spec));
+      header.parts.push_back(describe(spec, is_exr_));
       specs_.push_back(std::move(spec));
     }
     header.attributes = attributes_of(specs_.front());
@@ -409,9 +418,14 @@ class File : public backend::ImageFile {
       return first + static_cast<int>((last - first) * thread / threads);
     };
     const auto read_some = [&](std::int64_t thread) {
-      const auto own = open_input(path_);
-      std::string problem =
-          own ? read_bands(*own, spec, reading, begin_of(thread), begin_of(thread + 1)) : OIIO::geterror();
+      std::string problem;
+      try {  // what a thread of the pool throws nobody catches
+        const auto own = open_input(path_);
+        problem =
+            own ? read_bands(*own, spec, reading, begin_of(thread), begin_of(thread + 1)) : OIIO::geterror();
+      } catch (const std::exception& thrown) {
+        problem = thrown.what();
+      }
       const std::lock_guard lock(mutex);
       if (!problem.empty()) why = std::move(problem);
     };

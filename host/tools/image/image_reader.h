@@ -110,8 +110,8 @@ class ImageReader {
 
   const ImageHeader& header() const { return file_->header; }
 
-  // Reads the channels, each file block once for each of their parts, with a few megabytes a thread beside the targets.
-  // Texels of the display window that the data window does not cover stay as they are. Errors: kIoFailure
+  // Reads the channels, each file block once for each of their parts. Beside the targets a thread takes a band of rows
+  // (64; 256 of DWAB; a row of tiles) with all channels of the file from the first to the last wanted one. Texels of the display window that the data window does not cover stay as they are. Errors: kIoFailure
   // for a damaged file; the targets then hold anything.
   Status read(std::span<const ChannelTarget> targets);
 
@@ -126,11 +126,11 @@ class ImageReader {
 void set_image_threads(int threads);
 
 // Checks whether a file holds all of its pixels, from its size and its tables of offsets alone. Reads the headers and
-// the tables of all parts, and no pixels: well under a millisecond. For files whose headers are known to be good
-// (ImageReader::open). It says nothing of a file that is no EXR, of mipmaps, and of a compression that it does not
-// know. Errors: kIoFailure where blocks (scanlines or tiles) were never written or lie beyond the file's end: a copy or
-// a renderer that was broken off. One sentence that names `path`. Thread-safe.
-// Source: "OpenEXR File Layout", OpenEXR documentation.
-Status check_blocks(const std::string& path);
+// the tables of all parts, and no pixels: well under a millisecond. JPEG and PNG must end as their formats have it, DPX
+// must have the size that its header says, and TIFF all strips or tiles of its first picture. It accepts other formats,
+// mipmaps of an EXR, and compressions that it does not know. Errors: kIoFailure where blocks (scanlines or tiles) were
+// never written or lie beyond the file's end: a copy or a renderer that was broken off. One sentence that names `path`.
+// Thread-safe. Source: "OpenEXR File Layout", OpenEXR documentation.
+Status check_whole(const std::string& path);
 
 }  // namespace quincunx::tools

@@ -252,7 +252,7 @@ Result<ResolveTask> prepare(const ResolveOptions& options) {
   if (!options.truth.empty()) {
     auto truth = parse_input(options.truth, "truth pattern");
     if (!truth.ok()) return truth.status();
-    task.truth = TruthFiles{std::move(truth).value(), options.truth_colour};
+    task.truth = {std::move(truth).value(), options.truth_colour, options.sequence.colour_space};
   }
   if (Status status = settle_frames(options, task); !status.ok()) return status;
   if (!options.frames) {

@@ -85,6 +85,8 @@ class Search {
       complain(fmt::format("holds deep pixels in channel '{}'; flat ones are needed", name));
     } else if (header_.at(place).integer) {
       complain(fmt::format("holds integers in channel '{}'; half or float is needed", name));
+    } else if (const auto [x, y] = header_.at(place).sampling; x != 1 || y != 1) {
+      complain(fmt::format("has channel '{}' subsampled {}x{}; render it at full size", name, x, y));
     } else if (display_ && part.display.extent != display_->extent) {
       complain(fmt::format("has channel '{}' at {}x{} pixels, but its colour at {}x{}", name,
                            part.display.extent.width, part.display.extent.height, display_->extent.width,
@@ -220,6 +222,7 @@ float samples_in(const ImageHeader& header) {
 Result<ImageReader> open_mask(const std::string& path, Extent render) {
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader;
+  if (Status status = check_whole(path); !status.ok()) return Status::io("mask " + status.message());
   const ImagePart& part = reader->header().parts[0];
   const Extent found = part.display.extent;
   if (found != render) {

@@ -40,15 +40,18 @@ Status check_size(const std::string& path, Extent found, Extent wanted) {
                                 found.height, wanted.width, wanted.height));
 }
 
-Result<std::vector<float>> read_truth(const std::string& path, const std::string& layer, Extent extent) {
+Result<std::vector<float>> read_truth(const std::string& path, const TruthFiles& truth, Extent extent) {
   auto reader = ImageReader::open(path);
   if (!reader.ok()) return reader.status();
   ChannelNames names;
-  names[InputPlane::kColour] = colour_channels_in(reader->header(), layer);
+  names[InputPlane::kColour] = colour_channels_in(reader->header(), truth.colour_layer);
   const auto places = find_channels(path, reader->header(), names, "--truth-colour");
   if (!places.ok()) return Status::io("truth " + places.status().message());
   if (Status status = check_size(path, places->display.extent, extent); !status.ok()) return status;
-  const auto colour = InputColour::of(path, reader->header().parts[(*places)[InputPlane::kColour][0]->part]);
+  const ImagePart& part = reader->header().parts[(*places)[InputPlane::kColour][0]->part];
+  auto colour = InputColour::of(path, part);
+  if (!part.chromaticities && colour.ok() && colour->is_light())  // the file says nothing of its colour
+    colour = InputColour::of(path, part, truth.colour_space);
   if (!colour.ok()) return Status::io("truth " + colour.status().message());
   std::vector<float> rgba(static_cast<std::size_t>(extent.area()) * 4);
   std::vector<ChannelTarget> targets;
@@ -69,6 +72,7 @@ Made SequenceOutput::made(std::int64_t frame) const {
   std::error_code error;
   const std::string file = path(frame);
   if (!std::filesystem::exists(file, error)) return Made::kNot;
+  if (!check_whole(file).ok()) return Made::kOtherwise;
   if (format_of(pattern) != FileFormat::kExr) return Made::kAsWanted;
   const auto reader = ImageReader::open(file);
   if (!reader.ok()) return Made::kOtherwise;
@@ -145,6 +149,7 @@ Result<std::unique_ptr<SequenceScores>> SequenceScores::create(const TruthFiles&
     std::error_code error;
     const std::string path = truth.pattern.expand(frame);
     if (!std::filesystem::exists(path, error)) continue;
+    if (Status status = check_whole(path); !status.ok()) return Status::io("truth " + status.message());
     scores->known_.push_back(frame);
     scores->files_.push_back(path);
   }
@@ -170,7 +175,7 @@ Status SequenceScores::finish() {
 
 Status SequenceScores::measure_frame(std::int64_t frame, const std::vector<float>& pixels,
                                      const MotionField& motion) {
-  const auto truth = read_truth(truth_.pattern.expand(frame), truth_.colour_layer, extent_);
+  const auto truth = read_truth(truth_.pattern.expand(frame), truth_, extent_);
   if (!truth.ok()) return truth.status();
   return scored_->add(frame, {extent_, pixels}, {extent_, truth.value()}, motion);
 }

@@ -30,7 +30,7 @@ struct SequenceOutput {
   std::string path(std::int64_t frame) const { return pattern.expand(frame); }
 
   // Returns whether the frame's file is there as this run would make it: an EXR of this extent, made with these
-  // settings; another file, if it is there at all. (Files are only ever whole.)
+  // settings; another file, if it is there and not cut short.
   Made made(std::int64_t frame) const;
 
   // Whether the picture as presented is written, in 8 bits. Else light is, or what is made from it.
@@ -60,6 +60,7 @@ using SharedPixels = std::shared_ptr<const std::vector<float>>;  // linear RGBA
 struct TruthFiles {
   FramePattern pattern;
   std::string colour_layer = {};  // as SequenceInput has it
+  std::string colour_space = {};  // of files that say nothing of theirs, as SequenceInput has it
 };
 
 // Measures on a thread of its own, a frame or two behind who adds them.

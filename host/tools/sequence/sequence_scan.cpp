@@ -72,7 +72,7 @@ Status scan_frame(const std::string& path, const SequenceFormat& format, Scanned
     const auto mask = open_mask(format.reactive_files->expand(frame.number), frame.render);
     if (!mask.ok()) return mask.status();
   }
-  if (Status status = check_blocks(path); !status.ok()) return status;
+  if (Status status = check_whole(path); !status.ok()) return status;
   if (format.needs_camera && !attributes->world_to_ndc) {
     return Status::io(
         fmt::format("'{}' has no attribute 'worldToNDC', which {} needs", path,
