@@ -131,7 +131,7 @@ TEST_F(CommandLine, WrongUsageIsExitTwoAndOneSentence) {
   expect_refused("--score 2 --output 640x10", 2,
                  "--score needs an output of at least 11x11 pixels; this is 640x10");
   expect_refused("--frames 2 --out '{}/same.png'", 2, "same.png");
-  expect_refused("--out '{}/frame.jpg'", 2, ".jpg");
+  expect_refused("--out '{}/frame.gif'", 2, ".gif");
   expect_refused("--scene nowhere", 2, "nowhere");
   expect_refused("--scene chart --device none-such", 2, "none-such");
   expect_refused("--exr-frame 5 --frames 2 --out '{}/f.%d.png'", 2, "--exr-frame");

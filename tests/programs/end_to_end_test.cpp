@@ -217,7 +217,7 @@ TEST_F(EndToEnd, ScoresAreOfThisRunAndChangeNoPixel) {
     const std::string name = fmt::format(".{:04}.exr", index);
     EXPECT_EQ(image("with" + name).pixels, image("without" + name).pixels) << index;
   }
-  render("--scene pan --scale 0.5 --frames 8 --truth 2 --out '{}/truth.%04d.exr'");
+  render("--scene pan --frames 8 --truth 2 --out '{}/truth.%04d.exr'");
   const auto report = nlohmann::json::parse(read_file(path("r.json")));
   const auto& frames = report["scores"]["frames"];
   ASSERT_EQ(frames.size(), 8u);

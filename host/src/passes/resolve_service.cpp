@@ -190,7 +190,8 @@ FrameReport ResolveService::Impl::dispatch(const FrameInputs& inputs, const Focu
     advice.look_at(picture.plan(), inputs);
     ring.commit();
     picture.keep(inputs);
-    if (sync.done != nullptr) *sync.done = retained(slot.done);  // last, so that no event is left of a failed frame
+    if (sync.done != nullptr)
+      *sync.done = retained(slot.done);  // last, so that no event is left of a failed frame
     return slot.report;
   } catch (...) {
     forget();  // part of the frame may be queued; what it left behind is not to be trusted as history

@@ -111,8 +111,9 @@ class ImageReader {
   const ImageHeader& header() const { return file_->header; }
 
   // Reads the channels, each file block once for each of their parts. Beside the targets a thread takes a band of rows
-  // (64; 256 of DWAB; a row of tiles) with all channels of the file from the first to the last wanted one. Texels of the display window that the data window does not cover stay as they are. Errors: kIoFailure
-  // for a damaged file; the targets then hold anything.
+  // (64; 256 of DWAB; a row of tiles) with all channels of the file from the first to the last wanted one. Texels of
+  // the display window that the data window does not cover stay as they are. Errors: kIoFailure for a damaged file; the
+  // targets then hold anything.
   Status read(std::span<const ChannelTarget> targets);
 
  private:
