@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "bench/bench_options.h"
+#include "bench/harness/measuring.h"
 #include "bench/speed_error/bench_plan.h"
 #include "bench/speed_error/bench_run.h"
 #include "bench/speed_error/contender.h"
