@@ -52,7 +52,7 @@ class QUINCUNX_API Device {
 
   // Opens a device. `selector` is "" for the first of list(), "cpu" or "gpu" for the first of that kind, an index of
   // list(), or a part of "platform name", case-insensitive. A number beyond the last index is a part of a name: "4090".
-  // Of several devices whose names have the part the first is opened, and the log names the others. `properties` holds
+  // Where several names have the part the first device is opened, and the log names the others. `properties` holds
   // further context properties for GL sharing, ended by zero, or is null. Errors: kInvalidArgument when nothing matches
   // (the message lists what there is), kDeviceFailure when the context cannot be made.
   static Result<Device> open(const std::string& selector = {},
