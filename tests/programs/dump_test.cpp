@@ -273,7 +273,8 @@ TEST_F(Dump, ADilatedVelocityIsThatOfTheNearestOfNine) {
 
 TEST_F(Dump, MistakesAreAnswered) {
   expect_refused("--scene chart", "--out");
-  expect_refused("--scene chart --stages colour,colours --out '{}/d'", "'colours' is none of blurred, clear, colour");
+  expect_refused("--scene chart --stages colour,colours --out '{}/d'",
+                 "'colours' is none of blurred, clear, colour");
   expect_refused("--scene chart --format jpg --out '{}/d'", "'jpg' is none of both, exr, png");
   expect_refused("-q --scene chart --method bilinear --frame 2 --stages history --out '{}/d'",
                  "there is no stage 'history': the method 'bilinear' uses one frame only");
