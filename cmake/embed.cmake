@@ -87,5 +87,14 @@ std::span<const EmbeddedFile> @name@();
     DEPENDS ${paths} ${QUINCUNX_EMBED_SCRIPT}
     COMMENT "Embedding the files of ${name}"
     VERBATIM)
-  target_sources(${target} PRIVATE ${source})
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "OBJECT_LIBRARY")  # whose objects do not reach its users through another
+    target_sources(${target} PRIVATE ${source})
+    return()
+  endif()
+  # On its own: with a command of its own, the target would wait for every library that it uses before it compiles.
+  add_library(${name} OBJECT ${source})
+  quincunx_library(${name})
+  target_include_directories(${name} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/embedded ${PROJECT_SOURCE_DIR}/cmake)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${name}>)
 endfunction()

@@ -87,7 +87,11 @@ void place(ImageView& view, Extent render, int row_texels) {
   view.pitch = texels * bytes_per_pixel(view.format);
 }
 
-FrameLayout lay_out(const std::vector<Plane>& planes, Extent target, Targets targets, int row_texels) {
+FrameLayout lay_out(std::vector<Plane> planes, Extent target, Targets targets, int row_texels) {
+  // Kernels count a plane's texels by its channels, in 32 bits: the widest channels reach furthest, and lie last.
+  std::stable_sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) {
+    return names_of(a.format).bits[0] < names_of(b.format).bits[0];
+  });
   FrameLayout layout;
   for (const Plane& plane : planes) {
     ImageView& view = view_of(layout.views, plane.kind);

@@ -64,7 +64,7 @@ struct FrameLayout {
 };
 
 // Lays the planes out. `row_texels`: rows of placed images start at multiples of so many texels, at least 1.
-FrameLayout lay_out(const std::vector<Plane>& planes, Extent target, Targets targets, int row_texels);
+FrameLayout lay_out(std::vector<Plane> planes, Extent target, Targets targets, int row_texels);
 
 // Makes a placed image one of the viewport `render`, which is at most the largest: the same memory, another pitch.
 void place(ImageView& view, Extent render, int row_texels);

@@ -31,6 +31,26 @@ Extent random_extent(std::uint32_t& state, Extent largest) {
   return {width, side(largest.height)};
 }
 
+// As in validate(): an image ends within 2^31 channels of its buffer's beginning.
+TEST(FrameLayout, PlanesOfTheLargestTargetEndWhereKernelsReach) {
+  constexpr Extent kTarget = {16384, 16384};
+  for (const PixelFormat colour : {PixelFormat::kRGBA8, PixelFormat::kRGBA16F, PixelFormat::kRGBA32F}) {
+    BridgeSettings settings = all_planes(kTarget, kOutput);
+    settings.colour = colour;
+    const std::vector<Plane> planes = planes_of(settings);
+    ASSERT_EQ(planes.size(), 4u);
+    for (const Targets targets : {Targets::kViewport, Targets::kPlaced}) {
+      FrameLayout layout = lay_out(planes, kTarget, targets, 1);
+      for (const Plane& plane : planes) {
+        const ImageView& view = view_of(layout.views, plane.kind);
+        const std::size_t bytes_of_a_channel = static_cast<std::size_t>(names_of(view.format).bits[0]) / 8;
+        EXPECT_LE((view.offset + view.pitch * 16384) / bytes_of_a_channel, std::size_t{1} << 31)
+            << name_of(view.format);
+      }
+    }
+  }
+}
+
 class PlacedTargetsTest : public InteropTest {
  protected:
   // Draws a frame of its own random texels and hands it over.

@@ -42,10 +42,16 @@ TEST(Device, ListsAndOpens) {
 
 // A number is an index where there is such a device, and a part of a name elsewhere.
 TEST(Device, NumbersAreIndicesOrPartsOfNames) {
-  std::vector<DeviceInfo> infos(3);
-  infos[0] = {.kind = DeviceKind::kGpu, .platform = "NVIDIA CUDA", .name = "NVIDIA GeForce RTX 4090"};
-  infos[1] = {.kind = DeviceKind::kGpu, .platform = "AMD", .name = "AMD Radeon RX 7900 XTX"};
-  infos[2] = {.kind = DeviceKind::kCpu, .platform = "Portable Computing Language", .name = "pthread-Ryzen 9"};
+  std::vector<DeviceInfo> infos;
+  const auto add = [&](DeviceKind kind, const char* platform, const char* name) {
+    DeviceInfo& info = infos.emplace_back();
+    info.kind = kind;
+    info.platform = platform;
+    info.name = name;
+  };
+  add(DeviceKind::kGpu, "NVIDIA CUDA", "NVIDIA GeForce RTX 4090");
+  add(DeviceKind::kGpu, "AMD", "AMD Radeon RX 7900 XTX");
+  add(DeviceKind::kCpu, "Portable Computing Language", "pthread-Ryzen 9");
   const std::vector<std::pair<std::string, std::optional<std::size_t>>> cases = {
       {"", 0},
       {"0", 0},

@@ -10,7 +10,7 @@
 //   begin_draw(s, render), draw, submit(s)
 //   acquire(s), service.dispatch(...)    s is held, and so is the slot before it, until the next dispatch
 //   present(), then presented_pixels() or presented_texture()
-// Of a renderer with textures of its own (BridgeSettings::imports):
+// Where a renderer has textures of its own (BridgeSettings::imports):
 //   draw, import(textures, render), service.dispatch(...), present(texture)
 // All calls come from the thread where the GL context is current. Each puts back the state of GL that it changes, and
 // leaves GL's errors of before to the caller.

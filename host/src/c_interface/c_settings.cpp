@@ -149,7 +149,7 @@ std::string_view c_name(std::string_view name) {
   return name;
 }
 
-// Of an image's part, "particle_colour.extent", both are translated.
+// Translates both names in "particle_colour.extent": the image's and its part's.
 std::string c_words(std::string_view name) {
   const std::size_t dot = name.rfind('.');
   if (dot == name.npos || c_name(name) != name) return std::string(c_name(name));
